@@ -73,6 +73,7 @@ HOMES: tuple[Home, ...] = (
             "companions.params.shared_defaults",
             "companions.params.slashes",
             "companions.params.release_checks",
+            "companions.params.bringup_style",
         ),
     ),
     Home(
@@ -120,6 +121,7 @@ HOMES: tuple[Home, ...] = (
             "fleets.launched_files",
             "fleets.simulators",
             "fleets.shared_nodes",
+            "fleets.params_style",
             "fleets.closing",
             "fleets.closing_bridges",
             "fleets.closing_controllers",

@@ -25,6 +25,7 @@ from multibot_rewrite.fleets.kept_files import KeptFiles
 from multibot_rewrite.fleets.node_names import NodeNames, Rules, names_of
 from multibot_rewrite.fleets.output_file import OutputFile
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleets.robot_nodes import stack_nodes
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS
 from multibot_rewrite.remap.records import TOPIC
@@ -55,7 +56,8 @@ class LoadedRobot:
     """One robot of a fleet: what its nodes, its simulator and its tf need, as plain values.
 
     ``namespace`` is absolute; ``tag`` is the prefix or postfix of its frames and joints; ``pose`` is
-    None if the fleet file has none. It can be copied and pickled, with its fleet.
+    None if the fleet file has none; ``params_files`` are the names of its parameter files, ``stack``
+    the nodes of its stacks. It can be copied and pickled, with its fleet.
     """
 
     def __init__(self, fleet: OfFleet, robot: RewrittenRobot) -> None:
@@ -67,6 +69,11 @@ class LoadedRobot:
         self.tag: str = spec.tag
         self.pose: Pose | None = spec.pose
         self.use_sim_time: bool | None = spec.use_sim_time
+        self.distro: str = fleet.plan.file.distro
+        params = spec.companions.get("params", ())
+        nodes = stack_nodes(spec, fleet.plan.file)
+        self.stack: tuple[str, ...] = tuple(it.name for it in nodes)
+        self.params_files: tuple[str, ...] = tuple(map(os.path.basename, params))
         namespaced = robot.topics.naming.topics == NAMESPACE
         self.namespace: str = f"/{spec.namespace}" if namespaced else "/"
 

@@ -19,6 +19,7 @@ from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, yaml_of
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.start_poses import world_of
+from multibot_rewrite.fleets.with_start_pose_nodes import split_per_robot
 
 RVIZ = "rviz2"
 
@@ -45,6 +46,17 @@ def rviz_outputs(plan: FleetPlan, each: Iterable[FleetPlan]) -> Iterator[RvizOut
     for path, robots in robots_of.items():
         shown = [_as_rviz_robot(own[robot.spec.name]) for robot in robots]
         yield RvizOutput(path, *rewrite_rviz(yaml_of(path), shown, world=world))
+
+
+def robot_windows(plan: FleetPlan, each: bool) -> list[tuple[str, RvizText]]:
+    """The windows of a fleet with the names of their files, or with ``each`` one for each robot.
+
+    Raises as ``rviz_outputs``.
+    """
+    apart = list(split_per_robot(plan))
+    made = [rviz_outputs(one, [one]) for one in apart] if each else [rviz_outputs(plan, apart)]
+    found = (it for outputs in made for it in outputs)
+    return [(os.path.basename(it.source), window) for it in found for window in it.windows]
 
 
 def _as_rviz_robot(plan: FleetPlan) -> RvizRobot:

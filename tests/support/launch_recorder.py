@@ -112,7 +112,9 @@ async def launched(service: LaunchService, rows: Rows) -> None:
     """Run the launch until it is quiet, and stop it."""
     running = asyncio.ensure_future(service.run_async())
     await quiet(rows)
-    service.shutdown()
+    stopping = service.shutdown()
+    if stopping is not None:
+        await stopping
     await asyncio.wait([running], timeout=20)
 
 

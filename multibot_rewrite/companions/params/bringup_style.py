@@ -47,7 +47,7 @@ amcl:
     use_sim_time: true
 """,
     formats=("params",),
-    options={"stack": "nav2,rviz_nav2", "params_style": "bringup"},
+    options={"stack": ["nav2", "rviz"], "params_style": "bringup", "layout": "both"},
 )
 
 
