@@ -120,5 +120,7 @@ def _stacks(robot: Looked, nodes: Mapping[str, str], srdf: str) -> Iterator[tupl
         where = bare.get(_MANAGER)
         why = f" and {os.path.basename(where)} has controllers" if where else ""
         yield stack, f"the description has <ros2_control>{why}"
+    elif robot.simulator == NO_SIMULATOR:
+        yield "robot_state", "joint_state_publisher sends the joints until a driver does"
     if srdf:
         yield "moveit", f"there is {os.path.basename(srdf)}"
