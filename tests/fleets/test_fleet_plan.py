@@ -81,6 +81,7 @@ def scalars(value: Any) -> Iterator[str]:
 def test_every_robot_has_its_files_and_no_other(fleet: tuple[str, dict[str, str]]) -> None:
     layout, files = fleet
     common = {"plan.yaml", "remappings.yaml", "remappings.py", "commands.md", "bridge.yaml"}
+    common |= {"fleet.launch.py", "fleet.launch.xml"}
     own = {
         "scout": {"rover.urdf", "params.yaml", "bridge.yaml", "one_robot.rviz", "start_pose.yaml"},
         "reach": {"arm.urdf", "arm.srdf", "limits.yaml", "one_robot.rviz"},
@@ -265,7 +266,7 @@ def test_a_held_robot_is_a_planned_publisher(tmp_path: Path) -> None:
     found = with_start_pose_nodes(plan)
     assert [it.name for it in found.table.nodes] == ["start_pose"]
     assert found.edges["robot1", "start_pose"][0][:2] == ("map", "robot1/base_link")
-    assert with_start_pose_nodes(plan._replace(robots=())) is plan.fleet
+    assert with_start_pose_nodes(plan._replace(robots=())) == plan.fleet
 
 
 def test_each_robot_alone_is_the_fleet_in_parts(tmp_path: Path) -> None:
