@@ -58,7 +58,7 @@ def robot_nodes(
     read = given_nodes(params_of(spec).values(), parameters)
     own = tuple(without_robot(it, spec.words) for it in read)
     known, stack = _known(own, file), stack_nodes(spec, file)
-    launched = launched_robot(stack, spec.launch, known, spec.words, parameters)
+    launched = launched_robot(stack, spec.launch, known, spec.words, parameters, file.distro)
     given = given_with(launched, own)
     spawned = launched.spawned if launched else {}
     without, findings = nodes_with(launched, stack, given, known)
