@@ -149,14 +149,31 @@ def test_functions_run_and_what_starts_later_says_so(tmp_path: Path) -> None:
     )
     assert [(it.executable, bool(it.later)) for it in graph.nodes] == [
         ("f", False),
-        ("t", True),
-        ("e", True),
         ("l", False),
         ("r", False),
+        ("t", True),
+        ("e", True),
     ]
-    assert (graph.nodes[-1].name, graph.nodes[-1].remappings) == ("n", (("a", "b"),))
+    assert (graph.nodes[2].name, graph.nodes[2].remappings) == ("n", (("a", "b"),))
     (note,) = graph.notes
     assert (note.place.line, "run time" in note.message) == (NAMES + 4, True)
+
+
+@in_launch
+def test_what_starts_later_is_outside_the_group_that_it_stands_in(tmp_path: Path) -> None:
+    """launch leaves the scope of a group before any event (LaunchService, GroupAction)."""
+    graph = read(
+        tmp_path,
+        """\
+        GroupAction([
+            PushRosNamespace("robot1"),
+            RegisterEventHandler(OnProcessExit(on_exit=[
+                Node(package="acme", executable="e", namespace="robot1"),
+                TimerAction(period=1.0, actions=[Node(package="acme", executable="t")])])),
+            Node(package="acme", executable="n")]),""",
+    )
+    found = {it.executable: it.namespace for it in graph.nodes}
+    assert found == {"n": "/robot1", "e": "/robot1", "t": "/"}
 
 
 @in_launch

@@ -33,12 +33,14 @@ _NOT_FOUND = re.compile(r"package '(\w+)' not found|No module named '(\w+)")
 
 class Visit(NamedTuple):
     """A visit: the context, what has been found, the place of what is visited, and what starts it if
-    not the launch itself."""
+    not the launch itself. ``deferred`` are actions that come after all others, each with its visit and
+    the locals of the context there."""
 
     context: Any
     nodes: list[LaunchedNode]
     notes: list[LaunchNote]
     place: Place
+    deferred: list[tuple[Any, Visit, dict[str, Any]]]
     later: str = ""
 
     def note(self, message: str, parameters: bool = False) -> None:

@@ -13,7 +13,7 @@ from multibot_rewrite.launch.graph.describe import Visit, failure
 from multibot_rewrite.launch.graph.made_files import keep_sources
 from multibot_rewrite.launch.graph.packages import add_sources
 from multibot_rewrite.launch.graph.places import keep_places
-from multibot_rewrite.launch.graph.visit import visit
+from multibot_rewrite.launch.graph.visit import visit_all
 
 
 class UnreadableError(Exception):
@@ -38,8 +38,8 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
     except (Exception, SystemExit) as error:
         raise UnreadableError(failure(error)) from error
     context = of_launch().LaunchContext(noninteractive=True)
-    seen = Visit(context, [], [], Place(os.path.abspath(order.file), 1))
-    visit(description, seen)
+    seen = Visit(context, [], [], Place(os.path.abspath(order.file), 1), [])
+    visit_all(description, seen)
     return LaunchGraph(tuple(seen.nodes), tuple(dict.fromkeys(seen.notes)))
 
 

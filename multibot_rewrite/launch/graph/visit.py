@@ -119,8 +119,20 @@ def _process(entity: Any, seen: Visit) -> Iterable[Any] | None:
     return None
 
 
+def visit_all(description: Any, seen: Visit) -> None:
+    """Visit a description, and then what its timers and events start: the scopes that these stand in
+    are left by then, with the namespace and the configurations of their groups."""
+    visit(description, seen)
+    while seen.deferred:
+        entity, then, known = seen.deferred.pop(0)
+        then.context._push_locals()
+        then.context.extend_locals(known)
+        visit(entity, then)
+        then.context._pop_locals()
+
+
 def _later(entity: Any, seen: Visit) -> Iterable[Any] | None:
-    """The actions of a timer or an event handler, as they would be with what is known now."""
+    """Keep the actions of a timer or an event handler for the end of the visit."""
     if not is_wanted(entity, seen.context):
         return None
     timer = _is(entity, "TimerAction")
@@ -132,8 +144,8 @@ def _later(entity: Any, seen: Visit) -> Iterable[Any] | None:
     if not timer and not actions:
         message = f"what {type(handler).__name__} starts is decided only at run time"
         seen.note(message)
-    for it in actions:
-        visit(it, seen._replace(later=word))
+    known = dict(seen.context.get_locals_as_dict())
+    seen.deferred.extend((it, seen._replace(later=word), known) for it in actions)
     return None
 
 
