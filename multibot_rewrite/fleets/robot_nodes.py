@@ -36,8 +36,8 @@ def node_sources(spec: RobotSpec) -> NodeSources:
 
 class RobotEvidence(NamedTuple):
     """What a robot's files set for nodes, the nodes that are known by name, those that it runs,
-    where its files and stacks disagree, the controllers that its launch files spawn, and whether
-    these start all of its nodes and no simulator."""
+    where its files and stacks disagree, the controllers that its launch files spawn, whether these
+    start all of its nodes and no simulator, and the arguments of all that they start."""
 
     given: tuple[GivenNode, ...]
     known: Mapping[str, NodeFacts]
@@ -45,6 +45,7 @@ class RobotEvidence(NamedTuple):
     findings: tuple[Finding, ...]
     spawned: Mapping[str, Spawned]
     unsimulated: bool = False
+    arguments: tuple[str, ...] = ()
 
 
 def robot_nodes(
@@ -68,7 +69,9 @@ def robot_nodes(
     marked, shared = apart(nodes, file)
     unsimulated = launched is not None and launched.whole and not launched.simulated
     said = (*notes, *findings, *shared)
-    return RobotEvidence(given, known, marked, said, spawned, unsimulated)
+    started = launched.started.values() if launched else ()
+    arguments = tuple(word for it in started for word in it.arguments)
+    return RobotEvidence(given, known, marked, said, spawned, unsimulated, arguments)
 
 
 def _of_srdf(
