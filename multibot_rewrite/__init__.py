@@ -9,7 +9,8 @@ from multibot_rewrite.version import __version__ as __version__
 
 if TYPE_CHECKING:
     from multibot_rewrite.findings.finding import Finding, RewriteRefused
-    from multibot_rewrite.fleets.scripts import LoadedFleet, LoadedRobot, load_fleet
+    from multibot_rewrite.fleets.loaded_robot import LoadedRobot
+    from multibot_rewrite.fleets.scripts import LoadedFleet, load_fleet
     from multibot_rewrite.library import Rewrite, explain, rewrite, rewrite_all, strip
     from multibot_rewrite.model import (
         Change,
@@ -41,7 +42,8 @@ __all__ = [
 _HOMES = {
     **dict.fromkeys(("Rewrite", "explain", "rewrite", "rewrite_all", "strip"), "library"),
     **dict.fromkeys(("Finding", "RewriteRefused"), "findings.finding"),
-    **dict.fromkeys(("LoadedFleet", "LoadedRobot", "load_fleet"), "fleets.scripts"),
+    **dict.fromkeys(("LoadedFleet", "load_fleet"), "fleets.scripts"),
+    "LoadedRobot": "fleets.loaded_robot",
 }
 
 

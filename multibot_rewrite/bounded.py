@@ -14,6 +14,8 @@ from functools import cache
 from itertools import accumulate
 from typing import TYPE_CHECKING, Any, NoReturn
 
+from multibot_rewrite.outside import outside
+
 if TYPE_CHECKING:
     import yaml
 
@@ -34,6 +36,7 @@ _STEPS = {ord("["): 1, ord("{"): 1, ord("]"): -1, ord("}"): -1}
 _NO_BRACKETS = bytes(set(range(256)) - _STEPS.keys() - {ord('"')})
 
 
+@outside
 def read_bytes(path: str, limit: int = MAX_BYTES) -> bytes:
     """The bytes of a file, which may be a device without an end; raises OSError, also for a file that
     is too large, and ValueError for a path that no system takes."""

@@ -66,9 +66,10 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> object:
 
 
 @pytest.fixture(autouse=True, scope="session")
-def no_release() -> Iterator[None]:
-    """The facts that are tested are not those of the machine's ROS."""
+def no_release(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """The facts that are tested are not those of the machine's ROS, nor what a user's cache keeps."""
     with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
         patch.delenv("ROS_DISTRO", raising=False)
         yield
 

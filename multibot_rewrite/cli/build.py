@@ -37,9 +37,9 @@ def run(options: argparse.Namespace) -> int:
     """Build or check; returns the exit code."""
     _check_folder(options.output)
     check_report(options, printed=False)
-    plan = plan_fleet(
-        read_fleet(options.fleet, options.distro or "", os.environ), trust=options.trust
-    )
+    fleet = read_fleet(options.fleet, options.distro or "", os.environ)
+    fleet = fleet._replace(params_style=options.params_style or fleet.params_style)
+    plan = plan_fleet(fleet, trust=options.trust)
     note_interfaces(options, plan.fleet.facts)
     made = make_outputs(plan, os.path.abspath(options.output))
     if _reported(options, plan, made.findings):

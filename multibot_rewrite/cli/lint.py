@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from functools import partial
 
 from multibot_rewrite.cli.diffs import diff
-from multibot_rewrite.cli.lint_use import check_use, given
+from multibot_rewrite.cli.lint_use import cached, check_use, given
 from multibot_rewrite.cli.output import (
     note,
     print_bytes,
@@ -18,7 +18,7 @@ from multibot_rewrite.cli.output import (
 )
 from multibot_rewrite.cli.parser import UNUSABLE
 from multibot_rewrite.cli.process import DONE, STOPPED
-from multibot_rewrite.cli.report import About, by_themselves, report_first
+from multibot_rewrite.cli.report import NO_RULES, TEXT, About, by_themselves, report_first
 from multibot_rewrite.cli.usage import plain_words
 from multibot_rewrite.cli.walk import check_folder, check_target, find_files, standard_input
 from multibot_rewrite.findings.finding import LEVELS, Finding
@@ -30,7 +30,6 @@ from multibot_rewrite.lint.config.configured import (
     with_options,
 )
 from multibot_rewrite.lint.config.settings import Settings
-from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.run import among, lint_files
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
@@ -45,6 +44,7 @@ def run(options: argparse.Namespace) -> int:
     """Lint, fix or explain; returns the exit code."""
     if options.list_rules or options.explain:
         from multibot_rewrite.cli import explain  # a lint does not need it
+        from multibot_rewrite.lint.registry import RULES
 
         return (
             explain.list_rules(options, RULES) if options.list_rules else explain.of_option(options)
@@ -67,9 +67,11 @@ def _files(options: argparse.Namespace, config: Configured) -> tuple[list[str], 
     if paths == [STDIN]:
         return paths, []
     refused: list[Finding] = []
-    level = RULES["MB102"].level
 
     def refuse(error: OSError) -> None:
+        from multibot_rewrite.lint.registry import RULES
+
+        level = RULES["MB102"].level
         message = f"cannot be read: {error.strerror}"
         refused.append(Finding("MB102", level, message, "", error.filename, 1, 1))
 
@@ -102,7 +104,8 @@ def _lint(options: argparse.Namespace, settings: Settings, paths: Sequence[str])
 
         return lint_data("<stdin>", standard_input(), settings)
     watch = partial(watched, total=len(paths), doing="linting")
-    findings = lint_files(paths, settings, jobs=options.jobs or 0, watch=watch)
+    with cached(options, settings) as cache:
+        findings = lint_files(paths, settings, jobs=options.jobs or 0, watch=watch, cache=cache)
     if not options.fix or not _fixed(options, among(paths, settings), findings):
         return findings
     # Anew, and all: what is written in one file is found through others.
@@ -153,12 +156,28 @@ def _conclude(
     if options.fix and options.diff:
         failed = fails(findings, config.fail_on)
     else:
-        failed = report_first(options, findings, about, RULES)
+        failed = _report(options, findings, about)
     end = facts_of_release(config.settings.distro)
     note(options, f"{_summary(options, paths, findings, stale)}{end}")
     if any(it.code == CRASHED for it in findings):
         return UNUSABLE
     return STOPPED if failed else DONE
+
+
+def _report(options: argparse.Namespace, findings: Sequence[Finding], about: About) -> bool:
+    """Write what was found, or how often; are there findings at the level of ``--fail-on``?"""
+    if options.statistics:
+        from multibot_rewrite.cli.lint_statistics import deliver_statistics
+
+        deliver_statistics(options, findings)
+        return fails(findings, options.fail_on)
+    if options.format == TEXT:
+        return report_first(options, findings, about, NO_RULES)
+    from multibot_rewrite.lint.registry import (
+        RULES,  # where all is known from before, text needs none
+    )
+
+    return report_first(options, findings, about, RULES)
 
 
 def _summary(

@@ -3,10 +3,18 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
 
+from multibot_rewrite.cli.output import detail
 from multibot_rewrite.cli.usage import plain_words, policy, xacro_args
-from multibot_rewrite.model import UsageError
+from multibot_rewrite.lint.config.settings import Settings
+from multibot_rewrite.model import UsageError, VocabularyError
 from multibot_rewrite.sources.own_names import filled
+
+if TYPE_CHECKING:
+    from multibot_rewrite.lint.cache.cache import Cache
 
 _LISTS = ("select", "ignore", "robots", "roots", "target", "vocabulary")
 _PLAIN = ("urdf", "baseline", "fail_on", "trust")
@@ -25,8 +33,32 @@ def check_use(options: argparse.Namespace) -> None:
         raise UsageError("--diff shows what --fix would change: give both")
     if options.diff and options.output:
         raise UsageError("--diff prints to standard output: leave out --output")
+    if options.statistics and (options.format != "text" or options.diff or options.write_baseline):
+        raise UsageError("--statistics is a table: leave out --format, --diff and --write-baseline")
     if options.write_baseline and (options.fix or options.baseline or options.output):
         raise UsageError("--write-baseline takes neither --fix, --baseline nor --output")
+
+
+@contextmanager
+def cached(options: argparse.Namespace, settings: Settings) -> Iterator[Cache | None]:
+    """The cache for a lint, which is saved at the end; a folder that cannot be written is no error."""
+    # What trusted files look at is not known.
+    if options.no_cache or options.trust:
+        yield None
+        return
+    from multibot_rewrite.lint.cache.cache import Cache, cache_folder
+    from multibot_rewrite.lint.cache.identity import identity
+
+    try:
+        cache = Cache(cache_folder(), identity(settings))
+    except (OSError, ValueError, VocabularyError):  # reported where it is read
+        cache = None
+    yield cache
+    if cache:
+        try:
+            cache.save()
+        except OSError as error:
+            detail(options, f"the cache is not kept: {cache.folder}: {error.strerror}")
 
 
 def given(options: argparse.Namespace) -> dict[str, object]:

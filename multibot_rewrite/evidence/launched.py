@@ -39,12 +39,14 @@ NO_NAME = "the launch file gives it no name"
 
 class Programs(NamedTuple):
     """Executables whose node is known under another word, those whose node has another name, and those
-    that are no node of a robot. ``simulators`` are packages that only a simulated robot needs."""
+    that are no node of a robot. ``simulators`` are packages that only a simulated robot needs,
+    ``stamped`` parameters that are true by default, with their releases."""
 
     nodes: Mapping[str, str]
     names: Mapping[str, str]
     passing: Collection[str]
     simulators: Collection[str]
+    stamped: Mapping[str, str]
 
 
 class Launched(NamedTuple):
@@ -72,9 +74,8 @@ def programs() -> Programs:
     """Those of ``launch_programs.yaml``."""
     text = files("multibot_rewrite.evidence").joinpath("launch_programs.yaml").read_text("utf-8")
     data = load_yaml(text)
-    return Programs(
-        data["nodes"], data["names"], frozenset(data["passing"]), frozenset(data["simulators"])
-    )
+    passing, simulators = (frozenset(data[it]) for it in ("passing", "simulators"))
+    return Programs(data["nodes"], data["names"], passing, simulators, data["stamped"])
 
 
 def with_launched(

@@ -56,6 +56,12 @@ class Finding(NamedTuple):
         return one_line(text)
 
 
+def by_place(finding: Finding) -> tuple[str, int, int, str, str, str]:
+    """What findings are sorted by: file, line, column, code and text."""
+    it = finding
+    return it.file, it.line, it.column, it.code, it.message, it.arguments
+
+
 def same_for(finding: Finding) -> str:
     """``; the same for robot2 and 18 more``, empty where it is about one robot."""
     if not finding.others:

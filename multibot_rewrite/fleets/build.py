@@ -4,24 +4,26 @@ from __future__ import annotations
 
 import itertools
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from functools import cache
 from typing import NamedTuple
 
 from multibot_rewrite.companions.yaml_text import quoted
 from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.findings.grouping import grouped
 from multibot_rewrite.fleets.bridge_outputs import bridge_outputs
 from multibot_rewrite.fleets.closed_plan import bridged_by, demanded, gaps_of, texts_of
 from multibot_rewrite.fleets.commands_file import commands_file
 from multibot_rewrite.fleets.companion_files import companion_files
 from multibot_rewrite.fleets.consistency import consistency
 from multibot_rewrite.fleets.controller_files import with_own_controllers
+from multibot_rewrite.fleets.devices import one_device
 from multibot_rewrite.fleets.fleet import Fleet, expected, possible
 from multibot_rewrite.fleets.fleet_file import input_files
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.meeting import without_started
 from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, path_for
+from multibot_rewrite.fleets.params_style import check_style, in_style
+from multibot_rewrite.fleets.robot_groups import said_once
 from multibot_rewrite.fleets.rviz_outputs import rviz_commands, rviz_files, rviz_outputs
 from multibot_rewrite.fleets.with_start_pose_nodes import split_per_robot, with_start_pose_nodes
 from multibot_rewrite.gc_pause import gc_paused
@@ -48,8 +50,9 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
     """Every file of a fleet. ``folder`` is where they will be, if they are written at all.
 
     Raises InputError for a companion that cannot be read or rewritten, UsageError where two files
-    would have the same path.
+    would have the same path, and for parameter files in a style that does not serve the layout.
     """
+    check_style(plan.file)
     with gc_paused():
         fleet, each = with_start_pose_nodes(plan), list(split_per_robot(plan))
         configs = list(rviz_outputs(plan, each))
@@ -64,15 +67,19 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
         findings = [it for it in made if isinstance(it, Finding)]
         for robot in plan.robots:
             findings += without_started(robot.findings, fleet.table, [robot.member.robot])
+        findings += one_device(plan.robots)
         for found in plan.evidence.values():
             findings += found.findings
         texts = texts_of(files)
         gaps = gaps_of(plan, fleet, texts, findings)
         findings += (*consistency(plan, fleet, texts, findings), *gaps)
         fleet = fleet._replace(gaps=gaps, bridged=bridged_by(demanded(plan, texts)))
-        files = sorted((*files, *_tables(plan, fleet)))
+        styled = list(in_style(plan, files))
+        findings += [it for it in styled if isinstance(it, Finding)]
+        kept = (it for it in styled if isinstance(it, OutputFile))
+        files = sorted((*kept, *_tables(plan, fleet)))
         _check_paths_differ(files)
-        return Outputs(tuple(files), tuple(_once(plan, findings)))
+        return Outputs(tuple(files), tuple(said_once(plan, findings)))
 
 
 def _check_paths_differ(files: Sequence[OutputFile]) -> None:
@@ -82,28 +89,6 @@ def _check_paths_differ(files: Sequence[OutputFile]) -> None:
             raise UsageError(
                 f"{one.path}: two files would be written here, from {both}; rename one of them"
             )
-
-
-def _once(plan: FleetPlan, findings: Iterable[Finding]) -> list[Finding]:
-    """Sorted by place; what is the same for many robots is one finding."""
-    specs = [it.spec for it in plan.robots]
-    words = {word: it.name for it in specs for word in (it.model, it.tag, it.namespace, it.name)}
-    ordered = sorted(
-        set(findings), key=lambda it: (it.file, it.line, it.column, it.code, it.message)
-    )
-    # Lines of robots in the fleet file: that they differ is no difference.
-    names = {(it.file, it.line): it.name for it in specs}
-    lines = {name: line for (_, line), name in names.items()}
-    alike = [_at_robot(it, names.get((it.file, it.line), "")) for it in ordered]
-    return [
-        it._replace(robot="", line=lines[it.robot]) if it.robot else it
-        for it in grouped(alike, words)
-    ]
-
-
-def _at_robot(finding: Finding, robot: str) -> Finding:
-    """The finding with the robot in the place of its line."""
-    return finding._replace(robot=robot, line=0) if robot else finding
 
 
 def _descriptions(plan: FleetPlan, folder: str) -> FilesAndFindings:

@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterator
 
 from multibot_rewrite.companions.params.sections import PARAMETERS
-from multibot_rewrite.companions.yaml_text import read_yaml
+from multibot_rewrite.companions.yaml_text import YamlText, pairs, read_yaml
 from multibot_rewrite.evidence.parameter_files import named_values
 from multibot_rewrite.evidence.records import Given
 from multibot_rewrite.graph.expectation import (
@@ -59,8 +59,21 @@ def _of_robot(
         path = os.path.join(folder, name)
         data = read_file(path) if name.endswith((".yaml", ".yml")) else b""
         if PARAMETERS.encode() in data:
-            for node, values in named_values(read_yaml(data, path), robot.nodes):
-                yield node, dict(_parameters(values))
+            document = read_yaml(data, path)
+            names = _names(document, robot)
+            for node, values in named_values(document, names):
+                yield names[node], dict(_parameters(values))
+
+
+def _names(document: YamlText, robot: PlannedRobot) -> dict[str, str]:
+    """The names that a file has for a robot's nodes -> their full names.
+
+    A file for nav2_bringup has them below the robot's namespace; all others begin with a slash.
+    """
+    if any(key.value.startswith("/") for key, _ in pairs(document.root)):
+        return {it: it for it in robot.nodes}
+    above = f"/{robot.name}"
+    return {it.removeprefix(above): it for it in robot.nodes if it.startswith(f"{above}/")}
 
 
 def _parameters(values: dict[str, Given]) -> Iterator[tuple[str, PlannedParameter]]:

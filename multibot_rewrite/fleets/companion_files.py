@@ -61,7 +61,14 @@ def _params(plan: FleetPlan, group: RobotGroup, path: str) -> Companion:
     robots = {name for it in plan.robots for name in (it.spec.namespace, it.spec.tag)}
     own = group.robots[0].spec.words if len(group.robots) == 1 else ()
     made = rewrite_params(
-        read[path], group.context, known, others, group.facts, sorted(robots), own
+        read[path],
+        group.context,
+        known,
+        others,
+        group.facts,
+        sorted(robots),
+        own,
+        group.robots[0].spec.use_sim_time,
     )
     if path != next(iter(read)):
         return made

@@ -79,7 +79,8 @@ def _robot_names(plan: FleetPlan, fleet: Fleet) -> list[RobotNames]:
 def _names_of(robot: RewrittenRobot, graph: Iterable[str]) -> RobotNames:
     spec = robot.spec
     names = robot.names._replace(robot=spec.tag)
-    kinds = {word: names.declared.get(word, ()) for word in ("link", "joint", "frame", "sensor")}
+    words_of = ("link", "joint", "frame", "sensor", "group")
+    kinds = {word: names.declared.get(word, ()) for word in words_of}
     bare: dict[str, set[str]] = {}
     for word, declared in (*kinds.items(), ("frame", USUAL_FRAMES)):
         for name in declared:

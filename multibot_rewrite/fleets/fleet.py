@@ -172,7 +172,7 @@ def assemble(
     edges: dict[tuple[str, str], list[Edge]] = {}
     for it in members:
         own = [node for node, _ in plugins[it.robot]]
-        edges |= edges_of(it.robot, it.inventory, facts, own, naming, it.tag)
+        edges |= edges_of(it.robot, it.inventory, facts, own, naming, it.tag, it.plain)
     table = build_table([it.robot for it in members], facts, naming, plugins, release=release)
     unread = dict.fromkeys(found for it in members for found in it.unread)
     table = table._replace(problems=(*table.problems, *unread))

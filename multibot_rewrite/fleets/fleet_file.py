@@ -26,6 +26,8 @@ POLICY = tuple(Policy.__annotations__)
 Sources = tuple[str, str, tuple[tuple[str, str], ...], str]
 # What ``simulator`` says of a real robot.
 REAL = "none"
+# What ``params_style`` says of parameter files for nav2_bringup.
+BRINGUP = "bringup"
 
 
 class Pose(NamedTuple):
@@ -83,7 +85,7 @@ class FleetFile(NamedTuple):
     """A fleet file with its includes. ``policy`` are the options of ``make_naming`` that it sets,
     ``files`` all files of the fleet except the robots' own: the fleet file, what it includes, nodes,
     parameters, vocabulary. ``shared_nodes`` are nodes of the stacks that run once for all robots.
-    ``sros2`` asks for a policy.
+    ``sros2`` asks for a policy, ``params_style`` says how parameter files are written.
     ``installed`` is where the results are when they are used, empty for where
     they are written."""
 
@@ -100,6 +102,7 @@ class FleetFile(NamedTuple):
     files: tuple[str, ...] = ()
     shared_nodes: tuple[str, ...] = ()
     sros2: bool = False
+    params_style: str = ""
 
 
 def read_fleet(
@@ -141,6 +144,7 @@ def read_fleet(
         tuple(filter(None, (*read.files, nodes, *described, parameters, *vocabulary))),
         tuple(it.strip("/") for it in listed(data.get("shared_nodes", []))),
         data.get("sros2", False),
+        data.get("params_style", ""),
     )
 
 

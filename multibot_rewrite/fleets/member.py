@@ -16,6 +16,7 @@ from multibot_rewrite.readback.reading import Reading, read
 from multibot_rewrite.readback.xml import read_xml
 from multibot_rewrite.rewriters.vocabulary import Vocabulary
 from multibot_rewrite.rosnames import bind, resolve_bound
+from multibot_rewrite.sources.own_names import NameTexts
 from multibot_rewrite.steps.collect import Inventory, collect
 from multibot_rewrite.steps.document import Document, read_document
 
@@ -24,7 +25,8 @@ class Member(NamedTuple):
     """A robot of a fleet: its namespace, the tag in its frames, and what its rewritten description
     holds and starts; ``source`` is the description before, ``vocabulary`` what is known of plugins,
     ``shared`` are findings about names that any two robots of it would have, ``unread`` about arguments
-    that its xacro does not know; ``read`` are the files that were read for it.
+    that its xacro does not know; ``read`` are the files that were read for it, ``plain`` the names that
+    arguments of its xacro make, by what they are without.
     """
 
     robot: str
@@ -36,6 +38,7 @@ class Member(NamedTuple):
     shared: tuple[Finding, ...]
     unread: tuple[Finding, ...]
     read: tuple[str, ...]
+    plain: NameTexts
 
 
 def member(source: Rewrite, data: bytes, tag: str, real: bool = False) -> Member:
@@ -51,8 +54,8 @@ def member(source: Rewrite, data: bytes, tag: str, real: bool = False) -> Member
     _check_names(reading, document)
     shared = tuple(it for it in source.findings if it.code in SHARED_CODES)
     unread = tuple(it for it in source.findings if it.code == UNREAD)
-    read_for = source.prepared.job.read.files
-    words = (shared, unread, read_for)
+    job = source.prepared.job
+    words = (shared, unread, job.read.files, job.own.plain)
     return Member(source.robot, tag, written, reading, document, tree.vocabulary, *words)
 
 

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 from multibot_rewrite.arguments import checked
 from multibot_rewrite.model import UsageError
-from multibot_rewrite.remap.records import NodeTable, Table
+from multibot_rewrite.remap.records import CALLS, EndpointName, NodeTable, Table
 from multibot_rewrite.remap.started import Started, launch_arguments, started
 from multibot_rewrite.remap.ways import COMPONENT, SPAWNER
 from multibot_rewrite.remap.yaml_with_lines import unknown
 
+# What a lifecycle manager calls of each node that it manages (nav2_util lifecycle_service_client.cpp).
+CHANGE_STATE = "change_state"
 Rules = list[tuple[str, str]]
 SPAWNED = "is a controller: its spawner takes its remappings, robot.spawner({node!r})"
 
@@ -19,12 +21,14 @@ SPAWNED = "is a controller: its spawner takes its remappings, robot.spawner({nod
 class NodeNames(NamedTuple):
     """Names and remappings of a robot's nodes, by their names in the stacks.
 
-    ``started`` is what is started for the nodes, with all rules that it takes.
+    ``started`` is what is started for the nodes, with all rules that it takes; ``managed`` are the
+    nodes whose life cycle each of them manages, in their order.
     """
 
     robot: str
     nodes: Mapping[str, NodeTable]
     started: Mapping[str, Started]
+    managed: Mapping[str, tuple[str, ...]]
 
     @checked
     def for_node(self, node: str) -> Rules:
@@ -65,6 +69,12 @@ class NodeNames(NamedTuple):
         it = self.started.get(node)
         return self.full_name(it.node.home.container) if it and it.way == COMPONENT else ""
 
+    def inside(self, node: str) -> list[str]:
+        """The other nodes in the process that is started for this one: costmaps, components; raises
+        nothing."""
+        homes = {it.node: it.home.host or it.home.container for it in self.nodes.values()}
+        return [name for name in homes if node in _above(name, homes)]
+
     @checked
     def name(self, node: str) -> str:
         """The name the node runs under, without its namespace; raises as ``for_node``."""
@@ -88,6 +98,12 @@ class NodeNames(NamedTuple):
         raise UsageError(f"{where}: {unknown('node', node, self.nodes)}; {hint}")
 
 
+def _above(name: str, homes: Mapping[str, str]) -> Iterator[str]:
+    """The nodes whose process this one is in, nearest first."""
+    while name := homes.get(name, ""):
+        yield name
+
+
 def names_of(table: Table, robot: str) -> NodeNames:
     """The nodes of one robot in a fleet's table; of those for all robots if it is empty."""
     nodes: dict[str, NodeTable] = {}
@@ -96,4 +112,12 @@ def names_of(table: Table, robot: str) -> NodeNames:
         nodes.setdefault(it.node, it)
     names = tuple(it for it in table.names if it.robot == robot)
     found = started(table._replace(nodes=tuple(own), names=names))
-    return NodeNames(robot, nodes, {it.node.node: it for it in found})
+    managed = {it.node: tuple(_managed(it.full_name, names)) for it in own}
+    return NodeNames(robot, nodes, {it.node.node: it for it in found}, managed)
+
+
+def _managed(manager: str, names: Iterable[EndpointName]) -> Iterator[str]:
+    for it in names:
+        name, _, service = it.endpoint.name.rpartition("/")
+        if (it.node, it.endpoint.role, service) == (manager, CALLS, CHANGE_STATE):
+            yield name

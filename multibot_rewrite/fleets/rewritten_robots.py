@@ -10,15 +10,19 @@ from multibot_rewrite import pipeline
 from multibot_rewrite.checks.arguments import UNREAD
 from multibot_rewrite.checks.meeting import SHARED_CODES
 from multibot_rewrite.checks.twice import CARRYING
-from multibot_rewrite.companions.names.rename_map import CompanionNames, companion_names
+from multibot_rewrite.companions.names.rename_map import (
+    CompanionNames,
+    companion_names,
+    with_srdf,
+)
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.fleets.fleet_file import REAL, RobotSpec, Sources
 from multibot_rewrite.fleets.member import Member, member
+from multibot_rewrite.fleets.srdf_of_another import srdf_findings
 from multibot_rewrite.library import Rewrite, rewrite_job
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import Naming
-from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.sources.job import Job, Reader, job_for, reader
 from multibot_rewrite.sources.own_names import ROBOT
 from multibot_rewrite.steps.collect import NOTHING
@@ -43,8 +47,8 @@ SET_PREFIX = "its plugin can only put the robot's name in front of names: set af
 class RewrittenRobot(NamedTuple):
     """A robot with its rewritten description and SRDF (empty if it has none).
 
-    ``names`` is the rename map of frames and joints, ``topics`` that of ROS names; ``semantics`` is
-    what its SRDF declares, not rewritten. ``findings`` are warnings about the source.
+    ``names`` is the rename map of frames, joints and planning groups, ``topics`` that of ROS names.
+    ``findings`` are warnings about the source.
     """
 
     spec: RobotSpec
@@ -52,7 +56,6 @@ class RewrittenRobot(NamedTuple):
     srdf: bytes
     names: CompanionNames
     topics: CompanionNames
-    semantics: Declared
     member: Member
     findings: tuple[Finding, ...]
 
@@ -125,23 +128,25 @@ def rewrite_robots(
 
 
 def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobot]:
-    naming = jobs.description.naming
+    naming, own = jobs.description.naming, jobs.description.own.plain
+    if jobs.srdf:
+        own = {**jobs.srdf.own.plain, **own}
     texts = _texts(jobs.description, group)
     semantics: Iterable[Rewrite | None] = [None] * len(group)
     if jobs.srdf:
         semantics = _texts(jobs.srdf, group)
     for robot, text, semantic in zip(group, texts, semantics, strict=True):
         data = _final(text, robot, naming)
-        declared = text.template.inventory.declared
-        names = companion_names(declared, naming, robot.tag, jobs.description.own.plain)
-        found = (*text.findings, *(semantic.findings if semantic else ()))
+        said = semantic.template.inventory.declared if semantic else NOTHING
+        declared = with_srdf(text.template.inventory.declared, said)
+        names = companion_names(declared, naming, robot.tag, own)
+        found = (*text.findings, *(srdf_findings(semantic) if semantic else ()))
         yield RewrittenRobot(
             robot,
             data,
             _final(semantic, robot, naming) if semantic else b"",
             names,
             names._replace(robot=robot.namespace),
-            semantic.template.inventory.declared if semantic else NOTHING,
             member(text, data, robot.tag, robot.simulator == REAL),
             # These the fleet says, of the robots that it has.
             tuple(it for it in found if it.code not in (*SHARED_CODES, UNREAD)),

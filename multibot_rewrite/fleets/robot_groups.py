@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from multibot_rewrite.companions.context import Context, make_context
-from multibot_rewrite.companions.moveit.rewrite import with_srdf
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.findings.grouping import grouped
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_nodes import companion_nodes, node_sources, stack_nodes
@@ -32,7 +33,7 @@ def group_robots(plan: FleetPlan) -> Iterator[RobotGroup]:
     for robot in plan.robots:
         spec = robot.spec
         files = tuple(spec.companions.items())
-        key = spec.sources, spec.stacks, spec.launch, spec.simulator, files
+        key = spec.sources, spec.stacks, spec.launch, spec.simulator, files, spec.use_sim_time
         groups.setdefault(key, []).append(robot)
     for robots in groups.values():
         spec = robots[0].spec
@@ -40,5 +41,26 @@ def group_robots(plan: FleetPlan) -> Iterator[RobotGroup]:
         facts = tuple(companion_nodes(nodes, stack_nodes(spec, plan.file)))
         declared, naming, _, own = robots[0].names
         context = make_context(declared, naming, facts, plan.file.distro, own)
-        context = with_srdf(context, robots[0].semantics)
         yield RobotGroup(tuple(robots), facts, context)
+
+
+def said_once(plan: FleetPlan, findings: Iterable[Finding]) -> list[Finding]:
+    """Findings sorted by place; what is the same for many robots is one finding."""
+    specs = [it.spec for it in plan.robots]
+    words = {word: it.name for it in specs for word in (it.model, it.tag, it.namespace, it.name)}
+    ordered = sorted(
+        set(findings), key=lambda it: (it.file, it.line, it.column, it.code, it.message)
+    )
+    # Lines of robots in the fleet file: that they differ is no difference.
+    names = {(it.file, it.line): it.name for it in specs}
+    lines = {name: line for (_, line), name in names.items()}
+    alike = [_at_robot(it, names.get((it.file, it.line), "")) for it in ordered]
+    return [
+        it._replace(robot="", line=lines[it.robot]) if it.robot else it
+        for it in grouped(alike, words)
+    ]
+
+
+def _at_robot(finding: Finding, robot: str) -> Finding:
+    """The finding with the robot in the place of its line."""
+    return finding._replace(robot=robot, line=0) if robot else finding

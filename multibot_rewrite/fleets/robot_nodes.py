@@ -6,6 +6,8 @@ import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+from lxml.etree import _Element
+
 from multibot_rewrite.companions.params.known_nodes import load_known_nodes
 from multibot_rewrite.evidence.hardware import with_hardware
 from multibot_rewrite.evidence.launch_records import LaunchOrder
@@ -20,10 +22,10 @@ from multibot_rewrite.fleets.launched_robot import given_with, launched_robot, n
 from multibot_rewrite.fleets.output_file import params_of
 from multibot_rewrite.fleets.shared_nodes import apart
 from multibot_rewrite.remap.nodl.facts import declared
-from multibot_rewrite.remap.records import NodeFacts
+from multibot_rewrite.remap.records import MANAGER, NodeFacts
 from multibot_rewrite.steps.document import Document
 
-MOVE_GROUP = "move_group"
+MOVE_GROUP, WORLD = "move_group", "world"
 # What decides the nodes of a robot.
 NodeSources = tuple[tuple[str, ...], tuple[str, ...], tuple[LaunchOrder, ...], str, str, Sources]
 
@@ -63,7 +65,8 @@ def robot_nodes(
     given = given_with(launched, own)
     spawned = launched.spawned if launched else {}
     without, findings = nodes_with(launched, stack, given, known)
-    nodes = with_hardware(without, source.root, source.file, known)
+    standing = _standing(without, given) if _is_mounted(source.root) else without
+    nodes = with_hardware(standing, source.root, source.file, known)
     whole = launched is not None and launched.whole
     nodes = nodes if whole else (*nodes, *_of_srdf(spec, nodes, known))
     marked, shared = apart(nodes, file)
@@ -72,6 +75,20 @@ def robot_nodes(
     started = launched.started.values() if launched else ()
     arguments = tuple(word for it in started for word in it.arguments)
     return RobotEvidence(given, known, marked, said, spawned, unsimulated, arguments)
+
+
+def _is_mounted(root: _Element) -> bool:
+    """Does a joint hold the robot on its link world?"""
+    joints = root.iterfind("joint[@type='fixed']/parent")
+    return any(it.get("link") == WORLD for it in joints)
+
+
+def _standing(nodes: Iterable[NodeFacts], given: Iterable[GivenNode]) -> tuple[NodeFacts, ...]:
+    """The nodes without controllers of wheels that a stack has for robots that drive."""
+    named = {it.name for it in given}
+    return tuple(
+        it for it in nodes if it.name in named or not (it.host == MANAGER and it.when and it.sends)
+    )
 
 
 def _of_srdf(

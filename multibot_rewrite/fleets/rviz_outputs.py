@@ -19,6 +19,9 @@ from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, yaml_of
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.start_poses import world_of
+from multibot_rewrite.fleets.with_start_pose_nodes import split_per_robot
+
+RVIZ = "rviz2"
 
 
 class RvizOutput(NamedTuple):
@@ -45,6 +48,17 @@ def rviz_outputs(plan: FleetPlan, each: Iterable[FleetPlan]) -> Iterator[RvizOut
         yield RvizOutput(path, *rewrite_rviz(yaml_of(path), shown, world=world))
 
 
+def robot_windows(plan: FleetPlan, each: bool) -> list[tuple[str, RvizText]]:
+    """The windows of a fleet with the names of their files, or with ``each`` one for each robot.
+
+    Raises as ``rviz_outputs``.
+    """
+    apart = list(split_per_robot(plan))
+    made = [rviz_outputs(one, [one]) for one in apart] if each else [rviz_outputs(plan, apart)]
+    found = (it for outputs in made for it in outputs)
+    return [(os.path.basename(it.source), window) for it in found for window in it.windows]
+
+
 def _as_rviz_robot(plan: FleetPlan) -> RvizRobot:
     """The one robot of a plan as RViz shows it."""
     (robot,) = plan.robots
@@ -52,7 +66,17 @@ def _as_rviz_robot(plan: FleetPlan) -> RvizRobot:
     names = robot.names._replace(robot=spec.tag)
     topics = robot.topics._replace(robot=spec.namespace)
     known = fleet_topics(plan.fleet.table, plan.fleet.facts, spec.namespace)
-    return RvizRobot(spec.name, names, topics, spec.colour, known)
+    rules = tuple(_own_rules(plan))
+    return RvizRobot(spec.name, names, topics, spec.colour, known, rules=rules)
+
+
+def _own_rules(plan: FleetPlan) -> Iterator[tuple[str, str]]:
+    """The name and the rules of an rviz2 that the robot's stacks start."""
+    table = plan.fleet.table
+    own = next((it for it in table.nodes if it.robot and it.node == RVIZ), None)
+    if own and not plan.fleet.naming.layout.namespaced:
+        yield "__node", own.name
+    yield from ((it.source, it.target) for it in (own.rules if own else ()))
 
 
 def rviz_files(configs: Iterable[RvizOutput]) -> FilesAndFindings:

@@ -42,13 +42,12 @@ class Spawn(NamedTuple):
 def spawns(plan: FleetPlan) -> tuple[tuple[Spawn, ...], tuple[Finding, ...]]:
     """How each robot is spawned, and findings: only some of its plugins have a namespace, a plugin
     looks for the robot by another name."""
-    made, findings = [], []
+    made: list[Spawn] = []
+    findings: list[Finding] = []
     for robot in plan.robots:
         known = fleet_topics(plan.fleet.table, plan.fleet.facts, robot.spec.namespace)
         made.append(spawn(robot, known.get(DESCRIPTION, "")))
-        named, bare = _namespaces(robot)
-        if named and bare:
-            findings.append(_half(robot, bare))
+        findings += _half(robot)
         findings += _other_models(robot)
     return tuple(made), tuple(findings)
 
@@ -137,7 +136,8 @@ PARTLY_NAMESPACED = declare(
     "MF706",
     "plugins-partly-namespaced",
     WARNING,
-    what="Some Gazebo Classic plugins of a description have a namespace, others have none.",
+    what="Some Gazebo Classic plugins of a description have a namespace, others have none, in a layout "
+    "that gives each robot one.",
     why="The spawner can set one namespace for all plugins, which would overwrite those that are "
     "there. It is not set, so the other plugins run in the root namespace: those of all robots "
     "use the same topics.",
@@ -185,10 +185,14 @@ robots:
 )
 
 
-def _half(robot: RewrittenRobot, bare: list[str]) -> Finding:
+def _half(robot: RewrittenRobot) -> Iterator[Finding]:
+    """Where names have a postfix, a plugin needs no namespace."""
+    named, bare = _namespaces(robot)
+    if not (named and bare and robot.topics.naming.topics == NAMESPACE):
+        return
     some = f"robot {robot.spec.name!r}: some plugins have a namespace"
     hint = "add <ros><namespace> to these; -robot_namespace would overwrite the others"
-    return at_robot(PARTLY_NAMESPACED, robot, f"{some}, but not {', '.join(bare)}", hint)
+    yield at_robot(PARTLY_NAMESPACED, robot, f"{some}, but not {', '.join(bare)}", hint)
 
 
 MODEL_OF_OTHER_NAME = declare(

@@ -66,8 +66,9 @@ POSE_ON_WORLD = declare(
     what="A robot has a pose, and a joint of its description holds it on the world already.",
     why="The joint's origin is where tf has the robot, so the pose moves it in the simulator alone: "
     "two arms of one description are at the same place in tf, and plan through each other.",
-    fix="Make the joint's origin an argument of the xacro, give it with `arguments`, and remove the "
-    "pose. Or take the link world and its joint out of the description: the pose is published then.",
+    fix="Let each robot have a world of its own: write shared_frames: [map], and the pose is that of "
+    "robot1/world in map. Or make the joint's origin an argument of the xacro, give it with "
+    "`arguments`, and remove the pose.",
     bad="""\
 # arm.urdf has a joint from the link "world" to "base_link"
 robots:

@@ -217,8 +217,8 @@ def _on_world(robot: RewrittenRobot, held: Edge) -> Finding:
         "origin of that joint"
     )
     hint = (
-        "set the joint's origin by an argument of the xacro and remove the pose, "
-        f"or take {held.parent!r} out of the description"
+        f"let each robot have its own {held.parent!r} (shared_frames: [map]), or set the joint's "
+        "origin by an argument of the xacro and remove the pose"
     )
     return _finding(POSE_ON_WORLD, robot, what, hint)
 

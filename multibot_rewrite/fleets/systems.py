@@ -118,9 +118,13 @@ def _planned(it: EndpointName, owners: Mapping[str, str]) -> End:
 
 def _plain(robot: RewrittenRobot, export: Exported) -> Exported:
     """The interface as parameter files call it, where an argument of the xacro renames its owner."""
-    plain = {text: name for (_, name), text in robot.names.own.items()}
+    own = {text: name for (_, name), text in robot.names.own.items()}
     owner, slash, rest = export.name.partition("/")
-    return export._replace(name=f"{plain.get(owner, owner)}{slash}{rest}")
+    # The code of a plugin puts the same before names that the description does not declare.
+    prefixes = {text.removesuffix(name) for text, name in own.items() if text.endswith(name)}
+    found = (it for it in prefixes if it and owner.startswith(it))
+    bare = own.get(owner, owner.removeprefix(next(found, "")))
+    return export._replace(name=f"{bare}{slash}{rest}")
 
 
 def _sender(node: NodeFacts, given: Iterable[GivenNode], root: str) -> Sender:

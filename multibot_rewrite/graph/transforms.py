@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import partial
 from typing import NamedTuple
 
 from lxml.etree import _Element
@@ -13,6 +14,7 @@ from multibot_rewrite.remap.records import NodeFacts
 from multibot_rewrite.steps.collect import Inventory
 
 STATE_PUBLISHER = "robot_state_publisher"
+NO_PLAIN: Mapping[tuple[str, str], str] = {}
 
 
 class Edge(NamedTuple):
@@ -33,18 +35,21 @@ def edges_of(
     plugins: Iterable[NodeFacts],
     naming: Naming,
     word: str = "",
+    plain: Mapping[tuple[str, str], str] = NO_PLAIN,
 ) -> dict[tuple[str, str], list[Edge]]:
     """The transforms that a robot's nodes send, by robot and node: description, odometry, map.
 
-    ``word`` is the robot's name in its frames, empty where that is its name.
+    ``word`` is the robot's name in its frames, empty where that is its name; ``plain`` are links that
+    arguments of a xacro make of what nodes call otherwise.
     """
     tree = list(description_edges(inventory))
     children = {edge.child for edge in tree}
     root = next((link for link in inventory.declared["link"] if link not in children), "")
+    by_naming = partial(spelled, naming, word or robot, "frame")
     result = {(robot, node.name): [*sent_by(node, "")] for node in plugins}
     for node in facts:
         frames = [
-            frame._replace(default=spelled(naming, word or robot, "frame", frame.default))
+            frame._replace(default=plain.get(("link", frame.default)) or by_naming(frame.default))
             for frame in node.frames
         ]
         own = [*sent_by(node._replace(frames=tuple(frames)), root)]

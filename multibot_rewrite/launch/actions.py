@@ -8,7 +8,8 @@ from typing import Any
 
 from multibot_rewrite.companions.params.rcl_parameters import parameters_text
 from multibot_rewrite.fleets import spawn as spawning
-from multibot_rewrite.fleets.scripts import LoadedFleet, LoadedRobot
+from multibot_rewrite.fleets.loaded_robot import LoadedRobot
+from multibot_rewrite.fleets.scripts import LoadedFleet
 from multibot_rewrite.launch import later
 from multibot_rewrite.launch.context import (
     FLEET,
@@ -19,10 +20,10 @@ from multibot_rewrite.launch.context import (
     Context,
     RobotRef,
     Text,
-    file_of,
     fleet_of,
     listed,
     made_for,
+    node_file_of,
     perform,
     reference,
     robot_of,
@@ -160,7 +161,7 @@ def _made(
 ) -> dict[str, Any]:
     """The options with those of the node in this launch."""
     its = robot_of(context, own["of"])
-    paths = [file_of(context, it, own["of"]) for it in listed(context, own["files"] or "")]
+    paths = [node_file_of(context, it, own["of"]) for it in listed(context, own["files"] or "")]
     clock = sim_time(context, its, own[SIM_TIME])
     if its.table.is_controller(name):
         return node_options(its, name, paths, options)
@@ -204,12 +205,11 @@ def _own_file(
     values = robot.start_parameters(node)
     if describe:
         values["robot_description"] = robot.description
-    if clock is not None:
-        values[SIM_TIME] = clock
-    if not values:
-        return []
-    name, text = node.replace("/", "_"), parameters_text(robot.table.full_name(node), values)
-    return [written(context, robot, f"{name}.{_OWN}", text)]
+    # Nodes that others make in their process have no values but those for all of it.
+    clocks = {} if clock is None else {"/**": {SIM_TIME: clock}}
+    sections = {**clocks, **({robot.table.full_name(node): values} if values else {})}
+    name, text = node.replace("/", "_"), parameters_text(sections)
+    return [written(context, robot, f"{name}.{_OWN}", text)] if sections else []
 
 
 def _group(context: Context, fleet: LoadedFleet, robot: LoadedRobot, make: Make) -> Action:

@@ -15,7 +15,8 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.fleets.scripts import LoadedFleet, LoadedRobot, load_fleet
+from multibot_rewrite.fleets.loaded_robot import LoadedRobot
+from multibot_rewrite.fleets.scripts import LoadedFleet, load_fleet
 from multibot_rewrite.launch.door import of_launch
 from multibot_rewrite.model import UsageError
 
@@ -106,7 +107,15 @@ def file_of(context: Context, file: str, of: RobotRef = HERE) -> str:
     robot = None if _is_for_all(context, of) else robot_of(context, of)
     text = robot.text(file) if robot else fleet.text(file)
     _warn(context, fleet.made.findings)
-    return written(context, robot, file, text)
+    return written(context, robot, os.path.basename(file), text)
+
+
+def node_file_of(context: Context, file: str, of: RobotRef = HERE) -> str:
+    """The same of a robot's parameter file for nodes that are started here: with their full names."""
+    robot = robot_of(context, of)
+    text = robot.node_text(file)
+    _warn(context, fleet_of(context, of.fleet).made.findings)
+    return written(context, robot, f"nodes/{os.path.basename(file)}", text)
 
 
 def perform(context: Context, text: Text) -> str:
@@ -163,7 +172,7 @@ def _of_launch(context: Context, key: str, make: Callable[[], Any]) -> Any:
 
 def written(context: Context, robot: LoadedRobot | None, file: str, text: str) -> str:
     folder = _of_launch(context, _FOLDER, lambda: _folder(context))
-    path = os.path.join(folder.name, robot.name if robot else "all", os.path.basename(file))
+    path = os.path.join(folder.name, robot.name if robot else "all", file)
     os.makedirs(os.path.dirname(path), exist_ok=True)
     with open(path, "wb") as out:
         out.write(text.encode())

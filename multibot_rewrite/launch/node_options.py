@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from multibot_rewrite.fleets.scripts import LoadedRobot
+from multibot_rewrite.fleets.loaded_robot import LoadedRobot
 from multibot_rewrite.model import UsageError
 
 # The fleet decides these; a launch file that sets them would contradict it.

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
 from multibot_rewrite.fleets.fleet_file import Pose
-from multibot_rewrite.fleets.scripts import LoadedRobot
+from multibot_rewrite.fleets.loaded_robot import LoadedRobot
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.remap.yaml_with_lines import unknown
 

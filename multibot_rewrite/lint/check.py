@@ -10,7 +10,7 @@ from functools import partial
 from typing import NoReturn
 
 from multibot_rewrite.checks.problem import Problem
-from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.findings.finding import Finding, by_place
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.findings.selection import level_of
 from multibot_rewrite.gc_pause import gc_paused
@@ -91,12 +91,6 @@ def _merged(found: Iterable[Finding]) -> list[Finding]:
     for finding in found:
         first.setdefault(finding._replace(arguments=""), finding)
     return list(first.values())
-
-
-def by_place(finding: Finding) -> tuple[str, int, int, str, str, str]:
-    """What findings are sorted by: file, line, column, code and text."""
-    it = finding
-    return it.file, it.line, it.column, it.code, it.message, it.arguments
 
 
 @contextmanager

@@ -12,6 +12,7 @@ from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.registry import RULES
+from multibot_rewrite.outside import unrepeatable
 
 _PLACE = lazy_compile(r"(?P<file>.*?)(?::(?P<line>\d+):(?P<column>\d+))?: (?P<text>.*)", re.DOTALL)
 # A part of a reader's message -> the rule that reports it.
@@ -20,6 +21,7 @@ _CODES = (
     ("cannot be read", "MB102"),
     ("Is a directory", "MB102"),
     ("Permission denied", "MB102"),
+    ("xacro failed: package '", "MB119"),
     ("xacro failed", "MB103"),
 )
 
@@ -58,6 +60,7 @@ def lost(path: str, died_of: int) -> Finding:
 
 
 def _crashed(path: str, message: str, hint: str) -> Finding:
+    unrepeatable()
     return Finding("MB001", ERROR, message, hint, path, 1, 1)
 
 
@@ -67,6 +70,7 @@ def _words(error: Exception) -> str:
 
 def too_long(path: str, seconds: float) -> Finding:
     """The finding for a file that took too long."""
+    unrepeatable()
     message = f"it took more than {seconds:g} s, the rest was not checked"
     endless = "does a macro call itself?" if path.endswith(".xacro") else ""
     return Finding("MB004", ERROR, message, endless, path, 1, 1)

@@ -5,63 +5,127 @@ from __future__ import annotations
 import os
 import signal
 from collections.abc import Callable, Iterable, Sequence
+from functools import partial
+from typing import TYPE_CHECKING
 
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.lint.check import by_place, lint_file
+from multibot_rewrite.findings.finding import Finding, by_place
+from multibot_rewrite.lint.cache.written import (
+    among_from,
+    among_written,
+    findings_from,
+    findings_written,
+)
 from multibot_rewrite.lint.config.settings import Settings
-from multibot_rewrite.lint.failures import lost, too_long
-from multibot_rewrite.lint.files.included import included, known_elsewhere
-from multibot_rewrite.lint.files.pairing import named_urdfs
-from multibot_rewrite.rewriters.builtin import builtin_tree
+from multibot_rewrite.outside import Asked, digest, recorded
+
+if TYPE_CHECKING:
+    from multibot_rewrite.lint.cache.cache import Cache
 
 # A worker costs more to start than a few files to lint.
 FEW = 12
 EACH = 4
 # CPU seconds beyond the time of a file, after which a worker is ended.
 GRACE = 1.0
-Watch = Callable[[Iterable[list[Finding]]], Iterable[list[Finding]]]
+AMONG = "among"
+Watch = Callable[[Iterable["Linted"]], Iterable["Linted"]]
+Linted = tuple[list[Finding], Asked | None]
 
 
 def lint_files(
-    paths: Sequence[str], settings: Settings, *, jobs: int = 0, watch: Watch = iter
+    paths: Sequence[str],
+    settings: Settings,
+    *,
+    jobs: int = 0,
+    watch: Watch = iter,
+    cache: Cache | None = None,
 ) -> list[Finding]:
     """Every finding of the files, each once, in the order of files and lines.
 
     ``jobs`` is the number of processes, 0 for as many as there are processors; ``watch`` wraps the
-    iteration over the files' findings, for a progress bar.
+    iteration over the files' findings, for a progress bar. With a ``cache`` only files are linted
+    for which something changed; the caller saves it.
     """
-    settings = among(paths, settings)
-    # A faulty vocabulary is reported before anything is linted.
-    builtin_tree(settings.vocabulary, settings.distro)
-    found = _linted(paths, settings, jobs or os.cpu_count() or 1, watch)
-    return _in_order(_once(it for its in found for it in its), paths)
+    settings = among(paths, settings, cache)
+    found = {path: _known(cache, path, settings) for path in paths} if cache else {}
+    unknown = [path for path in paths if found.get(path) is None]
+    if unknown:
+        # A faulty vocabulary is reported before anything is linted.
+        from multibot_rewrite.rewriters.builtin import builtin_tree
+
+        builtin_tree(settings.vocabulary, settings.distro)
+        linted = _linted(unknown, settings, jobs or os.cpu_count() or 1, watch)
+        for path, (its, asked) in zip(unknown, linted, strict=True):
+            found[path] = its
+            if cache:
+                cache.keep(_group(path), _key(path, settings), findings_written(its), asked)
+    return _in_order(_once(it for path in paths for it in found[path] or ()), paths)
 
 
-def among(paths: Sequence[str], settings: Settings) -> Settings:
+def _known(cache: Cache, path: str, settings: Settings) -> list[Finding] | None:
+    return findings_from(cache.recall(_group(path), _key(path, settings)))
+
+
+def _group(path: str) -> str:
+    """The files of one folder are kept together."""
+    return os.path.dirname(os.path.abspath(path))
+
+
+def _key(path: str, settings: Settings) -> str:
+    """What a file's findings rest on beside the run and what is read: its place among the others."""
+    return digest(repr((path, *among_written(settings, path))).encode())
+
+
+def among(paths: Sequence[str], settings: Settings, cache: Cache | None = None) -> Settings:
     """The settings for one of several files: what the others include, the URDFs of SRDFs, and
     the arguments that xacro files know."""
-    settings = settings._replace(included=included(paths))
-    known = known_elsewhere(paths) if settings.arguments else None
-    return settings._replace(urdfs=named_urdfs(paths, settings.included), elsewhere=known)
+    if len(paths) == 1:
+        return settings
+    key = digest("\n".join(paths).encode("utf-8", "surrogateescape"))
+    known = among_from(cache.recall(AMONG, key), settings) if cache else None
+    if known is not None:
+        return known
+    found, asked = _looked_through(paths, settings)
+    if cache:
+        cache.keep(AMONG, key, among_written(found), asked)
+    return found
 
 
-def _linted(
-    paths: Sequence[str], settings: Settings, jobs: int, watch: Watch
-) -> Iterable[list[Finding]]:
+def _looked_through(paths: Sequence[str], settings: Settings) -> tuple[Settings, Asked | None]:
+    """The same, in a worker where there are xacro files: they may be made to take long."""
+    from multibot_rewrite.lint.files.among import set_among
+
+    look = partial(recorded, partial(set_among, paths, settings))
+    if not any(path.endswith(".xacro") for path in paths):
+        return look()
+    from multibot_rewrite.lint.workers import limit_time, worker_pool
+
+    def within(_: str) -> tuple[Settings, Asked | None]:
+        limit_time(settings.seconds)
+        return look()
+
+    # Looked at alone, each file is linted all the same.
+    with worker_pool(within, [AMONG], lambda *_: (settings, None), 1) as workers:
+        return next(workers.results())
+
+
+def _linted(paths: Sequence[str], settings: Settings, jobs: int, watch: Watch) -> Iterable[Linted]:
+    from multibot_rewrite.lint.check import lint_file
+
     # What a few lines of xacro expand to may be more than a process survives.
     in_this_process = not any(path.endswith(".xacro") for path in paths)
     if in_this_process and (jobs == 1 or len(paths) <= FEW):
-        return list(watch(lint_file(path, settings) for path in paths))
+        return list(watch(recorded(partial(lint_file, path, settings)) for path in paths))
+    from multibot_rewrite.lint.failures import lost, too_long
     from multibot_rewrite.lint.workers import limit_time, worker_pool
 
-    def lint(path: str) -> list[Finding]:
+    def lint(path: str) -> Linted:
         limit_time(settings.seconds + GRACE)
-        return lint_file(path, settings)
+        return recorded(partial(lint_file, path, settings))
 
-    def unfinished(path: str, died_of: int) -> list[Finding]:
+    def unfinished(path: str, died_of: int) -> Linted:
         if died_of == signal.SIGXCPU:
-            return [too_long(path, settings.seconds)]
-        return [lost(path, died_of)]
+            return [too_long(path, settings.seconds)], None
+        return [lost(path, died_of)], None
 
     with worker_pool(lint, paths, unfinished, min(jobs, -(-len(paths) // EACH))) as workers:
         return list(watch(workers.results()))

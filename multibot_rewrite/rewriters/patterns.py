@@ -12,12 +12,14 @@ from collections import deque
 from collections.abc import Callable, Container, Iterable, Iterator
 from typing import TypeAlias
 
+from multibot_rewrite.lazy import lazy_compile
+
 # What a top-level "|" must not be looked for in, is one piece.
-_PIECES = re.compile(
+_PIECES = lazy_compile(
     r"\\(?:x[0-9a-fA-F]{2}|u00[0-9a-fA-F]{2}|.)|\[(?:\\.|\[:\w+:\]|[^\]])*\]|\{\d+(?:,\d*)?\}|\(\?:|.",
     re.DOTALL,
 )
-_IN_CLASS = re.compile(r"\\(?:x[0-9a-fA-F]{2}|u00[0-9a-fA-F]{2}|.)|\[:\w+:\]|.", re.DOTALL)
+_IN_CLASS = lazy_compile(r"\\(?:x[0-9a-fA-F]{2}|u00[0-9a-fA-F]{2}|.)|\[:\w+:\]|.", re.DOTALL)
 _LENGTH, _STATES, _DEPTH = 500, 2_000, 30
 _ALL = frozenset(map(chr, range(256)))
 _LETTERS, _DIGITS = frozenset(string.ascii_letters), frozenset(string.digits)

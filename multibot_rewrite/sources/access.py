@@ -9,7 +9,8 @@ from fnmatch import fnmatchcase
 from typing import NamedTuple
 
 from multibot_rewrite.bounded import MAX_BYTES
-from multibot_rewrite.model import MultibotError
+from multibot_rewrite.model import InputError, MultibotError
+from multibot_rewrite.outside import outside, real_path, variable
 from multibot_rewrite.sources.child.frames import FENCES
 
 # The folder of a package for $(find PACKAGE), empty where it is not known.
@@ -51,7 +52,7 @@ class Access:
     def __init__(self, path: str, reach: Reach, find: Find | None) -> None:
         self.path, self.reach, self.find = path, reach, find
         self.beside = {os.path.dirname(it) for it in _real(path)}
-        self.roots = [os.path.realpath(it) for it in (*_homes(path), *reach.roots)]
+        self.roots = [real_path(it) for it in (*_homes(path), *reach.roots)]
         self.sourced = [os.path.abspath(it) for it in (*_prefixes(), *_listed("ROS_PACKAGE_PATH"))]
 
     def readable(self, name: str) -> str:
@@ -59,7 +60,7 @@ class Access:
         if self.reach.trust or name == self.path:
             return name
         # A workspace that was sourced is trusted, with the links that colcon makes in it.
-        plain, real = os.path.abspath(name), os.path.realpath(name)
+        plain, real = os.path.abspath(name), real_path(name)
         if any(_below(plain, it) for it in self.sourced):
             return plain
         folder = os.path.dirname(real)
@@ -79,12 +80,12 @@ class Access:
         if not folder:
             why = "" if _prefixes() or self.find else ": AMENT_PREFIX_PATH is not set"
             raise LookupError(f"package {name!r} is not found{why}")
-        self.roots.append(os.path.realpath(folder))
+        self.roots.append(real_path(folder))
         return folder
 
     def variable(self, name: str) -> str | None:
         """The value of a variable of the environment; raises NotAllowedError for one that is set."""
-        value = os.environ.get(name)
+        value = variable(name)
         if value is not None and not self.reach.trust and not name.startswith(VARIABLES):
             hint = "is set, but xacro sees ROS's variables alone"
             raise NotAllowedError(f"the environment variable {name!r} {hint}")
@@ -106,33 +107,63 @@ class Access:
                 if seen > MOST_FILES:
                     raise NotAllowedError(f"{pattern} names more than {MOST_FILES} files")
             found = beside
-        return sorted(it for it in found if self.readable(it) and os.path.lexists(it))
+        return sorted(it for it in found if self.readable(it) and _is_there(it))
 
     def read(self, name: str) -> bytes:
         """The bytes of a file, one more than may be if it has more; raises NotAllowedError, OSError."""
-        flags = os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC
-        with open(self.readable(name), "rb", opener=lambda path, _: os.open(path, flags)) as file:
-            if not stat.S_ISREG(os.fstat(file.fileno()).st_mode) and not self.reach.trust:
-                raise NotAllowedError(f"{name} is no regular file, and xacro may not read it")
-            return file.read(MAX_BYTES + 1)
+        data = _content(self.readable(name), self.reach.trust)
+        if data is None:
+            raise NotAllowedError(f"{name} is no regular file, and xacro may not read it")
+        return data
 
 
+@outside
+def check_file(path: str) -> None:
+    """Raise InputError for a file that cannot be read, or is too large."""
+    try:
+        with open(path, "rb") as file:
+            size = os.fstat(file.fileno()).st_size
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
+    if size > MAX_BYTES:
+        limit = f"{MAX_BYTES // 2**20} MB"
+        raise InputError(f"{path}: {size / 2**20:.0f} MB is over the limit of {limit}")
+
+
+@outside
+def _content(path: str, trust: bool) -> bytes | None:
+    """The bytes of a file, one more than may be; None for a device or pipe that is not trusted."""
+    flags = os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC
+    with open(path, "rb", opener=lambda it, _: os.open(it, flags)) as file:
+        is_regular = stat.S_ISREG(os.fstat(file.fileno()).st_mode)
+        return file.read(MAX_BYTES + 1) if is_regular or trust else None
+
+
+@outside
+def _is_there(path: str) -> bool:
+    return os.path.lexists(path)
+
+
+@outside
 def _real(path: str) -> tuple[str, str]:
     """A file without links in its folder, and the file that it is a link to."""
     folder, name = os.path.split(os.path.abspath(path))
     return os.path.join(os.path.realpath(folder), name), os.path.realpath(path)
 
 
-def _homes(path: str) -> Iterator[str]:
+@outside
+def _homes(path: str) -> tuple[str, ...]:
     """The folder of a file, its package and its repository; those of the file a link leads to, too.
 
     The home of a user and what is above it are none, although they may hold a robot or be a repository.
     """
     home = os.path.realpath(os.path.expanduser("~"))
+    found: list[str] = []
     for file in _real(path):
         folder = os.path.dirname(file)
         marked = (_marked(folder, mark) for mark in ("package.xml", ".git"))
-        yield from (it for it in (folder, *marked) if it and not _below(home, it))
+        found += (it for it in (folder, *marked) if it and not _below(home, it))
+    return tuple(found)
 
 
 def _marked(folder: str, mark: str) -> str:
@@ -154,10 +185,11 @@ def _prefixes() -> list[str]:
     return _listed("AMENT_PREFIX_PATH")
 
 
-def _listed(variable: str) -> list[str]:
-    return [it for it in os.environ.get(variable, "").split(os.pathsep) if it]
+def _listed(name: str) -> list[str]:
+    return [it for it in (variable(name) or "").split(os.pathsep) if it]
 
 
+@outside
 def _installed(name: str) -> str:
     """The folder of an installed package, as ament_index_python finds it; empty if there is none."""
     for prefix in _prefixes():
@@ -166,6 +198,7 @@ def _installed(name: str) -> str:
     return ""
 
 
+@outside
 def _names(folder: str) -> list[str]:
     try:
         return os.listdir(folder or os.curdir)

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 from multibot_rewrite.bounded import MAX_BYTES, load_json
 from multibot_rewrite.model import InputError
+from multibot_rewrite.outside import unrepeatable
 from multibot_rewrite.sources.access import Access, NotAllowedError
 from multibot_rewrite.sources.child.frames import (
     CALLS,
@@ -94,6 +95,8 @@ def converse(arguments: Mapping[str, str], sources: Sources, traced: bool) -> Re
     """Let a child expand the file of ``sources.access``; raises InputError where it cannot tell."""
     access = sources.access
     reach = access.reach
+    if reach.trust:
+        unrepeatable()  # it may look at anything
     seconds = reach.seconds
     request = {
         "path": access.path,
@@ -202,6 +205,7 @@ def _numbers(data: bytes, together: int) -> array[int]:
 
 def _ended(path: str, died_of: int, seconds: float) -> str:
     """The message for a child that gave no answer."""
+    unrepeatable()
     if died_of in (signal.SIGALRM, signal.SIGXCPU):
         why = f"it took more than {seconds:g} s; does a macro call itself? --trust lifts the limit"
     elif died_of:

@@ -8,10 +8,9 @@ import sys
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from multibot_rewrite.bounded import MAX_BYTES
 from multibot_rewrite.findings.place import locate
 from multibot_rewrite.model import InputError
-from multibot_rewrite.sources.access import BOUNDED, Access, Find, Reach
+from multibot_rewrite.sources.access import BOUNDED, Access, Find, Reach, check_file
 from multibot_rewrite.sources.conversation import Failure, Result, Sources, converse
 from multibot_rewrite.sources.trace import Origins, Trace, alike
 from multibot_rewrite.steps.document import start_offsets, tag_end
@@ -86,7 +85,7 @@ def expand_whole(
     path: str, arguments: Mapping[str, str], find: Find | None = None, reach: Reach = BOUNDED
 ) -> Expanded:
     """The same with the files that were read."""
-    _check_file(path)
+    check_file(path)
     sources = Sources(Access(path, reach, find), {})
     result = converse(arguments, sources, traced=False)
     return Expanded(_text(path, result, Trace(result, sources, path)), sources.texts)
@@ -130,17 +129,6 @@ def _check_root(path: str, prefix: str, tag: str) -> None:
             f"{path}: the root element is <{tag}>, which xacro does not expand; "
             "put everything inside a <robot> element"
         )
-
-
-def _check_file(path: str) -> None:
-    try:
-        with open(path, "rb") as file:
-            size = os.fstat(file.fileno()).st_size
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
-    if size > MAX_BYTES:
-        limit = f"{MAX_BYTES // 2**20} MB"
-        raise InputError(f"{path}: {size / 2**20:.0f} MB is over the limit of {limit}")
 
 
 def _message(path: str, failure: Failure, trace: Trace) -> str:

@@ -35,6 +35,9 @@ from multibot_rewrite.steps.collect import NOTHING, Inventory, collect, declarat
 from multibot_rewrite.steps.document import read_document
 from multibot_rewrite.steps.plan import make_plan
 
+# What an SRDF names of its URDF.
+PARTS = frozenset({"link", "joint"})
+
 
 class FilesRead(NamedTuple):
     """The ``files`` that were read for a job, the ``arguments`` that their xacro knows, and those that
@@ -182,7 +185,12 @@ def job_for(read: Reader, given: Arguments, words: Sequence[str]) -> Job:
     except InputError:
         # An argument without a default: nothing is known of names without it.
         return job
-    texts = _marked_texts(plain, other)
+    if twin and job.urdf and _misses(job, plain):
+        # The arguments make an SRDF of it that is not the URDF's: the one without them follows that.
+        job, twin = job._replace(data=plain.data), b""
+        texts = marked_texts(plain.inventories[1], other.inventories[1])
+    else:
+        texts = _marked_texts(plain, other)
     job = job._replace(own=OwnSource(words[0], own_texts(texts, words), twin))
     affixes = own_affixes(texts) if job.urdf and not twin else None
     if not affixes:
@@ -207,6 +215,17 @@ def _marked(read: Reader, given: Arguments, words: Sequence[str]) -> Job:
 def _marked_texts(plain: Job, other: Job) -> NameTexts:
     pairs = zip(plain.inventories, other.inventories, strict=True)
     return {key: text for pair in pairs for key, text in marked_texts(*pair).items()}
+
+
+def _misses(job: Job, plain: Job) -> bool:
+    """Does an SRDF name links or joints that the URDF lacks, and lacks none without the arguments?"""
+    return _lacks(job) and not _lacks(plain)
+
+
+def _lacks(job: Job) -> bool:
+    said = job.inventories[0]
+    found = (name for names in said.names for name in names if not name.kind)
+    return any(not PARTS.isdisjoint(name.kinds) for name in found)
 
 
 def _of_plain(job: Job, plain: Job, affixes: OwnNames) -> Job:

@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import DECLARED_KINDS, TWIN, Affix, OwnNames
-from multibot_rewrite.steps.collect import Inventory
+
+if TYPE_CHECKING:
+    from multibot_rewrite.steps.collect import Inventory
 
 ROBOT = "{robot}"
 # Stand for the words of a robot.

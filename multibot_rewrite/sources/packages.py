@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from functools import lru_cache
 
 from multibot_rewrite.lazy import lazy_compile
+from multibot_rewrite.outside import outside
 
 DEEPEST = 4
 MOST_FOLDERS = 20_000
@@ -19,6 +20,7 @@ _NAME = lazy_compile(rb"<name>\s*([^<\s]+)\s*</name>")
 _SKIPPED = frozenset(("build", "log", "lib", "lib64", "include", "bin", "node_modules", "cmake"))
 
 
+@outside
 def package_folders(name: str, file: str, roots: tuple[str, ...]) -> tuple[str, ...]:
     """Every folder that may be the package ``name`` for a description ``file``."""
     sources = os.environ.get("ROS_PACKAGE_PATH", "")
@@ -27,6 +29,7 @@ def package_folders(name: str, file: str, roots: tuple[str, ...]) -> tuple[str, 
     return _candidates(name, here, (*roots, *_split(sources)), _split(installed))
 
 
+@outside
 def package_folder(name: str, file: str, roots: tuple[str, ...]) -> str:
     """The folder that $(find NAME) stands for in ``file``; empty if there is none.
 
@@ -40,6 +43,7 @@ def package_folder(name: str, file: str, roots: tuple[str, ...]) -> str:
     return next((it for it in beside if _MANIFEST in entries(it)), "")
 
 
+@outside
 def package_of(file: str) -> tuple[str, str] | None:
     """Name and folder of the package that a file is in."""
     return _own_package(os.path.dirname(os.path.abspath(file)))
@@ -110,6 +114,7 @@ def _worth_a_look(entry: os.DirEntry[str]) -> bool:
     return name[0] != "." and name not in _SKIPPED and entry.is_dir(follow_symlinks=False)
 
 
+@outside
 @lru_cache(maxsize=4096)
 def entries(folder: str) -> frozenset[str]:
     """The names in a folder, as they are written; none where it cannot be read."""
@@ -128,6 +133,7 @@ def _package_name(folder: str) -> str:
     return found[1].decode("utf-8", "replace") if found else os.path.basename(folder)
 
 
+@outside
 def find_in(folder: str, path: str) -> str:
     """The path below a folder as it is written on the disk, whatever the case; empty if absent."""
     found: list[str] = []

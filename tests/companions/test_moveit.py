@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from multibot_rewrite.companions.context import Context, make_context
 from multibot_rewrite.companions.moveit.file_kind import file_kind
 from multibot_rewrite.companions.moveit.name_sites import kinds
-from multibot_rewrite.companions.moveit.rewrite import rewrite_moveit, with_srdf
+from multibot_rewrite.companions.moveit.rewrite import rewrite_moveit
+from multibot_rewrite.companions.names.rename_map import with_srdf
 from multibot_rewrite.companions.names.undeclared import is_undeclared
 from multibot_rewrite.companions.params.known_nodes import built_in_nodes
 from multibot_rewrite.companions.template import fill_template
@@ -34,8 +35,8 @@ def context(layout: str = "L2", affix: str = "", srdf: bool = True, **more: str)
     affix = affix or ("postfix" if layout == "L4" else "prefix")
     facts = stack_of(built_in(NEWEST_LTS), "moveit")
     naming = make_naming(layout, affix, **more)
-    made = make_context(declared, naming, facts, distro=NEWEST_LTS)  # type: ignore[arg-type]
-    return with_srdf(made, SRDF) if srdf else made  # type: ignore[arg-type]
+    known = with_srdf(declared, SRDF) if srdf else declared  # type: ignore[arg-type]
+    return make_context(known, naming, facts, distro=NEWEST_LTS)  # type: ignore[arg-type]
 
 
 def run(text: str, it: Context, file: str = "a.yaml") -> tuple[str, tuple[Finding, ...]]:

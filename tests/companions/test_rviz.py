@@ -259,7 +259,22 @@ def test_what_serves_one_process_is_left_out_with_a_comment() -> None:
     made, findings = make()
     for cls in ("Navigation 2", "GoalTool", "MotionPlanning", "SlamToolboxPlugin"):
         assert f"{cls}" in str([line for line in made[0].text.splitlines() if "# left out" in line])
-    assert [it.line for it in findings if it.code == "MF202"] == [10, 12, 54, 78]
+    # All others are in the windows of the robots.
+    (line,) = (it.line for it in findings if it.code == "MF202")
+    assert "slam_toolbox" in CONFIG.splitlines()[line - 1]
+
+
+def test_what_serves_one_process_is_in_a_window_of_each_robot() -> None:
+    (_, *own), _ = make()
+    assert [(it.robot, it.namespace, it.remaps) for it in own] == [
+        ("robot1", "/robot1", ()),
+        ("robot2", "/robot2", ()),
+    ]
+    for it in own:
+        shown = str(yaml.safe_load(it.text))
+        assert all(cls in shown for cls in ("Navigation 2", "GoalTool", "MotionPlanning"))
+        assert f"/{it.robot}/scan" in shown
+        assert "SlamToolboxPlugin" not in shown
 
 
 def test_fixed_frame_of_one_robot_gives_way_to_the_shared_one() -> None:
@@ -507,7 +522,17 @@ def test_known_classes_have_known_words() -> None:
     words = {word for names in rviz_data()["displays"].values() for word in names.values()}
     words |= set(rviz_data()["any"].values())
     assert words <= {
-        *("topic", "namespace", "frame", "link", "joint", "colour", "flat_colour", "tf_prefix"),
+        *(
+            "topic",
+            "namespace",
+            "frame",
+            "link",
+            "joint",
+            "group",
+            "colour",
+            "flat_colour",
+            "tf_prefix",
+        ),
         *("regex", "file", "siblings", "keep"),
     }
     assert set(rviz_data()["flags"].values()) == {"dock", "shared", "process", "absolute"}

@@ -265,7 +265,7 @@ def test_a_held_robot_is_a_planned_publisher(tmp_path: Path) -> None:
     found = with_start_pose_nodes(plan)
     assert [it.name for it in found.table.nodes] == ["start_pose"]
     assert found.edges["robot1", "start_pose"][0][:2] == ("map", "robot1/base_link")
-    assert with_start_pose_nodes(plan._replace(robots=())) is plan.fleet
+    assert with_start_pose_nodes(plan._replace(robots=())) == plan.fleet
 
 
 def test_each_robot_alone_is_the_fleet_in_parts(tmp_path: Path) -> None:

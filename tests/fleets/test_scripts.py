@@ -20,7 +20,8 @@ from multibot_rewrite import InputError, RewriteRefused, UsageError, load_fleet
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.companions.params.rcl_parameters import node_parameters, typed
 from multibot_rewrite.companions.yaml_text import read_yaml
-from multibot_rewrite.fleets.scripts import LoadedFleet, LoadedRobot
+from multibot_rewrite.fleets.loaded_robot import LoadedRobot
+from multibot_rewrite.fleets.scripts import LoadedFleet
 
 ROVER = FIXTURES / "robots" / "rover.urdf"
 PARAMS = """\

@@ -225,5 +225,6 @@ def test_principal_moments_are_those_of_numpy() -> None:
 
 
 def test_every_rule_of_the_group_is_in_a_case() -> None:
+    """Those from MB620 on are in test_lint_geometry.py."""
     codes = {it[:5] for case in CASES for it in str(case.values[1]).split()}
-    assert codes | {"MB609", "MB610", "MB611"} == {it for it in RULES if it.startswith("MB6")}
+    assert codes | {"MB609", "MB610", "MB611"} == {it for it in RULES if "MB6" <= it < "MB620"}

@@ -23,7 +23,7 @@ from multibot_rewrite.cli.urdf_lint import main
 from multibot_rewrite.cli.walk import find_files
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.formats import FORMATS, Report, rendered
-from multibot_rewrite.lint import run
+from multibot_rewrite.lint import check
 from multibot_rewrite.lint.check import lint_data, lint_file
 from multibot_rewrite.lint.config.settings import ArgumentSet, Settings
 from multibot_rewrite.lint.registry import RULES
@@ -249,7 +249,7 @@ def fallen(how: Callable[[], object], monkeypatch: pytest.MonkeyPatch) -> None:
             how()
         return lint_file(path, settings)
 
-    monkeypatch.setattr(run, "lint_file", lint)
+    monkeypatch.setattr(check, "lint_file", lint)
 
 
 @pytest.fixture

@@ -21,6 +21,7 @@ from multibot_rewrite.findings import finding
 PACKAGE = Path(multibot_rewrite.__file__).parent
 # The order of the floors: a module imports from floors below its own, or from its own folder.
 FLOORS = (
+    ("outside",),
     ("bounded", "gc_pause", "lazy", "model", "nearest", "plural", "printable", "version"),
     ("findings", "rosnames", "naming", "config", "arguments", "releases"),
     ("controller_ways",),
@@ -105,6 +106,7 @@ def test_the_check_sees_the_imports_there_are() -> None:
     assert inner("library.py") >= {"model.py", "naming.py", "pipeline.py"}
     assert inner("__init__.py") == {
         "findings/finding.py",
+        "fleets/loaded_robot.py",
         "fleets/scripts.py",
         "library.py",
         "model.py",

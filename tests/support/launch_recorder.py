@@ -164,9 +164,9 @@ async def launched(service: LaunchService, rows: Rows) -> None:
     """Run the launch until it is quiet, and stop it."""
     running = asyncio.ensure_future(service.run_async())
     await quiet(rows)
-    ending = service.shutdown()
-    if ending is not None:
-        await ending
+    stopping = service.shutdown()
+    if stopping is not None:
+        await stopping
     await asyncio.wait([running], timeout=20)
 
 

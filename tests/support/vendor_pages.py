@@ -33,8 +33,8 @@ HEAD = f"""\
 layout and one other, with two robots and with three. Its first two are compared with what the vendor's
 own launch files and generators make of two robots: descriptions, parameters, names of nodes, where
 topics, services and actions lead, bridges, RViz and static transforms. *Better* is a difference that
-the page of the robot gives a reason for, *wrong* any other. *False* are warnings and errors of the build
-that are not true of the vendor's files. Which nodes are known is in [vendors](../vendors.md).
+the page of the robot gives a reason for, *wrong* any other. *False* are warnings and errors of the
+build that are not true of the vendor's files. Which nodes are known is in [vendors](../vendors.md).
 
 | robot | vendor's layout | 2 | 3 | other layout | 2 | 3 | equal | better | wrong |
 |---|---|---|---|---|---|---|--:|--:|--:|\

@@ -35,9 +35,8 @@ ROBOTS = ("robot1", "robot2", "robot3")
 
 class Recipe(NamedTuple):
     """A robot: the system of ``vendors/*.yaml`` that it is, what its fleet file has besides, the
-    layouts (the vendor's first), which differences are ``better``, and which findings are ``right`` about
-    the vendor's files, each with the reason. ``wrong`` and ``false`` (of each build) are how many there
-    still are of the others."""
+    layouts (the vendor's first), which differences are ``better``, and which findings are ``right``,
+    each with the reason. ``wrong`` and ``false`` (of each build) are how many others there still are."""
 
     title: str
     system: str

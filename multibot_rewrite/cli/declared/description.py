@@ -150,6 +150,7 @@ LINT = Command(
                 FINDINGS_OUTPUT,
                 switch("--fix", about="apply the safe fixes"),
                 switch("--diff", about="with --fix: print what would change, write nothing"),
+                switch("--statistics", about="print how often each rule found something"),
             ),
         ),
         OptionGroup(
@@ -170,6 +171,7 @@ LINT = Command(
                     about="processes; default: one for each processor",
                     type=values.count,
                 ),
+                switch("--no-cache", about="lint what did not change since the last time, too"),
             ),
         ),
         NAMING,

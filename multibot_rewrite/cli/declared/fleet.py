@@ -24,6 +24,7 @@ from multibot_rewrite.cli.options import (
     Example,
     OptionGroup,
     argument,
+    choice,
     form,
     output,
     output_group,
@@ -36,6 +37,8 @@ from multibot_rewrite.findings.finding import ERROR
 
 # Those of ``remap.table_formats``, which a help text does not import.
 REMAP_FORMS = ("table", "ros-args", "launch", "yaml", "json", "gazebo", "markdown", "bridge")
+# Those of the fleet file's ``params_style``.
+PARAMS_STYLES = ("full", "bringup")
 # Those of ``remap.ways``.
 WAYS = ("process", "host", "component", "spawner", "plugin")
 
@@ -85,6 +88,13 @@ BUILD = Command(
             output("write everything into that folder", required=True),
             switch("--check", about="list what is stale, write nothing"),
             switch("--force", about="overwrite files that no build made"),
+            choice(
+                "--params-style",
+                "STYLE",
+                PARAMS_STYLES,
+                "how parameter files are written: full (with the full names of nodes) or bringup (for"
+                " the launch files of nav2_bringup, docs/nav2.md); default: that of the fleet file",
+            ),
         ),
         FINDINGS,
         GENERAL,

@@ -18,12 +18,14 @@ from multibot_rewrite.companions.names.undeclared import (
     undeclared_message,
 )
 from multibot_rewrite.companions.yaml_text import YamlText, found_at, is_text
-from multibot_rewrite.findings.finding import WARNING, Finding
+from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.findings.rule import Rule, declare
 from multibot_rewrite.rosnames import check_topic_name
 
 GRAPH_WORDS = ("topic", "service")
 _CLOSED = ("joint", "link", "frame", "group")
+# Fewer names are mistakes in a file that is meant for the robot.
+_FEWEST = 3
 _EVALUATOR = re.compile(r"\s*(joint|link)s?\s*\(([^()]*)\)\s*")
 # The rule, the message and the hint.
 _Problem = tuple[Rule, str, str]
@@ -77,6 +79,11 @@ def _name_findings(
     for site in sites:
         for name in _named(site):
             first.setdefault(name, site)
+    closed = [name for name in first if name[0] in _CLOSED]
+    missing = [name for name in closed if is_undeclared(context, *name)]
+    if len(missing) >= _FEWEST and 2 * len(missing) > len(closed):
+        yield _of_another(document, context, first[missing[0]], missing, len(closed))
+        first = {name: site for name, site in first.items() if name not in missing}
     for (word, text), site in first.items():
         problems = (check(context, word, text) for check in _CHECKS)
         if problem := next(filter(None, problems), None):
@@ -118,6 +125,42 @@ def _undeclared(context: Context, word: str, text: str) -> _Problem | None:
     if word in _CLOSED and is_undeclared(context, word, text):
         return UNDECLARED, *undeclared_message(context, word, text)
     return None
+
+
+OF_ANOTHER = declare(
+    "MF309",
+    "moveit-file-of-another-robot",
+    ERROR,
+    what="Most joints, links, frames and groups that a file names are not in the description.",
+    why="move_group takes no limits, solvers or controllers from such a file: trajectories have the "
+    "limits of the URDF, groups have no inverse kinematics, and execution fails.",
+    fix="Name the file of this robot, or give its xacro the arguments that the file was written for.",
+    bad="""\
+joint_limits:
+  left_wheel_joint: {max_velocity: 1.0}
+  left_lidar_joint: {max_velocity: 1.0}
+  left_arm_joint: {max_velocity: 1.0}
+""",
+    good="""\
+joint_limits:
+  wheel_joint: {max_velocity: 1.0}
+""",
+    line=2,
+    formats=("moveit",),
+)
+
+
+def _of_another(
+    document: YamlText,
+    context: Context,
+    site: MoveitName,
+    missing: list[tuple[str, str]],
+    count: int,
+) -> Finding:
+    message = f"{len(missing)} of the {count} names in this file are not in the description: "
+    message += ", ".join(text for _, text in missing[:2]) + " and others"
+    _, hint = undeclared_message(context, *missing[0])
+    return found_at(document, site.scalar, OF_ANOTHER, message, hint)
 
 
 SUBSTITUTION_KEPT = declare(

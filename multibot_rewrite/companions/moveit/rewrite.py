@@ -31,7 +31,6 @@ from multibot_rewrite.companions.yaml_text import Splice, YamlText, line_of, quo
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import NAMESPACE
 from multibot_rewrite.remap.records import NodeFacts
-from multibot_rewrite.rewriters.forms import Declared
 
 # The nodes that read these files, as the stacks call them.
 MOVE_GROUP, SERVO = "move_group", "servo_node"
@@ -53,7 +52,7 @@ def rewrite_moveit(
 ) -> Companion:
     """A MoveIt file with slots for a robot, and the findings about it.
 
-    Groups of an SRDF are known if ``with_srdf`` has added them; ``facts`` are those of the robot's
+    Groups of an SRDF are known if they are declared (``with_srdf``); ``facts`` are those of the robot's
     nodes, whose remap rules move topics too. Raises InputError for a file that is not MoveIt's, and
     for an alias whose value would need two new names.
     """
@@ -63,15 +62,6 @@ def rewrite_moveit(
         raise InputError(
             f"{document.file}:1: the YAML is nested too deeply for a MoveIt file"
         ) from None
-
-
-def with_srdf(context: Context, declared: Declared) -> Context:
-    """The context with the groups and virtual joints that an SRDF declares (not rewritten)."""
-    both = dict(context.names.declared)
-    for kind in ("group", "joint"):
-        both[kind] = {**both.get(kind, {}), **declared.get(kind, {})}
-    names, topics = (it._replace(declared=both) for it in (context.names, context.topics))
-    return context._replace(names=names, topics=topics)
 
 
 def _moveit(document: YamlText, context: Context, facts: Facts) -> Companion:

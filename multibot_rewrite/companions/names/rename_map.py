@@ -51,6 +51,14 @@ def spell(names: CompanionNames, word: str, value: str, namespaced: bool = True)
     return spelled(names.naming, names.robot, kind, value, namespaced)
 
 
+def with_srdf(declared: Declared, semantics: Declared) -> Declared:
+    """What a description declares, and the groups and virtual joints of its SRDF."""
+    more = {
+        kind: {**declared.get(kind, {}), **semantics.get(kind, {})} for kind in ("group", "joint")
+    }
+    return {**declared, **more}
+
+
 def companion_names(
     declared: Declared, naming: Naming, robot: str, own: Mapping[tuple[str, str], str]
 ) -> CompanionNames:

@@ -36,10 +36,10 @@ _SMALLEST = 2.2250738585072014e-308
 _ESCAPED = {code: f"\\u{code:04x}" for code in (*range(0x7F, 0xA0), 0x2028, 0x2029, 0xFEFF)}
 
 
-def parameters_text(full: str, values: Mapping[str, Any]) -> str:
-    """The parameter file of the node with this full name, as JSON: rcl reads that as YAML, and never
+def parameters_text(nodes: Mapping[str, Mapping[str, Any]]) -> str:
+    """The parameter file of nodes, by full name or pattern, as JSON: rcl reads that as YAML, and never
     takes its strings for another type."""
-    data = {full: {"ros__parameters": dict(values)}}
+    data = {full: {"ros__parameters": dict(values)} for full, values in nodes.items()}
     return json.dumps(data, ensure_ascii=False).translate(_ESCAPED)
 
 

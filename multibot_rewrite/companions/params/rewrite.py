@@ -43,7 +43,7 @@ from multibot_rewrite.companions.params.shared_defaults import (
 )
 from multibot_rewrite.companions.params.slashes import slash_findings
 from multibot_rewrite.companions.params.unknown_parameters import guessed_names, unclaimed_names
-from multibot_rewrite.companions.params.values import ParamsJob, name_splices
+from multibot_rewrite.companions.params.values import ParamsJob, clock_splices, name_splices
 from multibot_rewrite.companions.template import (
     NAMESPACE_SLOT,
     TAG_SLOT,
@@ -67,6 +67,7 @@ def rewrite_params(
     facts: Iterable[NodeFacts] = (),
     robots: Iterable[str] = (),
     own: Iterable[str] = (),
+    clock: bool | None = None,
 ) -> Companion:
     """A parameter file with slots for a robot, and the findings about it.
 
@@ -74,7 +75,8 @@ def rewrite_params(
     what they set is not inserted here. ``facts`` are those of the robot's nodes, whose remap rules
     move topics too. ``robots`` are namespaces and tags of robots: a name that holds one of them is
     an error.
-    A file for one robot may have its sections below one of ``own``. Raises InputError for a file that
+    A file for one robot may have its sections below one of ``own``. ``clock`` is the
+    ``use_sim_time`` of all its nodes, None if they keep their own. Raises InputError for a file that
     is not a parameter file or that rcl rejects.
     """
     with gc_paused():
@@ -87,6 +89,7 @@ def rewrite_params(
             facts_by_name(facts, context.distro),
             words,
             tuple(own),
+            clock,
         )
         return _params(job, beside)
 
@@ -113,6 +116,8 @@ def _made(
     others: Sequence[RawSection],
 ) -> Iterator[Splice | Finding]:
     yield from key_splices(job.document, sections)
+    for section in sections:
+        yield from clock_splices(job, section)
     yield from _about_sections(job, sections, [names for _, names in pages])
     for section, names in pages:
         yield from name_splices(job, section, names)

@@ -19,7 +19,7 @@ from multibot_rewrite.companions.names.node_topics import (
 from multibot_rewrite.companions.names.rename_map import is_declared
 from multibot_rewrite.companions.params.known_nodes import KnownNodes, Param, is_absolute
 from multibot_rewrite.companions.params.name_sites import NameSite, SectionNames
-from multibot_rewrite.companions.params.sections import ParamSection
+from multibot_rewrite.companions.params.sections import PLACEHOLDER, ParamSection
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, found_at, pairs, replaced
 from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
@@ -27,6 +27,7 @@ from multibot_rewrite.releases import RELEASES, has_release
 
 # Controllers make an empty prefix of it; an empty parameter may stand for the namespace.
 NO_PREFIX = "/"
+SIM_TIME = "use_sim_time"
 # Kinds that are only guessed where the description declares the name.
 _UNSURE = ("frame", "sensor", "interface")
 
@@ -35,7 +36,7 @@ class ParamsJob(NamedTuple):
     """One parameter file to rewrite, and all that its steps need.
 
     ``robots`` are the namespaces and tags of the fleet's robots, ``own`` the words for the one robot
-    that the file is for.
+    that the file is for. ``clock`` is their ``use_sim_time``, None where nothing says.
     """
 
     document: YamlText
@@ -44,6 +45,19 @@ class ParamsJob(NamedTuple):
     facts: Facts
     robots: frozenset[str] = frozenset()
     own: tuple[str, ...] = ()
+    clock: bool | None = None
+
+
+def clock_splices(job: ParamsJob, section: ParamSection) -> Iterator[Splice]:
+    """The clock that the fleet file says, where a section says one: from Jazzy on a file counts more
+    than the launch argument of nav2_bringup, and nodes of one robot need one clock."""
+    if job.clock is None or section.shared:
+        return
+    text = "true" if job.clock else "false"
+    for key, value in pairs(section.body):
+        told = isinstance(value, yaml.ScalarNode) and not PLACEHOLDER.search(value.value)
+        if key.value == SIM_TIME and told and value.value.lower() != text:
+            yield Splice(value.start_mark.index, value.end_mark.index, text)
 
 
 def name_splices(

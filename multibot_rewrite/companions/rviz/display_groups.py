@@ -80,6 +80,12 @@ def for_one_process(one: RvizItem) -> bool:
     return one.flag in (PROCESS, ABSOLUTE)
 
 
+def has_own_windows(config: RvizConfig, robot: RvizRobot) -> bool:
+    """Is there anything that works for one robot, in an rviz2 of its own?"""
+    shown = (*leaves(config.displays), *config.tools, *config.panels)
+    return robot.has_process and any(it.flag == PROCESS for it in shown)
+
+
 def robot_groups(job: RvizJob) -> Iterator[Splice]:
     """The splices that put each robot's displays into a group, after the shared ones."""
     document, shown = job.config.document, job.config.displays

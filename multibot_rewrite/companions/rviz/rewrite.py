@@ -10,6 +10,7 @@ import yaml
 from multibot_rewrite.bounded import compose_yaml
 from multibot_rewrite.companions.rviz.colours import Colour, palette, read_colour
 from multibot_rewrite.companions.rviz.display_groups import (
+    has_own_windows,
     inserted,
     leaves,
     make_rviz_job,
@@ -61,7 +62,8 @@ def rewrite_rviz(
     """The configs of a fleet, and the findings about them.
 
     One window reads one tf topic: a layout with a tf topic for each robot gives a config for each,
-    unless the frames differ and the topics are ``relayed`` to ``/tf``. ``world`` is the frame that
+    unless the frames differ and the topics are ``relayed`` to ``/tf``. Displays that work for one
+    process are in a config for each robot, beside that for all. ``world`` is the frame that
     all robots are in (default: ``world_frame``). Raises InputError for a file that is not a config
     of RViz 2 and for an unknown colour, UsageError if there is no robot.
     """
@@ -74,13 +76,16 @@ def rewrite_rviz(
     world = world or world_frame(naming)
 
     def make(upto: int) -> tuple[RvizText, ...]:
-        if together:
-            return (_for_all(config, robots[:upto], colours[:upto], world),)
-        return tuple(map(lambda *it: _for_one(config, *it), robots[:upto], colours))
+        some = robots[:upto] if not together or has_own_windows(config, robots[0]) else ()
+        each = map(lambda *it: _for_one(config, *it), some, colours)
+        return (
+            *([_for_all(config, robots[:upto], colours[:upto], world)] if together else ()),
+            *each,
+        )
 
     made = make(len(robots))
     # All others differ from these in names only.
-    for text in made[:PROVED] if len(robots) <= PROVED else make(PROVED):
+    for text in made if len(robots) <= PROVED else make(PROVED):
         _prove(text.text, document.file)
     return made, tuple(config_findings(config, robots, world, together))
 
@@ -120,7 +125,7 @@ def _tf_topics(robot: RvizRobot) -> tuple[tuple[str, str], ...]:
     for topic in TF_TOPICS:
         target = target_of(f"/{topic}", TOPIC, name, naming)
         full = target if target.startswith("/") or not target else f"/{name}/{target}"
-        found += [(f"/{topic}", full)] if full else []
+        found += [(f"/{topic}", full)] if full not in ("", f"/{topic}") else []
     return tuple(found)
 
 
@@ -143,8 +148,7 @@ def _for_all(
 def _for_one(config: RvizConfig, robot: RvizRobot, colour: Colour | None) -> RvizText:
     """The config of a window for one robot; it runs in the robot's namespace if there is one."""
     document = config.document
-    namespaced = robot.names.naming.layout.namespaced
-    gone = (ABSOLUTE,) if namespaced else (ABSOLUTE, PROCESS)
+    gone = (ABSOLUTE,) if robot.has_process else (ABSOLUTE, PROCESS)
     splices: list[Splice] = []
     for one in (*leaves(config.displays), *config.panels):
         if one.flag in gone:
@@ -158,8 +162,10 @@ def _for_one(config: RvizConfig, robot: RvizRobot, colour: Colour | None) -> Rvi
             splices += tool_edits(document, tool, robot)
     for node in (fixed_frame(config), *_targets(config)):
         splices += _frame_splice(node, robot)
-    namespace = f"/{robot.topics.robot}" if namespaced else ""
-    return RvizText(robot.name, spliced(document, splices), namespace, _tf_topics(robot))
+    namespace = f"/{robot.topics.robot}" if robot.names.naming.layout.namespaced else ""
+    tf = _tf_topics(robot)
+    more = tuple(it for it in robot.rules if it[0] not in dict(tf))
+    return RvizText(robot.name, spliced(document, splices), namespace, (*tf, *more))
 
 
 def fixed_frame(config: RvizConfig) -> yaml.Node | None:

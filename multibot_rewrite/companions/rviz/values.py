@@ -14,9 +14,10 @@ from multibot_rewrite.companions.rviz.read_config import RvizItem, ValuePlace, r
 from multibot_rewrite.companions.yaml_text import Splice, replaced
 from multibot_rewrite.naming import NAMESPACE
 
-TOPIC, GRAPH_NAMESPACE, FRAME, LINK, JOINT = "topic", "namespace", "frame", "link", "joint"
+TOPIC, GRAPH_NAMESPACE, FRAME = "topic", "namespace", "frame"
+LINK, JOINT, GROUP = "link", "joint", "group"
 COLOUR, FLAT_COLOUR, TF_PREFIX = "colour", "flat_colour", "tf_prefix"
-NAMED = frozenset({TOPIC, GRAPH_NAMESPACE, FRAME, LINK, JOINT, TF_PREFIX})
+NAMED = frozenset({TOPIC, GRAPH_NAMESPACE, FRAME, LINK, JOINT, GROUP, TF_PREFIX})
 _NULL = "tag:yaml.org,2002:null"
 
 
@@ -26,7 +27,8 @@ class RvizRobot(NamedTuple):
     ``name`` is the title of its group. ``colour`` is a name, ``#rrggbb`` or three numbers, empty for
     one of the palette. ``known`` is its ``fleet_topics``. ``tf_prefix`` is for a description with
     bare links and prefixed frames (robot_state_publisher's ``frame_prefix``); it stays empty for a
-    rewritten description, whose links have the prefix themselves.
+    rewritten description, whose links have the prefix themselves. ``rules`` are the name and the remap
+    rules of an rviz2 of its own, which its stacks start.
     """
 
     name: str
@@ -35,6 +37,12 @@ class RvizRobot(NamedTuple):
     colour: str | tuple[int, ...] = ""
     known: Mapping[str, str] = NOTHING
     tf_prefix: str = ""
+    rules: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def has_process(self) -> bool:
+        """Does what works for one process alone find this robot in an rviz2 of its own?"""
+        return self.names.naming.layout.namespaced or bool(self.rules)
 
 
 def is_name(place: ValuePlace) -> bool:

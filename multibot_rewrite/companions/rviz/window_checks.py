@@ -177,17 +177,18 @@ LEFT_OUT = declare(
     "MF202",
     "rviz-panel-left-out",
     WARNING,
-    what="A display, tool or panel is left out, because it works only for the robot whose "
-    "namespace rviz2 runs in: the panels of Nav2, the displays of MoveIt, the panel of "
-    "slam_toolbox.",
+    what="A display, tool or panel is left out: the panel of slam_toolbox, whose names are absolute, "
+    "and without namespaces the panels of Nav2 and the displays of MoveIt, which work only for the "
+    "robot whose rviz2 process it is.",
     why="These plugins use the relative names or the parameters of the rviz2 node, or absolute "
     "names. In a window for all robots, goals would go to no robot or to the wrong one.",
-    fix="For that robot start a second rviz2 in its namespace, with the original file. For "
-    "absolute names remap them there.",
+    fix="In a layout with namespaces each robot gets a config with them, see commands.md; without "
+    "namespaces name the stack rviz_moveit or rviz_nav2, whose rviz2 has the robot's remap rules. "
+    "Remap absolute names there.",
     bad="""\
 Panels:
-  - Class: nav2_rviz_plugins/Navigation 2
-    Name: Navigation 2
+  - Class: slam_toolbox::SlamToolboxPlugin
+    Name: SlamToolboxPlugin
 Visualization Manager:
   Global Options: {Fixed Frame: map}
 """,
@@ -204,14 +205,16 @@ Visualization Manager:
 
 
 def _left_out(config: RvizConfig, robots: Robots, together: bool) -> Iterator[Finding]:
-    whole = not together and robots[0].names.naming.layout.namespaced
+    everywhere = all(it.has_process for it in robots)
     for one in (*leaves(config.displays), *config.tools, *config.panels):
-        if for_one_process(one) and not (whole and one.flag == PROCESS):
+        if for_one_process(one) and not (everywhere and one.flag == PROCESS):
             title = f"{one.cls} {one.name!r}" if one.name else one.cls
             message = (
                 f"{title} is left out: it works only for the robot whose namespace rviz2 runs in"
             )
-            hint = "for that robot start a second rviz2 in its namespace with the original file"
+            hint = (
+                "name the stack rviz_moveit or rviz_nav2: each robot gets an rviz2 with its rules"
+            )
             if one.flag == ABSOLUTE:
                 hint = "its topics are absolute: remap them in an rviz2 for one robot"
             yield found_at(config.document, one.node, LEFT_OUT, message, hint)

@@ -24,6 +24,7 @@ from multibot_rewrite.launch.graph.places import place_of
 # They only change the context, or give further entities.
 _EXECUTED = (
     *("LaunchDescription", "GroupAction", "IncludeLaunchDescription", "OpaqueFunction"),
+    *("ForEach", "ForLoop"),
     *("DeclareLaunchArgument", "SetLaunchConfiguration", "UnsetLaunchConfiguration"),
     *("PushLaunchConfigurations", "PopLaunchConfigurations", "ResetLaunchConfigurations"),
     *("PushEnvironment", "PopEnvironment", "ResetEnvironment", "ReplaceEnvironmentVariables"),
@@ -34,28 +35,45 @@ _EXECUTED = (
         "SetParameter",
         "SetParametersFromFile",
         "SetRemap",
-        "SetUseSimTime",
     ),
 )
-# They start no node.
+# They start no node; SetUseSimTime is for the node that launch itself would have.
 _PASSED = (
+    "SetUseSimTime",
     *("LogInfo", "EmitEvent", "Shutdown", "SetROSLogDir", "LifecycleTransition"),
     "UnregisterEventHandler",
 )
 
 
+def visit_all(entity: Any, seen: Visit) -> None:
+    """Visit a description, then what its events and timers start: by then all groups have ended, with
+    their namespaces and launch configurations (launch jazzy, launch_service.py)."""
+    visit(entity, seen)
+    while seen.waiting:
+        later, here, kept = seen.waiting.pop(0)
+        seen.context._push_locals()
+        seen.context.extend_locals(kept)
+        visit(later, here)
+        seen.context._pop_locals()
+
+
 def visit(entity: Any, seen: Visit) -> None:
     """Visit an entity and what is below it; what cannot be visited becomes a note."""
-    seen.context._push_locals()
     here = _at(entity, seen)
+    # An include has the path of its file for what is below it; other actions may leave theirs.
+    own = _is(entity, "IncludeLaunchDescription")
+    if own:
+        seen.context._push_locals()
     try:
         for below in _handler(entity)(entity, here) or ():
             visit(below, here)
     except (Exception, SystemExit) as error:
         # A launch file is a program: it may raise anything.
-        here.note(failure(error))
+        ended = "; groups and their launch configurations have ended by then" if here.later else ""
+        here.note(f"{here.later} {failure(error)}{ended}".strip())
     finally:
-        seen.context._pop_locals()
+        if own:
+            seen.context._pop_locals()
 
 
 def _at(entity: Any, seen: Visit) -> Visit:
@@ -80,6 +98,7 @@ def _pass(entity: Any, seen: Visit) -> None:
 def _node(entity: Any, seen: Visit) -> Iterable[Any] | None:
     if is_wanted(entity, seen.context):
         seen.nodes.append(node(entity, seen))
+        _ended(entity, seen)
     return None
 
 
@@ -116,23 +135,12 @@ def _components(descriptions: Iterable[Any] | None, container: str, seen: Visit)
 def _process(entity: Any, seen: Visit) -> Iterable[Any] | None:
     if is_wanted(entity, seen.context):
         seen.nodes.extend(process(entity, seen))
+        _ended(entity, seen)
     return None
 
 
-def visit_all(description: Any, seen: Visit) -> None:
-    """Visit a description, and then what its timers and events start: the scopes that these stand in
-    are left by then, with the namespace and the configurations of their groups."""
-    visit(description, seen)
-    while seen.deferred:
-        entity, then, known = seen.deferred.pop(0)
-        then.context._push_locals()
-        then.context.extend_locals(known)
-        visit(entity, then)
-        then.context._pop_locals()
-
-
 def _later(entity: Any, seen: Visit) -> Iterable[Any] | None:
-    """Keep the actions of a timer or an event handler for the end of the visit."""
+    """The actions of a timer or an event handler wait for the end of the description."""
     if not is_wanted(entity, seen.context):
         return None
     timer = _is(entity, "TimerAction")
@@ -144,9 +152,20 @@ def _later(entity: Any, seen: Visit) -> Iterable[Any] | None:
     if not timer and not actions:
         message = f"what {type(handler).__name__} starts is decided only at run time"
         seen.note(message)
-    known = dict(seen.context.get_locals_as_dict())
-    seen.deferred.extend((it, seen._replace(later=word), known) for it in actions)
+    kept = dict(seen.context.get_locals_as_dict()) if timer else {}
+    _wait(actions, word, seen, kept)
     return None
+
+
+def _wait(actions: Iterable[Any], word: str, seen: Visit, kept: Mapping[str, Any]) -> None:
+    seen.waiting.extend((it, seen._replace(later=word), kept) for it in actions)
+
+
+def _ended(entity: Any, seen: Visit) -> None:
+    """What ``on_exit`` of a program starts."""
+    actions = getattr(entity, "_ExecuteLocal__on_exit", None)
+    if not callable(actions):
+        _wait(_flat(actions), "at an event (on_exit)", seen, {})
 
 
 def _flat(actions: Any) -> list[Any]:

@@ -71,3 +71,19 @@ def turned(matrix: Matrix, vector: Vector) -> Vector:
     """A vector after the rotation."""
     x, y, z = (sum(a * b for a, b in zip(row, vector, strict=True)) for row in matrix)
     return x, y, z
+
+
+def product(outer: Matrix, inner: Matrix) -> Matrix:
+    """The rotation ``inner``, and then ``outer``."""
+    columns = tuple(zip(*inner, strict=True))
+    a, b, c = (
+        tuple(sum(x * y for x, y in zip(row, column, strict=True)) for column in columns)
+        for row in outer
+    )
+    return (a[0], a[1], a[2]), (b[0], b[1], b[2]), (c[0], c[1], c[2])
+
+
+def inverse(matrix: Matrix) -> Matrix:
+    """The rotation back."""
+    (a, b, c), (d, e, f), (g, h, i) = matrix
+    return (a, d, g), (b, e, h), (c, f, i)

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import InputError
+from multibot_rewrite.outside import is_file, real_path
 from multibot_rewrite.sources.known_arguments import KnownArguments, known_arguments
 from multibot_rewrite.sources.read import read_file
 
@@ -16,7 +17,7 @@ _INCLUDE = lazy_compile(rb"<xacro:include\s[^<>]*?filename\s*=\s*[\"']([^<\"']+)
 
 def included(paths: Sequence[str]) -> frozenset[str]:
     """Those of the files that a xacro file among them includes, by the known end of its path."""
-    files = {os.path.realpath(path): path for path in paths}
+    files = {real_path(path): path for path in paths}
     ends: dict[str, set[str]] = {}
     for path in filter(_is_read, files.values()):
         for asked in _asked_for(path):
@@ -36,12 +37,12 @@ def known_elsewhere(paths: Sequence[str]) -> KnownArguments | None:
 
 def _is_read(path: str) -> bool:
     # A pipe would never end.
-    return path.endswith(".xacro") and os.path.isfile(path)
+    return path.endswith(".xacro") and is_file(path)
 
 
 def _asked_for(path: str) -> Iterator[str]:
     """The paths that a file includes, without what only xacro can fill in, and without itself."""
-    own = os.path.realpath(path)
+    own = real_path(path)
     for name in _names(path):
         # What is before the last substitution of a path is not known.
         known = name[max(name.rfind(")"), name.rfind("}")) + 1 :]

@@ -6,14 +6,15 @@ import os
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import redirect_stderr
 from functools import partial
-from glob import escape, glob
+from glob import escape
 from io import StringIO
 from typing import NamedTuple
 
 from multibot_rewrite.checks.links_and_joints import Robot, read_robot
-from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.config.settings import Settings, matches
+from multibot_rewrite.lint.files.named import files_like, robot_name
 from multibot_rewrite.model import InputError
+from multibot_rewrite.outside import is_file
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.sources.access import Reach
@@ -22,9 +23,6 @@ from multibot_rewrite.sources.read import read_file
 from multibot_rewrite.steps.collect import NOTHING, Inventory, collect
 from multibot_rewrite.steps.document import read_document
 
-_NAME = lazy_compile(rb"<robot\b[^>]*?\sname\s*=\s*[\"']([^\"'$]+)[\"']")
-# The root element is in the first bytes: the whole file need not be read.
-HEAD = 4096
 # Where a package of MoveIt has its URDF, from the folder of its SRDF.
 NEAR = (".", "../urdf", "../config", "../robots", "../../*_description/urdf")
 ENDINGS = ("*.urdf", "*.xacro")
@@ -53,18 +51,8 @@ def named_urdfs(paths: Sequence[str], included: frozenset[str]) -> tuple[tuple[s
     if len(others) == len(paths):
         return ()
     whole = (it for it in others if it not in included or not it.endswith(".xacro"))
-    named = ((robot_name(path), path) for path in whole if os.path.isfile(path))
+    named = ((robot_name(path), path) for path in whole if is_file(path))
     return tuple((name, path) for name, path in named if name)
-
-
-def robot_name(path: str) -> str:
-    """The name on the root element as it is written; empty if the first bytes do not have it."""
-    try:
-        with open(path, "rb") as file:
-            found = _NAME.search(file.read(HEAD))
-    except (OSError, ValueError):
-        return ""
-    return found[1].decode("utf-8", "replace").strip() if found else ""
 
 
 def find_pair(path: str, srdf: Inventory, settings: Settings) -> Pair:
@@ -112,8 +100,8 @@ def _near(path: str, folder: str, name: str) -> list[str]:
 def _files(folder: str) -> Iterator[str]:
     for place in NEAR:
         for ending in ENDINGS:
-            found = glob(os.path.normpath(f"{escape(folder)}/{place}/{ending}"))
-            yield from (it for it in sorted(found) if SRDF_MARK not in os.path.basename(it))
+            found = files_like(os.path.normpath(f"{escape(folder)}/{place}/{ending}"))
+            yield from (it for it in found if SRDF_MARK not in os.path.basename(it))
 
 
 def _stem(path: str) -> str:

@@ -1,5 +1,13 @@
-"""MB6: mass, inertia and shapes."""
+"""MB6: mass, inertia, shapes, and geometry against the robot."""
 
-from multibot_rewrite.lint.rules.physics import inertia, mass, shapes
+from multibot_rewrite.lint.rules.physics import (
+    drives,
+    inertia,
+    loads,
+    mass,
+    placement,
+    sensors,
+    shapes,
+)
 
-THEMES = (mass, inertia, shapes)
+THEMES = (mass, inertia, shapes, drives, sensors, placement, loads)

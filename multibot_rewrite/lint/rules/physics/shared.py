@@ -73,3 +73,29 @@ def parts_with_mass(robot: Robot) -> dict[str, int]:
 def sizes_of(shape: _Element) -> tuple[float, ...]:
     """The sizes of a shape; empty if one is missing or not a number."""
     return numbers(" ".join([shape.get(name, "?") for name in SHAPES[str(shape.tag)]])) or ()
+
+
+def a_wheel(side: str, y: str, type_: str = "continuous", axis: str = "0 1 0") -> str:
+    lying = '<origin rpy="1.5708 0 0"/>'
+    shape = '<geometry><cylinder radius="0.1" length="0.04"/></geometry>'
+    """An example: a wheel of a rover, 7 lines."""
+    return block(f'<link name="{side}">', block("<collision>", lying, shape)) + a_joint(
+        f"{side}_joint", type_, "base", side, f'<origin xyz="0 {y} 0"/>', f'<axis xyz="{axis}"/>'
+    )
+
+
+LEFT, RIGHT = a_wheel("left", "0.2"), a_wheel("right", "-0.2")
+
+
+def a_rover(
+    left: str = LEFT, right: str = RIGHT, separation: str = "0.4", radius: str = "0.1"
+) -> str:
+    """An example: the plugin's wheels are in line 26 and 27, its sizes in 28 and 29."""
+    plugin = block(
+        '<plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive">',
+        "<left_joint>left_joint</left_joint>",
+        "<right_joint>right_joint</right_joint>",
+        f"<wheel_separation>{separation}</wheel_separation>",
+        f"<wheel_radius>{radius}</wheel_radius>",
+    )
+    return '<link name="base"/>\n' + left + right + block("<gazebo>", plugin)

@@ -10,10 +10,10 @@ from multibot_rewrite.checks.links_and_joints import Joint
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.findings.rule import rule
+from multibot_rewrite.lint.facts.driven import driven_joints
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.examples import block
 from multibot_rewrite.lint.rules.references.shared import ARM, FIXED, a_pair, a_system, name_of
-from multibot_rewrite.model import Claim
 
 # Types that a motor cannot move.
 UNDRIVEN = ("fixed", "floating", "planar", "")
@@ -151,10 +151,7 @@ def undriven_joint(subject: Subject) -> Iterator[Problem]:
     """One finding per robot: the joints that were forgotten, or are passive."""
     if not subject.elements.tops("ros2_control", "transmission"):
         return
-    claims = subject.inventory.claims
-    named = {
-        it.value for it in claims if it.site.whole_value_kind == "joint" and _drives_a_joint(it)
-    }
+    named = driven_joints(subject)
     left = [it for it in subject.robot.joints if it.name not in named and _needs_a_drive(it)]
     if left and len(left) < sum(map(_needs_a_drive, subject.robot.joints)):
         names = ", ".join(it.name for it in left[:5]) + (", ..." if len(left) > 5 else "")
@@ -162,10 +159,6 @@ def undriven_joint(subject: Subject) -> Iterator[Problem]:
         yield Problem(
             left[0].element, message, "name", "passive joints need a published state as well"
         )
-
-
-def _drives_a_joint(claim: Claim) -> bool:
-    return claim.site.role == "uses" and claim.site.section != "element joint"
 
 
 def _needs_a_drive(joint: Joint) -> bool:

@@ -16,6 +16,7 @@ from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.examples import block
 from multibot_rewrite.lint.rules.references.shared import ARM, a_system
 from multibot_rewrite.model import InputError
+from multibot_rewrite.outside import is_file
 from multibot_rewrite.rewriters.text import text_of
 from multibot_rewrite.sources.packages import entries, find_in, package_folder
 from multibot_rewrite.sources.read import read_file
@@ -90,7 +91,7 @@ def _files(subject: Subject, system: _Element) -> Iterator[tuple[_Element, str, 
     ]
     for element in named:
         path = _found(subject, text_of(element))
-        if path.endswith(_YAML) and os.path.isfile(path):
+        if path.endswith(_YAML) and is_file(path):
             yield element, path, True
     if not named:
         folder = os.path.dirname(os.path.abspath(subject.document.file))

@@ -1,0 +1,96 @@
+"""A robot's parameter file in the form that nav2_bringup takes: its sections have no namespace.
+
+The launch files there put a file below the robot's namespace (RewrittenYaml with ``root_key``), so a
+namespace of its own would be there twice, and rcl refuses ``/robot1//robot1/``. slam_toolbox is the one
+node that gets the file as it is, and only if the file has a key of that name (HasNodeParams).
+Sources: nav2_bringup launch/slam_launch.py, nav2_common rewritten_yaml.py and has_node_params.py, all
+releases from humble (1.1.20) to rolling (a3a97043e).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import yaml
+
+from multibot_rewrite.companions.params.sections import PLACEHOLDER, raw_sections
+from multibot_rewrite.companions.yaml_text import (
+    Splice,
+    YamlText,
+    found_at,
+    quoted,
+    replaced,
+    spliced,
+)
+from multibot_rewrite.findings.finding import ERROR, Finding
+from multibot_rewrite.findings.rule import declare
+
+_SLAM = "slam_toolbox"
+_WHY = "# nav2_bringup wants this key, and gives slam_toolbox the file without a namespace.\n"
+
+OUTSIDE = declare(
+    "MF132",
+    "section-outside-of-bringup",
+    ERROR,
+    what="With `params_style: bringup`, a parameter file has a section for a node that is not in the "
+    "robot's namespace.",
+    why="nav2_bringup puts the whole file below the robot's namespace: no node has that section.",
+    fix="Put the section into a file of its own that is not in this fleet file.",
+    bad="""\
+rviz2:
+  ros__parameters:
+    use_sim_time: true
+""",
+    good="""\
+amcl:
+  ros__parameters:
+    use_sim_time: true
+""",
+    formats=("params",),
+    options={"stack": ["nav2", "rviz"], "params_style": "bringup", "layout": "both"},
+)
+
+
+def for_bringup(document: YamlText, namespace: str) -> tuple[str, tuple[Finding, ...]]:
+    """The text of a file as it was made for the robot in ``namespace``, without that namespace.
+
+    Raises InputError for a file that rcl rejects.
+    """
+    keys = {id(it.keys[0]): it.keys[0] for it in raw_sections(document)}
+    made = [it for key in keys.values() for it in _changed(document, key, namespace)]
+    splices = [it for it in made if isinstance(it, Splice)]
+    return spliced(document, splices), tuple(it for it in made if isinstance(it, Finding))
+
+
+def _changed(
+    document: YamlText, key: yaml.ScalarNode, namespace: str
+) -> Iterator[Splice | Finding]:
+    below = below_namespace(key.value, namespace)
+    if PLACEHOLDER.search(key.value):
+        return
+    if below is None:
+        message = f"section {key.value} is for a node that is not in the namespace /{namespace}"
+        hint = "nav2_bringup puts all sections there; put this one into a file of its own"
+        yield found_at(document, key, OUTSIDE, message, hint)
+    elif below == _SLAM:
+        at, column = key.start_mark.index, key.start_mark.column
+        new = f"{_WHY}{' ' * column}{_SLAM}: {{}}\n{' ' * column}{quoted(f'**/{_SLAM}')}"
+        yield Splice(at, key.end_mark.index, new)
+    else:
+        yield replaced(key, below)
+
+
+def below_namespace(key: str, namespace: str) -> str | None:
+    """What is left of the name of a section below a namespace; None if no node there has it.
+
+    below_namespace("/robot1/amcl", "robot1") == "amcl"
+    below_namespace("/**", "robot1") == "**"
+    """
+    tokens = key.strip("/").split("/")
+    for word in namespace.split("/"):
+        if tokens and tokens[0] == "**":
+            break
+        if not tokens or tokens[0] not in (word, "*"):
+            return None
+        tokens.pop(0)
+    return "/".join(tokens) or "**"

@@ -1,0 +1,1 @@
+"""Results of earlier lints, kept while all that they rest on is the same."""

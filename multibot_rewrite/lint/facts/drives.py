@@ -1,0 +1,193 @@
+"""The wheels of a plugin that drives a robot on two rows of them, and where they are.
+
+Sources: gz-sim src/systems/diff_drive/DiffDrive.cc (the speed of a left wheel is (v - w *
+separation / 2) / radius, that of a right one has the plus), gazebo_ros_pkgs
+gazebo_plugins/src/gazebo_ros_diff_drive.cpp (ros2: the same), gazebo_ros_skid_steer_drive.cpp
+(noetic-devel).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from lxml.etree import _Element
+
+from multibot_rewrite.checks.links_and_joints import Joint, Robot
+from multibot_rewrite.checks.numbers import Vector, number
+from multibot_rewrite.lint.convert.pose import Pose
+from multibot_rewrite.lint.convert.rotation import turned
+from multibot_rewrite.lint.facts.memo import memoized
+from multibot_rewrite.lint.facts.poses import axis_of, dot, link_poses, minus, origin_of, placed
+from multibot_rewrite.lint.facts.shapes import Extent, around, extent_of, shapes_of
+from multibot_rewrite.lint.records import Subject
+from multibot_rewrite.rewriters.text import text_of
+
+# Axes that point the same way, as a cosine.
+ALONG = 0.99
+
+
+class Tags(NamedTuple):
+    """How a plugin calls its wheels and their sizes. ``radius_of`` is the radius in its unit: 0.5 for a
+    diameter. ``turns_left`` says that the left wheels are slower in a turn to the left."""
+
+    left: Sequence[str]
+    right: Sequence[str]
+    separation: str
+    radius: str
+    radius_of: float
+    defaults: tuple[float, float]
+    turns_left: bool = True
+
+
+_GZ = Tags(("left_joint",), ("right_joint",), "wheel_separation", "wheel_radius", 1, (1.0, 0.2))
+_ROS_2 = Tags(
+    ("left_joint",), ("right_joint",), "wheel_separation", "wheel_diameter", 0.5, (0.34, 0.15)
+)
+_ROS_1 = Tags(
+    ("leftJoint",), ("rightJoint",), "wheelSeparation", "wheelDiameter", 0.5, (0.34, 0.15), False
+)
+_SKID = Tags(
+    ("leftFrontJoint", "leftRearJoint"),
+    ("rightFrontJoint", "rightRearJoint"),
+    "wheelSeparation",
+    "wheelDiameter",
+    0.5,
+    (0.4, 0.15),
+    False,
+)
+TAGS: Mapping[str, tuple[Tags, ...]] = {
+    "gz-sim-diff-drive-system": (_GZ,),
+    "gazebo_ros_diff_drive": (_ROS_2, _ROS_1),
+    "gazebo_ros_skid_steer_drive": (_SKID,),
+}
+
+
+class Wheel(NamedTuple):
+    """A driven wheel in the root's frame: its joint, the pose of its link, the axis it turns
+    about, and the element that names it."""
+
+    named: _Element
+    joint: Joint
+    pose: Pose
+    axis: Vector
+
+
+class Drive(NamedTuple):
+    """A plugin, its wheels, and the elements of its sizes, None where it takes its default."""
+
+    plugin: _Element
+    tags: Tags
+    left: tuple[Wheel, ...]
+    right: tuple[Wheel, ...]
+    sizes: Mapping[str, _Element | None]
+
+    @property
+    def pairs(self) -> list[tuple[Wheel, Wheel]]:
+        """The wheels of the two sides, in the order they are named in."""
+        return list(zip(self.left, self.right, strict=False))
+
+
+@memoized
+def drives(subject: Subject) -> list[Drive]:
+    """The drives of a robot that name wheels on both sides."""
+    found = (
+        _drive(subject, plugin, TAGS[name])
+        for plugin, section in subject.inventory.served
+        for name in section.names
+        if name in TAGS
+    )
+    return [it for it in found if it is not None]
+
+
+def wheel_joints(subject: Subject) -> Iterator[tuple[_Element, Joint]]:
+    """Each joint that a drive names as a wheel's, and the element that names it."""
+    for plugin, section in subject.inventory.served:
+        kinds = next((TAGS[it] for it in section.names if it in TAGS), ())
+        names = {tag for it in kinds for tag in (*it.left, *it.right)}
+        for element in plugin.iterchildren(*names) if names else ():
+            joint = subject.robot.joint.get(text_of(element))
+            if joint is not None:
+                yield element, joint
+
+
+def _drive(subject: Subject, plugin: _Element, kinds: Sequence[Tags]) -> Drive | None:
+    for tags in kinds:
+        left, right = (tuple(_wheels(subject, plugin, it)) for it in (tags.left, tags.right))
+        if left and right:
+            sizes = {it: plugin.find(it) for it in (tags.separation, tags.radius)}
+            return Drive(plugin, tags, left, right, sizes)
+    return None
+
+
+def _wheels(subject: Subject, plugin: _Element, tags: Sequence[str]) -> Iterator[Wheel]:
+    poses = link_poses(subject)
+    for named in plugin.iterchildren(*tags):
+        joint = subject.robot.joint.get(text_of(named))
+        axis = None if joint is None else axis_of(joint)
+        if joint is not None and axis is not None and joint.child in poses:
+            pose = poses[joint.child]
+            yield Wheel(named, joint, pose, turned(pose.matrix, axis))
+
+
+def size_of(drive: Drive, name: str, default: float) -> float | None:
+    """A size as the plugin reads it; None where it is no number."""
+    element = drive.sizes[name]
+    return default if element is None else number(text_of(element))
+
+
+def radii(robot: Robot, wheel: Wheel) -> list[float]:
+    """The radii of the round shapes that turn with a wheel about its axis: of those that touch the
+    ground, else of those that are seen."""
+    for tag in ("collision", "visual"):
+        found = [it for at in _parts(robot, wheel) for it in _round(robot, at, tag, wheel.axis)]
+        if found:
+            return found
+    return []
+
+
+def _parts(robot: Robot, wheel: Wheel) -> list[tuple[str, Pose]]:
+    """The links fixed to a wheel, itself first, with their poses in the root."""
+    found = [(wheel.joint.child, wheel.pose)]
+    for name, pose in found:  # grows
+        for joint in robot.below.get(name, ()):
+            own = origin_of(joint.element) if joint.type == "fixed" else None
+            if own is not None and len(found) < len(robot.links):
+                found.append((joint.child, placed(pose, own)))
+    return found
+
+
+def _round(robot: Robot, part: tuple[str, Pose], tag: str, axis: Vector) -> Iterator[float]:
+    link = robot.link.get(part[0])
+    for element, shape in shapes_of(link.element, tag) if link else ():
+        radius, own = number(shape.get("radius")), origin_of(element)
+        if radius is None or own is None:
+            continue
+        along = turned(placed(part[1], own).matrix, (0.0, 0.0, 1.0))
+        if shape.tag == "sphere" or abs(dot(along, axis)) > ALONG:
+            yield radius
+
+
+def middles(robot: Robot, wheel: Wheel) -> list[Vector]:
+    """Where a wheel may be said to stand: at its joint, in the middle of its shapes."""
+    found = [wheel.pose.at]
+    for tag in ("collision", "visual"):
+        shapes = [it for at in _parts(robot, wheel) for it in _extents(robot, at, tag)]
+        box = around(shapes)
+        found += [] if box is None else [box.middle]
+    return found
+
+
+def _extents(robot: Robot, part: tuple[str, Pose], tag: str) -> Iterator[Extent]:
+    link = robot.link.get(part[0])
+    for element, shape in shapes_of(link.element, tag) if link else ():
+        own = origin_of(element)
+        pose = None if own is None else placed(part[1], own)
+        found = None if pose is None else extent_of(shape, pose)
+        if found is not None:
+            yield found
+
+
+def apart(one: Vector, other: Vector, axis: Vector) -> float:
+    """How far two points are from each other along an axis; signed."""
+    return dot(minus(one, other), axis)

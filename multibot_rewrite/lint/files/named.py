@@ -1,0 +1,29 @@
+"""What files beside a description are called, and the robots in them."""
+
+from __future__ import annotations
+
+from glob import glob
+
+from multibot_rewrite.lazy import lazy_compile
+from multibot_rewrite.outside import outside
+
+_NAME = lazy_compile(rb"<robot\b[^>]*?\sname\s*=\s*[\"']([^\"'$]+)[\"']")
+# The root element is in the first bytes: the whole file need not be read.
+HEAD = 4096
+
+
+@outside
+def robot_name(path: str) -> str:
+    """The name on the root element as it is written; empty if the first bytes do not have it."""
+    try:
+        with open(path, "rb") as file:
+            found = _NAME.search(file.read(HEAD))
+    except (OSError, ValueError):
+        return ""
+    return found[1].decode("utf-8", "replace").strip() if found else ""
+
+
+@outside
+def files_like(pattern: str) -> tuple[str, ...]:
+    """The files that a pattern names, in order."""
+    return tuple(sorted(glob(pattern)))
