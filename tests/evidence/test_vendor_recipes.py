@@ -64,7 +64,8 @@ def test_a_key_that_comes_twice_has_both_sections() -> None:
 def test_a_description_is_data_under_names_without_the_robot() -> None:
     text = """\
 <robot name="r"><link name="base"/>
-<joint name="robot1_j" type="fixed"><origin xyz="0.10 0 0"/><parent link="base"/><child link="x"/></joint>
+<joint name="robot1_j" type="fixed"><origin xyz="0.10 0 0"/>
+<parent link="base"/><child link="x"/></joint>
 <gazebo><plugin name="p" filename="f"><ros><namespace> /a
 </namespace><remapping>b:=c</remapping><remapping>a:=c</remapping></ros></plugin></gazebo></robot>"""
     found = description_rows(text, "robot1", "robot1/")

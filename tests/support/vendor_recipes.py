@@ -36,7 +36,7 @@ ROBOTS = ("robot1", "robot2", "robot3")
 class Recipe(NamedTuple):
     """A robot: the system of ``vendors/*.yaml`` that it is, what its fleet file has besides, the
     layouts (the vendor's first), which differences are ``better``, and which findings are ``right``,
-    each with the reason. ``wrong`` and ``false`` (of each build) are how many others there still are."""
+    each with the reason. ``wrong`` and ``false`` (of each build) are how many others there are."""
 
     title: str
     system: str
@@ -99,7 +99,8 @@ def build(text: str, words: Mapping[str, str], layout: str, count: int) -> Built
     """All that a recipe makes in a layout, or why it is refused."""
     robots = tuple(f"robot{it}" for it in range(1, count + 1))
     file = Path(words["work"]) / "fleet.yaml"
-    file.write_text(str(filled(text, words)))
+    places = {it: words[it] for it in ("sources", "work")}
+    file.write_text(str(filled(text, places)))
     try:
         plan = plan_fleet(read_fleet(str(file), "", {}), trust=True)
         return Built(layout, robots, plan.fleet, expected(plan.fleet), make_outputs(plan))
