@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import yaml
 
+from multibot_rewrite.companions.names.placeholders import without_robot
 from multibot_rewrite.companions.params.known_nodes import KnownNodes
 from multibot_rewrite.companions.params.rcl_parameters import value_of
 from multibot_rewrite.companions.params.sections import (
@@ -102,7 +103,9 @@ def _flat(document: YamlText, body: yaml.Node, above: str) -> Iterator[tuple[str
             continue
         # What rcl rejects is reported where the file is rewritten.
         with suppress(InputError):
-            yield name, Given(value_of(document, node), Place(document.file, line_of(key)))
+            value = value_of(document, node)
+            plain = without_robot(value) if isinstance(value, str) else value
+            yield name, Given(plain, Place(document.file, line_of(key)))
 
 
 class _Controller(NamedTuple):

@@ -67,7 +67,8 @@ def _as_rviz_robot(plan: FleetPlan) -> RvizRobot:
     topics = robot.topics._replace(robot=spec.namespace)
     known = fleet_topics(plan.fleet.table, plan.fleet.facts, spec.namespace)
     rules = tuple(_own_rules(plan))
-    return RvizRobot(spec.name, names, topics, spec.colour, known, rules=rules)
+    prefix = spec.tag if names.naming.layout.at_run_time else ""
+    return RvizRobot(spec.name, names, topics, spec.colour, known, prefix, rules)
 
 
 def _own_rules(plan: FleetPlan) -> Iterator[tuple[str, str]]:

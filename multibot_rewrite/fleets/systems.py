@@ -22,7 +22,7 @@ from multibot_rewrite.fleets.output_file import yaml_of
 from multibot_rewrite.fleets.output_values import OutputText
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_nodes import RobotEvidence
-from multibot_rewrite.graph.transforms import STATE_PUBLISHER, description_edges, sent_by
+from multibot_rewrite.graph.transforms import STATE_PUBLISHER, sent_by
 from multibot_rewrite.readback.nodes import ReadNode
 from multibot_rewrite.readback.reading import FRAME, read
 from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, TOPIC, EndpointName, NodeFacts
@@ -98,7 +98,7 @@ def system_after(
         tuple(exported(written.root, file)),
         tuple(ends),
         tuple(_planned(it, owners) for it in fleet.table.names if not it.robot),
-        frozenset(it.child for it in description_edges(robot.member.inventory)),
+        frozenset(it.child for it in robot.tree),
         tuple(_read(it) for it in own if MOVEIT in it.text),
         tuple(_senders(fleet, robot)),
     )

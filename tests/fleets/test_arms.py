@@ -261,3 +261,27 @@ def test_two_arms_on_a_world_of_their_own_stand_where_their_poses_are(
     assert "--frame-id map --child-frame-id right/world" in lines[1]
     assert "odom" not in files["commands.md"]
     assert "cmd_vel" not in files["commands.md"]
+
+
+@pytest.mark.parametrize("finger", ["left_finger", "{robot}_left_finger"])
+def test_a_part_that_is_called_as_a_robot_is_no_name_of_it(finger: str, tmp_path: Path) -> None:
+    """Kinova's gripper_joint_name is robotiq_85_left_knuckle_joint, also of the robot right."""
+    for name in ("arm.urdf.xacro", "arm.srdf.xacro"):
+        text = URDF if "urdf" in name else SRDF.replace("OWN", "").replace("GROUP", "arm")
+        text = text.replace("PLUGIN", MOCK).replace("$(arg prefix)", "")
+        (tmp_path / name).write_text(text.replace("${p}hand", "$(arg finger)"))
+        head = (
+            (tmp_path / name)
+            .read_text()
+            .replace(HEAD, HEAD + '<xacro:arg name="finger" default="f"/>')
+        )
+        (tmp_path / name).write_text(head)
+    fleet = "layout: both\naffix: prefix\ndescription: arm.urdf.xacro\nsrdf: arm.srdf.xacro\n"
+    more = f"arguments: {{finger: '{finger}'}}\n{TWO}"
+    (tmp_path / "fleet.yaml").write_text(fleet + more)
+    made = make_outputs(plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {})))
+    files = {it.path: it.data.decode() for it in made.files}
+    names = {"left_finger": "right/left_finger", "{robot}_left_finger": "right_left_finger"}
+    for path in ("right/arm.urdf", "right/arm.srdf"):
+        assert f'"{names[finger]}"' in files[path]
+    assert errors(list(made.findings)) == []
