@@ -115,7 +115,8 @@ def _node(
     if urdf and DESCRIPTION in inline and _same_robot(inline[DESCRIPTION], urdf):
         prefix = inline.get("frame_prefix", "").lstrip("/")
         theirs |= _put("description", description_rows(inline[DESCRIPTION], robot, prefix))
-        ours |= _put("description", description_rows(urdf, robot))
+        later = built.layout == "frame-prefix"
+        ours |= _put("description", description_rows(urdf, robot, prefix if later else ""))
     if row["executable"] not in BRIDGES:
         _topics(built, row, name, theirs, ours)
     _special(row, name, files, built, theirs, ours)
