@@ -168,7 +168,7 @@ def build(sources: Path, tmp_path: Path) -> Build:
             "stack": ["ros2_control", "moveit"],
             "simulator": "none",
             "companions": {
-                "params": [_filled(sources / it, tmp_path) for it in arm.params],
+                "params": [str(sources / it) for it in arm.params],
                 "moveit": [str(sources / it) for it in arm.moveit],
                 "rviz": str(sources / arm.rviz),
             },
@@ -179,13 +179,6 @@ def build(sources: Path, tmp_path: Path) -> Build:
         return {it.path: it.data for it in made.files}, list(made.findings)
 
     return built
-
-
-def _filled(source: Path, folder: Path) -> str:
-    """A file without the prefix that the vendor's launch file fills in for one robot."""
-    target = folder / source.name
-    target.write_text(source.read_text().replace("$(var tf_prefix)", ""))
-    return str(target)
 
 
 def vendors(arm: Arm, sources: Path, robot: str, path: str) -> etree._Element:
