@@ -9,9 +9,10 @@ from multibot_rewrite.checks.audit import is_unknown
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.findings.rule import rule
+from multibot_rewrite.lint.facts.simulators import library_of, simulator_plugins
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.examples import block
-from multibot_rewrite.lint.rules.gazebo.shared import a_system, simulator_plugins
+from multibot_rewrite.lint.rules.gazebo.shared import a_system
 from multibot_rewrite.nearest import nearest, slip_of
 from multibot_rewrite.rewriters.text import text_of
 from multibot_rewrite.rewriters.tree import library_key
@@ -59,7 +60,7 @@ def plugin_without_library(subject: Subject) -> Iterator[Problem]:
 def class_not_in_library(subject: Subject) -> Iterator[Problem]:
     """Systems that come with Gazebo: their libraries have no other classes, in any release."""
     for it in simulator_plugins(subject):
-        library = library_key(it.get("filename", "").strip().rpartition("/")[2])
+        library = library_of(it)
         name = it.get("name", "").strip().replace("ignition::gazebo::", "gz::sim::")
         if not name or "$" in name or not library.startswith(FAMILIES[0][0]):
             continue
@@ -146,7 +147,7 @@ def library_of_ignition(subject: Subject) -> Iterator[Problem]:
         return
     found = [it for it in simulator_plugins(subject) if _IGNITION in it.get("filename", "")]
     if found:
-        first = library_key(found[0].get("filename", "").strip().rpartition("/")[2])
+        first = library_of(found[0])
         more = f" and {len(found) - 1} more" if len(found) > 1 else ""
         message = f"Gazebo of {release} finds no {found[0].get('filename', '')!r}{more}"
         hint = f"write {first}, or name the release that the description is for with --distro"

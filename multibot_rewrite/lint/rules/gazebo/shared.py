@@ -9,6 +9,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.lint.facts.memo import memoized
+from multibot_rewrite.lint.facts.simulators import simulator_plugins
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.examples import block
 
@@ -53,7 +54,7 @@ def element_faults(subject: Subject) -> ByKind:
 def parameter_faults(subject: Subject) -> ByKind:
     """What is wrong with the parameters of plugins and of hardware."""
     release, systems = subject.settings.distro, subject.elements.tops("ros2_control")
-    plugins = list(simulator_plugins(subject))
+    plugins = described_plugins(subject)
     if not plugins and not systems:
         return {}
     from multibot_rewrite.lint.schema.plugins import hardware_faults, plugin_faults
@@ -64,20 +65,13 @@ def parameter_faults(subject: Subject) -> ByKind:
     return _by_kind(found)
 
 
-def simulator_plugins(subject: Subject) -> Iterator[_Element]:
+def described_plugins(subject: Subject) -> list[_Element]:
     """The plugins of Gazebo, those of ROS 1 aside: nobody described their parameters here."""
-    plugins = subject.elements.every("plugin")
+    plugins = simulator_plugins(subject)
     if not plugins:
-        return
+        return []
     of_ros_1 = {element for element, section in subject.inventory.served if section.ros == "1"}
-    for it in plugins:
-        above = it.getparent()
-        if it not in of_ros_1 and above is not None and above.tag not in _OTHERS:
-            yield it
-
-
-# Plugins that are no plugins of Gazebo: hardware and transmissions of ros2_control, other simulators.
-_OTHERS = frozenset({"hardware", "transmission", "webots", "mujoco", "extension", "robot"})
+    return [it for it in plugins if it not in of_ros_1]
 
 
 def _by_kind(faults: Iterable[Fault]) -> ByKind:
