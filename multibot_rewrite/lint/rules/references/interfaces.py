@@ -123,7 +123,10 @@ def misspelt_interface(subject: Subject) -> Iterator[Problem]:
 )
 def commanded_joint_without_state(subject: Subject) -> Iterator[Problem]:
     """One finding a robot: the first of such joints; another system may have the state."""
-    joints = [it for it in owners(subject) if it.tag == "joint"]
+    systems = [
+        it for it in subject.elements.tops("ros2_control") if it.find("hardware") is not None
+    ]
+    joints = [joint for system in systems for joint in system.iterchildren("joint")]
     known = {name_of(it) for it in joints if it.find(STATE) is not None}
     found = [it for it in joints if it.find(COMMAND) is not None and name_of(it) not in known]
     if found:
