@@ -93,9 +93,9 @@ HEAD = """\
 # Idioms of launch files
 
 What launch authors write, each tried in the real `launch` 3.4.3 and `launch_ros` 0.26.6 (jazzy) with
-programs that do nothing. Made by `python tests/support/launch_idioms.py --write`; the tests run all files
-wherever launch can be imported. *Before* is the version in which they were first tried. The files are in
-`fixtures/launch_idioms`, with [their fleet](../fixtures/launch_idioms/fleet.yaml).
+programs that do nothing. Made by `python tests/support/launch_idioms.py --write`; the tests run all of
+them wherever launch can be imported. *Before* is the version in which they were first tried. The files
+are in `fixtures/launch_idioms`, with [their fleet](../fixtures/launch_idioms/fleet.yaml).
 
 | idiom | before | now |
 |---|---|---|
