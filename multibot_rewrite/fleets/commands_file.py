@@ -9,8 +9,10 @@ from multibot_rewrite.evidence.parameter_files import OWN_TYPE
 from multibot_rewrite.fleets import spawn, teleop
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, path_for
+from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_nodes import node_sources
 from multibot_rewrite.fleets.start_poses import InitialPose, command, start_poses
+from multibot_rewrite.graph.transforms import STATE_PUBLISHER
 from multibot_rewrite.releases import facts_of_release
 from multibot_rewrite.remap.started import SPAWN, arguments, started
 from multibot_rewrite.remap.ways import SPAWNER
@@ -40,7 +42,7 @@ def commands_file(
         rows += [spawn.either(it, robot) for it in spawned if spawn.is_simulated(robot)]
         rows += _controllers(one)
         driven = (with_clock(teleop.command(it), clock) for it in teleop.teleops(one))
-        rows += [*(f"{it}\n" for it in driven), "```\n"]
+        rows += [*(f"{it}\n" for it in driven), "```\n", *_prefixed(robot)]
         for pose in poses.initial:
             path = path_for(robot, START)
             rows.append(f"\nStart its {pose.node} with `--params-file {path}` as well.\n")
@@ -49,6 +51,12 @@ def commands_file(
     if lines := [f"{with_clock(it, both)}\n" for it in windows]:
         rows += ["\n## RViz\n\n```sh\n", *lines, "```\n"]
     yield OutputFile(COMMANDS, "".join(rows).encode())
+
+
+def _prefixed(robot: RewrittenRobot) -> Iterator[str]:
+    """What puts the robot's name before the frames of its description."""
+    if prefix := robot.frame_prefix:
+        yield f"\nStart its {STATE_PUBLISHER} with `-p frame_prefix:={prefix}` as well.\n"
 
 
 def with_clock(line: str, use_sim_time: bool | None) -> str:

@@ -45,6 +45,7 @@ from multibot_rewrite.steps.collect import Inventory
 NOTHING: Mapping[str, str] = {}
 # The stack of a robot whose description is published by something else.
 NO_STATE_PUBLISHER = f"no_{STATE_PUBLISHER}"
+FRAME_PREFIX = "frame_prefix"
 
 
 class Fleet(NamedTuple):
@@ -95,7 +96,7 @@ def make_fleet(
     facts = facts_of(stacks, nodes, release, nodl)
     known = known_nodes(nodes, release, nodl).library.nodes
     parameters = load_known_nodes("", release)
-    launched = launched_robot(facts, launch, known, robots[:1], parameters)
+    launched = launched_robot(facts, launch, known, robots[:1], parameters, release)
     runs = nodes_with(launched, facts, given_with(launched, ()), known)
     found = rewrite_all(
         source,
@@ -237,7 +238,7 @@ def expected(fleet: Fleet) -> Expectation:
     for (robot, _), edges in fleet.edges.items():
         sent[robot] += edges
     frames = {
-        robot: frames_of(found, sent[robot], fleet.naming)
+        robot: frames_of(found, sent[robot], fleet.naming, fleet.tags.get(robot, robot))
         for robot, found in fleet.inventories.items()
     }
     named = {robot: named_frames(found) for robot, found in fleet.inventories.items()}
@@ -251,16 +252,23 @@ def expected(fleet: Fleet) -> Expectation:
         hint = f"name a stack of its nodes, or leave out {NO_STATE_PUBLISHER}"
         raise UsageError(f"{nothing}, so every graph would be as planned; {hint}")
     plan = plan._replace(release=fleet.table.release, gaps=fleet.gaps, topics=fleet.bridged)
-    return plan._replace(states=(*plan.states, *_clocks(fleet)))
+    return plan._replace(states=(*plan.states, *_states(fleet)))
 
 
-def _clocks(fleet: Fleet) -> Iterator[PlannedState]:
-    """The clock of each node of a robot; one in a plugin has that of the simulator."""
+def _states(fleet: Fleet) -> Iterator[PlannedState]:
+    """The clock of each node of a robot, where one in a plugin has that of the simulator, and what
+    puts the robot's name before the frames of its description."""
     clocks = dict(fleet.clocks)
+    described = {it.name for it in fleet.facts if it.package == STATE_PUBLISHER}
     for it in merged(fleet.table.nodes):
+        given: dict[str, object] = {}
         if it.robot in clocks and not it.home.plugin:
-            clock = PlannedParameter(SIM_TIME, parameter_text(clocks[it.robot]))
-            yield PlannedState(it.full_name, parameters=(clock,))
+            given[SIM_TIME] = clocks[it.robot]
+        if it.robot and it.node in described and fleet.naming.layout.at_run_time:
+            given[FRAME_PREFIX] = f"{fleet.tags.get(it.robot, it.robot)}/"
+        own = tuple(PlannedParameter(name, parameter_text(value)) for name, value in given.items())
+        if own:
+            yield PlannedState(it.full_name, parameters=own)
 
 
 def _sends(fleet: Fleet) -> Iterator[tuple[str, str]]:

@@ -90,6 +90,14 @@ class LoadedRobot:
         return self._robot.description.decode()
 
     @property
+    def description_parameters(self) -> dict[str, Any]:
+        """The parameters of its robot_state_publisher: ``robot_description``, and ``frame_prefix`` in
+        the layout of that name. Raises nothing."""
+        prefix = self._robot.frame_prefix
+        given = {"robot_description": self.description}
+        return {**given, "frame_prefix": prefix} if prefix else given
+
+    @property
     def srdf(self) -> str:
         """Its rewritten SRDF, for ``robot_description_semantic``; empty if it has none. Raises
         nothing."""

@@ -20,11 +20,12 @@ from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.fleets.fleet_file import REAL, RobotSpec, Sources
 from multibot_rewrite.fleets.member import Member, member
 from multibot_rewrite.fleets.srdf_of_another import srdf_findings
+from multibot_rewrite.graph.transforms import Edge, links_of, tree_of
 from multibot_rewrite.library import Rewrite, rewrite_job
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.sources.job import Job, Reader, job_for, reader
-from multibot_rewrite.sources.own_names import ROBOT
+from multibot_rewrite.sources.own_names import ROBOT, Arguments, common_to
 from multibot_rewrite.steps.collect import NOTHING
 from multibot_rewrite.steps.template import Template
 
@@ -60,6 +61,21 @@ class RewrittenRobot(NamedTuple):
     findings: tuple[Finding, ...]
 
     @property
+    def tree(self) -> list[Edge]:
+        """The transforms that its robot_state_publisher sends."""
+        return list(tree_of(self.member.inventory, self.names.naming, self.spec.tag))
+
+    @property
+    def links(self) -> list[str]:
+        """Its links as frames."""
+        return links_of(self.member.inventory, self.names.naming, self.spec.tag)
+
+    @property
+    def frame_prefix(self) -> str:
+        """What its robot_state_publisher puts before the links; empty where they have its name."""
+        return f"{self.spec.tag}/" if self.names.naming.layout.at_run_time else ""
+
+    @property
     def needs_prefix(self) -> bool:
         """Has its description names that a plugin puts a prefix before, and the layout a postfix?"""
         return any(it.code == PREFIX_ONLY for it in self.findings)
@@ -89,9 +105,13 @@ def read_jobs(
         return reader(source, naming, urdf, tuple(vocabulary), "", trust, release)
 
     found: dict[Sources, Jobs] = {}
+    given_to: dict[str, list[tuple[Arguments, Sequence[str]]]] = {}
+    for it in robots:
+        given_to.setdefault(it.description, []).append((it.arguments, it.words))
+    common = {source: common_to(each) for source, each in given_to.items()}
     for it in robots:
         if it.sources not in found:
-            given = it.arguments, it.words
+            given = it.arguments, it.words, common[it.description]
             description = job_for(read(it.description, None), *given)
             srdf = job_for(read(it.srdf, it.description), *given) if it.srdf else None
             # An argument may be for the SRDF alone, which is read beside the description.

@@ -22,7 +22,7 @@ from multibot_rewrite.fleets.output_file import yaml_of
 from multibot_rewrite.fleets.output_values import OutputText
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_nodes import RobotEvidence
-from multibot_rewrite.graph.transforms import STATE_PUBLISHER, description_edges, sent_by
+from multibot_rewrite.graph.transforms import STATE_PUBLISHER, sent_by
 from multibot_rewrite.readback.nodes import ReadNode
 from multibot_rewrite.readback.reading import FRAME, read
 from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, TOPIC, EndpointName, NodeFacts
@@ -98,7 +98,7 @@ def system_after(
         tuple(exported(written.root, file)),
         tuple(ends),
         tuple(_planned(it, owners) for it in fleet.table.names if not it.robot),
-        frozenset(it.child for it in description_edges(robot.member.inventory)),
+        frozenset(it.child for it in robot.tree),
         tuple(_read(it) for it in own if MOVEIT in it.text),
         tuple(_senders(fleet, robot)),
     )
@@ -119,12 +119,14 @@ def _planned(it: EndpointName, owners: Mapping[str, str]) -> End:
 def _plain(robot: RewrittenRobot, export: Exported) -> Exported:
     """The interface as parameter files call it, where an argument of the xacro renames its owner."""
     own = {text: name for (_, name), text in robot.names.own.items()}
-    owner, slash, rest = export.name.partition("/")
+    # A name may have a slash of its own: robot1/imu.
+    whole = (it for it in own if export.name.startswith(f"{it}/"))
+    owner = next(whole, export.name.partition("/")[0])
     # The code of a plugin puts the same before names that the description does not declare.
     prefixes = {text.removesuffix(name) for text, name in own.items() if text.endswith(name)}
     found = (it for it in prefixes if it and owner.startswith(it))
     bare = own.get(owner, owner.removeprefix(next(found, "")))
-    return export._replace(name=f"{bare}{slash}{rest}")
+    return export._replace(name=f"{bare}{export.name[len(owner) :]}")
 
 
 def _sender(node: NodeFacts, given: Iterable[GivenNode], root: str) -> Sender:

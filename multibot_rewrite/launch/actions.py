@@ -207,7 +207,7 @@ def _own_file(
     """The path of a file with the node's description, start pose and clock, if it needs one."""
     values = robot.start_parameters(node)
     if describe:
-        values["robot_description"] = robot.description
+        values |= robot.description_parameters
     # Nodes that others make in their process have no values but those for all of it.
     clocks = {} if clock is None else {"/**": {SIM_TIME: clock}}
     sections = {**clocks, **({robot.table.full_name(node): values} if values else {})}

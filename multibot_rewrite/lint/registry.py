@@ -23,7 +23,7 @@ from multibot_rewrite.lint.rules import (
 
 GROUPS: tuple[tuple[str, str, ModuleType], ...] = (
     ("MB0", "the lint itself", meta),
-    ("MB1", "file and encoding", files),
+    ("MB1", "file, encoding and values", files),
     ("MB2", "references", references),
     ("MB3", "names", names),
     ("MB4", "several robots", multirobot),

@@ -95,7 +95,7 @@ def _robot_topics(
         if sensor.get("type") not in elsewhere:
             yield from _sensor(sensor, robot)
     # With bare frames the spawner must give the model the robot's name, or two models collide.
-    model = inventory.document.root.get("name", "") if naming.layout.frames else robot
+    model = inventory.document.root.get("name", "") if "model" in naming.separators else robot
     read = any(is_model_namespace(claim.site) for claim in inventory.claims)
     for host in inventory.hosts:
         section = host.node.section

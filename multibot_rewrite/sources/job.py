@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from contextlib import suppress
 from functools import cache
 from typing import NamedTuple
@@ -78,8 +78,10 @@ class Job(NamedTuple):
     @property
     def inventories(self) -> list[Inventory]:
         """What is in the description, and in the URDF beside an SRDF; raises InputError."""
-        own = collect(read_document(self.data, self.file), self.tree, self.urdf_declarations)
-        return [own, collect(read_document(*self.urdf), self.tree)] if self.urdf else [own]
+        tree, apart = self.tree, self.naming.layout.at_run_time
+        own = collect(read_document(self.data, self.file), tree, self.urdf_declarations, apart)
+        urdf = [collect(read_document(*self.urdf), tree, apart=apart)] if self.urdf else []
+        return [own, *urdf]
 
 
 def read_job(
@@ -171,17 +173,21 @@ def _files_read(args: Arguments, texts: Sequence[SourceText]) -> FilesRead:
     return FilesRead(files, known.names, known.lacks(sorted(args)) if each else ())
 
 
-def job_for(read: Reader, given: Arguments, words: Sequence[str]) -> Job:
-    """The job of the robot with these words; raises as ``read_job``."""
+def job_for(
+    read: Reader, given: Arguments, words: Sequence[str], common: Collection[str] = ()
+) -> Job:
+    """The job of the robot with these words, which arguments that are ``common`` to robots do not
+    name; raises as ``read_job``."""
     job = read(filled(given, *words[:1]))
-    if not name_robot(given, words):
+    if not name_robot(given, words, common):
         return job
-    other = _marked(read, given, words)
+    other = _marked(read, given, words, common)
     own = {key: None for part in other.inventories for key in own_names(part, words)}
     twin = as_twin(other.data) if has_mark(other.data) else b""
     job = job._replace(naming=job.naming._replace(own=own), own=OwnSource(words[0], twin=twin))
     try:
-        plain = read({it: text for it, text in given.items() if not name_robot({it: text}, words)})
+        kept = (it for it in given.items() if not name_robot(dict([it]), words, common))
+        plain = read(dict(kept))
     except InputError:
         # An argument without a default: nothing is known of names without it.
         return job
@@ -199,13 +205,13 @@ def job_for(read: Reader, given: Arguments, words: Sequence[str]) -> Job:
     return follow(job, plain, affixes)
 
 
-def _marked(read: Reader, given: Arguments, words: Sequence[str]) -> Job:
+def _marked(read: Reader, given: Arguments, words: Sequence[str], common: Collection[str]) -> Job:
     """The sources with marks for the robot's words in every argument that takes them."""
     with suppress(InputError):
-        return read(marked(given, words))
+        return read(marked(given, words, common))
     # Some file takes only words that it knows for one of them.
     args = filled(given, words[0])
-    for name, text in marked(given, words).items():
+    for name, text in marked(given, words, common).items():
         with suppress(InputError):
             read({**args, name: text})
             args[name] = text

@@ -125,13 +125,14 @@ def already(subject: Subject) -> Iterator[Problem]:
     "MB109",
     "sdf-world",
     ERROR,
-    what="The file is an SDF world, which holds several models.",
+    what="The file is an SDF world, which holds several models, and robots are named that it is for.",
     why="It is unknown which of the models is the robot, so names cannot be checked or renamed for "
     "one robot.",
     fix="Keep the robot in a model.sdf of its own and include it in the world.",
     bad='<?xml version="1.0"?><sdf version="1.9"><world name="w"/></sdf>',
     good='<?xml version="1.0"?><sdf version="1.9"><model name="r"><link name="a"/></model></sdf>',
+    options={"robots": ("robot1", "robot2")},
 )
 def sdf_world(subject: Subject) -> Iterator[Problem]:
-    """Every world of the file."""
-    return worlds(subject.inventory)
+    """Every world of the file; one that is only a world has no robots."""
+    return worlds(subject.inventory) if subject.settings.robots else iter(())
