@@ -40,14 +40,16 @@ def actions(robot):
 
 
 def generate_launch_description():
-    return LaunchDescription([
-        # A name, some names with commas, or robots with their poses in place of those of the file.
-        DeclareLaunchArgument("robots", default_value=""),
-        each_robot(FLEET, actions, robots=LaunchConfiguration("robots")),
-        Node(
-            package="ros_gz_bridge",
-            executable="parameter_bridge",
-            name="shared_bridge",
-            parameters=[{"config_file": bridge_config(fleet=FLEET)}],
-        ),
-    ])
+    return LaunchDescription(
+        [
+            # A name, some names with commas, or robots with their poses in place of those of the file.
+            DeclareLaunchArgument("robots", default_value=""),
+            each_robot(FLEET, actions, robots=LaunchConfiguration("robots")),
+            Node(
+                package="ros_gz_bridge",
+                executable="parameter_bridge",
+                name="shared_bridge",
+                parameters=[{"config_file": bridge_config(fleet=FLEET)}],
+            ),
+        ]
+    )

@@ -34,18 +34,20 @@ def actions(robot):
 
 
 def generate_launch_description():
-    return LaunchDescription([
-        each_robot(FLEET, actions),
-        # What all share is bridged once: the clock, and tf.
-        Node(
-            package="ros_gz_bridge",
-            executable="parameter_bridge",
-            name="shared_bridge",
-            parameters=[{"config_file": bridge_config(fleet=FLEET)}],
-        ),
-        Node(
-            package="rviz2",
-            executable="rviz2",
-            arguments=["-d", rviz_config("rover.rviz", fleet=FLEET)],
-        ),
-    ])
+    return LaunchDescription(
+        [
+            each_robot(FLEET, actions),
+            # What all share is bridged once: the clock, and tf.
+            Node(
+                package="ros_gz_bridge",
+                executable="parameter_bridge",
+                name="shared_bridge",
+                parameters=[{"config_file": bridge_config(fleet=FLEET)}],
+            ),
+            Node(
+                package="rviz2",
+                executable="rviz2",
+                arguments=["-d", rviz_config("rover.rviz", fleet=FLEET)],
+            ),
+        ]
+    )
