@@ -230,10 +230,12 @@ VIEW = Command(
         ),
         output_group(output("the page; default: view.html; - prints it", default="view.html")),
         NAMING,
+        FINDINGS,
         GENERAL,
     ),
-    "0 done; 2 wrong use or unreadable input; 4 yourdfpy is not installed",
+    "0 done; 1 the description is refused; 2 wrong use or unreadable input; 4 yourdfpy is not installed",
     more="It needs pip install 'multibot_rewrite[view]'. Meshes are put into the page.",
+    fail_on=ERROR,
 )
 REHEARSE = Command(
     "rehearse",
