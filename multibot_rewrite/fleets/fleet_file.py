@@ -18,6 +18,7 @@ from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.naming import NAMESPACE, Naming, Policy, make_naming
 from multibot_rewrite.releases import chosen_release
 from multibot_rewrite.sources.own_names import filled, name_robot
+from multibot_rewrite.sources.read import is_xacro
 
 KINDS = ("params", "rviz", "moveit", "bridge", "behavior_trees", "lua")
 LISTS = ("include", "stack", "nodl", "vocabulary", "shared_frames", "shared_topics")
@@ -241,9 +242,9 @@ def _arguments(
 ) -> dict[str, str]:
     """The xacro arguments of a robot, over those of the fleet; only for xacro files."""
     files = (description, own.get("srdf", data.get("srdf", "")))
-    if not any(it.endswith(".xacro") for it in files):
+    if not any(is_xacro(it) for it in files):
         if own.get("arguments"):
-            hint = "remove them, or give a file that ends in .xacro"
+            hint = "remove them, or give a xacro"
             raise InputError(f"{place}: {own['name']!r} has arguments but no xacro file; {hint}")
         return {}
     arguments = {**data.get("arguments", {}), **own.get("arguments", {})}
