@@ -21,10 +21,16 @@ from multibot_rewrite.fleets.fleet import Fleet, expected, possible
 from multibot_rewrite.fleets.fleet_file import input_files
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.meeting import without_started
-from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, path_for
+from multibot_rewrite.fleets.output_file import (
+    FilesAndFindings,
+    OutputFile,
+    expanded_name,
+    path_for,
+)
 from multibot_rewrite.fleets.params_style import check_style, in_style
 from multibot_rewrite.fleets.robot_groups import said_once
 from multibot_rewrite.fleets.rviz_outputs import rviz_commands, rviz_files, rviz_outputs
+from multibot_rewrite.fleets.two_descriptions import differences
 from multibot_rewrite.fleets.with_start_pose_nodes import split_per_robot, with_start_pose_nodes
 from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.graph.enclaves import to_policy
@@ -71,6 +77,7 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
         findings += one_device(plan.robots)
         for found in plan.evidence.values():
             findings += found.findings
+        findings += differences(plan)
         texts = texts_of(files)
         gaps = gaps_of(plan, fleet, texts, findings)
         findings += (*consistency(plan, fleet, texts, findings), *gaps)
@@ -95,12 +102,14 @@ def _check_paths_differ(files: Sequence[OutputFile]) -> None:
 def _descriptions(plan: FleetPlan, folder: str) -> FilesAndFindings:
     for robot in plan.robots:
         spec = robot.spec
-        description, findings = with_own_controllers(robot, folder)
+        loading, findings = with_own_controllers(robot, folder)
         yield from findings
-        for data, source in ((description, spec.description), (robot.srdf, spec.srdf)):
+        texts = {spec.description: robot.description, spec.srdf: robot.srdf}
+        texts[spec.simulated or spec.description] = loading
+        for source, data in texts.items():
             if data:
                 text = _without_folder(data, source)
-                yield OutputFile(path_for(robot, _expanded_name(source)), text, (source,))
+                yield OutputFile(path_for(robot, expanded_name(source)), text, (source,))
 
 
 def _without_folder(data: bytes, source: str) -> bytes:
@@ -110,12 +119,6 @@ def _without_folder(data: bytes, source: str) -> bytes:
     banner = f"{_BANNER}{{:<30}} | -->".format
     name = os.path.basename(source)
     return data.replace(banner(source).encode(), banner(name).encode(), 1)
-
-
-def _expanded_name(path: str) -> str:
-    """The file's name once xacro is expanded."""
-    name = os.path.basename(path).removesuffix(".xacro")
-    return name if "." in name else f"{name}.urdf"
 
 
 def _tables(plan: FleetPlan, fleet: Fleet) -> Iterator[OutputFile]:

@@ -51,6 +51,13 @@ class FilesRead(NamedTuple):
 NO_FILES = FilesRead()
 
 
+def joined_reads(one: FilesRead, other: FilesRead) -> FilesRead:
+    """What was read for two descriptions of one robot: an argument is for one or for both."""
+    known = dict.fromkeys((*one.arguments, *other.arguments))
+    unread = dict.fromkeys(it for it in (*one.unread, *other.unread) if it not in known)
+    return FilesRead((*one.files, *other.files), tuple(known), tuple(unread))
+
+
 class Job(NamedTuple):
     """Bytes, options and file names; ``file`` is the name in messages, ``urdf`` the bytes and the
     name of the URDF beside an SRDF; ``own`` says more where it is one robot's own; ``release`` is that
