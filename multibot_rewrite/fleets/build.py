@@ -20,6 +20,7 @@ from multibot_rewrite.fleets.devices import one_device
 from multibot_rewrite.fleets.fleet import Fleet, expected, possible
 from multibot_rewrite.fleets.fleet_file import input_files
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
+from multibot_rewrite.fleets.launch_file import launch_files
 from multibot_rewrite.fleets.meeting import without_started
 from multibot_rewrite.fleets.output_file import (
     FilesAndFindings,
@@ -36,7 +37,7 @@ from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.graph.enclaves import to_policy
 from multibot_rewrite.graph.plan_file import to_yaml
 from multibot_rewrite.model import UsageError
-from multibot_rewrite.remap.records import Table
+from multibot_rewrite.remap.records import PUBLISHES, Table
 from multibot_rewrite.remap.table_formats import launch, standing_by_robot
 from multibot_rewrite.sources.read import is_xacro
 
@@ -86,6 +87,8 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
         findings += [it for it in styled if isinstance(it, Finding)]
         kept = (it for it in styled if isinstance(it, OutputFile))
         files = sorted((*kept, *_tables(plan, fleet)))
+        brought = {it.name for it in fleet.bridged if PUBLISHES in it.bridge}
+        files = sorted((*files, *launch_files(plan, each, configs, files, brought)))
         _check_paths_differ(files)
         return Outputs(tuple(files), tuple(said_once(plan, findings)))
 

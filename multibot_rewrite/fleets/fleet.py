@@ -99,7 +99,7 @@ def make_fleet(
     facts = facts_of(stacks, nodes, release, nodl)
     known = known_nodes(nodes, release, nodl).library.nodes
     parameters = load_known_nodes("", release)
-    launched = launched_robot(facts, launch, known, robots[:1], parameters)
+    launched = launched_robot(facts, launch, known, robots[:1], parameters, release)
     runs = nodes_with(launched, facts, given_with(launched, ()), known)
     found = rewrite_all(
         source,

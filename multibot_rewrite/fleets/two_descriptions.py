@@ -40,12 +40,12 @@ DIFFERENT = declare(
     bad="""\
 description: rover.urdf
 simulated: other.sdf
-robots: [{name: robot1}, {name: robot2}]
+robots: [{name: robot1}]
 """,
     good="""\
 description: rover.urdf
 simulated: rover.sdf
-robots: [{name: robot1}, {name: robot2}]
+robots: [{name: robot1}]
 """,
     line=3,
     formats=("fleet",),

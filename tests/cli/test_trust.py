@@ -30,6 +30,7 @@ COMMAND_LINES: dict[str, tuple[Callable[[Sequence[str]], int], list[str], int]] 
     "check": (multibot.main, ["check", "fleet.yaml", "--snapshot", "graph.json"], 2),
     "check-launch": (multibot.main, ["check-launch", "r.launch.py", "--plan", "fleet.yaml"], 2),
     "coverage": (multibot.main, ["coverage", PATH], 2),
+    "init": (multibot.main, ["init", PATH, "-o", "-"], 2),
     "plan": (multibot.main, ["plan", PATH, "robot1", "--stack", "nav2"], 2),
     "plan of a fleet": (multibot.main, ["plan", "fleet.yaml"], 2),
     "remap": (multibot.main, ["remap", PATH, "robot1", "--stack", "nav2"], 2),

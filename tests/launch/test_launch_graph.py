@@ -230,6 +230,23 @@ def test_a_configuration_that_is_gone_at_an_event_is_told(tmp_path: Path) -> Non
 
 
 @in_launch
+def test_what_starts_later_is_outside_the_group_that_it_stands_in(tmp_path: Path) -> None:
+    """launch leaves the scope of a group before any event (LaunchService, GroupAction)."""
+    graph = read(
+        tmp_path,
+        """\
+        GroupAction([
+            PushRosNamespace("robot1"),
+            RegisterEventHandler(OnProcessExit(on_exit=[
+                Node(package="acme", executable="e", namespace="robot1"),
+                TimerAction(period=1.0, actions=[Node(package="acme", executable="t")])])),
+            Node(package="acme", executable="n")]),""",
+    )
+    found = {it.executable: it.namespace for it in graph.nodes}
+    assert found == {"n": "/robot1", "e": "/robot1", "t": "/"}
+
+
+@in_launch
 def test_a_node_without_its_parameter_file_is_known(tmp_path: Path) -> None:
     """launch_ros warns of the file and starts the node (``_perform_substitutions`` of Node)."""
     graph = read(tmp_path, 'Node(package="acme", executable="d", parameters=["none.yaml"]),')

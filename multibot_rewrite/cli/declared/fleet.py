@@ -10,6 +10,7 @@ from multibot_rewrite.cli.declared.shared import (
     GENERAL,
     KNOWN_NODES,
     LAUNCH_ROOTS,
+    LAYOUT_NAMES,
     LIVE,
     LIVE_CODES,
     NAMING,
@@ -72,6 +73,59 @@ _TABLE_CODES = "0 done; 1 findings at the level of --fail-on; 2 wrong use or unr
 _BESIDE = (
     " Findings go to standard error; with a --format other than text they go to standard output, and"
     " the result needs -o."
+)
+INIT = Command(
+    "init",
+    "init",
+    "%(prog)s [PATH...] [-n COUNT] [-o FLEET] [options]",
+    "Write a first fleet file for the robots of descriptions, packages or a repository.",
+    (
+        Example("multibot init rover.urdf", "two robots of one description"),
+        Example("multibot init -n 3 my_robot_ws/src", "the robot and all files found there"),
+        Example("multibot init arm.urdf.xacro rover.urdf --yes", "no questions"),
+        Example("multibot init ur.urdf.xacro name:=ur ur_type:=ur5e", "arguments of the xacro"),
+    ),
+    (
+        OptionGroup(
+            "input",
+            (
+                argument(
+                    "words",
+                    "PATH",
+                    "descriptions (URDF, xacro, SDF) and folders with packages; default: the working"
+                    " directory; NAME:=VALUE is for xacro",
+                    "*",
+                ),
+                TRUST,
+            ),
+        ),
+        OptionGroup(
+            "answers, which are asked for on a terminal where they are not given",
+            (
+                value(
+                    "-n",
+                    "--count",
+                    metavar="COUNT",
+                    about="robots of each description; default: 2",
+                    type=values.count,
+                ),
+                choice("--layout", "NAME", LAYOUT_NAMES, "default: what the files are made for"),
+                choice(
+                    "--simulator", "NAME", ("none", "gazebo"), "default: what the plugins are for"
+                ),
+                DISTRO,
+                switch("-y", "--yes", about="ask nothing, take the defaults"),
+            ),
+        ),
+        output_group(
+            output("the fleet file; default: fleet.yaml; - prints it", default="fleet.yaml"),
+            switch("--force", about="overwrite files that no build made"),
+        ),
+        GENERAL,
+    ),
+    "0 done, and it builds; 1 written, but it does not build yet; 2 wrong use or unreadable input",
+    more="Every key comes with its reason. The fleet is built once in memory; where a layout does not"
+    " work, the first one that does is taken.",
 )
 BUILD = Command(
     "build",
