@@ -22,6 +22,8 @@ from multibot_rewrite.model import InputError
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.sources.packages import package_folder
+from multibot_rewrite.sources.read import XACRO as ENDING
+from multibot_rewrite.sources.read import has_xacro
 from multibot_rewrite.steps.collect import NOTHING, collect
 from multibot_rewrite.steps.collect import SRDF as SRDF_SECTION
 from multibot_rewrite.steps.document import Document, read_document
@@ -49,7 +51,7 @@ def read_subjects(path: str, data: bytes, settings: Settings) -> Iterator[Subjec
     others use, is not expanded alone, and may have any root element.
     """
     document = read_document(data, path)
-    xacro, included = path.endswith(".xacro"), path in settings.included
+    xacro, included = path.endswith(ENDING) or has_xacro(data), path in settings.included
     part = included or (xacro and _only_defines(document.root))
     if part and (not xacro or document.root.tag not in ROOTS):
         return
@@ -111,7 +113,11 @@ def make_subject(document: Document, settings: Settings) -> Subject:
     inventory = collect(document, tree, NO_URDF if called else NOTHING)
     elements, robot = Elements(document), read_robot(document.root)
     # In the source of a xacro file names are not complete yet.
-    if inventory.format != SRDF_SECTION or document.file.endswith(".xacro"):
+    if (
+        inventory.format != SRDF_SECTION
+        or document.file.endswith(XACRO)
+        or has_xacro(document.source)
+    ):
         return Subject(URDF, document, elements, inventory, tree, robot, settings, {})
     pair = find_pair(document.file.removesuffix(EXPANDED), inventory, settings)
     inventory = collect(document, tree, pair.declared or NO_URDF)
