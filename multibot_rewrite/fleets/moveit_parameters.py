@@ -18,7 +18,7 @@ from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.companions.moveit.file_kind import file_kind
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
-from multibot_rewrite.fleets.output_file import OutputFile, path_for, yaml_of
+from multibot_rewrite.fleets.output_file import OutputFile, expanded_name, path_for, yaml_of
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.releases import has_release
 from multibot_rewrite.remap.started import arguments, started
@@ -90,7 +90,7 @@ def moveit_parameters(plan: FleetPlan, files: Iterable[OutputFile]) -> Iterator[
     for robot in filter(has_moveit, plan.robots):
         paths = robot.spec.companions["moveit"]
         texts = {it: made[path_for(robot, it)].decode() for it in paths}
-        srdf = made[path_for(robot, robot.spec.srdf.removesuffix(".xacro"))].decode()
+        srdf = made[path_for(robot, expanded_name(robot.spec.srdf))].decode()
         values = _parameters(srdf, texts, plan.file.distro)
         data = {"/**": {"ros__parameters": values}}
         dumper = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
