@@ -125,7 +125,8 @@ def _plain(robot: RewrittenRobot, export: Exported) -> Exported:
     # The code of a plugin puts the same before names that the description does not declare.
     prefixes = {text.removesuffix(name) for text, name in own.items() if text.endswith(name)}
     found = (it for it in prefixes if it and owner.startswith(it))
-    bare = own.get(owner, owner.removeprefix(next(found, "")))
+    # Without its argument a name may begin with the slash behind it: /imu.
+    bare = own.get(owner, owner.removeprefix(next(found, ""))).lstrip("/")
     return export._replace(name=f"{bare}{export.name[len(owner) :]}")
 
 
