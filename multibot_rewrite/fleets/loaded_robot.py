@@ -183,9 +183,11 @@ class LoadedRobot:
         return self._fleet.node_text(self._path(file))
 
     def _path(self, file: str) -> str:
-        name = os.path.basename(file)
-        own = f"{self.name}/{name}"
-        return own if own in self._fleet.files else name
+        """Where its version of a file is; of two with one name the folder counts."""
+        parts = os.path.normpath(file).split(os.sep)
+        ends = ("/".join(parts[-2:]), parts[-1])
+        own = next((f"{self.name}/{it}" for it in ends if f"{self.name}/{it}" in self._fleet.files), "")
+        return own or parts[-1]
 
     @checked
     def frame(self, name: str) -> str:
@@ -256,4 +258,4 @@ class LoadedRobot:
         return f"{namespace.rstrip('/')}/{name}"
 
     def _read(self, file: str) -> YamlText:
-        return self._fleet.parameters(f"{self.name}/{os.path.basename(file)}")
+        return self._fleet.parameters(self._path(file))
