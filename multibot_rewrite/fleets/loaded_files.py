@@ -56,13 +56,13 @@ def with_loaded_files(robot: RewrittenRobot) -> RewrittenRobot:
     spec = robot.spec
     if spec.simulator == REAL:
         return robot
-    params = spec.companions.get(PARAMS, ())
+    file, params = spec.simulated or spec.description, spec.companions.get(PARAMS, ())
     more: list[str] = []
     findings: list[Finding] = []
     for path, _ in loaded_files(robot):
-        if any(is_same(path, it, spec.description) or named_alike(path, it) for it in params):
+        if any(is_same(path, it, file) or named_alike(path, it) for it in params):
             continue
-        found = next(_found(path, spec.description), "")
+        found = next(_found(path, file), "")
         if not found:
             findings.append(_unknown(robot, path))
         elif not any(named_alike(found, it) for it in more):

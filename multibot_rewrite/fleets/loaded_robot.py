@@ -186,7 +186,9 @@ class LoadedRobot:
         """Where its version of a file is; of two with one name the folder counts."""
         parts = os.path.normpath(file).split(os.sep)
         ends = ("/".join(parts[-2:]), parts[-1])
-        own = next((f"{self.name}/{it}" for it in ends if f"{self.name}/{it}" in self._fleet.files), "")
+        own = next(
+            (f"{self.name}/{it}" for it in ends if f"{self.name}/{it}" in self._fleet.files), ""
+        )
         return own or parts[-1]
 
     @checked
@@ -225,7 +227,7 @@ class LoadedRobot:
     @property
     def spawn_arguments(self) -> list[str]:
         """``arguments`` of ``ros_gz_sim create``; raises nothing."""
-        return spawn.gz_arguments(self._spawn)
+        return spawn.gz_arguments(self._spawn._replace(text=self._robot.simulated.decode()))
 
     @property
     def classic_arguments(self) -> list[str]:
