@@ -183,13 +183,15 @@ class LoadedRobot:
         return self._fleet.node_text(self._path(file))
 
     def _path(self, file: str) -> str:
+        name = os.path.basename(file)
+        own = self._own(file)
+        return own if own in self._fleet.files else name
+
+    def _own(self, file: str) -> str:
         """Where its version of a file is; of two with one name the folder counts."""
-        parts = os.path.normpath(file).split(os.sep)
-        ends = ("/".join(parts[-2:]), parts[-1])
-        own = next(
-            (f"{self.name}/{it}" for it in ends if f"{self.name}/{it}" in self._fleet.files), ""
-        )
-        return own or parts[-1]
+        *_, above, name = ("", *os.path.normpath(file).split(os.sep))
+        apart = f"{self.name}/{above}/{name}"
+        return apart if apart in self._fleet.files else f"{self.name}/{name}"
 
     @checked
     def frame(self, name: str) -> str:
@@ -260,4 +262,4 @@ class LoadedRobot:
         return f"{namespace.rstrip('/')}/{name}"
 
     def _read(self, file: str) -> YamlText:
-        return self._fleet.parameters(self._path(file))
+        return self._fleet.parameters(self._own(file))

@@ -27,7 +27,7 @@ FilesAndFindings: TypeAlias = Iterator[OutputFile | Finding]
 def path_for(robot: RewrittenRobot, source: str) -> str:
     """Where the robot's version of a source file goes: ``robot1/params.yaml``.
 
-    Of two files with one name each is in a folder that is called as its own: ``robot1/base/params.yaml``.
+    Of two files with one name each is in a folder called as its own: ``robot1/base/params.yaml``.
     """
     name = os.path.basename(source)
     every = (it for its in robot.spec.companions.values() for it in its)
