@@ -161,7 +161,11 @@ def _words(given: Given | None) -> list[str]:
 
 def _listed_type(endpoint: Endpoint, listed: Given | None, word: str) -> Endpoint:
     """The endpoint with the type that stands behind its word in a list of names and types."""
-    if not endpoint.type.startswith(OF_LIST) or listed is None or not isinstance(listed.value, list):
+    if (
+        not endpoint.type.startswith(OF_LIST)
+        or listed is None
+        or not isinstance(listed.value, list)
+    ):
         return endpoint
     behind = [str(it) for it in listed.value][[str(it) for it in listed.value].index(word) + 1 :]
     return endpoint._replace(type=next(filter(_TYPE.search, behind[:1]), ""))
