@@ -55,7 +55,7 @@ def read_subjects(path: str, data: bytes, settings: Settings) -> Iterator[Subjec
     part = included or (xacro and _only_defines(document.root))
     if part and (not xacro or document.root.tag not in ROOTS):
         return
-    written = _subject(document, settings)
+    written = make_subject(document, settings)
     yield written._replace(format=XACRO) if xacro else _shaped(written)
     if xacro and not part:
         yield from _expansions(path, data, settings)
@@ -79,7 +79,7 @@ def _expanded(path: str, data: bytes, given: ArgumentSet, settings: Settings) ->
     # Warnings of xacro are not findings, and would be printed between them.
     with redirect_stderr(StringIO()):
         found = expand_traced(path, data, dict(given.arguments), find, reach_of(settings))
-    subject = _shaped(_subject(read_document(found.data, path + EXPANDED), settings))
+    subject = _shaped(make_subject(read_document(found.data, path + EXPANDED), settings))
     names = tuple(name for name, _ in given.arguments)
     return subject._replace(
         origins=found.origins, sources=found.sources, arguments=str(given), given=names
@@ -106,7 +106,8 @@ def _local(element: _Element) -> str:
     return name if "xacro" in space else ""
 
 
-def _subject(document: Document, settings: Settings) -> Subject:
+def make_subject(document: Document, settings: Settings) -> Subject:
+    """The subject of a document; a URDF's has no faults of its structure yet."""
     tree = builtin_tree(settings.vocabulary, settings.distro)
     called = SRDF_MARK in os.path.basename(document.file)
     inventory = collect(document, tree, NO_URDF if called else NOTHING)
