@@ -197,7 +197,8 @@ def _parameters(given: _Given, name: str) -> tuple[File | Mapping[str, Any], ...
     if known == start_poses.AMCL and path_for(robot, "start_pose.yaml") in given.files:
         found.append(File(path_for(robot, "start_pose.yaml")))
     if known == STATE:
-        found.append({"robot_description": Text(_description(robot))})
+        prefix = {"frame_prefix": robot.frame_prefix} if robot.frame_prefix else {}
+        found.append({"robot_description": Text(_description(robot)), **prefix})
     if known == "move_group":
         srdf = {"robot_description_semantic": Text(path_for(robot, robot.spec.srdf))}
         found += [{"robot_description": Text(_description(robot))}, srdf]
@@ -228,12 +229,15 @@ def _controller(given: _Given, it: Started) -> Start:
 def _spawner(given: _Given) -> Start:
     """What puts the robot into its simulator; an SDF is read from its file, nobody publishes it."""
     (it,), _ = spawn.spawns(given.plan)
-    classic = spawn.CLASSIC_PLUGIN.encode() in given.robot.description
+    classic = is_classic(given.robot)
     package, executable = spawn.CLASSIC if classic else spawn.GZ
     words: list[str | File] = list((spawn.classic_arguments if classic else spawn.gz_arguments)(it))
+    own_file = it.file
     if given.robot.member.inventory.document.root.tag == "sdf":
-        at = words.index("-topic")
-        words[at : at + 2] = ["-file", File(_description(given.robot))]
+        own_file = it.file or _description(given.robot)
+    if own_file:
+        at = words.index(it.source[0])
+        words[at : at + 2] = ["-file", File(own_file)]
     return Start(package, executable, arguments=tuple(words))
 
 
@@ -252,7 +256,7 @@ def _transform(it: start_poses.StaticTransform) -> Start:
 
 def is_classic(robot: RewrittenRobot) -> bool:
     """Is its simulator Gazebo Classic?"""
-    return spawn.CLASSIC_PLUGIN.encode() in robot.description
+    return spawn.CLASSIC_PLUGIN.encode() in (robot.simulated or robot.description)
 
 
 def simulators(plan: FleetPlan) -> list[str]:

@@ -223,7 +223,7 @@ class LoadedRobot:
     @property
     def spawn_arguments(self) -> list[str]:
         """``arguments`` of ``ros_gz_sim create``; raises nothing."""
-        return spawn.gz_arguments(self._spawn)
+        return spawn.gz_arguments(self._spawn._replace(text=self._robot.simulated.decode()))
 
     @property
     def classic_arguments(self) -> list[str]:

@@ -66,7 +66,7 @@ def system_before(robot: RewrittenRobot, evidence: RobotEvidence) -> System:
     sent = {child for node in nodes for child in children_of(node)}
     sent |= {it.name for it in reading.names if it.kind == FRAME and it.tag == "plugin"}
     return System(
-        given,
+        tuple(_plainly(robot, it) for it in given),
         tuple(_plain(robot, it) for it in exported(source.root, source.file)),
         tuple(ends),
         tuple(shared),
@@ -127,6 +127,16 @@ def _plain(robot: RewrittenRobot, export: Exported) -> Exported:
     found = (it for it in prefixes if it and owner.startswith(it))
     bare = own.get(owner, owner.removeprefix(next(found, "")))
     return export._replace(name=f"{bare}{export.name[len(owner) :]}")
+
+
+def _plainly(robot: RewrittenRobot, given: GivenNode) -> GivenNode:
+    """The same of what a launch file fills in for a robot that has such an argument."""
+    own = {text: name for (_, name), text in robot.names.own.items()}
+    values = {
+        key: it._replace(value=own.get(it.value, it.value)) if isinstance(it.value, str) else it
+        for key, it in given.values.items()
+    }
+    return given._replace(values=values)
 
 
 def _sender(node: NodeFacts, given: Iterable[GivenNode], root: str) -> Sender:

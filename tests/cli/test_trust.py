@@ -37,6 +37,7 @@ COMMAND_LINES: dict[str, tuple[Callable[[Sequence[str]], int], list[str], int]] 
     "remap of a fleet": (multibot.main, ["remap", "fleet.yaml"], 2),
     "rehearse": (multibot.main, ["rehearse", PATH, "robot1", "--stack", "nav2"], 2),
     "zenoh": (multibot.main, ["zenoh", "fleet.yaml", "--router", "tcp/h:1", "-o", "out"], 2),
+    "view": (multibot.main, ["view", PATH, "-o", "-"], 2),
     "vocabulary": (multibot.main, ["vocabulary", "--suggest", PATH], 2),
 }
 # Those that read no description.

@@ -129,6 +129,15 @@ PLANTED = {
         "MB854:19",
     ),
     "a joint of MoveIt": (MOVEIT_LIMITS, "left_wheel_joint", "left_wheel", "MB854:2"),
+    "a separation of another robot": (CONTROLLERS, "0.34", "0.5", "MB856:10"),
+    "a separation to the middle": (CONTROLLERS, "0.34", "0.17", "MB856:10"),
+    "a diameter for a radius": (CONTROLLERS, "0.07", "0.14", "MB856:11"),
+    "wheels that are swapped": (
+        CONTROLLERS,
+        "[left_wheel_joint]\n    right_wheel_names: [right_wheel_joint]",
+        "[right_wheel_joint]\n    right_wheel_names: [left_wheel_joint]",
+        "MB856:9",
+    ),
     "a direction": (ROW, "GZ_TO_ROS", "GZ_TO_ROSS", "MB855:5"),
     "a direction in small letters": (ROW, "GZ_TO_ROS", "gz_to_ros", "MB855:5"),
     "a type's key": (ROW, "ros_type_name", "ros_type", "MB855:1 MB855:3"),
@@ -152,6 +161,13 @@ HEALTHY = {
         "",
         "",
     ),
+    "a separation a little larger": (CONTROLLERS, "0.34", "0.36"),
+    "a separation with its multiplier": (
+        CONTROLLERS,
+        "wheel_separation: 0.34",
+        "wheel_separation: 0.2\n    wheel_separation_multiplier: 1.7",
+    ),
+    "wheels of another robot": (CONTROLLERS, "[right_wheel_joint]", "[$(var right)]"),
     "a placeholder": (CONTROLLERS, "0.34", "$(var separation)"),
     "a placeholder of a launch file": (NAV, "true", "TF_BROADCAST_ON"),
     "a section for all nodes": (NAV, "amcl:", "/**:"),
@@ -278,6 +294,30 @@ def test_files_are_told_apart_by_their_text(text: str, kind: str) -> None:
     assert kind_of(text.encode()) == kind
 
 
+def test_controllers_of_moveit_are_those_of_the_parameters_beside_them(tmp_path: Path) -> None:
+    moveit = (
+        "moveit_simple_controller_manager:\n  controller_names: [arm]\n"
+        "  arm: {type: FollowJointTrajectory, action_ns: follow_joint_trajectory, joints: [JOINTS]}\n"
+    )
+    (tmp_path / "ros2_controllers.yaml").write_text(CONTROLLERS)
+    right = moveit.replace("JOINTS", "left_wheel_joint, right_wheel_joint")
+    assert found(right, tmp_path) == []
+    assert found(right.replace("arm", "amr"), tmp_path) == ["MB857:3"]
+    both = found(right.replace("left_wheel_joint", "elbow"), tmp_path)
+    assert sorted(both) == ["MB854:3", "MB857:3"]
+    assert found(right.replace("_trajectory,", "_trajectories,"), tmp_path) == ["MB857:3"]
+    (tmp_path / "ros2_controllers.yaml").unlink()
+    assert found(right.replace("arm", "amr"), tmp_path) == []
+
+
+def test_sizes_are_those_of_one_of_several_descriptions(tmp_path: Path) -> None:
+    (tmp_path / "urdf").mkdir()
+    wide = (ROBOTS / "rover_gz.urdf").read_text().replace("0.17 0", "0.25 0")
+    (tmp_path / "urdf/wide.urdf").write_text(wide)
+    assert found(CONTROLLERS.replace("0.34", "0.5"), tmp_path) == []
+    assert found(CONTROLLERS.replace("0.34", "0.8"), tmp_path) == ["MB856:10"]
+
+
 def test_bad_input_is_one_finding(tmp_path: Path) -> None:
     for name, data in (
         ("broken.yaml", b"a:\n  ros__parameters: [\n"),
@@ -303,4 +343,4 @@ def test_the_known_parameters_are_those_of_the_sources() -> None:
 
 
 def test_so_many_defects_and_oddities_were_tried() -> None:
-    assert (len(PLANTED), len(HEALTHY)) == (35, 26)
+    assert (len(PLANTED), len(HEALTHY)) == (39, 29)

@@ -32,7 +32,7 @@ FLOORS = (
     ("library", "evidence"),
     ("closure",),
     ("fleets", "lint"),
-    ("proposal",),
+    ("proposal", "view"),
     ("__init__", "launch", "catalogue"),
     ("cli",),
     ("__main__",),

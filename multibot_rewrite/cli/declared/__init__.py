@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from multibot_rewrite.cli.declared.description import LINT, POSTFIX
-from multibot_rewrite.cli.declared.fleet import BUILD, INIT, PLAN, REHEARSE, REMAP
+from multibot_rewrite.cli.declared.fleet import BUILD, INIT, PLAN, REHEARSE, REMAP, VIEW
 from multibot_rewrite.cli.declared.graph import (
     CHECK,
     CHECK_LAUNCH,
@@ -43,6 +43,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             REHEARSE,
             REMAP,
             SNAPSHOT,
+            VIEW,
             VOCABULARY_LOOKUP,
             ZENOH_FILES,
         )

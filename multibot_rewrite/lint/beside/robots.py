@@ -10,11 +10,11 @@ from multibot_rewrite.lint.beside.records import Beside
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.files.named import robot_name
 from multibot_rewrite.lint.files.pairing import described
-from multibot_rewrite.model import InputError
-from multibot_rewrite.rewriters.builtin import builtin_tree
+from multibot_rewrite.lint.files.subjects import make_subject
+from multibot_rewrite.lint.records import Subject
+from multibot_rewrite.model import Claim, InputError
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.sources.packages import entries, package_of
-from multibot_rewrite.steps.collect import collect
 from multibot_rewrite.steps.document import read_document
 
 _ENDINGS = (".urdf", ".xacro")
@@ -26,13 +26,14 @@ _KINDS = ("link", "frame", "joint", "sensor", "gpio", "hardware")
 
 
 class Robots(NamedTuple):
-    """The names of all descriptions by kind; ``is_whole`` says that each of them could be read."""
+    """The names of all descriptions by kind, and each description; ``is_whole``: all could be read."""
 
     declared: Declared
+    subjects: tuple[Subject, ...]
     is_whole: bool
 
 
-NO_ROBOTS = Robots({}, False)
+NO_ROBOTS = Robots({}, (), False)
 
 
 def robots_of(beside: Beside) -> Robots:
@@ -74,16 +75,14 @@ def _files(folder: str, deep: int) -> Iterator[str]:
 
 
 def _together(paths: Sequence[str], settings: Settings) -> Robots:
-    found: dict[str, dict[str, object]] = {kind: {} for kind in _KINDS}
-    is_whole = len(paths) <= _TRIED
+    found: dict[str, dict[str, Claim]] = {kind: {} for kind in _KINDS}
+    subjects: list[Subject] = []
     for path in paths[:_TRIED]:
         try:
             data, name = described(path, settings)
-            tree = builtin_tree(settings.vocabulary, settings.distro)
-            declared = collect(read_document(data, name), tree).declared
+            subjects.append(make_subject(read_document(data, name), settings))
         except InputError:  # it is told where it is linted
-            is_whole = False
             continue
         for kind in _KINDS:
-            found[kind] |= declared.get(kind, {})
-    return Robots(found, is_whole)  # type: ignore[arg-type]
+            found[kind] |= subjects[-1].inventory.declared.get(kind, {})
+    return Robots(found, tuple(subjects), len(subjects) == len(paths))

@@ -20,7 +20,7 @@ from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.sources.access import Reach
 from multibot_rewrite.sources.packages import package_folder
-from multibot_rewrite.sources.read import read_file
+from multibot_rewrite.sources.read import is_xacro, read_file
 from multibot_rewrite.steps.collect import NOTHING, Inventory, collect
 from multibot_rewrite.steps.document import read_document
 
@@ -122,7 +122,7 @@ def _read(path: str, srdf: Inventory, settings: Settings) -> Pair:
 
 def described(path: str, settings: Settings) -> tuple[bytes, str]:
     """With the default arguments, else with the first that the settings have for the file."""
-    if not path.endswith(".xacro"):
+    if not is_xacro(path):
         return read_file(path), path
     from multibot_rewrite.sources.expand import expand
 

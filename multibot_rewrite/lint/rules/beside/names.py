@@ -107,3 +107,37 @@ def bridge_row(beside: Beside) -> Iterator[Remark]:
     from multibot_rewrite.lint.beside.bridges import faulty_rows
 
     return faulty_rows(beside)
+
+
+def _limits(name: str) -> str:
+    return (
+        "moveit_simple_controller_manager:\n"
+        f"  controller_names: [{name}]\n"
+        f"  {name}: {{type: FollowJointTrajectory, action_ns: follow_joint_trajectory, joints: [a]}}\n"
+    )
+
+
+@rule(
+    "MB857",
+    "undeclared-controller-beside",
+    WARNING,
+    what="MoveIt's controllers name a controller, a joint of it or an action that the parameter "
+    "files in the same folder do not have, though they declare others.",
+    why="MoveIt waits for the action, and rejects every plan to execute: 'Action client not "
+    "connected to action server'.",
+    fix="Use the names of the controllers that ros2_control loads.",
+    bad=_limits("arm_controler"),
+    good=_limits("arm_controller"),
+    line=3,
+    formats=(MOVEIT, PARAMS),
+    beside={
+        "ros2_controllers.yaml": "controller_manager:\n  ros__parameters:\n    arm_controller: "
+        "{type: joint_trajectory_controller/JointTrajectoryController}\narm_controller:\n"
+        "  ros__parameters: {joints: [a]}\n"
+    },
+)
+def undeclared_controller(beside: Beside) -> Iterator[Remark]:
+    """Controllers of ``moveit_simple_controller_manager``."""
+    from multibot_rewrite.lint.beside.moveit import unknown_controllers
+
+    return unknown_controllers(beside)

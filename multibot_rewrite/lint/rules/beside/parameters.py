@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from multibot_rewrite.findings.finding import WARNING
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.beside.kinds import PARAMS
+from multibot_rewrite.lint.rules.physics.shared import a_rover
 
 if TYPE_CHECKING:
     from multibot_rewrite.lint.beside.records import Beside, Remark
@@ -85,3 +86,37 @@ def parameter_out_of_bounds(beside: Beside) -> Iterator[Remark]:
     from multibot_rewrite.lint.beside.parameters import out_of_bounds
 
     return out_of_bounds(beside)
+
+
+def _wheels(separation: str) -> str:
+    return _drive(
+        "left_wheel_names: [left_joint]\n"
+        "    right_wheel_names: [right_joint]\n"
+        f"    wheel_separation: {separation}\n"
+        "    wheel_radius: 0.1"
+    )
+
+
+@rule(
+    "MB856",
+    "controller-wheels",
+    WARNING,
+    what="The wheels of a diff_drive_controller are not as it is told: their separation or radius "
+    "is another in the package's description, left and right are swapped, or their axes point in "
+    "opposite directions.",
+    why="The robot turns or drives too far or the wrong way, and its odometry says otherwise.",
+    fix="Write the sizes of the description, or correct its joints.",
+    bad=_wheels("0.8"),
+    good=_wheels("0.4"),
+    line=7,
+    formats=(PARAMS,),
+    beside={
+        "package.xml": "<package><name>rover</name></package>",
+        "urdf/rover.urdf": f'<robot name="rover">{a_rover()}</robot>',
+    },
+)
+def controller_wheels(beside: Beside) -> Iterator[Remark]:
+    """What no description of the package fits."""
+    from multibot_rewrite.lint.beside.wheels import faulty_wheels
+
+    return faulty_wheels(beside)
