@@ -117,9 +117,14 @@ def _planned(it: EndpointName, owners: Mapping[str, str]) -> End:
     return End(it.node, *own, None, not end.when, end.also)
 
 
+def _own(robot: RewrittenRobot) -> Mapping[str, str]:
+    """What an argument makes -> the name without it, which may begin with the slash behind it: /imu."""
+    return {text: name.lstrip("/") for (_, name), text in robot.names.own.items()}
+
+
 def _plain(robot: RewrittenRobot, export: Exported) -> Exported:
     """The interface as parameter files call it, where an argument of the xacro renames its owner."""
-    own = {text: name for (_, name), text in robot.names.own.items()}
+    own = _own(robot)
     # A name may have a slash of its own: robot1/imu.
     whole = (it for it in own if export.name.startswith(f"{it}/"))
     owner = next(whole, export.name.partition("/")[0])
@@ -132,7 +137,7 @@ def _plain(robot: RewrittenRobot, export: Exported) -> Exported:
 
 def _plainly(robot: RewrittenRobot, given: GivenNode) -> GivenNode:
     """The same of what a launch file fills in for a robot that has such an argument."""
-    own = {text: name for (_, name), text in robot.names.own.items()}
+    own = _own(robot)
     values = {
         key: it._replace(value=own.get(it.value, it.value)) if isinstance(it.value, str) else it
         for key, it in given.values.items()
