@@ -117,4 +117,6 @@ def companion_nodes(nodes: Sequence[NodeFacts], stack: Sequence[NodeFacts]) -> I
     """The nodes for which companion files are rewritten, with the names of their code: those in
     parameters are what is rewritten."""
     bare: Mapping[str, NodeFacts] = {it.name: it for it in stack}
-    yield from (bare.get(it.name, it) for it in nodes if it.name in bare or it.host)
+    # A section for a node in a namespace below the robot's is known to be right if the node runs there.
+    mine = (it for it in nodes if it.name in bare or it.host or "/" in it.name)
+    yield from (bare.get(it.name, it) for it in mine)

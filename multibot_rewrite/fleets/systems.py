@@ -66,7 +66,7 @@ def system_before(robot: RewrittenRobot, evidence: RobotEvidence) -> System:
     sent = {child for node in nodes for child in children_of(node)}
     sent |= {it.name for it in reading.names if it.kind == FRAME and it.tag == "plugin"}
     return System(
-        given,
+        tuple(_plainly(robot, it) for it in given),
         tuple(_plain(robot, it) for it in exported(source.root, source.file)),
         tuple(ends),
         tuple(shared),
@@ -116,9 +116,14 @@ def _planned(it: EndpointName, owners: Mapping[str, str]) -> End:
     return End(it.node, *own, None, not end.when, end.also)
 
 
+def _own(robot: RewrittenRobot) -> Mapping[str, str]:
+    """What an argument makes -> the name without it, which may begin with the slash behind it: /imu."""
+    return {text: name.lstrip("/") for (_, name), text in robot.names.own.items()}
+
+
 def _plain(robot: RewrittenRobot, export: Exported) -> Exported:
     """The interface as parameter files call it, where an argument of the xacro renames its owner."""
-    own = {text: name for (_, name), text in robot.names.own.items()}
+    own = _own(robot)
     # A name may have a slash of its own: robot1/imu.
     whole = (it for it in own if export.name.startswith(f"{it}/"))
     owner = next(whole, export.name.partition("/")[0])
@@ -127,6 +132,16 @@ def _plain(robot: RewrittenRobot, export: Exported) -> Exported:
     found = (it for it in prefixes if it and owner.startswith(it))
     bare = own.get(owner, owner.removeprefix(next(found, "")))
     return export._replace(name=f"{bare}{export.name[len(owner) :]}")
+
+
+def _plainly(robot: RewrittenRobot, given: GivenNode) -> GivenNode:
+    """The same of what a launch file fills in for a robot that has such an argument."""
+    own = _own(robot)
+    values = {
+        key: it._replace(value=own.get(it.value, it.value)) if isinstance(it.value, str) else it
+        for key, it in given.values.items()
+    }
+    return given._replace(values=values)
 
 
 def _sender(node: NodeFacts, given: Iterable[GivenNode], root: str) -> Sender:

@@ -16,6 +16,7 @@ from multibot_rewrite.lint.beside.parameter_table import table
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.run import lint_files
+from multibot_rewrite.remap.nodl.lookup import INDEX
 
 SHIPPED = Path(kind_of.__code__.co_filename).parent / "parameters.tsv"
 CONTROLLERS = """\
@@ -241,6 +242,23 @@ def test_sources_of_a_package_say_what_its_controllers_declare(tmp_path: Path) -
     assert codes == ["MB852", "MB851"]  # gain is said, so gian is not meant to be it
     file.write_text(f"{head}  ros__parameters: {{gian: 1.0}}\n")
     assert [it.code for it in lint_file(str(file), Settings())] == ["MB850"]
+
+
+def test_an_installed_nodl_document_adds_to_what_is_known(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    index = tmp_path / "install" / INDEX
+    index.mkdir(parents=True)
+    (index / "nav2_amcl__amcl").write_text(
+        "nodl_version: 2\nparameters:\n  acme_gain: {type: double}\n"
+    )
+    text = NAV.replace("scan_topic: scan", "acme_gian: 1.0")
+    assert found(text, tmp_path) == []
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path / "install"))
+    assert found(text, tmp_path) == ["MB850:7"]
+    assert found(text.replace("acme_gian: 1.0", "acme_gain: 1"), tmp_path) == ["MB851:7"]
+    (index / "nav2_amcl__amcl").write_text("parameters: [\n")
+    assert found(text, tmp_path) == []
 
 
 def test_parameters_are_those_of_the_release(tmp_path: Path) -> None:
