@@ -82,6 +82,7 @@ def forget() -> None:
     for it in (packages.entries.__wrapped__, packages._candidates, packages._own_package):
         it.cache_clear()
     packages._below.cache_clear()
+    packages._by_lower_case.cache_clear()
 
 
 def linted(settings: Settings = SETTINGS, paths: tuple[str, ...] = SOURCES) -> list[Finding]:

@@ -48,7 +48,7 @@ def link_poses(subject: Subject) -> Mapping[str, Pose]:
 
 def origin_of(element: _Element) -> Pose | None:
     """The pose that the first ``<origin>`` in an element says."""
-    origin = element.find("origin")
+    origin = next(element.iterchildren("origin"), None)
     if origin is None:
         return HERE
     if "quat_xyzw" in origin.attrib:

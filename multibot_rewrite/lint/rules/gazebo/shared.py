@@ -54,16 +54,19 @@ def parameter_faults(subject: Subject) -> ByKind:
     return _by_kind(found)
 
 
-def simulator_plugins(subject: Subject) -> Iterator[_Element]:
+@memoized
+def simulator_plugins(subject: Subject) -> tuple[_Element, ...]:
     """The plugins of Gazebo, those of ROS 1 aside: nobody described their parameters here."""
     plugins = subject.elements.every("plugin")
     if not plugins:
-        return
+        return ()
     of_ros_1 = {element for element, section in subject.inventory.served if section.ros == "1"}
-    for it in plugins:
-        above = it.getparent()
-        if it not in of_ros_1 and above is not None and above.tag not in _OTHERS:
-            yield it
+    return tuple(it for it in plugins if it not in of_ros_1 and _is_gazebos(it))
+
+
+def _is_gazebos(plugin: _Element) -> bool:
+    above = plugin.getparent()
+    return above is not None and above.tag not in _OTHERS
 
 
 # Plugins that are no plugins of Gazebo: hardware and transmissions of ros2_control, other simulators.
