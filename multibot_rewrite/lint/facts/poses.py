@@ -86,7 +86,7 @@ def placed(outer: Pose, inner: Pose) -> Pose:
 
 def point_in(pose: Pose, point: Vector) -> Vector:
     """A point of a frame, in the frame that its pose is given in."""
-    return plus(pose.at, turned(pose.matrix, point))
+    return plus(pose.at, point if pose.matrix is STRAIGHT else turned(pose.matrix, point))
 
 
 def axis_of(joint: Joint) -> Vector | None:

@@ -62,10 +62,10 @@ _Shapes = list[tuple[_Element, _Element]]
 def _alike(one: tuple[_Element, _Element], other: tuple[_Element, _Element]) -> bool:
     """Are two shapes written alike, at one place? Most are, and nothing has to be computed."""
     (here, shape), (there, same) = one, other
-    if shape.tag != same.tag or shape.attrib != same.attrib:
+    if shape.tag != same.tag or shape.items() != same.items():
         return False
     origins = [next(it.iterchildren("origin"), None) for it in (here, there)]
-    written = [{} if it is None else dict(it.attrib) for it in origins]
+    written = [[] if it is None else it.items() for it in origins]
     return written[0] == written[1]
 
 
@@ -129,7 +129,9 @@ def _weighs(xyz: str) -> str:
 def centre_of_mass_outside(subject: Subject) -> Iterator[Problem]:
     """Links whose shapes have a known size; others only where the centre is metres away from all."""
     for link, inertial in inertials(subject.robot):
-        origin = inertial.element.find("origin") if (inertial.mass or 0) >= LIGHT else None
+        if (inertial.mass or 0) < LIGHT:
+            continue
+        origin = next(inertial.element.iterchildren("origin"), None)
         centre = None if origin is None else vector(origin.get("xyz"))
         if centre is None or not any(centre):
             continue
