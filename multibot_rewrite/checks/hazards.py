@@ -71,7 +71,7 @@ def bare_lookups(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
         kind = section.unique
         # Hardware looks for the sensors that it is given, not for all that the robot has.
         element = host.element
-        without = element.tag == "ros2_control" and element.find(kind) is None
+        without = kind != "" and element.tag == "ros2_control" and element.find(kind) is None
         if kind in declared and kind not in naming.separators and not without:
             message = (
                 f"{section.names[0]} looks {kind}s up by bare name in the whole world: "

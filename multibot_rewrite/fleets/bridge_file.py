@@ -11,6 +11,17 @@ from typing import NamedTuple
 
 import yaml
 
+from multibot_rewrite.companions.bridge_entry import (
+    BOTH,
+    GZ,
+    GZ_MODEL,
+    MODEL_SLOT,
+    PART,
+    PLACEHOLDER,
+    ROS,
+    SERVICE,
+    BridgeEntry,
+)
 from multibot_rewrite.companions.context import Companion, Context
 from multibot_rewrite.companions.names.placeholders import without_robot
 from multibot_rewrite.companions.names.rename_map import is_declared, spell
@@ -29,17 +40,6 @@ from multibot_rewrite.companions.yaml_text import (
 )
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.bridge_checks import entry_findings, model_of, other_models, skipped
-from multibot_rewrite.fleets.bridge_entry import (
-    BOTH,
-    GZ,
-    GZ_MODEL,
-    MODEL_SLOT,
-    PART,
-    PLACEHOLDER,
-    ROS,
-    SERVICE,
-    BridgeEntry,
-)
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import POSTFIX
 

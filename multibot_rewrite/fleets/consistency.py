@@ -87,8 +87,8 @@ def _names_of(robot: RewrittenRobot, graph: Iterable[str]) -> RobotNames:
     for word, declared in (*kinds.items(), ("frame", USUAL_FRAMES)):
         for name in declared:
             bare.setdefault(name, set()).add(spell(names, word, name))
-    inventory = robot.member.inventory.declared
-    right = {name for kind in inventory.values() for name in kind}
+    written = (robot.member.inventory.declared, robot.member.described.declared)
+    right = {name for declared in written for kind in declared.values() for name in kind}
     right |= {name for new in bare.values() for name in new}
     words = tuple(dict.fromkeys((spec.namespace, spec.tag, spec.model)))
     changed = {name: frozenset(it) for name, it in bare.items() if it != {name}}

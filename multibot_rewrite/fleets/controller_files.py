@@ -72,7 +72,7 @@ companions:
 
 
 def with_own_controllers(robot: RewrittenRobot, folder: str) -> tuple[bytes, tuple[Finding, ...]]:
-    """The description with the paths of the files that are made for this robot in ``folder``.
+    """What the simulator gets, with the paths of the files that are made for this robot in ``folder``.
 
     Without a ``folder`` nothing is written, and it stays as it is. So does that of a real robot, which
     loads no file for its simulator's plugin.
@@ -80,10 +80,11 @@ def with_own_controllers(robot: RewrittenRobot, folder: str) -> tuple[bytes, tup
     if robot.spec.simulator == REAL:
         return robot.description, ()
     source = robot.member.inventory.document.source
+    file = robot.spec.simulated or robot.spec.description
     params = robot.spec.companions.get("params", ())
     edits, findings = [], []
     for path, slot in _loaded(robot) if params else ():
-        same = [it for it in params if _is_same(path, it, robot.spec.description)]
+        same = [it for it in params if _is_same(path, it, file)]
         if same and folder:
             made = os.path.join(folder, path_for(robot, same[0])).translate(ESCAPES)
             edits.append(Edit(*slot, made.encode(), None))

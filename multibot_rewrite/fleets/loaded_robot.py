@@ -22,6 +22,7 @@ from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.fleets.fleet_file import Pose
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.kept_files import KeptFiles
+from multibot_rewrite.fleets.move_group_parameters import move_group_parameters
 from multibot_rewrite.fleets.node_names import NodeNames, Rules, names_of
 from multibot_rewrite.fleets.output_file import OutputFile
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
@@ -101,6 +102,13 @@ class LoadedRobot:
         """Its rewritten SRDF, for ``robot_description_semantic``; empty if it has none. Raises
         nothing."""
         return self._robot.srdf.decode()
+
+    def to_dict(self) -> dict[str, Any]:
+        """The parameters of its move_group, as ``to_dict()`` of moveit_configs_utils has them for one
+        robot: description, SRDF and the files of ``companions: moveit``. Raises as ``text``."""
+        files = self._robot.spec.companions.get("moveit", ())
+        texts = {it: self.text(it) for it in files}
+        return move_group_parameters(self.description, self.srdf, texts)
 
     @cached_property
     def table(self) -> NodeNames:
@@ -215,7 +223,7 @@ class LoadedRobot:
     @property
     def spawn_arguments(self) -> list[str]:
         """``arguments`` of ``ros_gz_sim create``; raises nothing."""
-        return spawn.gz_arguments(self._spawn)
+        return spawn.gz_arguments(self._spawn._replace(text=self._robot.simulated.decode()))
 
     @property
     def classic_arguments(self) -> list[str]:

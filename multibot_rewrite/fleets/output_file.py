@@ -29,6 +29,12 @@ def path_for(robot: RewrittenRobot, source: str) -> str:
     return f"{robot.spec.name}/{os.path.basename(source)}"
 
 
+def expanded_name(path: str) -> str:
+    """The file's name once xacro is expanded."""
+    name = os.path.basename(path).removesuffix(".xacro")
+    return name if "." in name else f"{name}.urdf"
+
+
 def params_of(spec: RobotSpec) -> dict[str, YamlText]:
     """A robot's parameter files by path, as a launch fills them; raises InputError as ``read_yaml``."""
     filled = dict(spec.filled)

@@ -38,8 +38,8 @@ def _prefixes(known: KnownNodes, node: GivenNode) -> Iterator[str]:
 def prefix_lines(
     files: Iterable[OutputText], known: KnownNodes, bare: frozenset[str]
 ) -> frozenset[Place]:
-    """The lines, by the paths of the output, of what a node puts before names and of the frames of
-    ``bare`` nodes, in the files of one robot."""
+    """The lines, by the paths of the output, of what a node puts before names, of what is no name of a
+    robot, and of the frames of ``bare`` nodes, in the files of one robot."""
     documents = [read_yaml(it.text.encode(), it.path) for it in files if PARAMETERS in it.text]
     return frozenset(
         given.place
@@ -48,7 +48,7 @@ def prefix_lines(
         for name, given in node.values.items()
         if (param := known.nodes[node.known].params.get(name))
         and (
-            param.kind in PREFIX_KINDS
+            param.kind in (*PREFIX_KINDS, "keep")
             or (param.kind == "frame" and node.name.rpartition("/")[2] in bare)
         )
     )

@@ -84,18 +84,21 @@ def rviz_files(configs: Iterable[RvizOutput]) -> FilesAndFindings:
     """The files of the windows, and what was found."""
     for source, windows, findings in configs:
         yield from findings
-        yield from (OutputFile(_path(it, source), it.text.encode(), (source,)) for it in windows)
+        yield from (
+            OutputFile(window_path(it, source), it.text.encode(), (source,)) for it in windows
+        )
 
 
 def rviz_commands(configs: Iterable[RvizOutput]) -> list[str]:
     """The line that opens each window."""
     return [
-        shlex.join(start_command(window, _path(window, it.source)))
+        shlex.join(start_command(window, window_path(window, it.source)))
         for it in configs
         for window in it.windows
     ]
 
 
-def _path(window: RvizText, source: str) -> str:
+def window_path(window: RvizText, source: str) -> str:
+    """Where the config of a window goes."""
     name = os.path.basename(source)
     return f"{window.robot}/{name}" if window.robot else name

@@ -17,6 +17,7 @@ from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.fleet_file import REAL, Pose
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
+from multibot_rewrite.fleets.output_file import expanded_name, path_for
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.naming import NAMESPACE
 from multibot_rewrite.rewriters.text import text_at
@@ -29,7 +30,9 @@ CLASSIC_PLUGIN = "libgazebo_ros"
 
 
 class Spawn(NamedTuple):
-    """A robot to be spawned. ``namespace`` is for the spawner of Gazebo Classic; it is empty if the
+    """A robot to be spawned from a topic, a file or its text.
+
+    ``namespace`` is for the spawner of Gazebo Classic; it is empty if the
     plugins of the description have one, which the spawner would overwrite."""
 
     robot: str
@@ -37,6 +40,15 @@ class Spawn(NamedTuple):
     topic: str
     pose: Pose
     namespace: str
+    file: str = ""
+    text: str = ""
+
+    @property
+    def source(self) -> tuple[str, str]:
+        """The option that says what is spawned; only that of gz-sim takes a text."""
+        if self.text:
+            return "-string", self.text
+        return ("-file", self.file) if self.file else ("-topic", self.topic)
 
 
 def spawns(plan: FleetPlan) -> tuple[tuple[Spawn, ...], tuple[Finding, ...]]:
@@ -75,6 +87,7 @@ def spawn(robot: RewrittenRobot, topic: str = "") -> Spawn:
         topic or robot_topic(robot.topics, DESCRIPTION, NOTHING),
         spec.pose or Pose(),
         spec.namespace if needed else "",
+        path_for(robot, expanded_name(spec.simulated)) if spec.simulated else "",
     )
 
 
@@ -84,13 +97,13 @@ def gz_arguments(it: Spawn) -> list[str]:
     It uses gflags, where ``-allow_renaming false`` means true: a boolean flag takes its value only
     after an equals sign.
     """
-    return ["-name", it.model, "-topic", it.topic, *_pose(it.pose), "-allow_renaming=false"]
+    return ["-name", it.model, *it.source, *_pose(it.pose), "-allow_renaming=false"]
 
 
 def classic_arguments(it: Spawn) -> list[str]:
     """What follows ``gazebo_ros spawn_entity.py``."""
     namespace = ["-robot_namespace", f"/{it.namespace}"] if it.namespace else []
-    return ["-entity", it.model, "-topic", it.topic, *_pose(it.pose), *namespace]
+    return ["-entity", it.model, *it.source, *_pose(it.pose), *namespace]
 
 
 def gz_command(it: Spawn) -> str:
@@ -106,7 +119,7 @@ def classic_command(it: Spawn) -> str:
 def either(it: Spawn, robot: RewrittenRobot) -> str:
     """The command for the description's simulator, with the other simulator's as a comment."""
     gz, classic = gz_command(it), classic_command(it)
-    if CLASSIC_PLUGIN.encode() in robot.description:
+    if CLASSIC_PLUGIN.encode() in (robot.simulated or robot.description):
         return f"{classic}\n# gz-sim: {gz}\n"
     return f"{gz}\n# Gazebo Classic: {classic}\n"
 

@@ -133,8 +133,13 @@ def with_odometry(edges: Edges, robot: str, naming: Naming) -> tuple[Edges, str]
 def frames_of(
     inventory: Inventory, sent: Iterable[Edge], naming: Naming, robot: str
 ) -> tuple[str, ...]:
-    """A robot's own frames: those of its description, and those its nodes send besides."""
-    declared = (*links_of(inventory, naming, robot), *inventory.declared["frame"])
+    """A robot's own frames: those of its description, and those its nodes send besides.
+
+    A ``<frame>`` of an SDF is not on tf: sdformat_urdf (jazzy, sdformat_urdf.cpp) makes a URDF of links
+    and joints.
+    """
+    own = () if inventory.document.root.tag == "sdf" else inventory.declared["frame"]
+    declared = (*links_of(inventory, naming, robot), *own)
     ends = (frame for edge in sent for frame in edge[:2])
     frames = dict.fromkeys((*declared, *ends))
     return tuple(frame for frame in frames if frame not in naming.shared_frames)

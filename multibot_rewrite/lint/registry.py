@@ -9,6 +9,7 @@ from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.findings.selection import is_on
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.rules import (
+    beside,
     files,
     meshes,
     meta,
@@ -17,7 +18,6 @@ from multibot_rewrite.lint.rules import (
     physics,
     references,
     rewriting,
-    srdf,
     structure,
 )
 
@@ -30,7 +30,7 @@ GROUPS: tuple[tuple[str, str, ModuleType], ...] = (
     ("MB5", "structure", structure),
     ("MB6", "physics", physics),
     ("MB7", "meshes and packages", meshes),
-    ("MB8", "SRDF against URDF", srdf),
+    ("MB8", "files beside the URDF: SRDF, parameters, RViz, MoveIt, bridges", beside),
     ("MB9", "rewriting", rewriting),
 )
 

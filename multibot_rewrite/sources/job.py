@@ -51,6 +51,13 @@ class FilesRead(NamedTuple):
 NO_FILES = FilesRead()
 
 
+def joined_reads(one: FilesRead, other: FilesRead) -> FilesRead:
+    """What was read for two descriptions of one robot: an argument is for one or for both."""
+    known = dict.fromkeys((*one.arguments, *other.arguments))
+    unread = dict.fromkeys(it for it in (*one.unread, *other.unread) if it not in known)
+    return FilesRead((*one.files, *other.files), tuple(known), tuple(unread))
+
+
 class Job(NamedTuple):
     """Bytes, options and file names; ``file`` is the name in messages, ``urdf`` the bytes and the
     name of the URDF beside an SRDF; ``own`` says more where it is one robot's own; ``release`` is that
@@ -183,6 +190,7 @@ def job_for(
         return job
     other = _marked(read, given, words, common)
     own = {key: None for part in other.inventories for key in own_names(part, words)}
+    _check_links(job, own, given, words)
     twin = as_twin(other.data) if has_mark(other.data) else b""
     job = job._replace(naming=job.naming._replace(own=own), own=OwnSource(words[0], twin=twin))
     try:
@@ -203,6 +211,18 @@ def job_for(
         return job
     follow = _of_plain if len(set(words)) == 1 else _followed
     return follow(job, plain, affixes)
+
+
+def _check_links(job: Job, own: OwnNames, given: Arguments, words: Sequence[str]) -> None:
+    """Where nodes put the robot's name before links, no argument may."""
+    links = sorted(text for kind, text in own if kind == "link")
+    if job.naming.layout.at_run_time and links:
+        named = ", ".join(
+            f"{it}:={text}" for it, text in given.items() if words[0] in text or "{" in text
+        )
+        what = f"{job.file}: {named} puts the robot's name into the link {links[0]!r}"
+        again = f"robot_state_publisher would add it once more in layout {job.naming.layout.name}"
+        raise InputError(f"{what}, and {again}; leave it out, or take frames-per-robot")
 
 
 def _marked(read: Reader, given: Arguments, words: Sequence[str], common: Collection[str]) -> Job:

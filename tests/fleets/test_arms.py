@@ -17,6 +17,7 @@ from multibot_rewrite.findings.finding import NOTE, Finding
 from multibot_rewrite.fleets.build import make_outputs
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import plan_fleet
+from multibot_rewrite.remap.applied_rules import running_nodes
 
 MOCK = "mock_components/GenericSystem"
 FRANKA = "franka_hardware/FrankaHardwareInterface"
@@ -285,3 +286,60 @@ def test_a_part_that_is_called_as_a_robot_is_no_name_of_it(finger: str, tmp_path
     for path in ("right/arm.urdf", "right/arm.srdf"):
         assert f'"{names[finger]}"' in files[path]
     assert errors(list(made.findings)) == []
+
+
+CONTROLLERS = """\
+controller_manager:
+  ros__parameters:
+    force_mode_controller: {type: ur_controllers/ForceModeController}
+force_mode_controller:
+  ros__parameters: {tf_prefix: ""}
+"""
+
+
+def test_a_listener_in_a_controllers_code_has_the_rules_of_its_process(tmp_path: Path) -> None:
+    """ur_controllers force_mode_controller.cpp makes a tf2_ros::TransformListener of a buffer alone."""
+    (tmp_path / "controllers.yaml").write_text(CONTROLLERS)
+    more = f"{TWO}".replace("{name: left}", "{name: left, companions: {params: controllers.yaml}}")
+    files, _ = built(tmp_path, more)
+    # One spawner loads it, with what its own node needs.
+    lines = [it for it in files["commands.md"].splitlines() if "spawner force_mode" in it]
+    assert len(lines) == 1
+    table = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {})).fleet.table
+    (node,) = (it for it in running_nodes(table) if it.node.node == "force_mode_controller")
+    assert set(node.process_rules) >= {("/tf", "tf"), ("/tf_static", "tf_static")}
+
+
+FILLED_BY_LAUNCH = """\
+controller_manager:
+  ros__parameters:
+    arm_controller: {type: joint_trajectory_controller/JointTrajectoryController}
+    io_controller: {type: ur_controllers/GPIOController}
+arm_controller:
+  ros__parameters:
+    joints: [$(var tf_prefix)elbow]
+    command_interfaces: [position]
+    state_interfaces: [position]
+    constraints:
+      $(var tf_prefix)elbow: {trajectory: 0.2, goal: 0.1}
+io_controller:
+  ros__parameters: {tf_prefix: "$(var tf_prefix)"}
+"""
+
+
+@pytest.mark.parametrize("own", ["", OWN])
+def test_a_controllers_file_that_a_launch_file_fills_is_taken_unedited(
+    own: str, tmp_path: Path
+) -> None:
+    """ur_controllers.yaml has its prefix in keys, lists and alone."""
+    (tmp_path / "controllers.yaml").write_text(FILLED_BY_LAUNCH)
+    more = TWO.replace("{name: left}", "{name: left, companions: {params: controllers.yaml}}")
+    files, findings = built(tmp_path, own + more, "frames-per-robot")
+    made = yaml.safe_load(files["left/controllers.yaml"])
+    arm = made["/left/arm_controller"]["ros__parameters"]
+    assert arm["joints"] == ["left_elbow"]
+    assert arm["constraints"] == {"left_elbow": {"trajectory": 0.2, "goal": 0.1}}
+    assert made["/left/io_controller"]["ros__parameters"] == {"tf_prefix": "left_"}
+    # The mock lacks what io_controller claims; of the arm nothing is open.
+    assert {it.code for it in findings} <= {"MF811", "MF801", "MF814"}
+    assert "elbow" not in str([it.message for it in findings])

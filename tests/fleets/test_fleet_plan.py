@@ -81,6 +81,7 @@ def scalars(value: Any) -> Iterator[str]:
 def test_every_robot_has_its_files_and_no_other(fleet: tuple[str, dict[str, str]]) -> None:
     layout, files = fleet
     common = {"plan.yaml", "remappings.yaml", "remappings.py", "commands.md", "bridge.yaml"}
+    common |= {"fleet.launch.py", "fleet.launch.xml"}
     own = {
         "scout": {"rover.urdf", "params.yaml", "bridge.yaml", "one_robot.rviz", "start_pose.yaml"},
         "reach": {"arm.urdf", "arm.srdf", "limits.yaml", "one_robot.rviz"},

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 import pytest
 import yaml
 from lxml import etree
+from paths import ROOT
 from vendor_sources import VARIABLE, WITHOUT, install, packages_below, sources_folder
 
 from multibot_rewrite.findings.finding import Finding
@@ -168,7 +169,7 @@ def build(sources: Path, tmp_path: Path) -> Build:
             "stack": ["ros2_control", "moveit"],
             "simulator": "none",
             "companions": {
-                "params": [_filled(sources / it, tmp_path) for it in arm.params],
+                "params": [str(sources / it) for it in arm.params],
                 "moveit": [str(sources / it) for it in arm.moveit],
                 "rviz": str(sources / arm.rviz),
             },
@@ -179,13 +180,6 @@ def build(sources: Path, tmp_path: Path) -> Build:
         return {it.path: it.data for it in made.files}, list(made.findings)
 
     return built
-
-
-def _filled(source: Path, folder: Path) -> str:
-    """A file without the prefix that the vendor's launch file fills in for one robot."""
-    target = folder / source.name
-    target.write_text(source.read_text().replace("$(var tf_prefix)", ""))
-    return str(target)
 
 
 def vendors(arm: Arm, sources: Path, robot: str, path: str) -> etree._Element:
@@ -342,3 +336,19 @@ def test_another_layout_and_three_robots_have_no_false_findings(
                 assert topic in (f"/{robot}/display_planned_path", "display_planned_path")
         solvers = yaml.safe_load(files[f"{robot}/kinematics.yaml"])
         assert set(solvers) <= groups
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", ["ur", "franka", "xarm", "kinova"])
+def test_the_fleet_of_a_page_is_built(page: str, sources: Path, tmp_path: Path) -> None:
+    text = (ROOT / "docs" / "robots" / f"{page}.md").read_text()
+    (fleet,) = re.findall(r"```yaml\n(.*?)```", text, re.DOTALL)
+    path = tmp_path / "fleet.yaml"
+    path.write_text(re.sub(r"\bsrc/", f"{sources}/", fleet))
+    made = make_outputs(plan_fleet(read_fleet(str(path), "", {})))
+    # What is left is on the page; MF203 says that each arm has its own RViz.
+    assert {it.code for it in made.findings} - {"MF203"} <= set(re.findall(r"M[BF]\d{3}", text))
+    assert not [it for it in made.findings if it.level == "error"]
+    commands = next(it.data.decode() for it in made.files if it.path == "commands.md")
+    assert commands.count("static_transform_publisher") == 2
+    assert commands.count("rviz2 -d") == 2

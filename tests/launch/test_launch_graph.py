@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 import yaml
 from launched_programs import launched
+from paths import ROOT
 
 from multibot_rewrite import InputError
 from multibot_rewrite.cli.multibot import main
@@ -227,6 +228,23 @@ def test_a_configuration_that_is_gone_at_an_event_is_told(tmp_path: Path) -> Non
     assert (
         "'robot' does not exist; groups and their launch configurations have ended" in note.message
     )
+
+
+@in_launch
+def test_what_starts_later_is_outside_the_group_that_it_stands_in(tmp_path: Path) -> None:
+    """launch leaves the scope of a group before any event (LaunchService, GroupAction)."""
+    graph = read(
+        tmp_path,
+        """\
+        GroupAction([
+            PushRosNamespace("robot1"),
+            RegisterEventHandler(OnProcessExit(on_exit=[
+                Node(package="acme", executable="e", namespace="robot1"),
+                TimerAction(period=1.0, actions=[Node(package="acme", executable="t")])])),
+            Node(package="acme", executable="n")]),""",
+    )
+    found = {it.executable: it.namespace for it in graph.nodes}
+    assert found == {"n": "/robot1", "e": "/robot1", "t": "/"}
 
 
 @in_launch
@@ -493,3 +511,25 @@ def test_the_whole_command(
         other.write_text(TWO.replace("RULES", "[]"))
         assert main(["check-launch", str(other), "--plan", str(plan), "--distro", "jazzy"]) == 1
         assert "MG102" in capsys.readouterr().out
+
+
+@in_launch
+@pytest.mark.parametrize("name", ["two.launch.py", "three.launch.py", "three.launch.xml"])
+def test_actions_for_robots_are_read_with_their_names(name: str) -> None:
+    """Their names are known when they run: of two robots with everything of their own."""
+    file = ROOT / "examples" / "launch_tutorial" / name
+    graph = launch_graph(LaunchOrder(str(file), (), (), True))
+    state = [it for it in graph.nodes if it.package == "robot_state_publisher"]
+    assert [(it.namespace, it.name) for it in state] == [
+        ("/robot1", "robot_state_publisher"),
+        ("/robot2", "robot_state_publisher"),
+    ]
+    for robot, it in zip(("robot1", "robot2"), state, strict=True):
+        assert any(f"{robot}/base_link" in text.text for text in it.parameters)
+        assert it.place.file == str(file)
+        assert it.place.line > 1 or file.suffix == ".xml"
+    placed = [it for it in graph.nodes if it.package == "tf2_ros"]
+    assert [it.name for it in placed] == ["start_pose", "start_pose"]
+    made = main(["check-launch", str(file), "--plan", str(file.with_name("fleet.yaml"))])
+    # Only what the simulator sends is not known.
+    assert made == 3

@@ -355,6 +355,10 @@ def test_hardware_without_sensors_looks_none_up(tmp_path: Path) -> None:
     assert "<sensor" in NO_SENSOR
     assert codes(tmp_path, NO_SENSOR, "MB415 MB425", robots=TWO, naming=BARE) == []
     assert codes(tmp_path, NO_SENSOR, "MB415 MB425") == []
+    # Others look nothing up.
+    other = IMU.replace("gz_ros2_control/GazeboSimSystem", "mock_components/GenericSystem")
+    for options in ({}, {"robots": TWO, "naming": BARE}):
+        assert codes(tmp_path, other, "MB001 MB415 MB425", **options) == []  # type: ignore[arg-type]
 
 
 SYSTEM = '<plugin filename="gz-sim-sensors-system" name="gz::sim::systems::Sensors"/>'

@@ -16,6 +16,8 @@ from multibot_rewrite.naming import NOT_PLAIN
 
 _ROBOT = r"(?:robot_namespace|robot_name|robot_ns|namespace|ns|robot|tf_prefix|frame_prefix|prefix)"
 _STANDS = rf"(?:<{_ROBOT}>|\$\((?:var|arg)\s+{_ROBOT}\)|\$\{{{_ROBOT}\}})"
+_PREFIX = r"(?:tf_prefix|frame_prefix|prefix)"
+_PREFIX_ALONE = re.compile(rf"<{_PREFIX}>|\$\((?:var|arg)\s+{_PREFIX}\)|\$\{{{_PREFIX}\}}")
 _ALONE = re.compile(rf"/?{_STANDS}/?")
 _FIRST = re.compile(rf"/?{_STANDS}(?P<between>[/_]?)(?P<name>[^/].*)")
 _ANYWHERE = re.compile(_STANDS)
@@ -33,6 +35,11 @@ def without_robot(value: str, lead: str = "") -> str:
     if found is None or "<" in found["name"] or not NOT_PLAIN.isdisjoint(found["name"]):
         return value
     return f"{lead}{found['name']}" if found["between"] == "/" else found["name"]
+
+
+def of_one_robot(value: str) -> str:
+    """A value of a parameter as it is for one robot without a prefix."""
+    return "" if _PREFIX_ALONE.fullmatch(value) else without_robot(value)
 
 
 def filled(value: str, robot: str) -> str:

@@ -144,7 +144,7 @@ def _claim(
             param = branch.params[0]
             names.known.add(param.path)
             for mark, at, kind in marks:
-                word = mark.value.split(".")[at]
+                word = _without_robot(mark.value.split(".")[at], kind)
                 names.sites.append(NameSite(mark, mark, kind, param, word, at, layer))
             break
     if param is None or param.kind != "keep":

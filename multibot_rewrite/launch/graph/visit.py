@@ -20,6 +20,7 @@ from multibot_rewrite.launch.graph.describe import (
     text,
 )
 from multibot_rewrite.launch.graph.places import place_of
+from multibot_rewrite.launch.later import resolved
 
 # They only change the context, or give further entities.
 _EXECUTED = (
@@ -96,10 +97,13 @@ def _pass(entity: Any, seen: Visit) -> None:
 
 
 def _node(entity: Any, seen: Visit) -> Iterable[Any] | None:
-    if is_wanted(entity, seen.context):
+    if not is_wanted(entity, seen.context):
+        return None
+    instead = resolved(entity, seen.context)
+    if instead is None:
         seen.nodes.append(node(entity, seen))
         _ended(entity, seen)
-    return None
+    return instead
 
 
 def _container(entity: Any, seen: Visit) -> Iterable[Any] | None:

@@ -45,11 +45,12 @@ class Row(NamedTuple):
 
 
 class Described(NamedTuple):
-    """A section: its names, the words behind them, its rows by name."""
+    """A section: its names, the words behind them, its rows by name, the names that are required."""
 
     names: tuple[str, ...]
     about: tuple[str, ...]
     rows: Mapping[str, tuple[Row, ...]]
+    needed: tuple[str, ...]
 
 
 @lru_cache
@@ -77,7 +78,8 @@ def described(file: str, name: str) -> Described | None:
     rows: dict[str, tuple[Row, ...]] = {}
     for row in _rows(lines):
         rows[row.name] = (*rows.get(row.name, ()), row)
-    return Described(tuple(names.split()), tuple(about.split()), rows)
+    needed = tuple(name for name, its in rows.items() if any(it.required for it in its))
+    return Described(tuple(names.split()), tuple(about.split()), rows, needed)
 
 
 def _rows(lines: list[str]) -> Iterator[Row]:

@@ -35,6 +35,16 @@ def section_of_plugin(element: _Element) -> Described | None:
     return described(PLUGINS, key) if key else None
 
 
+def section_of_library(library: str) -> Described | None:
+    """What is known of a library alone."""
+    return described(PLUGINS, library)
+
+
+def hardware_classes() -> list[str]:
+    """The ros2_control hardware whose code was read."""
+    return [it.removeprefix(HARDWARE) for it in chunks(PLUGINS) if it.startswith(HARDWARE)]
+
+
 def plugin_faults(element: _Element, release: str) -> Iterator[Fault]:
     """The faults of a plugin's parameters; none where the plugin is not known."""
     section = section_of_plugin(element)
@@ -152,8 +162,9 @@ def _subject(library: str) -> frozenset[str]:
 def _missing(
     element: _Element, section: Described, given: Iterable[str], release: str
 ) -> Iterator[Fault]:
-    for name, (row, *_) in section.rows.items():
-        if row.required and name not in given and has_release(row.releases, release):
+    for name in section.needed:
+        row = section.rows[name][0]
+        if name not in given and has_release(row.releases, release):
             message = f"{title(section)} needs {name!r}"
             yield Fault(
                 "missing", element, None, message, f"without it, it is not loaded ({row.place})"

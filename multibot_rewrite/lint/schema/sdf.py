@@ -149,9 +149,9 @@ def _element(element: _Element, section: str, version: Version) -> Iterator[Faul
 
 def _missing(element: _Element, known: Described, version: Version) -> Iterator[Fault]:
     """Attributes without which sdformat refuses the model; MB158 reports those of plugins."""
-    for name, rows in known.rows.items():
-        if name[0] == "@" and rows[-1].required and not element.get(name[1:], "").strip():
-            row = _of_version(rows, version)
+    for name in known.needed:
+        if name[0] == "@" and not element.get(name[1:], "").strip():
+            row = _of_version(known.rows[name], version)
             if row.required and row.first <= version and element.tag != "plugin":
                 yield Fault("missing", element, None, f"<{element.tag}> has no {name[1:]!r}")
 

@@ -9,17 +9,10 @@ from multibot_rewrite.checks.audit import is_unknown
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.findings.rule import rule
+from multibot_rewrite.lint.facts.simulators import library_of, simulator_plugins
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.examples import block
-from multibot_rewrite.lint.rules.gazebo.shared import a_system, simulator_plugins
-from multibot_rewrite.lint.schema.described import PLUGINS, chunks
-from multibot_rewrite.lint.schema.plugins import (
-    GAZEBO_ROS,
-    GZ,
-    HARDWARE,
-    section_of_plugin,
-)
-from multibot_rewrite.lint.schema.sdf import CLASSIC, version_of_release
+from multibot_rewrite.lint.rules.gazebo.shared import a_system
 from multibot_rewrite.nearest import nearest, slip_of
 from multibot_rewrite.rewriters.text import text_of
 from multibot_rewrite.rewriters.tree import library_key
@@ -27,8 +20,10 @@ from multibot_rewrite.rewriters.tree import library_key
 # gz-sim10_10.4.0 src/SystemLoader.cc no longer takes ignition-gazebo for gz-sim; 9_9.5.0:125 does.
 WITHOUT_IGNITION = ("lyrical", "rolling")
 _IGNITION = "ignition-gazebo"
+# Where SDF requires the name: before 1.10 (plugin.sdf).
+NAMED = ("humble",)
 # How the libraries of a family begin and end.
-FAMILIES = ((GZ, "-system"), (GAZEBO_ROS, ""))
+FAMILIES = (("gz-sim-", "-system"), ("gazebo_ros_", ""))
 
 
 @rule(
@@ -43,7 +38,7 @@ FAMILIES = ((GZ, "-system"), (GAZEBO_ROS, ""))
 )
 def plugin_without_library(subject: Subject) -> Iterator[Problem]:
     """Plugins below ``<gazebo>`` or in an SDF; the attribute that SDF requires in this release."""
-    named = version_of_release(subject.settings.distro) <= CLASSIC
+    named = subject.settings.distro in NAMED
     for it in simulator_plugins(subject):
         if not it.get("filename", "").strip():
             yield Problem(it, "<plugin> has no 'filename'", None, "name the library that it loads")
@@ -65,11 +60,13 @@ def plugin_without_library(subject: Subject) -> Iterator[Problem]:
 def class_not_in_library(subject: Subject) -> Iterator[Problem]:
     """Systems that come with Gazebo: their libraries have no other classes, in any release."""
     for it in simulator_plugins(subject):
-        library = library_key(it.get("filename", "").strip().rpartition("/")[2])
+        library = library_of(it)
         name = it.get("name", "").strip().replace("ignition::gazebo::", "gz::sim::")
-        if not name or "$" in name or not library.startswith(GZ) or library not in chunks(PLUGINS):
+        if not name or "$" in name or not library.startswith(FAMILIES[0][0]):
             continue
-        section = section_of_plugin(it)
+        from multibot_rewrite.lint.schema.plugins import section_of_library
+
+        section = section_of_library(library)
         classes = [known for known in section.names if "::" in known] if section else []
         if classes and name not in classes:
             message = f"{it.get('name', '').strip()!r} is no class of {library}"
@@ -96,7 +93,7 @@ def misspelt_library(subject: Subject) -> Iterator[Problem]:
             continue
         key = library_key(name.rpartition("/")[2])
         near = _slip_of_library(key, subject.tree.vocabulary.names("plugin"))
-        if near and key not in chunks(PLUGINS):
+        if near:
             message = f"no known plugin is called {name!r}"
             yield Problem(host.element, message, "filename", f"did you mean {near!r}?")
 
@@ -150,7 +147,7 @@ def library_of_ignition(subject: Subject) -> Iterator[Problem]:
         return
     found = [it for it in simulator_plugins(subject) if _IGNITION in it.get("filename", "")]
     if found:
-        first = library_key(found[0].get("filename", "").strip().rpartition("/")[2])
+        first = library_of(found[0])
         more = f" and {len(found) - 1} more" if len(found) > 1 else ""
         message = f"Gazebo of {release} finds no {found[0].get('filename', '')!r}{more}"
         hint = f"write {first}, or name the release that the description is for with --distro"
@@ -176,5 +173,6 @@ def _slip(name: str, known: Iterable[str]) -> str:
 
 
 def _hardware_classes(subject: Subject) -> list[str]:
-    own = [it.removeprefix(HARDWARE) for it in chunks(PLUGINS) if it.startswith(HARDWARE)]
-    return [*own, *subject.tree.vocabulary.names("hardware")]
+    from multibot_rewrite.lint.schema.plugins import hardware_classes
+
+    return [*hardware_classes(), *subject.tree.vocabulary.names("hardware")]

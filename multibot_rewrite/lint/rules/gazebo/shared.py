@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from lxml.etree import _Element
 
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.lint.facts.memo import memoized
+from multibot_rewrite.lint.facts.simulators import simulator_plugins
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.examples import block
-from multibot_rewrite.lint.schema.faults import Fault
-from multibot_rewrite.lint.schema.plugins import hardware_faults, plugin_faults
-from multibot_rewrite.lint.schema.sdf import block_faults, model_faults
 
-ByKind = Mapping[str, Sequence[Fault]]
+if TYPE_CHECKING:
+    from multibot_rewrite.lint.schema.faults import Fault
+
+ByKind = Mapping[str, Sequence["Fault"]]
 
 
 def in_link(*inside: str) -> str:
@@ -37,40 +39,40 @@ def a_system(library: str, class_: str, *inside: str) -> str:
 def element_faults(subject: Subject) -> ByKind:
     """What is wrong below ``<gazebo>``, or in the models of an SDF file."""
     root, release = subject.document.root, subject.settings.distro
-    if root.tag == "sdf":
-        return _by_kind(model_faults(root, release))
     blocks = subject.elements.tops("gazebo")
-    return _by_kind(block_faults(blocks, subject.robot, release)) if blocks else {}
+    if not blocks and root.tag != "sdf":
+        return {}
+    # Many descriptions have none, and a lint of them loads nothing of this.
+    from multibot_rewrite.lint.schema.sdf import block_faults, model_faults
+
+    if blocks:
+        return _by_kind(block_faults(blocks, subject.robot, release))
+    return _by_kind(model_faults(root, release))
 
 
 @memoized
 def parameter_faults(subject: Subject) -> ByKind:
     """What is wrong with the parameters of plugins and of hardware."""
-    release = subject.settings.distro
-    found = [it for one in simulator_plugins(subject) for it in plugin_faults(one, release)]
-    for system in subject.elements.tops("ros2_control"):
-        for hardware in system.iterchildren("hardware"):
-            found += hardware_faults(hardware, release)
+    release, systems = subject.settings.distro, subject.elements.tops("ros2_control")
+    plugins = described_plugins(subject)
+    if not plugins and not systems:
+        return {}
+    from multibot_rewrite.lint.schema.plugins import hardware_faults, plugin_faults
+
+    found = [it for one in plugins for it in plugin_faults(one, release)]
+    for hardware in (it for system in systems for it in system.iterchildren("hardware")):
+        found += hardware_faults(hardware, release)
     return _by_kind(found)
 
 
 @memoized
-def simulator_plugins(subject: Subject) -> tuple[_Element, ...]:
+def described_plugins(subject: Subject) -> list[_Element]:
     """The plugins of Gazebo, those of ROS 1 aside: nobody described their parameters here."""
-    plugins = subject.elements.every("plugin")
+    plugins = simulator_plugins(subject)
     if not plugins:
-        return ()
+        return []
     of_ros_1 = {element for element, section in subject.inventory.served if section.ros == "1"}
-    return tuple(it for it in plugins if it not in of_ros_1 and _is_gazebos(it))
-
-
-def _is_gazebos(plugin: _Element) -> bool:
-    above = plugin.getparent()
-    return above is not None and above.tag not in _OTHERS
-
-
-# Plugins that are no plugins of Gazebo: hardware and transmissions of ros2_control, other simulators.
-_OTHERS = frozenset({"hardware", "transmission", "webots", "mujoco", "extension", "robot"})
+    return [it for it in plugins if it not in of_ros_1]
 
 
 def _by_kind(faults: Iterable[Fault]) -> ByKind:
