@@ -124,6 +124,7 @@ HOMES: tuple[Home, ...] = (
             "evidence.nodes",
             "evidence.launch_findings",
             "fleets.launched_files",
+            "fleets.loaded_files",
             "fleets.simulators",
             "fleets.shared_nodes",
             "fleets.params_style",

@@ -184,8 +184,14 @@ class LoadedRobot:
 
     def _path(self, file: str) -> str:
         name = os.path.basename(file)
-        own = f"{self.name}/{name}"
+        own = self._own(file)
         return own if own in self._fleet.files else name
+
+    def _own(self, file: str) -> str:
+        """Where its version of a file is; of two with one name the folder counts."""
+        *_, above, name = ("", *os.path.normpath(file).split(os.sep))
+        apart = f"{self.name}/{above}/{name}"
+        return apart if apart in self._fleet.files else f"{self.name}/{name}"
 
     @checked
     def frame(self, name: str) -> str:
@@ -256,4 +262,4 @@ class LoadedRobot:
         return f"{namespace.rstrip('/')}/{name}"
 
     def _read(self, file: str) -> YamlText:
-        return self._fleet.parameters(f"{self.name}/{os.path.basename(file)}")
+        return self._fleet.parameters(self._own(file))

@@ -218,6 +218,32 @@ def test_what_starts_later_is_outside_of_its_group(tmp_path: Path) -> None:
     assert found.count(("late", "/robot2")) == 2
 
 
+AGAIN = """\
+from launch import LaunchDescription
+from launch.actions import OpaqueFunction, TimerAction
+from launch_ros.actions import Node
+
+
+def again(context):
+    timer = TimerAction(period=1.0, actions=[OpaqueFunction(function=again)])
+    return [Node(package="acme", executable="d"), timer]
+
+
+def generate_launch_description():
+    return LaunchDescription([OpaqueFunction(function=again)])
+"""
+
+
+@in_launch
+def test_a_timer_that_starts_itself_again_is_told(tmp_path: Path) -> None:
+    file = tmp_path / "again.launch.py"
+    file.write_text(AGAIN)
+    graph = launch_graph(LaunchOrder(str(file), (), (), True))
+    (note,) = graph.notes
+    assert "again and again" in note.message
+    assert 1 < len(graph.nodes) < 100
+
+
 @in_launch
 def test_a_configuration_that_is_gone_at_an_event_is_told(tmp_path: Path) -> None:
     late = 'Node(package="acme", executable="e", namespace=LaunchConfiguration("robot"))'
@@ -427,6 +453,7 @@ COMMANDS = """\
 ["urdf-postfix ", FILE, " robot1 end:=eye --layout postfix"]
 ["urdf-postfix ", FILE, " robot1 -o there.urdf"]
 ["touch there.urdf"]
+["xacro /nowhere.xacro"]
 """
 
 
@@ -448,13 +475,15 @@ def test_the_output_of_commands_is_known_and_nothing_is_started(tmp_path: Path) 
         for it in graph.nodes
         if it.parameters
     ]
-    xacro, unknown, postfix, other, touch = values
+    xacro, unknown, postfix, other, touch, nowhere = values
     assert '<child link="lidar"/>' in xacro
     assert '<child link="eye/robot1"/>' in postfix
     # Options that write a file, and other programs: their output is not known.
-    assert (unknown, other, touch) == ("", "", "")
+    assert (unknown, other, touch, nowhere) == ("", "", "", "")
     # launch_ros refuses a text that is no YAML, and says what to do.
-    (note,) = graph.notes
+    note, fault = graph.notes
+    assert fault.parameters and "'xacro /nowhere.xacro'" in fault.message
+    assert "/nowhere.xacro: cannot be read" in fault.message
     assert note.parameters and "as yaml" in note.message and "value_type=str" in note.message
     assert {*tmp_path.iterdir()} - before == {tmp_path / "bringup.launch.py"}
 

@@ -233,7 +233,7 @@ VIEW = Command(
         FINDINGS,
         GENERAL,
     ),
-    "0 done; 1 the description is refused; 2 wrong use or unreadable input; 4 yourdfpy is not installed",
+    "0 done; 1 the description is refused; 2 wrong use or unreadable input; 4 no yourdfpy",
     more="It needs pip install 'multibot_rewrite[view]'. Meshes are put into the page.",
     fail_on=ERROR,
 )

@@ -14,7 +14,7 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
 from multibot_rewrite.launch.door import of_launch
 from multibot_rewrite.model import MultibotError
@@ -23,29 +23,50 @@ from multibot_rewrite.sources.expand import expand
 from multibot_rewrite.sources.read import read_file
 
 _POSTFIX = (sys.executable, "-m", "multibot_rewrite.cli.urdf_postfix")
+_FAULTS = "multibot_command_faults"
 # Its options that write no other file; each has a value.
 _OPTIONS = frozenset(
     ("--layout", "--affix", "--separator", "--topics", "--shared-frames", "--distro")
 )
 
 
+class Output(NamedTuple):
+    """What a program prints, empty where that is not known; and why, where it ought to be known."""
+
+    text: str
+    fault: str = ""
+
+
 def read_commands() -> None:
     """From now on ``Command`` gives what is known of its output, and no program has to be there."""
     known = of_launch("substitutions")
-    known.Command.perform = lambda self, context: output_of(_text(self.command, context))
+    known.Command.perform = _perform
     known.FindExecutable.perform = lambda self, context: _text(self.name, context)
 
 
+def faults(context: Any) -> list[str]:
+    """What went wrong in the outputs that a launch asked for."""
+    return [*context.get_locals_as_dict().get(_FAULTS, ())]
+
+
+def _perform(self: Any, context: Any) -> str:
+    found = output_of(_text(self.command, context))
+    if found.fault and found.fault not in faults(context):
+        context.extend_globals({_FAULTS: [*faults(context), found.fault]})
+    return found.text
+
+
 @lru_cache
-def output_of(line: str) -> str:
-    """What a program prints; empty where that is not known."""
+def output_of(line: str) -> Output:
+    """What a program prints."""
     try:
         program, *words = shlex.split(line)
         read = _READERS.get(os.path.basename(program))
-        return read(words) if read else ""
-    except (ValueError, MultibotError, subprocess.SubprocessError):
-        # A launch fails here, or cannot be tried: what it says is not known.
-        return ""
+        return Output(read(words) if read else "")
+    except (ValueError, MultibotError, subprocess.SubprocessError) as error:
+        # A launch fails here, unless it is the boundary that is in the way.
+        reason = " ".join(f"{error}".split())
+        return Output("", f"the output of {line!r} is not known: {reason}")
 
 
 def _xacro(words: Sequence[str]) -> str:
@@ -63,7 +84,9 @@ def _postfix(words: Sequence[str]) -> str:
         return ""
     line = [*_POSTFIX, *words]
     done = subprocess.run(line, capture_output=True, text=True, timeout=SECONDS, check=False)
-    return done.stdout if done.returncode == 0 else ""
+    if done.returncode:
+        raise ValueError(done.stderr)
+    return done.stdout
 
 
 _READERS: Mapping[str, Callable[[Sequence[str]], str]] = MappingProxyType(

@@ -35,7 +35,8 @@ _NOT_FOUND = re.compile(r"package '(\w+)' not found|No module named '(\w+)")
 
 class Visit(NamedTuple):
     """A visit: the context, what has been found, what an event or a timer starts with its visit and the
-    locals that it keeps, the place of what is visited, and what starts it if not the launch itself."""
+    locals that it keeps, the place of what is visited, what starts it if not the launch itself, and
+    after how many events."""
 
     context: Any
     nodes: list[LaunchedNode]
@@ -43,6 +44,7 @@ class Visit(NamedTuple):
     waiting: list[tuple[Any, Any, Mapping[str, Any]]]
     place: Place
     later: str = ""
+    events: int = 0
 
     def note(self, message: str, parameters: bool = False) -> None:
         """Keep what is not known here: nodes, or only ``parameters`` of one."""

@@ -9,7 +9,7 @@ from typing import Any
 from multibot_rewrite.evidence.launch_records import LaunchGraph, LaunchOrder
 from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.launch.door import of_launch, of_launch_ros
-from multibot_rewrite.launch.graph.commands import read_commands
+from multibot_rewrite.launch.graph.commands import faults, read_commands
 from multibot_rewrite.launch.graph.describe import Visit, failure
 from multibot_rewrite.launch.graph.made_files import keep_sources
 from multibot_rewrite.launch.graph.packages import add_sources
@@ -41,6 +41,8 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
     context = of_launch().LaunchContext(noninteractive=True)
     seen = Visit(context, [], [], [], Place(os.path.abspath(order.file), 1))
     visit_all(description, seen)
+    for it in faults(context):
+        seen.note(it, parameters=True)
     return LaunchGraph(tuple(seen.nodes), tuple(dict.fromkeys(seen.notes)))
 
 

@@ -46,6 +46,10 @@ _PASSED = (
 )
 
 
+# One after the other; a timer may start itself again.
+_MOST_EVENTS = 20
+
+
 def visit_all(entity: Any, seen: Visit) -> None:
     """Visit a description, then what its events and timers start: by then all groups have ended, with
     their namespaces and launch configurations (launch jazzy, launch_service.py)."""
@@ -162,7 +166,12 @@ def _later(entity: Any, seen: Visit) -> Iterable[Any] | None:
 
 
 def _wait(actions: Iterable[Any], word: str, seen: Visit, kept: Mapping[str, Any]) -> None:
-    seen.waiting.extend((it, seen._replace(later=word), kept) for it in actions)
+    actions = [*actions]
+    if actions and seen.events >= _MOST_EVENTS:
+        seen.note(f"what starts {word} starts something {word} again and again")
+        return
+    later = seen._replace(later=word, events=seen.events + 1)
+    seen.waiting.extend((it, later, kept) for it in actions)
 
 
 def _ended(entity: Any, seen: Visit) -> None:
