@@ -22,6 +22,7 @@ from multibot_rewrite.fleets.fleet_file import input_files
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.launch_file import launch_files
 from multibot_rewrite.fleets.meeting import without_started
+from multibot_rewrite.fleets.moveit_parameters import moveit_parameters
 from multibot_rewrite.fleets.output_file import (
     FilesAndFindings,
     OutputFile,
@@ -69,7 +70,7 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
             *companion_files(plan),
             *rviz_files(configs),
             *bridge_outputs(plan),
-            *commands_file(each, rviz_commands(configs), plan.file.distro),
+            *commands_file(each, rviz_commands(plan, configs), plan.file.distro),
         ]
         files = sorted(it for it in made if isinstance(it, OutputFile))
         findings = [it for it in made if isinstance(it, Finding)]
@@ -86,7 +87,7 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
         styled = list(in_style(plan, files))
         findings += [it for it in styled if isinstance(it, Finding)]
         kept = (it for it in styled if isinstance(it, OutputFile))
-        files = sorted((*kept, *_tables(plan, fleet)))
+        files = sorted((*kept, *_tables(plan, fleet), *moveit_parameters(plan, files)))
         brought = {it.name for it in fleet.bridged if PUBLISHES in it.bridge}
         files = sorted((*files, *launch_files(plan, each, configs, files, brought)))
         _check_paths_differ(files)

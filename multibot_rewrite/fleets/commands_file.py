@@ -1,4 +1,5 @@
-"""``commands.md``: what places, spawns and drives each robot, loads its controllers, opens RViz."""
+"""``commands.md``: what places, spawns and drives each robot, loads its controllers, opens RViz, and
+starts MoveIt."""
 
 from __future__ import annotations
 
@@ -8,6 +9,7 @@ from collections.abc import Iterable, Iterator
 from multibot_rewrite.evidence.parameter_files import OWN_TYPE
 from multibot_rewrite.fleets import spawn, teleop
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
+from multibot_rewrite.fleets.moveit_parameters import moveit_commands
 from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, path_for
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_nodes import node_sources
@@ -41,6 +43,7 @@ def commands_file(
         rows += [f"{with_clock(command(it), clock)}\n" for it in poses.transforms]
         rows += [spawn.either(it, robot) for it in spawned if spawn.is_simulated(robot)]
         rows += _controllers(one)
+        rows += [f"{with_clock(it, clock)}\n" for it in moveit_commands(one)]
         driven = (with_clock(teleop.command(it), clock) for it in teleop.teleops(one))
         rows += [*(f"{it}\n" for it in driven), "```\n", *_prefixed(robot)]
         for pose in poses.initial:

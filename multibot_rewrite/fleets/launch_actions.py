@@ -12,11 +12,11 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from multibot_rewrite.evidence.parameter_files import OWN_TYPE
-from multibot_rewrite.fleets import spawn, start_poses
+from multibot_rewrite.fleets import moveit_parameters, spawn, start_poses
 from multibot_rewrite.fleets.fleet_file import REAL
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.node_names import NodeNames, names_of
-from multibot_rewrite.fleets.output_file import path_for
+from multibot_rewrite.fleets.output_file import expanded_name, path_for
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_nodes import node_sources
 from multibot_rewrite.fleets.rviz_outputs import RvizOutput, window_path
@@ -199,9 +199,11 @@ def _parameters(given: _Given, name: str) -> tuple[File | Mapping[str, Any], ...
     if known == STATE:
         prefix = {"frame_prefix": robot.frame_prefix} if robot.frame_prefix else {}
         found.append({"robot_description": Text(_description(robot)), **prefix})
-    if known == "move_group":
-        srdf = {"robot_description_semantic": Text(path_for(robot, robot.spec.srdf))}
-        found += [{"robot_description": Text(_description(robot))}, srdf]
+    if known in ("move_group", "servo_node"):
+        srdf = Text(path_for(robot, expanded_name(robot.spec.srdf)))
+        made = File(path_for(robot, moveit_parameters.FILE))
+        semantic = made if made.path in given.files else {"robot_description_semantic": srdf}
+        found += [{"robot_description": Text(_description(robot))}, semantic]
     if known == MANAGER_KIND:
         managed = [given.names.name(it) for it in given.names.managed.get(name, ())]
         found.append({"autostart": True, "node_names": managed})
@@ -287,15 +289,15 @@ def _shared(plan: FleetPlan, names: NodeNames, known: Mapping[str, NodeFacts]) -
         yield Start(*program[:2], it.node.namespace, it.node.name, tuple(files), it.rules)
 
 
-def windows(configs: Sequence[RvizOutput]) -> tuple[Start, ...]:
-    """The windows of RViz."""
+def windows(configs: Sequence[RvizOutput], files: Collection[str]) -> tuple[Start, ...]:
+    """The windows of RViz; MoveIt's displays read the parameters of their process."""
     return tuple(
         Start(
             "rviz2",
             "rviz2",
             window.namespace,
             "",
-            (),
+            tuple(File(it) for it in (f"{window.robot}/{moveit_parameters.FILE}",) if it in files),
             tuple(window.remaps),
             ("-d", File(window_path(window, it.source))),
         )

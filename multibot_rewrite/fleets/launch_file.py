@@ -51,7 +51,7 @@ def _starts(
         simulators,
         launch_actions.of_all(plan, paths),
         robots,
-        launch_actions.windows(configs),
+        launch_actions.windows(configs, paths),
         bool(simulators) if clock is None else clock,
         [teleop.command(it) for one in each for it in teleop.teleops(one)],
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import shlex
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 from multibot_rewrite.companions.names.robot_topics import fleet_topics
@@ -16,7 +16,8 @@ from multibot_rewrite.companions.rviz.rewrite import (
 )
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
-from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, yaml_of
+from multibot_rewrite.fleets.moveit_parameters import FILE, has_moveit
+from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, path_for, yaml_of
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.start_poses import world_of
 from multibot_rewrite.fleets.with_start_pose_nodes import split_per_robot
@@ -89,13 +90,20 @@ def rviz_files(configs: Iterable[RvizOutput]) -> FilesAndFindings:
         )
 
 
-def rviz_commands(configs: Iterable[RvizOutput]) -> list[str]:
-    """The line that opens each window."""
+def rviz_commands(plan: FleetPlan, configs: Iterable[RvizOutput]) -> list[str]:
+    """The line that opens each window; MoveIt's displays read the parameters of their process."""
+    given = {it.spec.name: path_for(it, FILE) for it in plan.robots if has_moveit(it)}
     return [
-        shlex.join(start_command(window, window_path(window, it.source)))
+        shlex.join([*start_command(window, window_path(window, it.source)), *_given(window, given)])
         for it in configs
         for window in it.windows
     ]
+
+
+def _given(window: RvizText, given: Mapping[str, str]) -> list[str]:
+    path = given.get(window.robot, "")
+    lead = [] if window.namespace or window.remaps else ["--ros-args"]
+    return [*lead, "--params-file", path] if path else []
 
 
 def window_path(window: RvizText, source: str) -> str:

@@ -343,3 +343,50 @@ def test_a_controllers_file_that_a_launch_file_fills_is_taken_unedited(
     # The mock lacks what io_controller claims; of the arm nothing is open.
     assert {it.code for it in findings} <= {"MF811", "MF801", "MF814"}
     assert "elbow" not in str([it.message for it in findings])
+
+
+def test_move_group_is_started_with_what_the_files_say(tmp_path: Path) -> None:
+    """As moveit_configs.py (to_dict) of moveit_configs_utils."""
+    files, _ = built(tmp_path, f"groups: rename\n{TWO}")
+    made = yaml.safe_load(files["left/moveit_parameters.yaml"])["/**"]["ros__parameters"]
+    assert made["robot_description_semantic"] == files["left/arm.srdf"]
+    assert list(made["robot_description_kinematics"]) == ["left_manipulator"]
+    assert made["moveit_servo"]["move_group_name"] == "left_manipulator"
+    assert made["sensors"] == ["lidar"]
+    assert made["lidar"]["point_cloud_topic"] == "/left/points"
+    assert made["planning_pipelines"] == ["ompl"]
+    assert made["ompl"]["planning_plugins"] == ["ompl_interface/OMPLPlanner"]
+    lines = files["commands.md"].splitlines()
+    given = "--params-file left/moveit_parameters.yaml"
+    for start in ("ros2 run moveit_ros_move_group move_group", "ros2 run moveit_servo", "rviz2 -d"):
+        (line,) = (it for it in lines if it.startswith(start) and "/left" in it)
+        assert line.endswith(given)
+        assert "-r __ns:=/left" in line
+    assert files["fleet.launch.py"].count('file("left/moveit_parameters.yaml")') >= 2
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "path"),
+    [
+        ("limits.yaml", "joint_limits: {elbow: {max_velocity: 1}}", "robot_description_planning"),
+        (
+            "controllers.yaml",
+            "controller_names: [a]\na: {type: T}",
+            "moveit_simple_controller_manager",
+        ),
+        ("moveit.yaml", "moveit_controller_manager: m/M", "moveit_controller_manager"),
+        ("chomp_planning.yaml", "planning_plugins: [c/C]\nempty: []", "chomp"),
+    ],
+)
+def test_where_the_content_of_a_moveit_file_goes(
+    name: str, text: str, path: str, tmp_path: Path
+) -> None:
+    (tmp_path / name).write_text(text)
+    more = TWO.replace("{name: left}", f"{{name: left, companions: {{moveit: {name}}}}}")
+    files, _ = built(tmp_path, more)
+    made = yaml.safe_load(files["left/moveit_parameters.yaml"])["/**"]["ros__parameters"]
+    assert path in made
+    # rcl takes no empty list.
+    assert "empty" not in str(made)
+    assert ("ompl" in made) == (path != "chomp")
+    assert made["default_planning_pipeline"] == ("chomp" if path == "chomp" else "ompl")

@@ -84,7 +84,9 @@ def test_every_robot_has_its_files_and_no_other(fleet: tuple[str, dict[str, str]
     common |= {"fleet.launch.py", "fleet.launch.xml"}
     own = {
         "scout": {"rover.urdf", "params.yaml", "bridge.yaml", "one_robot.rviz", "start_pose.yaml"},
-        "reach": {"arm.urdf", "arm.srdf", "limits.yaml", "one_robot.rviz"},
+        "reach": {
+            *("arm.urdf", "arm.srdf", "limits.yaml", "moveit_parameters.yaml", "one_robot.rviz")
+        },
         "grip": {"arm.urdf", "one_robot.rviz"},
         "bare": {"rover.urdf", "one_robot.rviz"},
     }

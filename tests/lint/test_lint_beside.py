@@ -16,6 +16,7 @@ from multibot_rewrite.lint.beside.parameter_table import table
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.run import lint_files
+from multibot_rewrite.remap.nodl.lookup import INDEX
 
 SHIPPED = Path(kind_of.__code__.co_filename).parent / "parameters.tsv"
 CONTROLLERS = """\
@@ -243,6 +244,23 @@ def test_sources_of_a_package_say_what_its_controllers_declare(tmp_path: Path) -
     assert [it.code for it in lint_file(str(file), Settings())] == ["MB850"]
 
 
+def test_an_installed_nodl_document_adds_to_what_is_known(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    index = tmp_path / "install" / INDEX
+    index.mkdir(parents=True)
+    (index / "nav2_amcl__amcl").write_text(
+        "nodl_version: 2\nparameters:\n  acme_gain: {type: double}\n"
+    )
+    text = NAV.replace("scan_topic: scan", "acme_gian: 1.0")
+    assert found(text, tmp_path) == []
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path / "install"))
+    assert found(text, tmp_path) == ["MB850:7"]
+    assert found(text.replace("acme_gian: 1.0", "acme_gain: 1"), tmp_path) == ["MB851:7"]
+    (index / "nav2_amcl__amcl").write_text("parameters: [\n")
+    assert found(text, tmp_path) == []
+
+
 def test_parameters_are_those_of_the_release(tmp_path: Path) -> None:
     """collision_monitor has ``enabled`` from Lyrical on."""
     file = tmp_path / "nav.yaml"
@@ -316,6 +334,20 @@ def test_sizes_are_those_of_one_of_several_descriptions(tmp_path: Path) -> None:
     (tmp_path / "urdf/wide.urdf").write_text(wide)
     assert found(CONTROLLERS.replace("0.34", "0.5"), tmp_path) == []
     assert found(CONTROLLERS.replace("0.34", "0.8"), tmp_path) == ["MB856:10"]
+
+
+def test_a_comment_at_the_end_of_the_line_silences_its_codes(tmp_path: Path) -> None:
+    text = CONTROLLERS.replace("0.07", "-0.07")
+    for comment, expected in (
+        ("", ["MB851:10", "MB852:11"]),
+        ("# urdf-lint: ignore MB851 - why", ["MB852:11"]),
+        ("# urdf-lint: ignore MB850, MB851", ["MB852:11"]),
+        ("# urdf-lint: ignore MB852", ["MB851:10", "MB852:11"]),
+        ("# ignore MB851", ["MB851:10", "MB852:11"]),
+    ):
+        assert (
+            found(text.replace("0.34", f"1 {comment}"), tmp_path, NAMES[CONTROLLERS]) == expected
+        ), comment
 
 
 def test_bad_input_is_one_finding(tmp_path: Path) -> None:

@@ -1,4 +1,5 @@
-"""The parameters that nodes declare: of packages whose sources are there, else those that are known.
+"""The parameters that nodes declare: by the sources of their packages where those are there, else by
+installed NoDL documents and by what is known.
 
 ``parameters.tsv`` is made by ``python -m multibot_rewrite.lint.beside.parameter_table``.
 """
@@ -16,11 +17,14 @@ from multibot_rewrite.companions.params.known_nodes import KnownNode
 from multibot_rewrite.interfaces.parameter_comparison import owners
 from multibot_rewrite.interfaces.parameter_facts import READ, YAML
 from multibot_rewrite.interfaces.parameter_files import file_parameters
-from multibot_rewrite.model import InputError
+from multibot_rewrite.model import InputError, UsageError
+from multibot_rewrite.outside import outside
 from multibot_rewrite.releases import has_release
+from multibot_rewrite.remap.nodl.lookup import Identity, file_of, find_interfaces, load
 from multibot_rewrite.sources.packages import entries, package_folder
 from multibot_rewrite.sources.read import read_file
 
+NODL = "nodl"
 # Folders of a package that have files of generate_parameter_library, and what those are called.
 _FOLDERS = ("src", "param", "params", "parameters", "config", "include", "")
 _CALLED = re.compile(r".*param\w*\.ya?ml")
@@ -58,7 +62,27 @@ def facts_of_node(
     if node is None:
         return ()
     packages = (node.package, *owners().also.get(node.name, ()))
-    return tuple(it for package in packages for it in known_facts().get(package, ()))
+    known = (it for package in packages for it in known_facts().get(package, ()))
+    return (*_in_nodl(node), *known)
+
+
+def _in_nodl(node: KnownNode) -> Iterator[Fact]:
+    """What the installed NoDL document of a node declares."""
+    for path, type_ in nodl_parameters(node.package, node.name):
+        yield from _fact(path, type_, "", "", NODL, f"NoDL of {node.package}/{node.name}")
+
+
+@outside
+def nodl_parameters(package: str, node: str) -> tuple[tuple[str, str], ...]:
+    """Names and types of the parameters in the installed NoDL document of a node; none without one, or
+    where it cannot be read, which ``multibot remap`` tells."""
+    try:
+        installed = find_interfaces(())
+        file = file_of(installed, Identity(package, node))
+        found = load(file, installed).parameters if file else ()
+    except (UsageError, OSError):
+        return ()
+    return tuple((it.name, it.type) for it in found)
 
 
 @lru_cache

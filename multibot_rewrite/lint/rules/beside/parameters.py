@@ -34,7 +34,8 @@ def _drive(line: str) -> str:
     why="The node does not declare it, so the value has no effect, and the node runs with its default: "
     "odometry from base_link, a speed without limit.",
     fix="Correct the name. Parameters come from the generate_parameter_library files of the "
-    "package where its sources are there, else from the sources of the release.",
+    "package where its sources are there, else from installed NoDL documents and the sources of the "
+    "release.",
     bad=_drive("base_frame_idd: base_footprint"),
     good=_drive("base_frame_id: base_footprint"),
     line=5,
