@@ -128,6 +128,10 @@ PLANTED = {
         classic("gazebo_ros_diff_drive", "<ros/><robotBaseFrame>a</robotBaseFrame>"),
         "MB162",
     ),
+    "a parameter of a sensor's plugin": (
+        sensor("ray", classic("gazebo_ros_ray_sensor", "<ros/><output_typ>a</output_typ>")[8:-9]),
+        "MB162",
+    ),
     "a parameter of hardware": (
         hardware("kortex_driver/KortexMultiInterfaceHardware", '<param name="robot_ipp">1</param>'),
         "MB162",
@@ -257,6 +261,9 @@ def test_models_of_sdf_are_read_as_well() -> None:
         ("double", "0x10", None),
         ("double", ".5", None),
         ("double", "-inf", None),
+        ("double", "1e999", True),
+        ("double", "\uff11", True),
+        ("int", "9" * 30, True),
         ("int", "1.0", None),
         ("int", "1.5", False),
         ("unsigned_int", "-3", False),

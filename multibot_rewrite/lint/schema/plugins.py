@@ -80,7 +80,7 @@ def _parameter(
             yield from _unknown(child, name, section)
         return
     row = rows[0]
-    if row.releases and not has_release(row.releases, release):
+    if not has_release(row.releases, release):
         message = f"{title(section)} of {release} does not read {name!r}"
         hint = f"that of {', '.join(releases_with(row.releases))} does"
         yield Fault("later", child, None, message, hint)
@@ -121,11 +121,9 @@ def _measure(child: _Element, unit: Row, text: str, where: str) -> Iterator[Faul
 
 def _unknown(child: _Element, name: str, section: Described) -> Iterator[Fault]:
     message = f"{title(section)} does not read {name!r}"
-    there = {str(it.tag) for it in child.itersiblings(preceding=True)} | {
-        str(it.tag) for it in child.itersiblings()
-    }
-    free = [it for it in section.rows if it not in there]
-    near = slip_of(name, free)
+    parent, near = child.getparent(), slip_of(name, section.rows)
+    if parent is not None and near and parent.find(near) is not None:
+        near = ""  # that one is there already
     other = _of_another(name, section.names[0])
     if other:
         hint = f"{other} does; did you mean {near!r}?" if near else f"{other} does"
@@ -137,6 +135,7 @@ def _unknown(child: _Element, name: str, section: Described) -> Iterator[Fault]:
         yield Fault("unread", child, None, message)
 
 
+@lru_cache(maxsize=512)
 def _of_another(name: str, library: str) -> str:
     """The plugin of the other simulator that does the same and has this parameter."""
     own = _subject(library)

@@ -243,10 +243,10 @@ def _unknown(
     tag = str(child.tag)
     if tag in READ_BESIDES:
         return
-    parent = child.getparent()
-    there = set() if parent is None else {str(it.tag) for it in parent.iterchildren("*")}
-    free = [it for it in (*known.rows, *also) if it[0] not in "@*" and it not in there]
-    near = slip_of(tag, free) or nearest(tag, free, MISTYPED)
+    free = [it for it in (*known.rows, *also) if it[0] not in "@*"]
+    parent, near = child.getparent(), slip_of(tag, free) or nearest(tag, free, MISTYPED)
+    if parent is not None and near and parent.find(near) is not None:
+        near = ""  # that one is there already
     message = f"Gazebo reads no <{tag}> in <{home}>"
     if near:
         yield Fault("misspelt", child, None, message, f"did you mean <{near}>?")
