@@ -9,7 +9,9 @@ from __future__ import annotations
 
 import asyncio
 import json
+import os
 import sys
+from pathlib import Path
 from typing import Any
 
 import launch_ros.actions as ros_actions
@@ -20,13 +22,14 @@ from launch.substitutions import Command, FindExecutable
 from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
 from launch_ros.actions.load_composable_nodes import get_composable_node_load_request
 from launch_ros.substitutions import ExecutableInPackage
+from rclpy.parameter import parameter_value_to_python
 
 # They do their work and end, so that what waits for their end starts.
 ENDING = {
     *("spawner", "hardware_spawner", "create", "spawn_entity.py", "gz_spawn_model"),
     *("sleep", "xacro", "wait_for_robot_description"),
 }
-QUIET = 5.0
+QUIET = float(os.environ.get("RECORDER_QUIET", "5.0"))
 Rows = list[dict[str, Any]]
 
 
@@ -60,7 +63,10 @@ def record(rows: Rows) -> None:
         words = cmd[1:]
         if [executable, *words[:1]] == ["ros2", "run"]:
             package, executable, *words = words[1:]
-        rows.append({"package": package, "executable": executable, **words_of(words)})
+        told = words_of(words)
+        texts = {file: Path(file).read_text() for file in told["files"]}
+        row = {"package": package, "executable": executable, "words": words, "texts": texts}
+        rows.append({**row, **told})
         program = ["true"] if executable in ENDING else ["sleep", "600"]
         return await real(protocol, cmd=program, **{**options, "shell": False})
 
@@ -96,8 +102,17 @@ def load(action: Any, context: Any, rows: Rows) -> None:
                     "namespace": getattr(request, "node_namespace", ""),
                     "rules": [rule.split(":=", 1) for rule in getattr(request, "remap_rules", ())],
                     "container": container,
+                    "parameters": [
+                        [it.name, plain(parameter_value_to_python(it.value))]
+                        for it in getattr(request, "parameters", ())
+                    ],
                 }
             )
+
+
+def plain(value: Any) -> Any:
+    """A parameter's value as JSON has it."""
+    return value if isinstance(value, str | bool | int | float) else list(value or ())
 
 
 async def quiet(rows: Rows) -> None:

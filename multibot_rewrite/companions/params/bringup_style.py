@@ -11,13 +11,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import yaml
-
-from multibot_rewrite.companions.params.sections import PLACEHOLDER, raw_sections
+from multibot_rewrite.companions.params.sections import PLACEHOLDER, RawSection, raw_sections
+from multibot_rewrite.companions.params.shared_defaults import DefaultLine, inserted
 from multibot_rewrite.companions.yaml_text import (
     Splice,
     YamlText,
     found_at,
+    pairs,
     quoted,
     replaced,
     spliced,
@@ -27,6 +27,9 @@ from multibot_rewrite.findings.rule import declare
 
 _SLAM = "slam_toolbox"
 _WHY = "# nav2_bringup wants this key, and gives slam_toolbox the file without a namespace.\n"
+_MAP_NAME = DefaultLine(
+    "# /map by default, and nothing would move /map_metadata", "map_name", "map"
+)
 
 OUTSIDE = declare(
     "MF132",
@@ -56,15 +59,15 @@ def for_bringup(document: YamlText, namespace: str) -> tuple[str, tuple[Finding,
 
     Raises InputError for a file that rcl rejects.
     """
-    keys = {id(it.keys[0]): it.keys[0] for it in raw_sections(document)}
-    made = [it for key in keys.values() for it in _changed(document, key, namespace)]
+    sections = {id(it.keys[0]): it for it in raw_sections(document)}
+    made = [it for section in sections.values() for it in _changed(document, section, namespace)]
     splices = [it for it in made if isinstance(it, Splice)]
     return spliced(document, splices), tuple(it for it in made if isinstance(it, Finding))
 
 
-def _changed(
-    document: YamlText, key: yaml.ScalarNode, namespace: str
-) -> Iterator[Splice | Finding]:
+def _changed(document: YamlText, section: RawSection, namespace: str) -> Iterator[Splice | Finding]:
+    """The new key of a section, which is the first below that key."""
+    key = section.keys[0]
     below = below_namespace(key.value, namespace)
     if PLACEHOLDER.search(key.value):
         return
@@ -76,6 +79,8 @@ def _changed(
         at, column = key.start_mark.index, key.start_mark.column
         new = f"{_WHY}{' ' * column}{_SLAM}: {{}}\n{' ' * column}{quoted(f'**/{_SLAM}')}"
         yield Splice(at, key.end_mark.index, new)
+        if _MAP_NAME.path not in {it.value for it, _ in pairs(section.body)}:
+            yield inserted(document, section.body, [_MAP_NAME])
     else:
         yield replaced(key, below)
 

@@ -55,7 +55,7 @@ def default_lines(
         here = set().union(*same) | _set_for(section, everywhere)
         lines = list(missing_defaults(job.context, section.node, here))
         if lines:
-            yield _insert(job.document, section.body, lines)
+            yield inserted(job.document, section.body, lines)
         yield from _inexpressible(job, section, section.node, here)
 
 
@@ -135,7 +135,7 @@ smoother_server:
 )
 
 
-def _insert(
+def inserted(
     document: YamlText, body: yaml.MappingNode, lines: Sequence[DefaultLine]
 ) -> Splice | Finding:
     """The lines before the first parameter, with its indentation."""
