@@ -47,7 +47,7 @@ START, END = "<!-- cells -->", "<!-- end of cells -->"
 OWN, BRINGUP = "nav2.launch.py", "nav2_bringup"
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
 # So long has the graph to be quiet.
-LOOK_SECONDS = 40.0
+LOOK_SECONDS, ASK_SECONDS = 40.0, 30.0
 FLEET = """\
 layout: {layout}
 affix: {affix}
@@ -150,7 +150,8 @@ class Cell(NamedTuple):
         """It as a row of the table."""
         how = "composed" if self.composed else "processes"
         where = "SLAM" if self.slam else "localisation"
-        return [self.launch, self.release, self.layout + self.more, how, where]
+        more = ", relayed" if self.more else ""
+        return [self.launch, self.release, f"{self.layout}{more}", how, where]
 
     @property
     def stack(self) -> str:
@@ -159,10 +160,12 @@ class Cell(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """What came of a cell: nodes in the graph, compared parameters, findings."""
+    """What came of a cell: planned nodes in the graph, compared parameters and those of the plan,
+    findings."""
 
     nodes: int
     parameters: int
+    planned: int
     findings: tuple[Finding, ...]
 
     @property
@@ -179,6 +182,10 @@ def cells() -> Iterator[Cell]:
             yield Cell(BRINGUP, release, layout, composed, slam)
     for layout, composed, slam in product(LAYOUTS, both, both):
         yield Cell(OWN, "jazzy", layout, composed, slam)
+    for layout in ("both", "postfix"):
+        yield Cell(OWN, "jazzy", layout, True, False, "relayed: true")
+    yield Cell(OWN, "kilted", "postfix", True, False)
+    yield Cell(OWN, "kilted", "tf-per-robot", False, True)
 
 
 def written(cell: Cell, folder: Path, sources: Path) -> LoadedFleet:
@@ -260,7 +267,7 @@ def processes(fleet: LoadedFleet, rows: list[dict[str, Any]], folder: Path) -> l
                 *(it.helper, it.by, it.above),
             ]
             for it in ends.get(names.get(name, ""), ())
-            if not (manager and it.role == "calls")
+            if "relay" not in name and not (manager and it.role == "calls")
         ]
         return {
             **{"name": code, "words": words, "parameters": parameters, "below": below},
@@ -333,12 +340,16 @@ def looked_at(order: str, out: Path) -> Outcome:
         plan = with_substitutes(plan, replaced)
         graph = observe(Request(LOOK_SECONDS, substitutes=True), environ)
         asked = {it.node: [own.name for own in it.parameters] for it in plan.states}
-        graph = graph._replace(states=ask(list(questions(graph, asked)), 20.0, environ))
+        states = ask(list(questions(graph, asked)), ASK_SECONDS, environ)
+        if len({it.node for it in states if it.parameters}) < len(asked):
+            states = ask(list(questions(graph, asked)), ASK_SECONDS, environ)
+        graph = graph._replace(states=states)
     found = tuple(it for it in check(plan, graph) if it.level != "note")
-    nodes = [it for it in graph.nodes if "transform_listener" not in it.name]
+    nodes = {name for it in plan.robots for name in it.nodes} & {it.name for it in graph.nodes}
     answered = {it.node: len(it.parameters) for it in graph.states}
     compared = sum(answered.get(node, 0) for node in asked)
-    return Outcome(len(nodes), compared, found)
+    wanted = sum(len(own) for node, own in asked.items() if node in nodes)
+    return Outcome(len(nodes), compared, wanted, found)
 
 
 def _path(environ: Mapping[str, str]) -> str:
@@ -350,13 +361,16 @@ def rows_of(chosen: list[str]) -> Iterator[str]:
     sources = sources_folder()
     if sources is None:
         raise SystemExit(f"set {VARIABLE} to a folder with sources by release")
-    yield "| launch file | release | layout | nodes of Nav2 | | nodes | parameters | findings | wrong parameters |"
+    yield (
+        "| launch file | release | layout | Nav2 | | nodes | parameters | findings | wrong parameters |"
+    )
     yield "|---|---|---|---|---|--:|--:|--:|--:|"
     for cell in cells():
         if not set(chosen) <= set(cell.words):
             continue
         with tempfile.TemporaryDirectory() as folder:
             made = outcome(cell, Path(folder), sources)
+        assert made.parameters == made.planned, f"{made.parameters} of {made.planned} answered"
         counts = (made.nodes, made.parameters, len(made.findings), made.wrong)
         for it in made.findings[:12] if "--write" not in sys.argv else ():
             print("   ", it.code, it.level, it.robot, it.node, it.message[:200], file=sys.stderr)

@@ -21,8 +21,9 @@ from rclpy.parameter import Parameter
 
 from multibot_rewrite.graph.live import stub_nodes
 from multibot_rewrite.graph.live.worker import Send, run_worker
-from multibot_rewrite.graph.rehearsal import StubEndpoint
+from multibot_rewrite.graph.rehearsal import TF, StubEndpoint, substitute_type
 from multibot_rewrite.graph.transforms import Edge
+from multibot_rewrite.remap.records import TOPIC
 
 SECONDS = 0.1
 # What code adds to the name that a parameter gives, for a second topic (costmap_subscriber.cpp,
@@ -98,6 +99,8 @@ def endpoints(stubs: Any, node: Any, one: dict[str, Any]) -> list[Any]:
         owner = helpers[by] if helped else node
         end = StubEndpoint(kind, role, named, type_, False)
         made += stub_nodes._create_endpoint(stubs, owner, end, edges)
+    if value("input_topic"):
+        relay(node, value("input_topic"), value("output_topic"), stubs.replaced)
     for managed in value("node_names", []) if one["manager"] else []:
         for service, type_ in (("change_state", "ChangeState"), ("get_state", "GetState")):
             end = StubEndpoint(
@@ -105,6 +108,17 @@ def endpoints(stubs: Any, node: Any, one: dict[str, Any]) -> list[Any]:
             )
             made += stub_nodes._create_endpoint(stubs, node, end, ())
     return made
+
+
+def relay(node: Any, source: str, target: str, replaced: dict[str, str]) -> None:
+    """As topic_tools does: what comes goes out, with the same QoS."""
+    type_ = stub_nodes._installed(TF)
+    if type_ is None:
+        replaced[TF] = substitute_type(TOPIC, TF)
+        type_ = stub_nodes._installed(replaced[TF])
+    latched = "tf_static" in source
+    publisher = stub_nodes.ros.publish(node, type_, target, latched)
+    node.create_subscription(type_, source, publisher.publish, stub_nodes.ros._qos(latched, True))
 
 
 def helper_of(session: Any, node: Any, by: str) -> Any:

@@ -9,8 +9,9 @@ releases from humble (1.1.20) to rolling (a3a97043e).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
+from multibot_rewrite.companions.params.rcl_parameters import parameters_text
 from multibot_rewrite.companions.params.sections import PLACEHOLDER, RawSection, raw_sections
 from multibot_rewrite.companions.params.shared_defaults import DefaultLine, inserted
 from multibot_rewrite.companions.yaml_text import (
@@ -54,15 +55,30 @@ amcl:
 )
 
 
-def for_bringup(document: YamlText, namespace: str) -> tuple[str, tuple[Finding, ...]]:
+Values = Mapping[str, Mapping[str, object]]
+NO_MORE: Values = {}
+
+
+def for_bringup(
+    document: YamlText, namespace: str, more: Values = NO_MORE
+) -> tuple[str, tuple[Finding, ...]]:
     """The text of a file as it was made for the robot in ``namespace``, without that namespace.
 
-    Raises InputError for a file that rcl rejects.
+    ``more`` are further values of nodes that have a section in it: there is one file for all that is
+    started. Raises InputError for a file that rcl rejects.
     """
     sections = {id(it.keys[0]): it for it in raw_sections(document)}
     made = [it for section in sections.values() for it in _changed(document, section, namespace)]
     splices = [it for it in made if isinstance(it, Splice)]
-    return spliced(document, splices), tuple(it for it in made if isinstance(it, Finding))
+    findings = tuple(it for it in made if isinstance(it, Finding))
+    named = {below_namespace(it.path, namespace) for it in sections.values()}
+    added = {f"**/{node}": values for node, values in more.items() if node in named}
+    return f"{spliced(document, splices)}{_lines(added)}", findings
+
+
+def _lines(sections: Values) -> str:
+    """Sections at the end of a file; their keys are others than those of the file."""
+    return f"\n{parameters_text(sections)[1:-1]}\n" if sections else ""
 
 
 def _changed(document: YamlText, section: RawSection, namespace: str) -> Iterator[Splice | Finding]:
