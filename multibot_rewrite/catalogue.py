@@ -110,7 +110,12 @@ HOMES: tuple[Home, ...] = (
     Home(
         "MF7",
         "start poses and spawning",
-        ("fleets.start_pose_rules", "fleets.spawn", "fleets.controller_files"),
+        (
+            "fleets.start_pose_rules",
+            "fleets.spawn",
+            "fleets.two_descriptions",
+            "fleets.controller_files",
+        ),
     ),
     Home(
         "MF8",
@@ -119,6 +124,7 @@ HOMES: tuple[Home, ...] = (
             "evidence.nodes",
             "evidence.launch_findings",
             "fleets.launched_files",
+            "fleets.loaded_files",
             "fleets.simulators",
             "fleets.shared_nodes",
             "fleets.params_style",

@@ -102,7 +102,7 @@ def rewrite(
     robot: str,
     *,
     layout: str = DEFAULT_LAYOUT,
-    affix: str = "postfix",
+    affix: str | None = None,
     topics: str | None = None,
     separators: Mapping[str, str] | None = None,
     shared_frames: Iterable[str] = SHARED_FRAMES,
@@ -141,7 +141,7 @@ def rewrite_all(
     robots: Iterable[str],
     *,
     layout: str = DEFAULT_LAYOUT,
-    affix: str = "postfix",
+    affix: str | None = None,
     topics: str | None = None,
     separators: Mapping[str, str] | None = None,
     shared_frames: Iterable[str] = SHARED_FRAMES,
@@ -158,7 +158,7 @@ def rewrite_all(
     """Rewrite one description for several robots: one parse, then about a copy of the text each.
 
     ``layout`` is a name of ``multibot_rewrite.naming.LAYOUTS``, such as tf-per-robot or postfix;
-    ``affix`` is postfix or prefix; ``topics`` is postfix, prefix or namespace (default: what the
+    ``affix`` is postfix or prefix, ``topics`` is postfix, prefix or namespace (default: what the
     layout implies); ``separators`` maps kinds to separators; ``groups`` is keep or rename: what
     becomes of an SRDF's groups and end effectors; ``urdf`` is the description an SRDF belongs to;
     ``xacro_args`` are the arguments of a xacro, ``{robot}`` in them is the robot's name: what they
@@ -218,7 +218,7 @@ def explain(
     robot: str = "robot1",
     *,
     layout: str = DEFAULT_LAYOUT,
-    affix: str = "postfix",
+    affix: str | None = None,
     topics: str | None = None,
     separators: Mapping[str, str] | None = None,
     shared_frames: Iterable[str] = SHARED_FRAMES,
@@ -245,7 +245,8 @@ def explain(
     from multibot_rewrite.reports.explain import explain_line  # a rewrite does not need it
 
     urdf_declarations = job.urdf_declarations
-    inventory = collect(read_document(job.data, job.file), job.tree, urdf_declarations)
+    apart = naming.layout.at_run_time
+    inventory = collect(read_document(job.data, job.file), job.tree, urdf_declarations, apart)
     pipeline.check_urdf(inventory, urdf_declarations)
     return explain_line(inventory, job.naming, job.tree, robot, line)
 
@@ -256,7 +257,7 @@ def strip(
     robot: str,
     *,
     layout: str = DEFAULT_LAYOUT,
-    affix: str = "postfix",
+    affix: str | None = None,
     topics: str | None = None,
     separators: Mapping[str, str] | None = None,
     shared_frames: Iterable[str] = SHARED_FRAMES,

@@ -60,7 +60,11 @@ NOT_PLAIN = frozenset("{}$ ")
 
 
 class Layout(NamedTuple):
-    """What differs per robot: the frames, the tf topic, the namespace."""
+    """What differs per robot: the frames, the tf topic, the namespace.
+
+    Where frames are named ``at_run_time`` a description keeps its links and joints: nodes put the
+    robot's name in front of frames, as robot_state_publisher does with its ``frame_prefix``.
+    """
 
     name: str
     short: str
@@ -68,6 +72,7 @@ class Layout(NamedTuple):
     tf_per_robot: bool
     namespaced: bool
     about: str
+    at_run_time: bool = False
 
 
 LAYOUTS = (
@@ -75,6 +80,11 @@ LAYOUTS = (
     Layout("frames-per-robot", "L2", True, False, True, "one /tf, frames per robot"),
     Layout("both", "L3", True, True, True, "tf topic and frames per robot"),
     Layout("postfix", "L4", True, True, False, "everything renamed per robot, no namespaces"),
+    Layout(
+        *("frame-prefix", "L5", True, False, True),
+        "one /tf, frames per robot by frame_prefix, the description keeps its links",
+        at_run_time=True,
+    ),
 )
 DEFAULT_LAYOUT = "postfix"
 
@@ -125,7 +135,7 @@ class Policy(TypedDict, total=False):
 
 def make_naming(
     layout: str = DEFAULT_LAYOUT,
-    affix: str = POSTFIX,
+    affix: str | None = None,
     topics: str | None = None,
     separators: Mapping[str, str] | None = None,
     shared_frames: Iterable[str] = SHARED_FRAMES,
@@ -134,28 +144,40 @@ def make_naming(
 ) -> Naming:
     """Build the policy from plain words; raises UsageError for a word that is not known.
 
-    ``layout`` is a name or short name of ``LAYOUTS``; ``affix`` is ``prefix`` or ``postfix``;
-    ``topics`` is ``postfix``, ``prefix`` or ``namespace`` (default: what the layout implies).
+    ``layout`` is a name or short name of ``LAYOUTS``; ``affix`` is ``prefix`` or ``postfix``
+    (default: postfix, where the layout has no other); ``topics`` is ``postfix``, ``prefix`` or
+    ``namespace`` (default: what the layout implies).
     ``groups`` is ``keep`` or ``rename``: MoveIt's YAML names an SRDF's groups, and each robot's
     move_group has its own.
     """
     chosen = find_layout(layout)
-    _one_of("affix", affix, (POSTFIX, PREFIX))
-    strategy = topics or (NAMESPACE if chosen.namespaced else affix)
+    usual = PREFIX if chosen.at_run_time else POSTFIX
+    side = usual if affix is None else affix
+    _one_of("affix", side, (POSTFIX, PREFIX))
+    strategy = topics or (NAMESPACE if chosen.namespaced else side)
     _one_of("topics", strategy, (POSTFIX, PREFIX, NAMESPACE))
     _one_of("groups", groups, ("keep", "rename"))
     active = _active(chosen, strategy, _separators(separators or {}))
     if groups == "keep":
         active.pop("group", None)
+    _check_run_time(chosen, side, active)
     return Naming(
         chosen,
-        affix,
+        side,
         strategy,
         active,
         frozenset(name.strip("/") for name in shared_frames),
         frozenset(name.strip("/") for name in shared_topics)
         | (frozenset() if chosen.tf_per_robot else frozenset(TF_TOPICS)),
     )
+
+
+def _check_run_time(layout: Layout, side: str, separators: Mapping[str, str]) -> None:
+    """What nodes do at run time is one way: RViz puts a slash behind its TF Prefix
+    (tf_link_updater.cpp)."""
+    if layout.at_run_time and (side != PREFIX or separators["frame"] != "/"):
+        what = "affix: prefix" if side != PREFIX else "frame=/"
+        raise UsageError(f"in layout {layout.name} nodes put robot1/ before frames: use {what}")
 
 
 def find_layout(word: str) -> Layout:
@@ -192,7 +214,9 @@ def _active(layout: Layout, topics: str, separators: dict[str, str]) -> dict[str
     """The kinds that this layout and topic strategy rename at all."""
     # A light is no frame and in no other file, so it has no reason to be the same in any layout.
     kinds = {"light", "stem", *TOPIC_KINDS, "namespace" if topics == NAMESPACE else "node"}
-    if layout.frames:
+    if layout.at_run_time:
+        kinds.add("frame")
+    elif layout.frames:
         kinds |= set(SEPARATORS) - TOPIC_KINDS - {"stem", "namespace", "node"}
     return {kind: separators[kind] for kind in SEPARATORS if kind in kinds}
 

@@ -8,6 +8,8 @@ from itertools import islice
 # How much alike two words have to be, from 0 to 1 (difflib's ratio): one of a short list that a
 # person can choose from, a name of a file, and a name where the finding itself rests on it.
 CHOICE, ALIKE, MISTYPED = 0.6, 0.7, 0.8
+# The same where many known names differ by a word.
+SLIP = 0.85
 # Looking costs: so many names of one report, each among so many.
 HINTED, COMPARED = 20, 2000
 # A shorter word begins too many others.
@@ -18,6 +20,18 @@ def nearest(name: str, known: Iterable[str], alike: float = ALIKE) -> str:
     """The known name most like ``name``, one that differs in case or dashes alone first; else ""."""
     found = nearest_few(name, known, 1, alike)
     return found[0] if found else ""
+
+
+def slip_of(name: str, known: Iterable[str]) -> str:
+    """The known name that is ``name`` but for camel case or a letter or two; else ""."""
+    names = list(known)
+    letters = _letters(name)
+    same = next((it for it in names if _letters(it) == letters), "")
+    return same or nearest(name, names, SLIP)
+
+
+def _letters(name: str) -> str:
+    return name.replace("_", "").replace("-", "").casefold()
 
 
 class Guesses:

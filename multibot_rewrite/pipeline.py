@@ -44,7 +44,8 @@ def prepare(
     ``urdf_declarations`` is what the URDF beside an SRDF declares. ``own`` says more of a source that
     is one robot's own.
     """
-    inventory = collect(read_document(source, file), tree, urdf_declarations)
+    apart = naming.layout.at_run_time
+    inventory = collect(read_document(source, file), tree, urdf_declarations, apart)
     check_urdf(inventory, urdf_declarations)
     plan = make_plan(inventory, naming)
     findings = [*audit.audit(inventory, plan.renames, tree), *plan.findings]
@@ -71,7 +72,8 @@ def _shared_with_twin(
     """What a robot whose xacro has arguments of its own would share with all others."""
     document = inventory.document
     # What the arguments name gets the twin's name once more: only whether it has it matters.
-    edits = make_plan(collect(read_document(twin, document.file), tree), naming).edits
+    read = collect(read_document(twin, document.file), tree, apart=naming.layout.at_run_time)
+    edits = make_plan(read, naming).edits
     text = fill(cut(twin, edits), TWIN)
     return shared_with(document, text, TWIN, naming, tree.vocabulary)
 
@@ -152,13 +154,16 @@ def strip(
     ``urdf_declarations`` is what the rewritten URDF beside a rewritten SRDF declares. ``before`` is
     what the robot's own xacro arguments make, where the naming has names of these.
     """
-    inventory = collect(read_document(source, file), tree, urdf_declarations)
+    apart = naming.layout.at_run_time
+    inventory = collect(read_document(source, file), tree, urdf_declarations, apart)
     check_urdf(inventory, urdf_declarations)
     renames = make_renames(inventory, naming)
     found = checks.not_rewritten(inventory, renames, robot)
     found += checks.other_urdf(inventory, renames, robot, urdf_declarations)
     _stop_on_errors(found)
-    places = own_places(collect(read_document(before, file), tree), naming) if before else NOWHERE
+    places = NOWHERE
+    if before:
+        places = own_places(collect(read_document(before, file), tree, apart=apart), naming)
     stripped = b"".join(cut(source, strip_edits(inventory, naming, robot, places)))
     again = prepare(stripped, file, naming, tree, stripped_names(urdf_declarations, naming, robot))
     if fill(again.pieces, robot) != source:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+from collections import Counter
 from collections.abc import Iterator
 from importlib.util import find_spec
 from pathlib import Path
@@ -13,6 +14,7 @@ from hypothesis import HealthCheck, Phase, settings
 from paths import CORPUS
 from real_robots import WHEELS, corpus_files, wheel_files
 
+REAL = "real launch"
 # Files of tests that need more than an Ubuntu has: readers of what is written.
 READERS = {
     "cli/test_findings.py": ("junitparser",),
@@ -101,8 +103,10 @@ def tf2(pytestconfig: pytest.Config) -> dict[str, str]:
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    """How many tests were skipped for want of the real launch."""
+    """Which tests were skipped for want of the real launch."""
     skipped = terminalreporter.stats.get("skipped", ())
-    count = sum("real launch" in str(it.longrepr) for it in skipped)
-    if count:
-        terminalreporter.write_line(f"{count} tests need the real launch, which is not here")
+    files = Counter(it.nodeid.partition("::")[0] for it in skipped if REAL in str(it.longrepr))
+    if files:
+        listed = ", ".join(f"{file} ({count})" for file, count in sorted(files.items()))
+        needed = f"{files.total()} tests need the {REAL}, which is not here"
+        terminalreporter.write_line(f"{needed}: {listed}")

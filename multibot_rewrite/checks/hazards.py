@@ -69,7 +69,10 @@ def bare_lookups(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
     declared = {claim.site.kinds[0] for claim in inventory.claims if claim.site.role == "declares"}
     for section, host in _known_hosts(inventory):
         kind = section.unique
-        if kind in declared and kind not in naming.separators:
+        # Hardware looks for the sensors that it is given, not for all that the robot has.
+        element = host.element
+        without = kind != "" and element.tag == "ros2_control" and element.find(kind) is None
+        if kind in declared and kind not in naming.separators and not without:
             message = (
                 f"{section.names[0]} looks {kind}s up by bare name in the whole world: "
                 "it may find that of another robot"

@@ -56,17 +56,27 @@ def chain(robot: Robot, base: str, tip: str) -> list[str] | None:
 
 def joints_of(name: str, groups: Groups, robot: Robot) -> Collection[str]:
     """The joints of a group, those of its subgroups included; a group may hold itself."""
-    reached, waiting = {name}, [name]
-    joints: set[str] = set()
-    while waiting:
-        group = groups.get(waiting.pop())
-        for member in group.iterchildren("*") if group is not None else ():
-            joints.update(_joints(member, robot))
-            inner = text_of(member)
-            if member.tag == "group" and inner not in reached:
-                reached.add(inner)
-                waiting.append(inner)
-    return joints
+    members = (it for group in _within(name, groups) for it in _members(groups, group))
+    return {joint for member in members for joint in _joints(member, robot)}
+
+
+def is_whole(name: str, groups: Groups) -> bool:
+    """Are a group and all of its subgroups declared?"""
+    return all(it in groups for it in _within(name, groups))
+
+
+def _within(name: str, groups: Groups) -> list[str]:
+    """The names of a group and its subgroups, declared or not."""
+    found = [name]
+    for group in found:  # grows
+        inner = (text_of(it) for it in _members(groups, group) if it.tag == "group")
+        found += (it for it in dict.fromkeys(inner) if it not in found)
+    return found
+
+
+def _members(groups: Groups, name: str) -> Iterator[_Element]:
+    group = groups.get(name)
+    return iter(()) if group is None else group.iterchildren("*")
 
 
 def _joints(member: _Element, robot: Robot) -> Collection[str]:

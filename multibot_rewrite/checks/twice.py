@@ -82,7 +82,7 @@ def carrying(known: list[UsedName], robot: str, own: OwnNames = NO_OWN_NAMES) ->
     """
     kept = {text for _, text in own}
     found = [name for name in known if name.text not in kept and _carries_name(name, robot)]
-    return found if not is_part(robot) or _most(found, known) else []
+    return found if not is_part(robot) or _most(found, known, robot) else []
 
 
 def is_part(robot: str) -> bool:
@@ -100,10 +100,14 @@ def _carries_name(name: UsedName, robot: str) -> bool:
     )
 
 
-def _most(found: Iterable[UsedName], known: Iterable[UsedName]) -> bool:
-    """Are these more than half of the links, joints, namespaces or topics?"""
+def _most(found: Iterable[UsedName], known: Iterable[UsedName], robot: str) -> bool:
+    """Are these more than half of the links, joints, namespaces or topics?
+
+    In a topic the robot is a word between slashes: ``left_scan`` is the scan of a part.
+    """
+    counted = (it for it in found if it.kind not in TOPIC_KINDS or robot in it.text.split("/"))
     carried, all_ = (
-        Counter(GROUPS.get(it.kind, it.kind) for it in names) for names in (found, known)
+        Counter(GROUPS.get(it.kind, it.kind) for it in names) for names in (counted, known)
     )
     return any(2 * carried[kind] > all_[kind] for kind in COUNTED)
 

@@ -23,6 +23,7 @@ from multibot_rewrite.reports.xacro_arguments import (
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.sources.access import Reach
 from multibot_rewrite.sources.own_names import filled
+from multibot_rewrite.sources.read import is_xacro
 
 COLUMNS = ("argument", "default", "goes into", "as", "count", "example")
 
@@ -51,8 +52,8 @@ def _path(options: argparse.Namespace) -> str:
     words = plain_words(options)
     if len(words) != 1:
         raise UsageError("give one FILE.xacro; for example: multibot arguments arm.urdf.xacro")
-    if not words[0].endswith(".xacro"):
-        raise UsageError(f"{words[0]}: only xacro has arguments; give a file named *.xacro")
+    if not is_xacro(words[0]):
+        raise UsageError(f"{words[0]}: only xacro has arguments; give a xacro")
     return words[0]
 
 

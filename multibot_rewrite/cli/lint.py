@@ -23,6 +23,8 @@ from multibot_rewrite.cli.usage import plain_words
 from multibot_rewrite.cli.walk import check_folder, check_target, find_files, standard_input
 from multibot_rewrite.findings.finding import LEVELS, Finding
 from multibot_rewrite.findings.selection import fails
+from multibot_rewrite.lint.beside.kinds import SUFFIXES as BESIDE
+from multibot_rewrite.lint.beside.kinds import is_linted
 from multibot_rewrite.lint.config.configured import (
     Configured,
     configured,
@@ -35,7 +37,7 @@ from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
 from multibot_rewrite.releases import facts_of_release, release_here
 
-SUFFIXES = (".urdf", ".xacro", ".srdf")
+SUFFIXES = (".urdf", ".xacro", ".srdf", *BESIDE)
 STDIN = "-"
 CRASHED = "MB001"
 
@@ -75,7 +77,7 @@ def _files(options: argparse.Namespace, config: Configured) -> tuple[list[str], 
         message = f"cannot be read: {error.strerror}"
         refused.append(Finding("MB102", level, message, "", error.filename, 1, 1))
 
-    found = find_files(paths, SUFFIXES, refuse)
+    found = find_files(paths, SUFFIXES, refuse, is_linted)
     # What is found below "." is named as git names it.
     if "." in paths:
         found = [path if path in paths else path.removeprefix("./") for path in found]

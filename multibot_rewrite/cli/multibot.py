@@ -59,6 +59,7 @@ def overview(colour: str) -> str:
             "Many robots in one ROS 2 system: rewrite, plan, build and check a fleet.",
             "",
             "examples:",
+            "  multibot init rover.urdf",
             "  multibot build fleet.yaml -o out/",
             "  multibot remap rover.urdf robot1 robot2 --stack nav2",
             "  multibot explain MG102",

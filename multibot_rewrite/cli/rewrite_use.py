@@ -11,6 +11,7 @@ from multibot_rewrite.cli.report import check_report
 from multibot_rewrite.cli.usage import xacro_args
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.sources.read import is_xacro
 
 PLACEHOLDER = "{robot}"
 
@@ -25,8 +26,8 @@ def check_use(options: argparse.Namespace, names: list[str]) -> None:
         raise UsageError("no robot name given; for example: urdf-postfix rover.urdf robot1")
     _check_together(options)
     inputs = (options.input, options.urdf or "", options.xacro or "")
-    if xacro_args(options) and not any(path.endswith(".xacro") for path in inputs):
-        raise UsageError(f"NAME:=VALUE is for xacro, {input_name(options)} is not named *.xacro")
+    if xacro_args(options) and not any(is_xacro(path) for path in inputs):
+        raise UsageError(f"NAME:=VALUE is for xacro, {input_name(options)} is no xacro")
     if len(names) > 1 and (options.strip or options.in_place):
         raise UsageError("--strip and --in-place take one robot at a time")
     check_report(options, printed=not (options.output or options.in_place))
@@ -49,7 +50,7 @@ def _check_together(options: argparse.Namespace) -> None:
         raise UsageError("--xacro goes with --strip; to rewrite a xacro, name it as the INPUT")
     if options.strip and options.changes is not None:
         raise UsageError("--changes lists what a rewrite changes, it cannot go with --strip")
-    if options.in_place and (options.input == "-" or options.input.endswith(".xacro")):
+    if options.in_place and (options.input == "-" or is_xacro(options.input)):
         raise UsageError("--in-place needs a URDF file, not standard input or xacro")
 
 
@@ -97,5 +98,5 @@ def input_name(options: argparse.Namespace) -> str:
     """The input as messages call it."""
     if options.input == "-":
         return "<stdin>"
-    expanded = " (expanded)" if options.input.endswith(".xacro") else ""
+    expanded = " (expanded)" if is_xacro(options.input) else ""
     return f"{options.input}{expanded}"

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import ROS_SEPARATORS, SEPARATORS, Policy
+from multibot_rewrite.sources.read import is_xacro
 
 # Kinds that ``--separator SEP`` without a kind is for.
 OF_DESCRIPTION = tuple(kind for kind in SEPARATORS if kind not in ROS_SEPARATORS)
@@ -55,8 +56,8 @@ def xacro_args(options: argparse.Namespace) -> dict[str, str]:
 
 def check_xacro(options: argparse.Namespace, paths: Sequence[str]) -> None:
     """Raise UsageError for xacro arguments that none of the files takes."""
-    if xacro_args(options) and not any(path.endswith(".xacro") for path in paths):
-        raise UsageError(f"NAME:=VALUE is for xacro, {paths[0]} is not named *.xacro")
+    if xacro_args(options) and not any(is_xacro(path) for path in paths):
+        raise UsageError(f"NAME:=VALUE is for xacro, {paths[0]} is no xacro")
 
 
 def given_options(options: argparse.Namespace, names: Mapping[str, str]) -> list[str]:

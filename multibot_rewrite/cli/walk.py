@@ -20,21 +20,24 @@ def find_files(
     paths: Sequence[str],
     suffixes: tuple[str, ...],
     unreadable: Callable[[OSError], None] = _refuse,
+    wanted: Callable[[str], bool] = bool,
 ) -> list[str]:
     """The files named, and those with one of the suffixes below the folders named; each file once.
 
-    ``unreadable`` is called for folders that cannot be read. Raises UsageError where a path is not
-    there or nothing is found; InputError for such a folder unless ``unreadable`` goes on.
+    ``unreadable`` is called for folders that cannot be read, ``wanted`` for each file in a folder.
+    Raises UsageError where a path is not there or nothing is found; InputError for such a folder unless
+    ``unreadable`` goes on.
     """
     found: dict[str, str] = {}
     for path in paths:
         if not os.path.exists(path):
             raise UsageError(f"{path}: there is no such file or folder")
-        for file in _below(path, suffixes, unreadable) if os.path.isdir(path) else (path,):
+        below = filter(wanted, _below(path, suffixes, unreadable))
+        for file in below if os.path.isdir(path) else (path,):
             found.setdefault(os.path.realpath(file), file)
     if not found:
-        wanted = " or ".join(f"*{suffix}" for suffix in suffixes)
-        raise UsageError(f"{', '.join(paths)}: no {wanted} there; name a file or another folder")
+        names = " or ".join(f"*{suffix}" for suffix in suffixes)
+        raise UsageError(f"{', '.join(paths)}: no {names} there; name a file or another folder")
     return list(found.values())
 
 

@@ -30,14 +30,16 @@ def interface_gaps(
     if not exports:
         return
     controllers = [it for it in given if it.manager]
-    own = tuple(f"{it.name.rpartition('/')[2]}/" for it in controllers)
+    own = [it.name.rpartition("/")[2] for it in controllers]
     places = {(it.kind, it.name): it.place for it in exports}
     hints = Guesses()
     for at, controller in enumerate(controllers):
         for number, it in enumerate(_claims(controller, known)):
             # Launch files fill in placeholders such as <namespace>.
             filled = not PLACEHOLDER.search(it.name)
-            if (it.kind, it.name) in places or it.name.startswith(own) or not filled:
+            # A controller chains to another one; its own name may be that of a sensor.
+            chained = it.name.partition("/")[0] in (*own[:at], *own[at + 1 :])
+            if (it.kind, it.name) in places or chained or not filled:
                 continue
             near = hints.nearest(it.name, _names(exports, it.kind))
             key = (INTERFACE, str(at), it.kind, str(number))

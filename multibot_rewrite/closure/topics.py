@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.closure.gap import Gap
 from multibot_rewrite.evidence.records import Place
-from multibot_rewrite.nearest import CHOICE, nearest
+from multibot_rewrite.nearest import nearest
 from multibot_rewrite.remap.records import ACTION, CALLS, PUBLISHES, SERVES, SUBSCRIBES, TOPIC
 
 # What people, planners of missions, scenes and tools send, by the last word of the name.
@@ -101,8 +101,12 @@ def _is_from_outside(end: End) -> bool:
 def _near(end: End, given: Iterable[End]) -> End | None:
     """What may be meant: another one of the same type, with the same last word or the likest name."""
     others = (it for it in given if it.kind == end.kind and it.node != end.node)
-    alike = {it.name: it for it in others if end.type and it.type == end.type}
-    last = [name for name in alike if name.endswith("/" + end.name.rpartition("/")[2])]
-    # Many topics that have nothing to do with each other are of these types.
-    least = CHOICE if end.type.startswith("std_") else 0.0
-    return alike.get(nearest(end.name, last or alike, alike=least))
+    alike = [it for it in others if end.type and it.type == end.type]
+    if end.type.startswith("std_"):
+        # Many topics that have nothing to do with each other are of these types: what their names
+        # in the code have in common counts, not the robot's namespace.
+        words = {it.code_name.rpartition("/")[2]: it for it in alike}
+        return words.get(nearest(end.code_name.rpartition("/")[2], words))
+    names = {it.name: it for it in alike}
+    last = [name for name in names if name.endswith("/" + end.name.rpartition("/")[2])]
+    return names.get(nearest(end.name, last or names, alike=0.0))

@@ -15,6 +15,7 @@ from lxml import etree
 
 from multibot_rewrite.evidence.bridges import bridged_by, is_bridge
 from multibot_rewrite.evidence.launch_records import LaunchGraph, LaunchNote
+from multibot_rewrite.evidence.launched import programs
 from multibot_rewrite.evidence.running import Knowledge, RunningNode, running_nodes
 from multibot_rewrite.graph.snapshot import (
     EXPECTED,
@@ -30,6 +31,7 @@ from multibot_rewrite.graph.transforms import STATE_PUBLISHER, Edge, edges_in, s
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
+from multibot_rewrite.releases import has_release
 from multibot_rewrite.remap.records import ACTION, PUBLISHES, SERVICE, SUBSCRIBES, TOPIC, Endpoint
 from multibot_rewrite.rosnames import (
     BoundNode,
@@ -70,7 +72,7 @@ def would_run(graph: LaunchGraph, known: Knowledge) -> Snapshot:
     parts = []
     for it in nodes:
         try:
-            parts.append(_part(it))
+            parts.append(_part(it, known.release))
         except UsageError as error:
             refused.append(f"{it.full_name} ({it.place}: {error})")
             parts.append(_Part(it.full_name, (), ()))
@@ -113,11 +115,12 @@ def _passes_tf_on(it: RunningNode) -> bool:
     return any((role, type_) == (PUBLISHES, TF_TYPE) for role, _, type_ in bridged_by(it))
 
 
-def _part(it: RunningNode) -> _Part:
+def _part(it: RunningNode, release: str) -> _Part:
     bound = _bound(it.name, it.namespace, it.rules)
     name = f"{bound.namespace.rstrip('/')}/{bound.node}"
     helper = _bound(it.name, it.process_namespace, it.process_rules)
-    ends = [*_endpoints(it, name, bound, helper), *_bridged(it, name, bound)]
+    own = _endpoints(it, name, bound, helper, release)
+    ends = [*own, *_bridged(it, name, bound)]
     if _value(it, _SIM_TIME) is True and all(end.name != CLOCK for end in ends):
         ends.append(GraphEndpoint(TOPIC, SUBSCRIBES, CLOCK, CLOCK_TYPE, "", name, None, it.process))
     return _Part(name, tuple(dict.fromkeys(ends)), tuple(_edges(it, bound)))
@@ -135,24 +138,29 @@ def _rule(text: str) -> RemapRule:
 
 
 def _endpoints(
-    it: RunningNode, name: str, bound: BoundNode, helper: BoundNode
+    it: RunningNode, name: str, bound: BoundNode, helper: BoundNode, release: str
 ) -> Iterator[GraphEndpoint]:
     for end in it.facts.endpoints if it.facts and not is_bridge(it) else ():
         if not end.when and end.name and "<" not in end.name:
             own = end._replace(name=_below_namespace_above(it, end))
             full = _resolved(own, helper if end.helper else bound)
-            type_ = _type(it, end)
+            type_ = _type(it, end, release)
             yield GraphEndpoint(end.kind, end.role, full, type_, "", name, None, it.process)
 
 
-def _type(it: RunningNode, end: Endpoint) -> str:
+def _type(it: RunningNode, end: Endpoint, release: str) -> str:
     """Its type, where a parameter such as ``enable_stamped_cmd_vel`` chooses between two."""
     chosen = [given.value for name, given in it.values.items() if "stamped" in name]
-    for wanted in chosen:
+    usual = (has_release(them, release) for word, them in _stamped() if word in end.note)
+    for wanted in chosen or usual:
         fitting = (type_ for type_ in end.also if type_.endswith("Stamped") == wanted)
         if end.type.endswith("Stamped") != wanted:
             return next(fitting, end.type)
     return end.type
+
+
+def _stamped() -> Iterable[tuple[str, str]]:
+    return programs().stamped.items()
 
 
 def _below_namespace_above(it: RunningNode, end: Endpoint) -> str:

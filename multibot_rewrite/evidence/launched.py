@@ -17,6 +17,7 @@ from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.companions.params.known_nodes import KnownNodes
 from multibot_rewrite.companions.params.sections import raw_sections
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
+from multibot_rewrite.controller_ways import controller_way
 from multibot_rewrite.evidence.bridge_rows import bridge_rows
 from multibot_rewrite.evidence.launch_findings import launch_findings
 from multibot_rewrite.evidence.launch_records import LaunchedNode, LaunchGraph, ParameterText
@@ -38,12 +39,14 @@ NO_NAME = "the launch file gives it no name"
 
 class Programs(NamedTuple):
     """Executables whose node is known under another word, those whose node has another name, and those
-    that are no node of a robot. ``simulators`` are packages that only a simulated robot needs."""
+    that are no node of a robot. ``simulators`` are packages that only a simulated robot needs,
+    ``stamped`` parameters that are true by default, with their releases."""
 
     nodes: Mapping[str, str]
     names: Mapping[str, str]
     passing: Collection[str]
     simulators: Collection[str]
+    stamped: Mapping[str, str]
 
 
 class Launched(NamedTuple):
@@ -71,9 +74,8 @@ def programs() -> Programs:
     """Those of ``launch_programs.yaml``."""
     text = files("multibot_rewrite.evidence").joinpath("launch_programs.yaml").read_text("utf-8")
     data = load_yaml(text)
-    return Programs(
-        data["nodes"], data["names"], frozenset(data["passing"]), frozenset(data["simulators"])
-    )
+    passing, simulators = (frozenset(data[it]) for it in ("passing", "simulators"))
+    return Programs(data["nodes"], data["names"], passing, simulators, data["stamped"])
 
 
 def with_launched(
@@ -82,6 +84,7 @@ def with_launched(
     known: Mapping[str, NodeFacts],
     words: Collection[str],
     parameters: KnownNodes,
+    release: str,
 ) -> Launched:
     """The nodes of a robot before its files are asked; ``words`` stand for it in namespaces."""
     spawned, notes = spawned_in(graph.nodes)
@@ -104,11 +107,23 @@ def with_launched(
         (*kept, *nodes.values(), *hosted),
         tuple({it.name: it for it in reversed(given)}.values()),
         {it.facts.name: it.node for it in pairs},
-        {_stripped(it.full_name.strip("/"), words): it for it in spawned},
+        dict(_under_manager(spawned, pairs, words, release)),
         graph.whole,
         tuple(launch_findings(graph, unknown, left)),
         any(it.package in programs().simulators for it in graph.nodes),
     )
+
+
+def _under_manager(
+    spawned: Iterable[Spawned], pairs: Iterable[_Pair], words: Collection[str], release: str
+) -> Iterator[tuple[str, Spawned]]:
+    """The controllers by name, under the rules of their manager, too, where these reach them."""
+    reached = controller_way(release).of_manager
+    wide = {it.facts.name: it.node.remappings for it in pairs if reached}
+    for it in spawned:
+        manager = _stripped(it.manager.strip("/"), words)
+        rules = (*wide.get(manager, ()), *it.rules)
+        yield _stripped(it.full_name.strip("/"), words), it._replace(rules=rules)
 
 
 def as_launched(nodes: Iterable[NodeFacts], launched: Launched) -> Iterator[NodeFacts]:

@@ -14,8 +14,9 @@ from typing import NamedTuple
 
 import yaml
 
+from multibot_rewrite.companions.names.placeholders import of_one_robot, without_robot
 from multibot_rewrite.companions.params.known_nodes import KnownNodes
-from multibot_rewrite.companions.params.rcl_parameters import value_of
+from multibot_rewrite.companions.params.rcl_parameters import Value, value_of
 from multibot_rewrite.companions.params.sections import (
     ANY,
     MANAGER,
@@ -96,13 +97,20 @@ def _section(document: YamlText, raw: RawSection) -> _Section:
 
 def _flat(document: YamlText, body: yaml.Node, above: str) -> Iterator[tuple[str, Given]]:
     for key, node in pairs(body):
-        name = f"{above}{key.value}"
+        name = f"{above}{without_robot(str(key.value))}"
         if isinstance(node, yaml.MappingNode):
             yield from _flat(document, node, f"{name}.")
             continue
         # What rcl rejects is reported where the file is rewritten.
         with suppress(InputError):
-            yield name, Given(value_of(document, node), Place(document.file, line_of(key)))
+            yield name, Given(_plain(value_of(document, node)), Place(document.file, line_of(key)))
+
+
+def _plain(value: Value) -> Value:
+    """A value without what stands for the robot in names."""
+    if isinstance(value, list):
+        return [of_one_robot(it) if isinstance(it, str) else it for it in value]
+    return of_one_robot(value) if isinstance(value, str) else value
 
 
 class _Controller(NamedTuple):

@@ -6,6 +6,7 @@ file that is wrong is to be seen as it is.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
@@ -74,7 +75,7 @@ def running_nodes(
     managers = {it.full_name: it for it in found if it.facts and it.facts.known == MANAGER}
     controllers = _controllers(spawned, managers, started, known)
     lost = [it for it in spawned if it.manager not in managers]
-    return (*found, *controllers), (*notes, *_without_manager(lost))
+    return (*found, *controllers), (*notes, *_spawned_twice(spawned), *_without_manager(lost))
 
 
 def full_name(it: LaunchedNode, facts: NodeFacts | None) -> str:
@@ -170,6 +171,15 @@ def _given_to(controller: Spawned, given: Sequence[GivenNode]) -> GivenNode:
     typed = (it for it in given if it.type and it.name.rpartition("/")[2] == controller.name)
     declared = mine if mine.type else next(typed, mine)
     return declared._replace(name=mine.name, values={**declared.values, **mine.values})
+
+
+def _spawned_twice(spawned: Sequence[Spawned]) -> Iterator[LaunchNote]:
+    """The second one finds it loaded: it was to be another robot's."""
+    for (name, manager), count in Counter((it.name, it.manager) for it in spawned).items():
+        if count > 1:
+            last = next(it for it in reversed(spawned) if (it.name, it.manager) == (name, manager))
+            text = f"{manager} gets {name} from {count} spawners; is one of them another robot's?"
+            yield LaunchNote(last.place, text)
 
 
 def _without_manager(lost: Sequence[Spawned]) -> Iterator[LaunchNote]:

@@ -10,6 +10,7 @@ from multibot_rewrite.findings.rule import Rule
 # What an example is written in -> how a Markdown page colours it; XML where it is not here.
 _LANGUAGES = {
     **dict.fromkeys(("params", "rviz", "moveit", "bridge", "fleet", "remap"), "yaml"),
+    **dict.fromkeys(("params file", "rviz file", "moveit file", "bridge file"), "yaml"),
     "graph": "text",
     "lua": "lua",
 }

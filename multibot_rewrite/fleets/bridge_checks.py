@@ -6,14 +6,7 @@ from collections.abc import Iterable, Iterator
 
 import yaml
 
-from multibot_rewrite.companions.context import Context
-from multibot_rewrite.companions.names.rename_map import is_declared
-from multibot_rewrite.companions.names.robot_topics import is_topic
-from multibot_rewrite.companions.rviz.read_config import text_of
-from multibot_rewrite.companions.yaml_text import YamlText, found_at, is_text, items, pairs
-from multibot_rewrite.findings.finding import WARNING, Finding
-from multibot_rewrite.findings.rule import declare
-from multibot_rewrite.fleets.bridge_entry import (
+from multibot_rewrite.companions.bridge_entry import (
     BOTH,
     DIRECTIONS,
     GZ,
@@ -27,6 +20,13 @@ from multibot_rewrite.fleets.bridge_entry import (
     TYPES,
     BridgeEntry,
 )
+from multibot_rewrite.companions.context import Context
+from multibot_rewrite.companions.names.rename_map import is_declared
+from multibot_rewrite.companions.names.robot_topics import is_topic
+from multibot_rewrite.companions.rviz.read_config import text_of
+from multibot_rewrite.companions.yaml_text import YamlText, found_at, is_text, items, pairs
+from multibot_rewrite.findings.finding import WARNING, Finding
+from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.bridge_types import not_converted
 from multibot_rewrite.nearest import did_you_mean
 

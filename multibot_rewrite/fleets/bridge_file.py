@@ -11,11 +11,22 @@ from typing import NamedTuple
 
 import yaml
 
+from multibot_rewrite.companions.bridge_entry import (
+    BOTH,
+    GZ,
+    GZ_MODEL,
+    MODEL_SLOT,
+    PART,
+    PLACEHOLDER,
+    ROS,
+    SERVICE,
+    BridgeEntry,
+)
 from multibot_rewrite.companions.context import Companion, Context
+from multibot_rewrite.companions.names.placeholders import without_robot
 from multibot_rewrite.companions.names.rename_map import is_declared, spell
 from multibot_rewrite.companions.names.robot_topics import NOTHING, robot_topic
 from multibot_rewrite.companions.rviz.read_config import text_of
-from multibot_rewrite.companions.rviz.values import without_placeholder
 from multibot_rewrite.companions.template import make_template
 from multibot_rewrite.companions.yaml_blocks import Block, blocks, cut_out, is_block, newline
 from multibot_rewrite.companions.yaml_text import (
@@ -29,17 +40,6 @@ from multibot_rewrite.companions.yaml_text import (
 )
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.bridge_checks import entry_findings, model_of, other_models, skipped
-from multibot_rewrite.fleets.bridge_entry import (
-    BOTH,
-    GZ,
-    GZ_MODEL,
-    MODEL_SLOT,
-    PART,
-    PLACEHOLDER,
-    ROS,
-    SERVICE,
-    BridgeEntry,
-)
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import POSTFIX
 
@@ -117,7 +117,7 @@ def _entry(
     both = text_of(node, BOTH)
     ros = both or text_of(node, ROS) or text_of(node, GZ)
     gz = both or text_of(node, GZ) or text_of(node, ROS)
-    bare_ros, bare_gz = (without_placeholder(name, "/") for name in (ros, gz))
+    bare_ros, bare_gz = (without_robot(name, "/") for name in (ros, gz))
     found = GZ_MODEL.fullmatch(bare_gz)
     another = found and found["model"] != model and not PLACEHOLDER.search(found["model"])
     if text_of(node, SERVICE) or another:
@@ -127,7 +127,7 @@ def _entry(
     own = new_gz != gz or new_ros != ros or bool(PLACEHOLDER.search(ros + gz))
     if own:
         new_gz, new_ros = _in_full(new_gz), _in_full(new_ros)
-    return BridgeEntry(node, block, ros, gz, new_ros, new_gz, own)
+    return BridgeEntry(node, block, bare_ros, bare_gz, new_ros, new_gz, own)
 
 
 def _in_full(name: str) -> str:

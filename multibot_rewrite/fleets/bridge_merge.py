@@ -7,13 +7,13 @@ from collections.abc import Iterable, Iterator, Mapping
 
 import yaml
 
+from multibot_rewrite.companions.bridge_entry import BOTH, GZ, GZ_MODEL, MODEL_SLOT, ROS
 from multibot_rewrite.companions.rviz.read_config import text_of
 from multibot_rewrite.companions.template import FileTemplate, fill_template
 from multibot_rewrite.companions.yaml_blocks import blocks, cut_out, moved
 from multibot_rewrite.companions.yaml_text import YamlText, found_at, read_yaml
 from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.findings.rule import declare
-from multibot_rewrite.fleets.bridge_entry import BOTH, GZ, GZ_MODEL, MODEL_SLOT, ROS
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.model import InputError
 from multibot_rewrite.remap.bridged_topics import BridgedTopic, as_yaml

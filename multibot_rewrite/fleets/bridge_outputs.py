@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple, cast
 
+from multibot_rewrite.companions.bridge_entry import BOTH, GZ
 from multibot_rewrite.companions.rviz.read_config import text_of
 from multibot_rewrite.companions.yaml_text import items, read_yaml
 from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
-from multibot_rewrite.fleets.bridge_entry import BOTH, GZ
 from multibot_rewrite.fleets.bridge_file import BridgeFile, rewrite_bridge
 from multibot_rewrite.fleets.bridge_merge import as_spawned, fill_bridge, merge_bridges
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
@@ -17,6 +17,7 @@ from multibot_rewrite.fleets.member import line_of
 from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, path_for, yaml_of
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_groups import RobotGroup, group_robots
+from multibot_rewrite.fleets.robot_nodes import node_sources
 from multibot_rewrite.remap.bridged_topics import BridgedTopic, UnbridgedTopic, bridged_topics
 
 BRIDGE = "bridge.yaml"
@@ -45,7 +46,9 @@ def bridge_outputs(plan: FleetPlan) -> FilesAndFindings:
             yield from made
             own = [it for it in unbridged if it.robot == robot.spec.namespace]
             texts = [it for it in made if isinstance(it, OutputFile)]
-            yield from (_unbridged(robot, it) for it in own if not _is_carried(it, texts, topics))
+            given = plan.evidence[node_sources(robot.spec)].arguments
+            open_ = (it for it in own if not _is_launched(it, given))
+            yield from (_unbridged(robot, it) for it in open_ if not _is_carried(it, texts, topics))
     yield from _for_all(groups, topics)
 
 
@@ -120,6 +123,11 @@ def _is_carried(
         if alike and topic.part in name and name.lstrip("/") not in known:
             return True
     return False
+
+
+def _is_launched(topic: UnbridgedTopic, arguments: Iterable[str]) -> bool:
+    """Has a bridge of the robot's launch files an argument for it?"""
+    return bool(topic.part) and any(topic.part in it for it in arguments)
 
 
 def _line(robot: RewrittenRobot, topic: UnbridgedTopic) -> int:

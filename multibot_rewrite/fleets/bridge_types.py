@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 import yaml
 
+from multibot_rewrite.companions.bridge_entry import TYPES
 from multibot_rewrite.companions.rviz.read_config import text_of
 from multibot_rewrite.companions.yaml_text import YamlText, found_at
 from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
-from multibot_rewrite.fleets.bridge_entry import TYPES
 from multibot_rewrite.remap.bridged_topics import bridge_data
 
 NOT_CONVERTED = declare(

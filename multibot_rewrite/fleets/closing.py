@@ -23,7 +23,7 @@ from multibot_rewrite.fleets.robot_groups import group_robots
 from multibot_rewrite.fleets.robot_nodes import node_sources
 from multibot_rewrite.fleets.systems import system_after, system_before
 from multibot_rewrite.fleets.tf_conflicts import tf_conflicts
-from multibot_rewrite.graph.transforms import description_edges, edges_in
+from multibot_rewrite.graph.transforms import edges_in
 
 NOBODY_SENDS = declare(
     "MF813",
@@ -123,7 +123,7 @@ def closing(plan: FleetPlan, fleet: Fleet, texts: Sequence[OutputText]) -> Itera
         old = list(tree_gaps(joints, before.senders))
         yield from _trees(robot, old, WARNING)
         yield from _unsent(robot, unsent_gaps(joints, before.senders, before.given, library))
-        now = tree_gaps(description_edges(robot.member.inventory), after.senders)
+        now = tree_gaps(robot.tree, after.senders)
         known_before = {it.key for it in old}
         yield from _trees(robot, (it for it in now if it.key not in known_before), ERROR)
         yield from topic_findings(robot, before, after)

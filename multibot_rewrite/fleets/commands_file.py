@@ -1,4 +1,5 @@
-"""``commands.md``: what places, spawns and drives each robot, loads its controllers, opens RViz."""
+"""``commands.md``: what places, spawns and drives each robot, loads its controllers, opens RViz, and
+starts MoveIt."""
 
 from __future__ import annotations
 
@@ -9,10 +10,13 @@ from multibot_rewrite.evidence.parameter_files import OWN_TYPE
 from multibot_rewrite.fleets import spawn, teleop
 from multibot_rewrite.fleets.fleet_file import BRINGUP
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
+from multibot_rewrite.fleets.moveit_parameters import moveit_commands
 from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, path_for
 from multibot_rewrite.fleets.relays import EXECUTABLE, PACKAGE, relays
+from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_nodes import node_sources
 from multibot_rewrite.fleets.start_poses import InitialPose, command, start_poses
+from multibot_rewrite.graph.transforms import STATE_PUBLISHER
 from multibot_rewrite.releases import facts_of_release
 from multibot_rewrite.remap.started import SPAWN, arguments, ros_arguments, started
 from multibot_rewrite.remap.ways import SPAWNER
@@ -41,9 +45,9 @@ def commands_file(
         rows += [f"{with_clock(command(it), clock)}\n" for it in poses.transforms]
         rows += [spawn.either(it, robot) for it in spawned if spawn.is_simulated(robot)]
         rows += _controllers(one)
-        rows += [f"{with_clock(it, clock)}\n" for it in _relays(one)]
+        rows += [f"{with_clock(it, clock)}\n" for it in (*_relays(one), *moveit_commands(one))]
         driven = (with_clock(teleop.command(it), clock) for it in teleop.teleops(one))
-        rows += [*(f"{it}\n" for it in driven), "```\n"]
+        rows += [*(f"{it}\n" for it in driven), "```\n", *_prefixed(robot)]
         # nav2_bringup takes one file, which has them.
         for pose in poses.initial if one.file.params_style != BRINGUP else ():
             path = path_for(robot, START)
@@ -63,6 +67,12 @@ def _relays(plan: FleetPlan) -> Iterator[str]:
         own = ros_arguments(it.table.namespace, it.table.name, ())
         told = [word for pair in it.parameters.items() for word in ("-p", ":=".join(pair))]
         yield shlex.join(["ros2", "run", PACKAGE, EXECUTABLE, *own, *told])
+
+
+def _prefixed(robot: RewrittenRobot) -> Iterator[str]:
+    """What puts the robot's name before the frames of its description."""
+    if prefix := robot.frame_prefix:
+        yield f"\nStart its {STATE_PUBLISHER} with `-p frame_prefix:={prefix}` as well.\n"
 
 
 def with_clock(line: str, use_sim_time: bool | None) -> str:

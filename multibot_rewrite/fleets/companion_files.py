@@ -21,6 +21,7 @@ from multibot_rewrite.fleets.output_file import (
     path_for,
     yaml_of,
 )
+from multibot_rewrite.fleets.prefix_parameters import at_run_time
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_groups import RobotGroup, group_robots
 from multibot_rewrite.fleets.robot_nodes import node_sources
@@ -56,7 +57,9 @@ def _params(plan: FleetPlan, group: RobotGroup, path: str) -> Companion:
     read = params_of(group.robots[0].spec)
     others = [document for it, document in read.items() if it != path]
     known = load_known_nodes(plan.file.parameters, plan.file.distro)
-    nodes = plan.evidence[node_sources(group.robots[0].spec)].nodes
+    evidence = plan.evidence[node_sources(group.robots[0].spec)]
+    nodes = evidence.nodes
+    bare = at_run_time(plan.fleet.naming, evidence.given, known)
     known = known._replace(sent=known.sent | {it for node in nodes for it in children_of(node)})
     robots = {name for it in plan.robots for name in (it.spec.namespace, it.spec.tag)}
     own = group.robots[0].spec.words if len(group.robots) == 1 else ()
@@ -68,6 +71,7 @@ def _params(plan: FleetPlan, group: RobotGroup, path: str) -> Companion:
         group.facts,
         sorted(robots),
         own,
+        bare,
         group.robots[0].spec.use_sim_time,
     )
     if path != next(iter(read)):

@@ -12,8 +12,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.companions.params.known_nodes import load_known_nodes
 from multibot_rewrite.evidence.records import Place
-from multibot_rewrite.findings.finding import ERROR, Finding
+from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.fleets.doubled_names import doubled
 from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.output_values import (
@@ -21,8 +22,9 @@ from multibot_rewrite.fleets.output_values import (
     line_in_source,
     values_in,
 )
-from multibot_rewrite.fleets.prefix_parameters import prefix_lines
+from multibot_rewrite.fleets.prefix_parameters import at_run_time, prefix_lines
 from multibot_rewrite.fleets.rewritten_robots import SET_PREFIX, RewrittenRobot, at_robot
+from multibot_rewrite.fleets.robot_nodes import node_sources
 from multibot_rewrite.fleets.value_checks import (
     PREFIXES,
     TOKEN,
@@ -46,13 +48,13 @@ def consistency(
     plan: FleetPlan, fleet: Fleet, files: Sequence[OutputText], known: Iterable[Finding] = ()
 ) -> tuple[Finding, ...]:
     """What is wrong with the files of a fleet. ``fleet`` is the plan's fleet with all nodes that are
-    started; lines that have a finding in ``known`` are left out."""
+    started; lines that have a finding of the same or a higher level in ``known`` are left out."""
     robots = _robot_names(plan, fleet)
-    lines = {(it.file, it.line) for it in known}
+    lines = {(it.file, it.line, level) for it in known for level in {it.level, WARNING}}
     in_files = (*_in_files(plan, robots, files), *_in_common(robots, files))
     return (
         *_of_two_robots(plan, fleet),
-        *_counted(it for it in in_files if (it.file, it.line) not in lines),
+        *_counted(it for it in in_files if (it.file, it.line, it.level) not in lines),
     )
 
 
@@ -85,8 +87,8 @@ def _names_of(robot: RewrittenRobot, graph: Iterable[str]) -> RobotNames:
     for word, declared in (*kinds.items(), ("frame", USUAL_FRAMES)):
         for name in declared:
             bare.setdefault(name, set()).add(spell(names, word, name))
-    inventory = robot.member.inventory.declared
-    right = {name for kind in inventory.values() for name in kind}
+    written = (robot.member.inventory.declared, robot.member.described.declared)
+    right = {name for declared in written for kind in declared.values() for name in kind}
     right |= {name for new in bare.values() for name in new}
     words = tuple(dict.fromkeys((spec.namespace, spec.tag, spec.model)))
     changed = {name: frozenset(it) for name, it in bare.items() if it != {name}}
@@ -193,7 +195,10 @@ def _in_files(
         like.add(masked)
         others = {word: robot for word, robot in words.items() if word not in own.words}
         mine = [it for it in files if it.path.startswith(f"{own.robot.spec.name}/")]
-        lines = prefix_lines(mine, known) if any(it in file.text for it in PREFIXES) else NO_LINES
+        given = plan.evidence[node_sources(own.robot.spec)].given
+        bare = at_run_time(plan.fleet.naming, given, known)
+        looked = bare or any(it in file.text for it in PREFIXES)
+        lines = prefix_lines(mine, known, bare) if looked else NO_LINES
         yield from _in_file(file, own, others, plan.fleet.naming, lines)
 
 
@@ -243,6 +248,6 @@ def _in_common(robots: Sequence[RobotNames], files: Sequence[OutputText]) -> Ite
         for token in dict.fromkeys(TOKEN.findall(lines)):
             found = _DOUBLED.search(token)
             own = words.get(found[1]) if found else None
-            if found and own and not any(found[1] in it.split("/") for it in own.bare):
+            if found and own and doubled(token, own.words, own.right, own.bare):
                 line = file.text.count("\n", 0, file.text.index(token)) + 1
                 yield _placed(file, own, line, holds_twice(token, found[1]))

@@ -25,7 +25,7 @@ from multibot_rewrite.steps.document import text_slot
 
 PARAMETERS = "parameters"
 # A package and the path in it, as xacro, a resource or an installed file names them.
-_IN_PACKAGE = lazy_compile(
+IN_PACKAGE = lazy_compile(
     r"(?:\$\(find(?:-pkg-share)?\s+([^)\s]+)\)|package://([^/]+)|.*/share/([^/]+))/(.+)"
 )
 
@@ -72,7 +72,7 @@ companions:
 
 
 def with_own_controllers(robot: RewrittenRobot, folder: str) -> tuple[bytes, tuple[Finding, ...]]:
-    """The description with the paths of the files that are made for this robot in ``folder``.
+    """What the simulator gets, with the paths of the files that are made for this robot in ``folder``.
 
     Without a ``folder`` nothing is written, and it stays as it is. So does that of a real robot, which
     loads no file for its simulator's plugin.
@@ -80,19 +80,20 @@ def with_own_controllers(robot: RewrittenRobot, folder: str) -> tuple[bytes, tup
     if robot.spec.simulator == REAL:
         return robot.description, ()
     source = robot.member.inventory.document.source
+    file = robot.spec.simulated or robot.spec.description
     params = robot.spec.companions.get("params", ())
     edits, findings = [], []
-    for path, slot in _loaded(robot) if params else ():
-        same = [it for it in params if _is_same(path, it, robot.spec.description)]
+    for path, slot in loaded_files(robot) if params else ():
+        same = [it for it in params if is_same(path, it, file)]
         if same and folder:
             made = os.path.join(folder, path_for(robot, same[0])).translate(ESCAPES)
             edits.append(Edit(*slot, made.encode(), None))
-        elif not same and any(_named_alike(path, it) for it in params):
+        elif not same and any(named_alike(path, it) for it in params):
             findings.append(_unsure(robot, path))
     return b"".join(cut(source, edits)), tuple(findings)
 
 
-def _loaded(robot: RewrittenRobot) -> Iterator[tuple[str, tuple[int, int]]]:
+def loaded_files(robot: RewrittenRobot) -> Iterator[tuple[str, tuple[int, int]]]:
     """Each file that a plugin with a controller manager loads, and where its path stands."""
     inventory = robot.member.inventory
     document = inventory.document
@@ -107,13 +108,13 @@ def _loaded(robot: RewrittenRobot) -> Iterator[tuple[str, tuple[int, int]]]:
                 yield path, slot
 
 
-def _is_same(path: str, file: str, description: str) -> bool:
+def is_same(path: str, file: str, description: str) -> bool:
     """Is ``path``, as ``description`` names it, this ``file`` or an installed copy of it?"""
     plain = path.removeprefix("file://")
     for it in (plain, os.path.join(os.path.dirname(description), plain)):
         if os.path.isfile(it) and os.path.samefile(it, file):
             return True
-    found = _IN_PACKAGE.fullmatch(plain)
+    found = IN_PACKAGE.fullmatch(plain)
     if found is None:
         return False
     *names, rest = found.groups()
@@ -125,7 +126,8 @@ def _is_same(path: str, file: str, description: str) -> bool:
     return whole.endswith(f"/{package}/{rest}")
 
 
-def _named_alike(path: str, file: str) -> bool:
+def named_alike(path: str, file: str) -> bool:
+    """Has ``path`` the file name of this ``file``?"""
     return os.path.basename(path) == os.path.basename(file)
 
 

@@ -43,8 +43,10 @@ from multibot_rewrite.sources.read import Source
 from multibot_rewrite.steps.collect import Inventory
 
 NOTHING: Mapping[str, str] = {}
+ALIKE: Mapping[str, Inventory] = {}
 # The stack of a robot whose description is published by something else.
 NO_STATE_PUBLISHER = f"no_{STATE_PUBLISHER}"
+FRAME_PREFIX = "frame_prefix"
 
 
 class Fleet(NamedTuple):
@@ -55,7 +57,8 @@ class Fleet(NamedTuple):
     differs from their namespace, with it. ``read`` are the files that were read for descriptions,
     ``gaps`` what is open in the robots, ``bridged`` what a ros_gz_bridge has to carry;
     ``maybe_real`` are robots of which nothing says that they are simulated, ``clocks`` the
-    ``use_sim_time`` of robots for which the fleet file says it."""
+    ``use_sim_time`` of robots for which the fleet file says it, ``described`` the descriptions of
+    robots whose simulator gets another file."""
 
     table: Table
     inventories: dict[str, Inventory]
@@ -70,6 +73,7 @@ class Fleet(NamedTuple):
     bridged: tuple[PlannedTopic, ...] = ()
     maybe_real: frozenset[str] = frozenset()
     clocks: tuple[tuple[str, bool], ...] = ()
+    described: Mapping[str, Inventory] = ALIKE
 
 
 def make_fleet(
@@ -95,7 +99,7 @@ def make_fleet(
     facts = facts_of(stacks, nodes, release, nodl)
     known = known_nodes(nodes, release, nodl).library.nodes
     parameters = load_known_nodes("", release)
-    launched = launched_robot(facts, launch, known, robots[:1], parameters)
+    launched = launched_robot(facts, launch, known, robots[:1], parameters, release)
     runs = nodes_with(launched, facts, given_with(launched, ()), known)
     found = rewrite_all(
         source,
@@ -172,7 +176,7 @@ def assemble(
     edges: dict[tuple[str, str], list[Edge]] = {}
     for it in members:
         own = [node for node, _ in plugins[it.robot]]
-        edges |= edges_of(it.robot, it.inventory, facts, own, naming, it.tag, it.plain)
+        edges |= edges_of(it.robot, it.described, facts, own, naming, it.tag, it.plain)
     table = build_table([it.robot for it in members], facts, naming, plugins, release=release)
     unread = dict.fromkeys(found for it in members for found in it.unread)
     table = table._replace(problems=(*table.problems, *unread))
@@ -186,6 +190,7 @@ def assemble(
         _origins(table, facts),
         {it.robot: it.tag for it in members if it.tag != it.robot},
         _read(members),
+        described={it.robot: it.described for it in members if it.described is not it.inventory},
     )
 
 
@@ -227,6 +232,7 @@ def merge(fleets: Sequence[Fleet]) -> Fleet:
             {**first.origins, **other.origins},
             {**first.tags, **other.tags},
             tuple(dict.fromkeys((*first.read, *other.read))),
+            described={**first.described, **other.described},
         )
     return first
 
@@ -237,8 +243,8 @@ def expected(fleet: Fleet) -> Expectation:
     for (robot, _), edges in fleet.edges.items():
         sent[robot] += edges
     frames = {
-        robot: frames_of(found, sent[robot], fleet.naming)
-        for robot, found in fleet.inventories.items()
+        robot: frames_of(found, sent[robot], fleet.naming, fleet.tags.get(robot, robot))
+        for robot, found in {**fleet.inventories, **fleet.described}.items()
     }
     named = {robot: named_frames(found) for robot, found in fleet.inventories.items()}
     tags, places = fleet.tags, fleet.sources
@@ -251,16 +257,23 @@ def expected(fleet: Fleet) -> Expectation:
         hint = f"name a stack of its nodes, or leave out {NO_STATE_PUBLISHER}"
         raise UsageError(f"{nothing}, so every graph would be as planned; {hint}")
     plan = plan._replace(release=fleet.table.release, gaps=fleet.gaps, topics=fleet.bridged)
-    return plan._replace(states=(*plan.states, *_clocks(fleet)))
+    return plan._replace(states=(*plan.states, *_states(fleet)))
 
 
-def _clocks(fleet: Fleet) -> Iterator[PlannedState]:
-    """The clock of each node of a robot; one in a plugin has that of the simulator."""
+def _states(fleet: Fleet) -> Iterator[PlannedState]:
+    """The clock of each node of a robot, where one in a plugin has that of the simulator, and what
+    puts the robot's name before the frames of its description."""
     clocks = dict(fleet.clocks)
+    described = {it.name for it in fleet.facts if it.package == STATE_PUBLISHER}
     for it in merged(fleet.table.nodes):
+        given: dict[str, object] = {}
         if it.robot in clocks and not it.home.plugin:
-            clock = PlannedParameter(SIM_TIME, parameter_text(clocks[it.robot]))
-            yield PlannedState(it.full_name, parameters=(clock,))
+            given[SIM_TIME] = clocks[it.robot]
+        if it.robot and it.node in described and fleet.naming.layout.at_run_time:
+            given[FRAME_PREFIX] = f"{fleet.tags.get(it.robot, it.robot)}/"
+        own = tuple(PlannedParameter(name, parameter_text(value)) for name, value in given.items())
+        if own:
+            yield PlannedState(it.full_name, parameters=own)
 
 
 def _sends(fleet: Fleet) -> Iterator[tuple[str, str]]:

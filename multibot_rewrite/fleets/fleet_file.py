@@ -18,12 +18,13 @@ from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.naming import NAMESPACE, Naming, Policy, make_naming
 from multibot_rewrite.releases import chosen_release
 from multibot_rewrite.sources.own_names import filled, name_robot
+from multibot_rewrite.sources.read import is_xacro
 
 KINDS = ("params", "rviz", "moveit", "bridge", "behavior_trees", "lua")
 LISTS = ("include", "stack", "nodl", "vocabulary", "shared_frames", "shared_topics")
 POLICY = tuple(Policy.__annotations__)
-# Description, SRDF and arguments; the robot's name, if the arguments hold a word of it.
-Sources = tuple[str, str, tuple[tuple[str, str], ...], str]
+# Description, SRDF and arguments; the robot's name, if the arguments hold a word of it; the model.
+Sources = tuple[str, str, tuple[tuple[str, str], ...], str, str]
 # What ``simulator`` says of a real robot.
 REAL = "none"
 # What ``params_style`` says of parameter files for nav2_bringup.
@@ -48,7 +49,8 @@ class RobotSpec(NamedTuple):
     ``pose`` is None if the file has none. ``companions`` maps a kind of ``KINDS`` to files. ``line``
     is its line in ``file``. ``filled`` are texts of parameter files in which a launch replaces
     something, by path. ``simulator`` is ``REAL``, or what the robot runs in; empty if nothing says so.
-    ``use_sim_time`` is what all its nodes have, None if the file does not say.
+    ``use_sim_time`` is what all its nodes have, None if the file does not say. ``simulated`` is the
+    model that the simulator gets, empty where that is the description.
     """
 
     name: str
@@ -68,6 +70,7 @@ class RobotSpec(NamedTuple):
     filled: tuple[tuple[str, str], ...] = ()
     simulator: str = ""
     use_sim_time: bool | None = None
+    simulated: str = ""
 
     @property
     def words(self) -> tuple[str, str, str]:
@@ -78,7 +81,7 @@ class RobotSpec(NamedTuple):
     def sources(self) -> Sources:
         """All that decides its texts besides its names."""
         own = self.name if name_robot(self.arguments, self.words) else ""
-        return self.description, self.srdf, tuple(self.arguments.items()), own
+        return self.description, self.srdf, tuple(self.arguments.items()), own, self.simulated
 
 
 class FleetFile(NamedTuple):
@@ -155,7 +158,7 @@ def input_files(fleet: FleetFile) -> Iterator[str]:
     """Every file that it names, itself among them."""
     yield from fleet.files
     for robot in fleet.robots:
-        yield from filter(None, (robot.description, robot.srdf))
+        yield from filter(None, (robot.description, robot.srdf, robot.simulated))
         yield from (path for paths in robot.companions.values() for path in paths)
         yield from (it.file for it in robot.launch)
 
@@ -209,7 +212,14 @@ def _robot(read: FleetData, naming: Naming, at: int, release: str) -> RobotSpec:
         tuple(_launch(data, own, place)),
         simulator=own.get("simulator", data.get("simulator", "")),
         use_sim_time=own.get("use_sim_time", data.get("use_sim_time")),
+        simulated=_simulated(data, own),
     )
+
+
+def _simulated(data: Mapping[str, Any], own: Mapping[str, Any]) -> str:
+    """What the simulator gets instead of the description; a real robot has none."""
+    real = own.get("simulator", data.get("simulator", "")) == REAL
+    return "" if real else str(own.get("simulated", data.get("simulated", "")))
 
 
 def _launch(data: Mapping[str, Any], own: Mapping[str, Any], place: str) -> Iterator[LaunchOrder]:
@@ -243,10 +253,10 @@ def _arguments(
     data: Mapping[str, Any], own: Mapping[str, Any], description: str, place: str
 ) -> dict[str, str]:
     """The xacro arguments of a robot, over those of the fleet; only for xacro files."""
-    files = (description, own.get("srdf", data.get("srdf", "")))
-    if not any(it.endswith(".xacro") for it in files):
+    files = (description, *(own.get(it, data.get(it, "")) for it in ("srdf", "simulated")))
+    if not any(is_xacro(it) for it in files):
         if own.get("arguments"):
-            hint = "remove them, or give a file that ends in .xacro"
+            hint = "remove them, or give a xacro"
             raise InputError(f"{place}: {own['name']!r} has arguments but no xacro file; {hint}")
         return {}
     arguments = {**data.get("arguments", {}), **own.get("arguments", {})}

@@ -9,6 +9,7 @@ from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.fleet import Fleet, assemble, merge
 from multibot_rewrite.fleets.fleet_file import FleetFile, Sources
 from multibot_rewrite.fleets.launched_files import with_launched_files
+from multibot_rewrite.fleets.loaded_files import with_loaded_files
 from multibot_rewrite.fleets.meeting import with_meetings
 from multibot_rewrite.fleets.relays import with_relays
 from multibot_rewrite.fleets.rewritten_robots import (
@@ -45,7 +46,7 @@ def plan_fleet(
 ) -> FleetPlan:
     """Rewrite every robot's description and make the table of the whole fleet.
 
-    The parameter files that launch files name are rewritten, too.
+    The parameter files that launch files and descriptions name are rewritten, too.
 
     ``jobs`` are the descriptions if they have been read already; ``trust`` lets xacro files do
     anything, and launch files run. Raises as ``rewrite_all``, and UsageError for an unknown stack.
@@ -54,7 +55,8 @@ def plan_fleet(
     with gc_paused():
         naming = make_naming(**file.policy)
         read = jobs or read_jobs(file.robots, naming, file.vocabulary, trust, file.distro)
-        robots = rewrite_robots(file.robots, read)
+        robots = [with_loaded_files(it) for it in rewrite_robots(file.robots, read)]
+        file = file._replace(robots=tuple(it.spec for it in robots))
         specs = {node_sources(it): it for it in reversed(file.robots)}
         sources = {node_sources(it.spec): it.member.source for it in robots}
         evidence = {

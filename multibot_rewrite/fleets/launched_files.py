@@ -115,7 +115,7 @@ def _with(spec: RobotSpec, named: Sequence[_Named]) -> tuple[RobotSpec, list[Fin
 
 
 def _written(spec: RobotSpec) -> Iterator[str]:
-    yield from filter(None, (spec.description, spec.srdf))
+    yield from filter(None, (spec.description, spec.srdf, spec.simulated))
     yield from (path for paths in spec.companions.values() for path in paths)
 
 

@@ -22,8 +22,9 @@ def launched_robot(
     known: Mapping[str, NodeFacts],
     words: Sequence[str],
     parameters: KnownNodes,
+    release: str,
 ) -> Launched | None:
-    """The nodes of a robot with these launch files; None without any.
+    """The nodes of a robot with these launch files, in a release; None without any.
 
     ``words`` stand for the robot in names, the first one for ``{robot}`` in arguments. Raises
     InputError for a launch file that cannot be read, and UsageError for an unknown placeholder.
@@ -32,7 +33,7 @@ def launched_robot(
         return None
     mine = _own(orders, words[0])
     graph = launch_of(orders, words[0])
-    return with_launched(stack, graph, known, {*words, *_values(mine)}, parameters)
+    return with_launched(stack, graph, known, {*words, *_values(mine)}, parameters, release)
 
 
 def launch_of(orders: Sequence[LaunchOrder], robot: str) -> LaunchGraph:

@@ -22,6 +22,7 @@ from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.fleets.fleet_file import Pose
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.kept_files import KeptFiles
+from multibot_rewrite.fleets.move_group_parameters import move_group_parameters
 from multibot_rewrite.fleets.node_names import NodeNames, Rules, names_of
 from multibot_rewrite.fleets.output_file import OutputFile
 from multibot_rewrite.fleets.relays import relays
@@ -90,10 +91,25 @@ class LoadedRobot:
         return self._robot.description.decode()
 
     @property
+    def description_parameters(self) -> dict[str, Any]:
+        """The parameters of its robot_state_publisher: ``robot_description``, and ``frame_prefix`` in
+        the layout of that name. Raises nothing."""
+        prefix = self._robot.frame_prefix
+        given = {"robot_description": self.description}
+        return {**given, "frame_prefix": prefix} if prefix else given
+
+    @property
     def srdf(self) -> str:
         """Its rewritten SRDF, for ``robot_description_semantic``; empty if it has none. Raises
         nothing."""
         return self._robot.srdf.decode()
+
+    def to_dict(self) -> dict[str, Any]:
+        """The parameters of its move_group, as ``to_dict()`` of moveit_configs_utils has them for one
+        robot: description, SRDF and the files of ``companions: moveit``. Raises as ``text``."""
+        files = self._robot.spec.companions.get("moveit", ())
+        texts = {it: self.text(it) for it in files}
+        return move_group_parameters(self.description, self.srdf, texts)
 
     @cached_property
     def table(self) -> NodeNames:
@@ -169,8 +185,14 @@ class LoadedRobot:
 
     def _path(self, file: str) -> str:
         name = os.path.basename(file)
-        own = f"{self.name}/{name}"
+        own = self._own(file)
         return own if own in self._fleet.files else name
+
+    def _own(self, file: str) -> str:
+        """Where its version of a file is; of two with one name the folder counts."""
+        *_, above, name = ("", *os.path.normpath(file).split(os.sep))
+        apart = f"{self.name}/{above}/{name}"
+        return apart if apart in self._fleet.files else f"{self.name}/{name}"
 
     @checked
     def frame(self, name: str) -> str:
@@ -217,7 +239,7 @@ class LoadedRobot:
     @property
     def spawn_arguments(self) -> list[str]:
         """``arguments`` of ``ros_gz_sim create``; raises nothing."""
-        return spawn.gz_arguments(self._spawn)
+        return spawn.gz_arguments(self._spawn._replace(text=self._robot.simulated.decode()))
 
     @property
     def classic_arguments(self) -> list[str]:
@@ -250,4 +272,4 @@ class LoadedRobot:
         return f"{namespace.rstrip('/')}/{name}"
 
     def _read(self, file: str) -> YamlText:
-        return self._fleet.parameters(f"{self.name}/{os.path.basename(file)}")
+        return self._fleet.parameters(self._own(file))

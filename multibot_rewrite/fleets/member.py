@@ -23,7 +23,9 @@ from multibot_rewrite.steps.document import Document, read_document
 
 class Member(NamedTuple):
     """A robot of a fleet: its namespace, the tag in its frames, and what its rewritten description
-    holds and starts; ``source`` is the description before, ``vocabulary`` what is known of plugins,
+    holds and starts. ``described`` is what robot_state_publisher gets; where the simulator gets another
+    file, all else is of that. ``source`` is the description before, ``vocabulary`` what is known of
+    plugins,
     ``shared`` are findings about names that any two robots of it would have, ``unread`` about arguments
     that its xacro does not know; ``read`` are the files that were read for it, ``plain`` the names that
     arguments of its xacro make, by what they are without.
@@ -31,6 +33,7 @@ class Member(NamedTuple):
 
     robot: str
     tag: str
+    described: Inventory
     inventory: Inventory
     reading: Reading
     source: Document
@@ -41,9 +44,15 @@ class Member(NamedTuple):
     plain: NameTexts
 
 
-def member(source: Rewrite, data: bytes, tag: str, real: bool = False) -> Member:
+def member(
+    source: Rewrite,
+    data: bytes,
+    tag: str,
+    real: bool = False,
+    described: Inventory | None = None,
+) -> Member:
     """The robot of a rewrite; ``data`` is its final description, of which a ``real`` robot takes
-    nothing that is for a simulator.
+    nothing that is for a simulator. ``described`` is what it publishes, if that is another one.
 
     Raises InputError where ROS refuses the names of a plugin.
     """
@@ -56,7 +65,9 @@ def member(source: Rewrite, data: bytes, tag: str, real: bool = False) -> Member
     unread = tuple(it for it in source.findings if it.code == UNREAD)
     job = source.prepared.job
     words = (shared, unread, job.read.files, job.own.plain)
-    return Member(source.robot, tag, written, reading, document, tree.vocabulary, *words)
+    return Member(
+        source.robot, tag, described or written, written, reading, document, tree.vocabulary, *words
+    )
 
 
 def without_simulator(data: bytes, file: str) -> bytes:

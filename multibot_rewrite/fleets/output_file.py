@@ -25,8 +25,22 @@ FilesAndFindings: TypeAlias = Iterator[OutputFile | Finding]
 
 
 def path_for(robot: RewrittenRobot, source: str) -> str:
-    """Where the robot's version of a source file goes: ``robot1/params.yaml``."""
-    return f"{robot.spec.name}/{os.path.basename(source)}"
+    """Where the robot's version of a source file goes: ``robot1/params.yaml``.
+
+    Of two files with one name each is in a folder called as its own: ``robot1/base/params.yaml``.
+    """
+    name = os.path.basename(source)
+    every = (it for its in robot.spec.companions.values() for it in its)
+    alike = {it for it in every if os.path.basename(it) == name}
+    if len(alike) > 1 and source in alike:
+        name = f"{os.path.basename(os.path.dirname(os.path.abspath(source)))}/{name}"
+    return f"{robot.spec.name}/{name}"
+
+
+def expanded_name(path: str) -> str:
+    """The file's name once xacro is expanded."""
+    name = os.path.basename(path).removesuffix(".xacro")
+    return name if "." in name else f"{name}.urdf"
 
 
 def params_of(spec: RobotSpec) -> dict[str, YamlText]:

@@ -20,11 +20,14 @@ from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.fleets.fleet_file import REAL, RobotSpec, Sources
 from multibot_rewrite.fleets.member import Member, member
 from multibot_rewrite.fleets.srdf_of_another import srdf_findings
+from multibot_rewrite.graph.transforms import Edge, links_of, tree_of
 from multibot_rewrite.library import Rewrite, rewrite_job
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import Naming
-from multibot_rewrite.sources.job import Job, Reader, job_for, reader
-from multibot_rewrite.sources.own_names import ROBOT
+from multibot_rewrite.rewriters.forms import Declared
+from multibot_rewrite.sources.job import Job, Reader, job_for, joined_reads, reader
+from multibot_rewrite.sources.own_names import ROBOT, Arguments, common_to
+from multibot_rewrite.sources.read import is_xacro
 from multibot_rewrite.steps.collect import NOTHING
 from multibot_rewrite.steps.template import Template
 
@@ -33,10 +36,11 @@ GRAPH_KINDS = frozenset({"namespace", "node", "topic", "subtopic", "service", "s
 
 
 class Jobs(NamedTuple):
-    """The description and SRDF to rewrite for robots of the same sources."""
+    """The description, SRDF and simulated model to rewrite for robots of the same sources."""
 
     description: Job
     srdf: Job | None
+    simulated: Job | None = None
 
 
 # The rule about such names, and what to do.
@@ -48,7 +52,8 @@ class RewrittenRobot(NamedTuple):
     """A robot with its rewritten description and SRDF (empty if it has none).
 
     ``names`` is the rename map of frames, joints and planning groups, ``topics`` that of ROS names.
-    ``findings`` are warnings about the source.
+    ``findings`` are warnings about the source. ``simulated`` is the model for the simulator,
+    empty where that is the description.
     """
 
     spec: RobotSpec
@@ -58,6 +63,22 @@ class RewrittenRobot(NamedTuple):
     topics: CompanionNames
     member: Member
     findings: tuple[Finding, ...]
+    simulated: bytes = b""
+
+    @property
+    def tree(self) -> list[Edge]:
+        """The transforms that its robot_state_publisher sends."""
+        return list(tree_of(self.member.described, self.names.naming, self.spec.tag))
+
+    @property
+    def links(self) -> list[str]:
+        """Its links as frames."""
+        return links_of(self.member.described, self.names.naming, self.spec.tag)
+
+    @property
+    def frame_prefix(self) -> str:
+        """What its robot_state_publisher puts before the links; empty where they have its name."""
+        return f"{self.spec.tag}/" if self.names.naming.layout.at_run_time else ""
 
     @property
     def needs_prefix(self) -> bool:
@@ -89,16 +110,31 @@ def read_jobs(
         return reader(source, naming, urdf, tuple(vocabulary), "", trust, release)
 
     found: dict[Sources, Jobs] = {}
+    given_to: dict[str, list[tuple[Arguments, Sequence[str]]]] = {}
+    for it in robots:
+        given_to.setdefault(it.description, []).append((it.arguments, it.words))
+    common = {source: common_to(each) for source, each in given_to.items()}
     for it in robots:
         if it.sources not in found:
-            given = it.arguments, it.words
+            words = it.words, common[it.description]
+            given = _taken(it, it.description, it.srdf), *words
             description = job_for(read(it.description, None), *given)
             srdf = job_for(read(it.srdf, it.description), *given) if it.srdf else None
             # An argument may be for the SRDF alone, which is read beside the description.
             description = description._replace(read=(srdf or description).read)
-            found[it.sources] = Jobs(description, srdf)
+            model = None
+            if it.simulated:
+                model = job_for(read(it.simulated, None), _taken(it, it.simulated), *words)
+                both = joined_reads(description.read, model.read)
+                description, model = description._replace(read=both), model._replace(read=both)
+            found[it.sources] = Jobs(description, srdf, model)
     _check_arguments(robots, found)
     return found
+
+
+def _taken(robot: RobotSpec, *files: str) -> Arguments:
+    """The arguments for a robot's description or model: they are for whichever is a xacro."""
+    return robot.arguments if any(map(is_xacro, files)) else {}
 
 
 def _check_arguments(robots: Sequence[RobotSpec], jobs: Mapping[Sources, Jobs]) -> None:
@@ -135,22 +171,37 @@ def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobo
     semantics: Iterable[Rewrite | None] = [None] * len(group)
     if jobs.srdf:
         semantics = _texts(jobs.srdf, group)
-    for robot, text, semantic in zip(group, texts, semantics, strict=True):
+    models: Iterable[Rewrite | None] = [None] * len(group)
+    if jobs.simulated:
+        models = _texts(jobs.simulated, group)
+    for robot, text, semantic, model in zip(group, texts, semantics, models, strict=True):
         data = _final(text, robot, naming)
+        made, simulated = member(text, data, robot.tag, robot.simulator == REAL), b""
         said = semantic.template.inventory.declared if semantic else NOTHING
         declared = with_srdf(text.template.inventory.declared, said)
-        names = companion_names(declared, naming, robot.tag, own)
         found = (*text.findings, *(srdf_findings(semantic) if semantic else ()))
+        if model and jobs.simulated:
+            declared = _both(declared, model.template.inventory.declared)
+            simulated = _final(model, robot, jobs.simulated.naming)
+            found = (*found, *model.findings)
+            made = member(model, simulated, robot.tag, described=made.inventory)
+        names = companion_names(declared, naming, robot.tag, own)
         yield RewrittenRobot(
             robot,
             data,
             _final(semantic, robot, naming) if semantic else b"",
             names,
             names._replace(robot=robot.namespace),
-            member(text, data, robot.tag, robot.simulator == REAL),
+            made,
             # These the fleet says, of the robots that it has.
             tuple(it for it in found if it.code not in (*SHARED_CODES, UNREAD)),
+            simulated,
         )
+
+
+def _both(declared: Declared, model: Declared) -> Declared:
+    """What a description and the model for the simulator declare together."""
+    return {kind: {**model.get(kind, {}), **declared.get(kind, {})} for kind in {*declared, *model}}
 
 
 def _texts(job: Job, group: Sequence[RobotSpec]) -> Iterator[Rewrite]:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from multibot_rewrite.companions.context import Context, make_context
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.findings.grouping import grouped
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_nodes import companion_nodes, node_sources, stack_nodes
@@ -40,3 +42,25 @@ def group_robots(plan: FleetPlan) -> Iterator[RobotGroup]:
         declared, naming, _, own = robots[0].names
         context = make_context(declared, naming, facts, plan.file.distro, own)
         yield RobotGroup(tuple(robots), facts, context)
+
+
+def said_once(plan: FleetPlan, findings: Iterable[Finding]) -> list[Finding]:
+    """Findings sorted by place; what is the same for many robots is one finding."""
+    specs = [it.spec for it in plan.robots]
+    words = {word: it.name for it in specs for word in (it.model, it.tag, it.namespace, it.name)}
+    ordered = sorted(
+        set(findings), key=lambda it: (it.file, it.line, it.column, it.code, it.message)
+    )
+    # Lines of robots in the fleet file: that they differ is no difference.
+    names = {(it.file, it.line): it.name for it in specs}
+    lines = {name: line for (_, line), name in names.items()}
+    alike = [_at_robot(it, names.get((it.file, it.line), "")) for it in ordered]
+    return [
+        it._replace(robot="", line=lines[it.robot]) if it.robot else it
+        for it in grouped(alike, words)
+    ]
+
+
+def _at_robot(finding: Finding, robot: str) -> Finding:
+    """The finding with the robot in the place of its line."""
+    return finding._replace(robot=robot, line=0) if robot else finding

@@ -38,8 +38,8 @@ def node_sources(spec: RobotSpec) -> NodeSources:
 
 class RobotEvidence(NamedTuple):
     """What a robot's files set for nodes, the nodes that are known by name, those that it runs,
-    where its files and stacks disagree, the controllers that its launch files spawn, and whether
-    these start all of its nodes and no simulator."""
+    where its files and stacks disagree, the controllers that its launch files spawn, whether these
+    start all of its nodes and no simulator, and the arguments of all that they start."""
 
     given: tuple[GivenNode, ...]
     known: Mapping[str, NodeFacts]
@@ -47,6 +47,7 @@ class RobotEvidence(NamedTuple):
     findings: tuple[Finding, ...]
     spawned: Mapping[str, Spawned]
     unsimulated: bool = False
+    arguments: tuple[str, ...] = ()
 
 
 def robot_nodes(
@@ -60,7 +61,7 @@ def robot_nodes(
     read = given_nodes(params_of(spec).values(), parameters)
     own = tuple(without_robot(it, spec.words) for it in read)
     known, stack = _known(own, file), stack_nodes(spec, file)
-    launched = launched_robot(stack, spec.launch, known, spec.words, parameters)
+    launched = launched_robot(stack, spec.launch, known, spec.words, parameters, file.distro)
     given = given_with(launched, own)
     spawned = launched.spawned if launched else {}
     without, findings = nodes_with(launched, stack, given, known)
@@ -71,7 +72,9 @@ def robot_nodes(
     marked, shared = apart(nodes, file)
     unsimulated = launched is not None and launched.whole and not launched.simulated
     said = (*notes, *findings, *shared)
-    return RobotEvidence(given, known, marked, said, spawned, unsimulated)
+    started = launched.started.values() if launched else ()
+    arguments = tuple(word for it in started for word in it.arguments)
+    return RobotEvidence(given, known, marked, said, spawned, unsimulated, arguments)
 
 
 def _is_mounted(root: _Element) -> bool:
@@ -114,4 +117,6 @@ def companion_nodes(nodes: Sequence[NodeFacts], stack: Sequence[NodeFacts]) -> I
     """The nodes for which companion files are rewritten, with the names of their code: those in
     parameters are what is rewritten."""
     bare: Mapping[str, NodeFacts] = {it.name: it for it in stack}
-    yield from (bare.get(it.name, it) for it in nodes if it.name in bare or it.host)
+    # A section for a node in a namespace below the robot's is known to be right if the node runs there.
+    mine = (it for it in nodes if it.name in bare or it.host or "/" in it.name)
+    yield from (bare.get(it.name, it) for it in mine)

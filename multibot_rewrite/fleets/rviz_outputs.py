@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import shlex
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 from multibot_rewrite.companions.names.robot_topics import fleet_topics
@@ -17,7 +17,8 @@ from multibot_rewrite.companions.rviz.rewrite import (
 from multibot_rewrite.companions.rviz.window_checks import ONE_TF_TOPIC
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
-from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, yaml_of
+from multibot_rewrite.fleets.moveit_parameters import FILE, has_moveit
+from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, path_for, yaml_of
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.start_poses import world_of
 from multibot_rewrite.fleets.with_start_pose_nodes import split_per_robot
@@ -71,7 +72,8 @@ def _as_rviz_robot(plan: FleetPlan) -> RvizRobot:
     topics = robot.topics._replace(robot=spec.namespace)
     known = fleet_topics(plan.fleet.table, plan.fleet.facts, spec.namespace)
     rules = tuple(_own_rules(plan))
-    return RvizRobot(spec.name, names, topics, spec.colour, known, rules=rules)
+    prefix = spec.tag if names.naming.layout.at_run_time else ""
+    return RvizRobot(spec.name, names, topics, spec.colour, known, prefix, rules)
 
 
 def _own_rules(plan: FleetPlan) -> Iterator[tuple[str, str]]:
@@ -87,18 +89,28 @@ def rviz_files(configs: Iterable[RvizOutput]) -> FilesAndFindings:
     """The files of the windows, and what was found."""
     for source, windows, findings in configs:
         yield from findings
-        yield from (OutputFile(_path(it, source), it.text.encode(), (source,)) for it in windows)
+        yield from (
+            OutputFile(window_path(it, source), it.text.encode(), (source,)) for it in windows
+        )
 
 
-def rviz_commands(configs: Iterable[RvizOutput]) -> list[str]:
-    """The line that opens each window."""
+def rviz_commands(plan: FleetPlan, configs: Iterable[RvizOutput]) -> list[str]:
+    """The line that opens each window; MoveIt's displays read the parameters of their process."""
+    given = {it.spec.name: path_for(it, FILE) for it in plan.robots if has_moveit(it)}
     return [
-        shlex.join(start_command(window, _path(window, it.source)))
+        shlex.join([*start_command(window, window_path(window, it.source)), *_given(window, given)])
         for it in configs
         for window in it.windows
     ]
 
 
-def _path(window: RvizText, source: str) -> str:
+def _given(window: RvizText, given: Mapping[str, str]) -> list[str]:
+    path = given.get(window.robot, "")
+    lead = [] if window.namespace or window.remaps else ["--ros-args"]
+    return [*lead, "--params-file", path] if path else []
+
+
+def window_path(window: RvizText, source: str) -> str:
+    """Where the config of a window goes."""
     name = os.path.basename(source)
     return f"{window.robot}/{name}" if window.robot else name

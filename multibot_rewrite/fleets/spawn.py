@@ -17,6 +17,7 @@ from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.fleet_file import REAL, Pose
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
+from multibot_rewrite.fleets.output_file import expanded_name, path_for
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.naming import NAMESPACE
 from multibot_rewrite.rewriters.text import text_at
@@ -29,7 +30,9 @@ CLASSIC_PLUGIN = "libgazebo_ros"
 
 
 class Spawn(NamedTuple):
-    """A robot to be spawned. ``namespace`` is for the spawner of Gazebo Classic; it is empty if the
+    """A robot to be spawned from a topic, a file or its text.
+
+    ``namespace`` is for the spawner of Gazebo Classic; it is empty if the
     plugins of the description have one, which the spawner would overwrite."""
 
     robot: str
@@ -37,18 +40,26 @@ class Spawn(NamedTuple):
     topic: str
     pose: Pose
     namespace: str
+    file: str = ""
+    text: str = ""
+
+    @property
+    def source(self) -> tuple[str, str]:
+        """The option that says what is spawned; only that of gz-sim takes a text."""
+        if self.text:
+            return "-string", self.text
+        return ("-file", self.file) if self.file else ("-topic", self.topic)
 
 
 def spawns(plan: FleetPlan) -> tuple[tuple[Spawn, ...], tuple[Finding, ...]]:
     """How each robot is spawned, and findings: only some of its plugins have a namespace, a plugin
     looks for the robot by another name."""
-    made, findings = [], []
+    made: list[Spawn] = []
+    findings: list[Finding] = []
     for robot in plan.robots:
         known = fleet_topics(plan.fleet.table, plan.fleet.facts, robot.spec.namespace)
         made.append(spawn(robot, known.get(DESCRIPTION, "")))
-        named, bare = _namespaces(robot)
-        if named and bare:
-            findings.append(_half(robot, bare))
+        findings += _half(robot)
         findings += _other_models(robot)
     return tuple(made), tuple(findings)
 
@@ -76,6 +87,7 @@ def spawn(robot: RewrittenRobot, topic: str = "") -> Spawn:
         topic or robot_topic(robot.topics, DESCRIPTION, NOTHING),
         spec.pose or Pose(),
         spec.namespace if needed else "",
+        path_for(robot, expanded_name(spec.simulated)) if spec.simulated else "",
     )
 
 
@@ -85,13 +97,13 @@ def gz_arguments(it: Spawn) -> list[str]:
     It uses gflags, where ``-allow_renaming false`` means true: a boolean flag takes its value only
     after an equals sign.
     """
-    return ["-name", it.model, "-topic", it.topic, *_pose(it.pose), "-allow_renaming=false"]
+    return ["-name", it.model, *it.source, *_pose(it.pose), "-allow_renaming=false"]
 
 
 def classic_arguments(it: Spawn) -> list[str]:
     """What follows ``gazebo_ros spawn_entity.py``."""
     namespace = ["-robot_namespace", f"/{it.namespace}"] if it.namespace else []
-    return ["-entity", it.model, "-topic", it.topic, *_pose(it.pose), *namespace]
+    return ["-entity", it.model, *it.source, *_pose(it.pose), *namespace]
 
 
 def gz_command(it: Spawn) -> str:
@@ -107,7 +119,7 @@ def classic_command(it: Spawn) -> str:
 def either(it: Spawn, robot: RewrittenRobot) -> str:
     """The command for the description's simulator, with the other simulator's as a comment."""
     gz, classic = gz_command(it), classic_command(it)
-    if CLASSIC_PLUGIN.encode() in robot.description:
+    if CLASSIC_PLUGIN.encode() in (robot.simulated or robot.description):
         return f"{classic}\n# gz-sim: {gz}\n"
     return f"{gz}\n# Gazebo Classic: {classic}\n"
 
@@ -137,7 +149,8 @@ PARTLY_NAMESPACED = declare(
     "MF706",
     "plugins-partly-namespaced",
     WARNING,
-    what="Some Gazebo Classic plugins of a description have a namespace, others have none.",
+    what="Some Gazebo Classic plugins of a description have a namespace, others have none, in a layout "
+    "that gives each robot one.",
     why="The spawner can set one namespace for all plugins, which would overwrite those that are "
     "there. It is not set, so the other plugins run in the root namespace: those of all robots "
     "use the same topics.",
@@ -185,10 +198,14 @@ robots:
 )
 
 
-def _half(robot: RewrittenRobot, bare: list[str]) -> Finding:
+def _half(robot: RewrittenRobot) -> Iterator[Finding]:
+    """Where names have a postfix, a plugin needs no namespace."""
+    named, bare = _namespaces(robot)
+    if not (named and bare and robot.topics.naming.topics == NAMESPACE):
+        return
     some = f"robot {robot.spec.name!r}: some plugins have a namespace"
     hint = "add <ros><namespace> to these; -robot_namespace would overwrite the others"
-    return at_robot(PARTLY_NAMESPACED, robot, f"{some}, but not {', '.join(bare)}", hint)
+    yield at_robot(PARTLY_NAMESPACED, robot, f"{some}, but not {', '.join(bare)}", hint)
 
 
 MODEL_OF_OTHER_NAME = declare(

@@ -25,7 +25,7 @@ from multibot_rewrite.fleets.start_pose_rules import (
     OWN_ODOMETRY,
     POSE_ON_WORLD,
 )
-from multibot_rewrite.graph.transforms import Edge, description_edges
+from multibot_rewrite.graph.transforms import Edge
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.remap.bridged_topics import TF_TYPE, bridge_data
 from multibot_rewrite.remap.records import TOPIC
@@ -161,8 +161,8 @@ def _sent(plan: FleetPlan, robot: RewrittenRobot) -> dict[str, list[Edge]]:
     """The transforms of each node of a robot; the description's tree has an empty name."""
     name, inventory = robot.spec.namespace, robot.member.inventory
     sent = {node: [*edges] for (own, node), edges in plan.fleet.edges.items() if own == name}
-    tree = list(description_edges(inventory))
-    bare = set(inventory.declared["link"]) - {edge.child for edge in tree}
+    tree = robot.tree
+    bare = set(robot.links) - {edge.child for edge in tree}
     odometry = list(_gz_odometry(inventory, robot.spec.model))
     base = next(iter(sorted(bare)), "")
     return {

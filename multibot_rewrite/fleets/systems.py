@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.closure.frames import Sender
 from multibot_rewrite.closure.topics import End
+from multibot_rewrite.companions.bridge_entry import BOTH, ROS
 from multibot_rewrite.companions.params.known_nodes import KnownNodes
 from multibot_rewrite.companions.params.sections import PARAMETERS
 from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, pairs, read_yaml
@@ -14,7 +15,6 @@ from multibot_rewrite.evidence.hardware import Exported, exported
 from multibot_rewrite.evidence.nodes import children_of
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import GivenNode, Place
-from multibot_rewrite.fleets.bridge_entry import BOTH, ROS
 from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.fleets.fleet_file import REAL
 from multibot_rewrite.fleets.member import without_simulator
@@ -22,7 +22,7 @@ from multibot_rewrite.fleets.output_file import yaml_of
 from multibot_rewrite.fleets.output_values import OutputText
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_nodes import RobotEvidence
-from multibot_rewrite.graph.transforms import STATE_PUBLISHER, description_edges, sent_by
+from multibot_rewrite.graph.transforms import STATE_PUBLISHER, sent_by
 from multibot_rewrite.readback.nodes import ReadNode
 from multibot_rewrite.readback.reading import FRAME, read
 from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, TOPIC, EndpointName, NodeFacts
@@ -66,7 +66,7 @@ def system_before(robot: RewrittenRobot, evidence: RobotEvidence) -> System:
     sent = {child for node in nodes for child in children_of(node)}
     sent |= {it.name for it in reading.names if it.kind == FRAME and it.tag == "plugin"}
     return System(
-        given,
+        tuple(_plainly(robot, it) for it in given),
         tuple(_plain(robot, it) for it in exported(source.root, source.file)),
         tuple(ends),
         tuple(shared),
@@ -98,7 +98,7 @@ def system_after(
         tuple(exported(written.root, file)),
         tuple(ends),
         tuple(_planned(it, owners) for it in fleet.table.names if not it.robot),
-        frozenset(it.child for it in description_edges(robot.member.inventory)),
+        frozenset(it.child for it in robot.tree),
         tuple(_read(it) for it in own if MOVEIT in it.text),
         tuple(_senders(fleet, robot)),
     )
@@ -116,15 +116,32 @@ def _planned(it: EndpointName, owners: Mapping[str, str]) -> End:
     return End(it.node, *own, None, not end.when, end.also)
 
 
+def _own(robot: RewrittenRobot) -> Mapping[str, str]:
+    """What an argument makes -> the name without it, which may begin with the slash behind it: /imu."""
+    return {text: name.lstrip("/") for (_, name), text in robot.names.own.items()}
+
+
 def _plain(robot: RewrittenRobot, export: Exported) -> Exported:
     """The interface as parameter files call it, where an argument of the xacro renames its owner."""
-    own = {text: name for (_, name), text in robot.names.own.items()}
-    owner, slash, rest = export.name.partition("/")
+    own = _own(robot)
+    # A name may have a slash of its own: robot1/imu.
+    whole = (it for it in own if export.name.startswith(f"{it}/"))
+    owner = next(whole, export.name.partition("/")[0])
     # The code of a plugin puts the same before names that the description does not declare.
     prefixes = {text.removesuffix(name) for text, name in own.items() if text.endswith(name)}
     found = (it for it in prefixes if it and owner.startswith(it))
     bare = own.get(owner, owner.removeprefix(next(found, "")))
-    return export._replace(name=f"{bare}{slash}{rest}")
+    return export._replace(name=f"{bare}{export.name[len(owner) :]}")
+
+
+def _plainly(robot: RewrittenRobot, given: GivenNode) -> GivenNode:
+    """The same of what a launch file fills in for a robot that has such an argument."""
+    own = _own(robot)
+    values = {
+        key: it._replace(value=own.get(it.value, it.value)) if isinstance(it.value, str) else it
+        for key, it in given.values.items()
+    }
+    return given._replace(values=values)
 
 
 def _sender(node: NodeFacts, given: Iterable[GivenNode], root: str) -> Sender:

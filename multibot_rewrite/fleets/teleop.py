@@ -9,14 +9,13 @@ import shlex
 from collections.abc import Collection, Iterator
 from typing import NamedTuple
 
+from multibot_rewrite.companions.bridge_entry import BOTH, GZ, ROS
 from multibot_rewrite.companions.names.robot_topics import robot_topic
 from multibot_rewrite.companions.rviz.read_config import text_of
 from multibot_rewrite.companions.yaml_text import items
-from multibot_rewrite.fleets.bridge_entry import BOTH, GZ, ROS
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.output_file import yaml_of
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
-from multibot_rewrite.graph.transforms import description_edges
 from multibot_rewrite.remap.bridged_topics import DIRECTIONS, bridged_topics
 from multibot_rewrite.remap.records import PUBLISHES, TOPIC
 
@@ -108,6 +107,5 @@ def _bridged(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, str]
 
 def _base(robot: RewrittenRobot) -> str:
     """The root link of the rewritten description."""
-    inventory = robot.member.inventory
-    children = {edge.child for edge in description_edges(inventory)}
-    return next((link for link in inventory.declared["link"] if link not in children), "")
+    children = {edge.child for edge in robot.tree}
+    return next((link for link in robot.links if link not in children), "")

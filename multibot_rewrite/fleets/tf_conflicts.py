@@ -19,7 +19,7 @@ from multibot_rewrite.fleets.output_values import OutputText, line_in_source
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.fleets.robot_groups import RobotGroup, group_robots
 from multibot_rewrite.graph.expectation import tf_topic
-from multibot_rewrite.graph.transforms import Edge, description_edges
+from multibot_rewrite.graph.transforms import Edge
 from multibot_rewrite.rewriters.own_defaults import frame_sites
 from multibot_rewrite.rewriters.text import text_at
 
@@ -117,14 +117,14 @@ def _place(robot: RewrittenRobot, sent: SentTransform, files: Parsed) -> tuple[s
 
 def _line_of_joint(robot: RewrittenRobot, edge: Edge) -> int:
     """The line in the source: inserted text moves those of the result."""
-    number = list(description_edges(robot.member.inventory)).index(edge)
+    number = robot.tree.index(edge)
     return line_of_element(robot.member.source, "joint", number)
 
 
 def _sent(fleet: Fleet, group: RobotGroup) -> Iterator[SentTransform]:
     robot = group.robots[0]
     name = robot.spec.namespace
-    tree = list(description_edges(robot.member.inventory))
+    tree = robot.tree
     yield from (SentTransform(edge, DESCRIPTION, "") for edge in tree)
     yield from (SentTransform(edge, SIMULATOR, "") for edge in _simulated(robot))
     full = {
@@ -155,7 +155,7 @@ def _of_two_robots(plan: FleetPlan, fleet: Fleet) -> Iterator[Finding]:
     reported: set[str] = set()
     by_space = {it.spec.namespace: it for it in plan.robots}
     # If a description starts with the world, the drive looks as if it moved the world.
-    links = {link for it in plan.robots for link in it.member.inventory.declared["link"]}
+    links = {link for it in plan.robots for link in it.links}
     for (robot, node), edges in fleet.edges.items():
         for edge in edges:
             other = first.setdefault((tf_topic(robot, naming), edge.child), robot)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from itertools import pairwise
 from typing import NamedTuple
 
 from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.fleets.doubled_names import doubled
 from multibot_rewrite.fleets.output_values import OutputValue
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.graph.expectation import USUAL_FRAMES
@@ -62,16 +63,6 @@ def check_value(place: ValueInFile) -> Iterator[Finding]:
         return
     for check in _CHECKS:
         yield from check(place)
-
-
-def twice(token: str, words: Iterable[str]) -> str:
-    """The word of a robot that a name holds twice in a row; empty for none."""
-    for word in words:
-        if f"{word}/{word}" in token or f"{word}_{word}" in token:
-            repeated = re.compile(f"(?<![A-Za-z0-9])({re.escape(word)})[/_]\\1(?![A-Za-z0-9])")
-            if repeated.search(token):
-                return word
-    return ""
 
 
 def _tokens(place: ValueInFile) -> Iterator[str]:
@@ -153,8 +144,8 @@ acme_driver:
 
 def _doubled(place: ValueInFile) -> Iterator[Finding]:
     for token in _tokens(place):
-        word = twice(token, place.own.words)
-        if word and not any(word in it.split("/") for it in place.own.bare):
+        word = doubled(token, place.own.words, place.own.right, place.own.bare)
+        if word:
             yield holds_twice(token, word)
 
 
@@ -169,7 +160,9 @@ def _prefix_at_run_time(place: ValueInFile) -> Iterator[Finding]:
     key, text = place.value.key, place.value.text.strip()
     if not place.naming.layout.frames or place.value.is_key or place.before_names:
         return
-    prefix = key in PREFIXES and text not in ("", "~", "null", "/")
+    tag, run_time = place.own.robot.spec.tag, place.naming.layout.at_run_time
+    right = {"", "~", "null", "/", *((tag, f"{tag}/") if run_time else ())}
+    prefix = key in PREFIXES and text not in right
     if prefix or (key == ENABLES and text.lower() == "true"):
         message = f"{key}: {text} adds a prefix to frames that already have the robot's name"
         yield ROBOT_TWICE.finding(message, 'write ""' if key in PREFIXES else "write false")
@@ -274,7 +267,7 @@ BARE_FRAME = declare(
 
 def _bare_frame(place: ValueInFile) -> Iterator[Finding]:
     text, key = place.value.text, place.value.key
-    if place.value.is_key or not _FRAME_KEY.search(key.rpartition(".")[2]):
+    if place.value.is_key or place.before_names or not _FRAME_KEY.search(key.rpartition(".")[2]):
         return
     if text in place.own.bare and text not in place.own.right:
         right = " or ".join(sorted(place.own.bare[text]))

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
+from multibot_rewrite.fleets.robot_groups import said_once
 from multibot_rewrite.fleets.start_poses import NODE, start_poses
 from multibot_rewrite.graph.transforms import Edge
 from multibot_rewrite.remap.bridged_topics import TF_TYPE
@@ -25,9 +26,13 @@ POSE_NODE = NodeFacts(NODE, "tf2_ros", (Endpoint(TOPIC, PUBLISHES, STATIC, TF_TY
 
 
 def with_start_pose_nodes(plan: FleetPlan) -> Fleet:
-    """The planned fleet with a static transform publisher for each robot that needs one."""
-    fleet = plan.fleet
-    held = [it for one in split_per_robot(plan) for it in start_poses(one).transforms]
+    """The planned fleet with a static transform publisher for each robot that needs one; why a pose
+    is not published is among the problems of its table."""
+    poses = [start_poses(one) for one in split_per_robot(plan)]
+    held = [it for one in poses for it in one.transforms]
+    problems = tuple(said_once(plan, (it for one in poses for it in one.findings)))
+    table = plan.fleet.table
+    fleet = plan.fleet._replace(table=table._replace(problems=(*table.problems, *problems)))
     if not held:
         return fleet
     tables = [node_table(it.robot, POSE_NODE, fleet.naming) for it in held]

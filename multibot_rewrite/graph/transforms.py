@@ -42,9 +42,10 @@ def edges_of(
     ``word`` is the robot's name in its frames, empty where that is its name; ``plain`` are links that
     arguments of a xacro make of what nodes call otherwise.
     """
-    tree = list(description_edges(inventory))
+    tree = list(tree_of(inventory, naming, word or robot))
     children = {edge.child for edge in tree}
-    root = next((link for link in inventory.declared["link"] if link not in children), "")
+    links = links_of(inventory, naming, word or robot)
+    root = next((link for link in links if link not in children), "")
     by_naming = partial(spelled, naming, word or robot, "frame")
     result = {(robot, node.name): [*sent_by(node, "")] for node in plugins}
     for node in facts:
@@ -57,14 +58,26 @@ def edges_of(
     return result
 
 
-def description_edges(inventory: Inventory) -> Iterator[Edge]:
-    """The transforms that robot_state_publisher sends for the joints of a description."""
-    yield from edges_in(inventory.document.root)
+def tree_of(inventory: Inventory, naming: Naming, robot: str) -> Iterator[Edge]:
+    """The transforms that a robot's robot_state_publisher sends for its rewritten description."""
+    for it in edges_in(inventory.document.root):
+        parent, child = (at_run_time(naming, robot, link) for link in it[:2])
+        yield it._replace(parent=parent, child=child)
+
+
+def links_of(inventory: Inventory, naming: Naming, robot: str) -> list[str]:
+    """The links of a rewritten description as frames."""
+    return [at_run_time(naming, robot, link) for link in inventory.declared["link"]]
+
+
+def at_run_time(naming: Naming, robot: str, link: str) -> str:
+    """The frame of a link: nodes may put the robot's name before it."""
+    return spelled(naming, robot, "frame", link) if naming.layout.at_run_time else link
 
 
 def edges_in(root: _Element) -> Iterator[Edge]:
-    """The same, from the root element of a description. A frame of an SDF is the link that it is
-    attached to."""
+    """The transforms that robot_state_publisher sends for the joints of a description as it is. A
+    frame of an SDF is the link that it is attached to."""
     frames = root.iter("frame")
     attached = {it.get("name", ""): it.get("attached_to", "") for it in frames}
     for joint in root.iter("joint"):
@@ -117,9 +130,16 @@ def with_odometry(edges: Edges, robot: str, naming: Naming) -> tuple[Edges, str]
     return {**edges, state: [*tree, added]}, f"{added.parent} -> {added.child}"
 
 
-def frames_of(inventory: Inventory, sent: Iterable[Edge], naming: Naming) -> tuple[str, ...]:
-    """A robot's own frames: those of its description, and those its nodes send besides."""
-    declared = (*inventory.declared["link"], *inventory.declared["frame"])
+def frames_of(
+    inventory: Inventory, sent: Iterable[Edge], naming: Naming, robot: str
+) -> tuple[str, ...]:
+    """A robot's own frames: those of its description, and those its nodes send besides.
+
+    A ``<frame>`` of an SDF is not on tf: sdformat_urdf (jazzy, sdformat_urdf.cpp) makes a URDF of links
+    and joints.
+    """
+    own = () if inventory.document.root.tag == "sdf" else inventory.declared["frame"]
+    declared = (*links_of(inventory, naming, robot), *own)
     ends = (frame for edge in sent for frame in edge[:2])
     frames = dict.fromkeys((*declared, *ends))
     return tuple(frame for frame in frames if frame not in naming.shared_frames)

@@ -2,7 +2,10 @@
 
 Each FOLDER is a checkout of a tag or commit and is called REPOSITORY@VERSION. The table is printed;
 with ``--compare RELEASE``, the differences to the nodes that are known of that release, and nodes
-beside them that ``nodes.txt`` does not have; with ``--nodl NODE``, the NoDL document of that node.
+beside them that ``nodes.txt`` does not have; with ``--nodl NODE``, the NoDL document of that node; with
+``--plugins``, the parameters that plugins of simulators and ros2_control hardware read (checkouts of a
+release may be in a folder of its name, the oldest release first); with ``--sdf``, what SDF has, of one
+checkout of sdformat.
 """
 
 from __future__ import annotations
@@ -11,6 +14,7 @@ import argparse
 import sys
 from pathlib import Path
 
+from multibot_rewrite.interfaces import plugin_files, sdf_elements
 from multibot_rewrite.interfaces.checkouts import read_folder
 from multibot_rewrite.interfaces.compare import difference_of, differences
 from multibot_rewrite.interfaces.known_nodes import extracted, unlisted
@@ -31,6 +35,8 @@ def main(arguments: list[str]) -> int:
     parser.add_argument("folders", nargs="+", type=Path, metavar="FOLDER")
     parser.add_argument("--compare", choices=RELEASES, metavar="RELEASE")
     parser.add_argument("--nodl", metavar="NODE")
+    parser.add_argument("--plugins", action="store_true")
+    parser.add_argument("--sdf", action="store_true")
     given = parser.parse_args(arguments)
     try:
         return _printed(given)
@@ -40,6 +46,12 @@ def main(arguments: list[str]) -> int:
 
 
 def _printed(given: argparse.Namespace) -> int:
+    if given.sdf:
+        sys.stdout.write(sdf_elements.to_schema(given.folders[0]))
+        return 0
+    if given.plugins:
+        sys.stdout.write(plugin_files.to_schema(given.folders))
+        return 0
     index = indexed(joined([read_folder(folder) for folder in sorted(given.folders)]))
     facts = tuple(extracted(index))
     if given.nodl:

@@ -170,7 +170,10 @@ def _made(
 
 
 def _loaded(box: str, options: Mapping[str, Any], given: Mapping[str, Any]) -> list[Action]:
-    """A component, loaded into the container that the robot runs."""
+    """A component, loaded into the container that the robot runs; raises UsageError for a program."""
+    if "executable" in given:
+        name, stays = options["name"], "or take a stack in which it has a process of its own"
+        raise UsageError(f"{name} is a component of {box}: write plugin= for executable=, {stays}")
     component = of_launch_ros("descriptions").ComposableNode(**{**options, "condition": None})
     loaded = {"composable_node_descriptions": [component]}
     return [of_launch_ros("actions").LoadComposableNodes(target_container=box, **loaded)]
@@ -204,7 +207,7 @@ def _own_file(
     """The path of a file with the node's description, start pose and clock, if it needs one."""
     values = robot.start_parameters(node)
     if describe:
-        values["robot_description"] = robot.description
+        values |= robot.description_parameters
     # Nodes that others make in their process have no values but those for all of it.
     clocks = {} if clock is None else {"/**": {SIM_TIME: clock}}
     sections = {**clocks, **({robot.table.full_name(node): values} if values else {})}

@@ -37,16 +37,28 @@ def _action(base: Any) -> Any:
             super().__init__(**first)
             self.__make: Callable[[Context], Made] | None = make
 
-        def execute(self, context: Context) -> Any:
+        def resolve(self, context: Context) -> list[Action] | None:
+            """Make it the robot's; the actions that run in its place, if others do."""
             make, self.__make = self.__make, None
             made = make(context) if make else {}
             if isinstance(made, list):
                 return made
             if made:
                 super().__init__(**made)
-            return super().execute(context)
+            return None
+
+        def execute(self, context: Context) -> Any:
+            instead = self.resolve(context)
+            return super().execute(context) if instead is None else instead
 
     return OfRobot
+
+
+def resolved(action: Action, context: Context) -> list[Action] | None:
+    """The actions that run in the place of one for a robot; None for itself, which has its options
+    from now on."""
+    resolve = getattr(action, "resolve", None)
+    return resolve(context) if type(action).__name__ == "OfRobot" and resolve else None
 
 
 @cache

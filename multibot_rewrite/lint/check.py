@@ -14,6 +14,7 @@ from multibot_rewrite.findings.finding import Finding, by_place
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.findings.selection import level_of
 from multibot_rewrite.gc_pause import gc_paused
+from multibot_rewrite.lint.beside.kinds import is_beside
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.config.suppress import unsuppressed
 from multibot_rewrite.lint.failures import breakdown, crash, failure, too_long
@@ -47,6 +48,8 @@ def _linted(path: str, read: Callable[[], bytes], settings: Settings) -> list[Fi
     try:
         with _limited(settings.seconds), gc_paused():
             sources[path] = data = read()
+            if is_beside(path):
+                return sorted(_beside(path, data, settings), key=by_place)
             for subject in read_subjects(path, data, settings):
                 if isinstance(subject, Failed):
                     it = failure(path, subject.message, settings)
@@ -63,6 +66,12 @@ def _linted(path: str, read: Callable[[], bytes], settings: Settings) -> list[Fi
     except Exception as error:  # the other files are still linted
         found.append(breakdown(path, error))
     return sorted(unsuppressed(_merged(found), sources, settings), key=by_place)
+
+
+def _beside(path: str, data: bytes, settings: Settings) -> list[Finding]:
+    from multibot_rewrite.lint.beside.read import beside_findings  # a description needs none of it
+
+    return unsuppressed(list(beside_findings(path, data, settings)), {}, settings)
 
 
 def lint_subject(subject: Subject) -> list[Finding]:

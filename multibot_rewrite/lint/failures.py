@@ -21,6 +21,7 @@ _CODES = (
     ("cannot be read", "MB102"),
     ("Is a directory", "MB102"),
     ("Permission denied", "MB102"),
+    ("xacro failed: package '", "MB119"),
     ("xacro failed", "MB103"),
 )
 

@@ -9,6 +9,7 @@ from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.findings.selection import is_on
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.rules import (
+    beside,
     files,
     meshes,
     meta,
@@ -17,20 +18,19 @@ from multibot_rewrite.lint.rules import (
     physics,
     references,
     rewriting,
-    srdf,
     structure,
 )
 
 GROUPS: tuple[tuple[str, str, ModuleType], ...] = (
     ("MB0", "the lint itself", meta),
-    ("MB1", "file and encoding", files),
+    ("MB1", "file, encoding and values", files),
     ("MB2", "references", references),
     ("MB3", "names", names),
     ("MB4", "several robots", multirobot),
     ("MB5", "structure", structure),
     ("MB6", "physics", physics),
     ("MB7", "meshes and packages", meshes),
-    ("MB8", "SRDF against URDF", srdf),
+    ("MB8", "files beside the URDF: SRDF, parameters, RViz, MoveIt, bridges", beside),
     ("MB9", "rewriting", rewriting),
 )
 

@@ -49,7 +49,8 @@ def _own(names: Iterable[RuntimeName], naming: Naming) -> Iterator[RuntimeName]:
         bare = it.name.strip("/")
         if it.kind == FRAME:
             # Where each robot has a tf topic of its own, frames may be the same.
-            shared = not naming.layout.frames or bare in naming.shared_frames
+            at_run_time = naming.layout.at_run_time and it.tag == "link"
+            shared = at_run_time or not naming.layout.frames or bare in naming.shared_frames
         elif it.kind in (TOPIC, SERVICE):
             # __default_topic__ is no topic: the simulator makes one from the model's name.
             shared = bare in naming.shared_topics or is_keyword(bare)

@@ -68,7 +68,10 @@ def _of_simulator(given: Iterable[Delivery]) -> tuple[Pair, ...]:
 def _running(it: Delivery, standing: _Standing) -> RunningNode:
     node, own = it.node, standing.rules.get((it.node.robot, it.taker), ())
     if it.way == SPAWNER:
-        return RunningNode(node, it.way, (*_forwarded(node, standing), *own), node.namespace, ())
+        # A tf listener that its code makes has the arguments of the manager's process alone.
+        process = standing.rules.get((node.robot, MANAGER), standing.world)
+        rules = (*_forwarded(node, standing), *own)
+        return RunningNode(node, it.way, rules, node.namespace, process)
     if it.way == PLUGIN:
         rules, wide = _of_plugin(node, own, standing), standing.world
         given = own if standing.controllers.forwarded else ()

@@ -14,8 +14,13 @@ from multibot_rewrite.naming import NAMESPACE, TF_TOPICS, Naming, spelled
 from multibot_rewrite.readback.model_namespaces import scoped_namespace
 from multibot_rewrite.rewriters.model_namespaces import is_model_namespace
 from multibot_rewrite.rewriters.text import text_at
+from multibot_rewrite.rewriters.tree import library_key
 from multibot_rewrite.steps.collect import Inventory
 
+# How libraries for gz-sim are called; those for Gazebo Classic that are ROS nodes have the other word.
+GZ_LIBRARIES, CLASSIC_LIBRARY = ("gz-", "gz_", "ign_", "ignition-"), "gazebo_ros"
+# Types of sensors that Gazebo Classic has, too; it calls the others otherwise (``gpu_ray``).
+OF_BOTH = frozenset({"camera", "imu", "magnetometer", "altimeter", "force_torque"})
 DIRECTIONS = {"in": "GZ_TO_ROS", "out": "ROS_TO_GZ"}
 TF_TYPE = "tf2_msgs/msg/TFMessage"
 
@@ -68,13 +73,29 @@ def bridged_topics(
     return list(dict.fromkeys(bridged)), left
 
 
+def plugin_libraries(inventory: Inventory) -> list[str]:
+    """The libraries of a description's plugins, as ``library_key`` has them."""
+    hosts = (it.element for it in inventory.hosts)
+    return [library_key(it.get("filename", "")) for it in hosts if it.tag == "plugin"]
+
+
+def is_for_classic(inventory: Inventory) -> bool:
+    """Is a description for Gazebo Classic, whose topics no bridge can reach?"""
+    known = plugin_libraries(inventory)
+    return any(CLASSIC_LIBRARY in it for it in known) and not any(
+        it.startswith(GZ_LIBRARIES) for it in known
+    )
+
+
 def _robot_topics(
     inventory: Inventory, robot: str, naming: Naming
 ) -> Iterator[BridgedTopic | UnbridgedTopic]:
+    elsewhere = OF_BOTH if is_for_classic(inventory) else ()
     for sensor in inventory.document.root.iter("sensor"):
-        yield from _sensor(sensor, robot, naming)
+        if sensor.get("type") not in elsewhere:
+            yield from _sensor(sensor, robot)
     # With bare frames the spawner must give the model the robot's name, or two models collide.
-    model = inventory.document.root.get("name", "") if naming.layout.frames else robot
+    model = inventory.document.root.get("name", "") if "model" in naming.separators else robot
     read = any(is_model_namespace(claim.site) for claim in inventory.claims)
     for host in inventory.hosts:
         section = host.node.section
@@ -84,9 +105,7 @@ def _robot_topics(
         yield from _plugin(host.element, topics, robot, model, naming, space)
 
 
-def _sensor(
-    sensor: etree._Element, robot: str, naming: Naming
-) -> Iterator[BridgedTopic | UnbridgedTopic]:
+def _sensor(sensor: etree._Element, robot: str) -> Iterator[BridgedTopic | UnbridgedTopic]:
     kind = sensor.get("type", "")
     topics = bridge_data()["sensors"].get(kind, ())
     if not topics or sensor.find("plugin[@filename]") is not None:

@@ -43,8 +43,12 @@ def started(table: Table) -> Iterator[Started]:
     controllers = (it.node for it in given if it.node.home.is_controller)
     # The node that a stack has for the spawner of a controller is that spawner.
     spawners = {(it.robot, f"spawner_{it.node}") for it in controllers}
+    # A node's first delivery is its own, another one that of its helper nodes.
+    first = {it.node: it for it in reversed(given)}
     for it in given:
         node, own = it.node, rules.get((it.node.robot, it.taker), ())
+        if node.home.is_controller and first[node] is not it:
+            continue
         if node.home.is_controller:
             taken = own if it.way == SPAWNER else ()
             yield Started(node, SPAWNER, taken, names.get(node.robot, MANAGER))

@@ -84,12 +84,12 @@ def _build(
     }
     problems = [
         *unreachable([node for node, _ in own], naming),
-        *useless_rules(own),
+        *useless_rules(own, release),
         *collisions(names, naming),
     ]
     for robot in robots:
         controllers = _given_by_plugins(own, robot, release)
-        problems += useless_rules(plugins.get(robot, ()), controllers)
+        problems += useless_rules(plugins.get(robot, ()), release, controllers)
     twin = _copies(own, PROBE) if len(robots) == 1 else ()
     kept = [*names_of(shared), *(name for robot in robots for name in names[robot])]
     tables = [table for _, table in shared]

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from functools import cache
 from typing import NamedTuple
 
+from multibot_rewrite.controller_ways import controller_way
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.naming import NAMESPACE, Naming
+from multibot_rewrite.releases import RELEASES
 from multibot_rewrite.remap.records import (
+    MANAGER,
     SERVICE,
     TOPIC,
     Endpoint,
@@ -18,6 +22,7 @@ from multibot_rewrite.remap.records import (
     NodeTable,
     Pairs,
 )
+from multibot_rewrite.remap.stacks import load_nodes
 from multibot_rewrite.remap.targets import expanded, target_of
 from multibot_rewrite.rosnames import BoundNode, bind, resolve_bound
 
@@ -261,12 +266,15 @@ class _Names(NamedTuple):
     full: frozenset[tuple[str, str]]
 
 
-def useless_rules(pairs: Pairs, controllers: Pairs | None = ()) -> Iterator[Finding]:
+def useless_rules(pairs: Pairs, release: str, controllers: Pairs | None = ()) -> Iterator[Finding]:
     """Rules that match no name of their node, and rules after one that matches first.
 
-    ``controllers`` are those that a plugin hands its rules on to; None if they are not known.
+    ``controllers`` are those that a plugin hands its rules on to; None if they are not known. A
+    description may serve robots with other controllers: a rule for one known in ``release`` is right.
     """
     others = [_names(*pair) for pair in controllers or ()]
+    known = _of_managers(release)
+    by_file = any(":" in node.origin for node, _ in controllers or ())
     for node, table in pairs:
         own = _names(node, table)
         wide = table.home.process_wide
@@ -280,10 +288,29 @@ def useless_rules(pairs: Pairs, controllers: Pairs | None = ()) -> Iterator[Find
             if match in seen:
                 message = f"{text} has no effect: an earlier rule matches first"
                 yield LATER_RULE.finding(message, "remove it", robot=robot, node=node.name)
-            elif not any(_matches(rule, it) for it in asked) and not (wide and controllers is None):
+            elif wide and (controllers is None or (not whose and _is_for(source, known, by_file))):
+                pass
+            elif not any(_matches(rule, it) for it in asked):
                 message = f"{text} matches no name of this node"
                 yield RULE_WITHOUT_NAME.finding(message, "remove it", robot=robot, node=node.name)
             seen.add(match)
+
+
+@cache
+def _of_managers(release: str) -> frozenset[str]:
+    """The names in the code of controller managers, and in any release of controllers that get their
+    rules: one description may be for several."""
+    handed_on = RELEASES if controller_way(release).of_manager else ()
+    nodes = [load_nodes(release)[MANAGER]]
+    nodes += [it for known in handed_on for it in load_nodes(known).values() if it.host == MANAGER]
+    return frozenset(end.name for node in nodes for end in node.endpoints)
+
+
+def _is_for(source: str, known: frozenset[str], by_file: bool) -> bool:
+    """Is it a name in the code of a known controller, or below a node that may be one?"""
+    above, slash, _ = source.partition("/")
+    below = "" if by_file or not slash or above == "~" else f"~{source[len(above) :]}"
+    return source in known or below in known
 
 
 def _names(node: NodeFacts, table: NodeTable) -> _Names:

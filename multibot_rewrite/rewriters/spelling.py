@@ -46,8 +46,11 @@ class Renamed(NamedTuple):
 Spelling = tuple[Renamed, ...]
 
 
-def resolved_names(claims: Iterable[Claim], declared: Declared) -> list[tuple[ResolvedName, ...]]:
-    """The names in each claimed value, resolved; claims of equal values share theirs."""
+def resolved_names(
+    claims: Iterable[Claim], declared: Declared, apart: bool = False
+) -> list[tuple[ResolvedName, ...]]:
+    """The names in each claimed value, resolved; claims of equal values share theirs. ``apart`` as
+    for ``resolve``."""
     known: dict[tuple[object, str], tuple[ResolvedName, ...]] = {}
     result = []
     for claim in claims:
@@ -57,19 +60,19 @@ def resolved_names(claims: Iterable[Claim], declared: Declared) -> list[tuple[Re
         key = (of, scope_of(claim.element)) if site.form == "scoped" else of, claim.value
         names = known.get(key)
         if names is None:
-            names = known[key] = _resolved(claim, declared)
+            names = known[key] = _resolved(claim, declared, apart)
         result.append(names)
     return result
 
 
-def _resolved(claim: Claim, declared: Declared) -> tuple[ResolvedName, ...]:
+def _resolved(claim: Claim, declared: Declared, apart: bool) -> tuple[ResolvedName, ...]:
     site, value = claim.site, claim.value
     if site.whole_value_kind and value in declared[site.whole_value_kind]:
         return (ResolvedName(0, value, site.whole_value_kind, site.kinds),)
     if site.role == "declares" and site.form == "whole" and value and value == value.strip():
         return (ResolvedName(0, value, site.kinds[0], site.kinds),)
     return tuple(
-        ResolvedName(part.at, part.text, kind_of(part, site.role, declared), part.kinds)
+        ResolvedName(part.at, part.text, kind_of(part, site.role, declared, apart), part.kinds)
         for part in names_in(claim, declared)
     )
 
@@ -100,7 +103,7 @@ def spell_default(site: Site, value: str, declared: Declared, naming: Naming) ->
         return ()
     result = []
     for part in FORMS[site.form](value, site.kinds, declared):
-        kind = kind_of(part, "uses", declared)
+        kind = kind_of(part, "uses", declared, naming.layout.at_run_time)
         there = affix(naming, kind, part.text, site.namespaced) if kind else None
         if there is not None:
             result.append(renamed_at(part.at, kind, part.text, site.namespaced, there))
@@ -119,17 +122,25 @@ def must_be_declared(site: Site) -> bool:
     return site.kinds[0 if site.form == "suffixed" else -1] in CLOSED_KINDS
 
 
-def kind_of(part: NamePart, role: str, declared: Declared) -> str:
+def kind_of(part: NamePart, role: str, declared: Declared, apart: bool = False) -> str:
     """Which of its kinds a name is; empty for a use of something that is not declared."""
     if part.matched:
         return part.matched[0]
-    return resolve(part.text, part.kinds, role, declared, part.closed)
+    return resolve(part.text, part.kinds, role, declared, part.closed, apart)
 
 
-def resolve(text: str, kinds: Kinds, role: str, declared: Declared, closed: bool = False) -> str:
+def resolve(
+    text: str,
+    kinds: Kinds,
+    role: str,
+    declared: Declared,
+    closed: bool = False,
+    apart: bool = False,
+) -> str:
     """Which of ``kinds`` a name is; empty for a use of something that must be declared and is not.
 
-    A frame that names a link is spelled like the link, one leading slash aside.
+    A frame that names a link is spelled like the link, one leading slash aside; not if frames are
+    ``apart`` from links, since nodes name them at run time.
     """
     if role == "declares":
         return kinds[0]
@@ -137,7 +148,8 @@ def resolve(text: str, kinds: Kinds, role: str, declared: Declared, closed: bool
         if text in declared.get(kind, ()):
             return kind
     bare = text[1:] if text.startswith("/") and not text.startswith("//") else text
-    if not FRAME_KINDS.isdisjoint(kinds) and not {text, bare}.isdisjoint(declared["link"]):
+    is_frame = not FRAME_KINDS.isdisjoint(kinds) and not (apart and kinds == ("frame",))
+    if is_frame and not {text, bare}.isdisjoint(declared["link"]):
         return "link"
     if closed or is_keyword(text):
         return ""

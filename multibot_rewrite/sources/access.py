@@ -12,6 +12,7 @@ from multibot_rewrite.bounded import MAX_BYTES
 from multibot_rewrite.model import InputError, MultibotError
 from multibot_rewrite.outside import outside, real_path, variable
 from multibot_rewrite.sources.child.frames import FENCES
+from multibot_rewrite.sources.packages import package_folder
 
 # The folder of a package for $(find PACKAGE), empty where it is not known.
 Find = Callable[[str], str]
@@ -76,12 +77,20 @@ class Access:
         """The folder for $(find NAME), which may be read from now on; raises LookupError."""
         if os.path.basename(name) != name or name in ("", os.curdir, os.pardir):
             raise LookupError(f"{name!r} is no name of a package")
-        folder = (self.find and self.find(name)) or _installed(name)
+        folder = (self.find and self.find(name)) or _installed(name) or self._beside(name)
         if not folder:
             why = "" if _prefixes() or self.find else ": AMENT_PREFIX_PATH is not set"
             raise LookupError(f"package {name!r} is not found{why}")
         self.roots.append(real_path(folder))
         return folder
+
+    def _beside(self, name: str) -> str:
+        """A package of the same repository, or beside the file's own: no ROS has to be sourced."""
+        repository = _marked(os.path.dirname(_real(self.path)[0]), ".git")
+        home = os.path.realpath(os.path.expanduser("~"))
+        roots = (repository,) if repository and not _below(home, repository) else ()
+        folder = package_folder(name, _real(self.path)[0], roots)
+        return folder if os.path.isfile(os.path.join(folder, "package.xml")) else ""
 
     def variable(self, name: str) -> str | None:
         """The value of a variable of the environment; raises NotAllowedError for one that is set."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from contextlib import suppress
 from functools import cache
 from typing import NamedTuple
@@ -51,6 +51,13 @@ class FilesRead(NamedTuple):
 NO_FILES = FilesRead()
 
 
+def joined_reads(one: FilesRead, other: FilesRead) -> FilesRead:
+    """What was read for two descriptions of one robot: an argument is for one or for both."""
+    known = dict.fromkeys((*one.arguments, *other.arguments))
+    unread = dict.fromkeys(it for it in (*one.unread, *other.unread) if it not in known)
+    return FilesRead((*one.files, *other.files), tuple(known), tuple(unread))
+
+
 class Job(NamedTuple):
     """Bytes, options and file names; ``file`` is the name in messages, ``urdf`` the bytes and the
     name of the URDF beside an SRDF; ``own`` says more where it is one robot's own; ``release`` is that
@@ -78,8 +85,10 @@ class Job(NamedTuple):
     @property
     def inventories(self) -> list[Inventory]:
         """What is in the description, and in the URDF beside an SRDF; raises InputError."""
-        own = collect(read_document(self.data, self.file), self.tree, self.urdf_declarations)
-        return [own, collect(read_document(*self.urdf), self.tree)] if self.urdf else [own]
+        tree, apart = self.tree, self.naming.layout.at_run_time
+        own = collect(read_document(self.data, self.file), tree, self.urdf_declarations, apart)
+        urdf = [collect(read_document(*self.urdf), tree, apart=apart)] if self.urdf else []
+        return [own, *urdf]
 
 
 def read_job(
@@ -171,17 +180,22 @@ def _files_read(args: Arguments, texts: Sequence[SourceText]) -> FilesRead:
     return FilesRead(files, known.names, known.lacks(sorted(args)) if each else ())
 
 
-def job_for(read: Reader, given: Arguments, words: Sequence[str]) -> Job:
-    """The job of the robot with these words; raises as ``read_job``."""
+def job_for(
+    read: Reader, given: Arguments, words: Sequence[str], common: Collection[str] = ()
+) -> Job:
+    """The job of the robot with these words, which arguments that are ``common`` to robots do not
+    name; raises as ``read_job``."""
     job = read(filled(given, *words[:1]))
-    if not name_robot(given, words):
+    if not name_robot(given, words, common):
         return job
-    other = _marked(read, given, words)
+    other = _marked(read, given, words, common)
     own = {key: None for part in other.inventories for key in own_names(part, words)}
+    _check_links(job, own, given, words)
     twin = as_twin(other.data) if has_mark(other.data) else b""
     job = job._replace(naming=job.naming._replace(own=own), own=OwnSource(words[0], twin=twin))
     try:
-        plain = read({it: text for it, text in given.items() if not name_robot({it: text}, words)})
+        kept = (it for it in given.items() if not name_robot(dict([it]), words, common))
+        plain = read(dict(kept))
     except InputError:
         # An argument without a default: nothing is known of names without it.
         return job
@@ -199,13 +213,25 @@ def job_for(read: Reader, given: Arguments, words: Sequence[str]) -> Job:
     return follow(job, plain, affixes)
 
 
-def _marked(read: Reader, given: Arguments, words: Sequence[str]) -> Job:
+def _check_links(job: Job, own: OwnNames, given: Arguments, words: Sequence[str]) -> None:
+    """Where nodes put the robot's name before links, no argument may."""
+    links = sorted(text for kind, text in own if kind == "link")
+    if job.naming.layout.at_run_time and links:
+        named = ", ".join(
+            f"{it}:={text}" for it, text in given.items() if words[0] in text or "{" in text
+        )
+        what = f"{job.file}: {named} puts the robot's name into the link {links[0]!r}"
+        again = f"robot_state_publisher would add it once more in layout {job.naming.layout.name}"
+        raise InputError(f"{what}, and {again}; leave it out, or take frames-per-robot")
+
+
+def _marked(read: Reader, given: Arguments, words: Sequence[str], common: Collection[str]) -> Job:
     """The sources with marks for the robot's words in every argument that takes them."""
     with suppress(InputError):
-        return read(marked(given, words))
+        return read(marked(given, words, common))
     # Some file takes only words that it knows for one of them.
     args = filled(given, words[0])
-    for name, text in marked(given, words).items():
+    for name, text in marked(given, words, common).items():
         with suppress(InputError):
             read({**args, name: text})
             args[name] = text

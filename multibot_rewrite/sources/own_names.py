@@ -7,7 +7,7 @@ reaches is found by expanding the file once more, with a word that nobody uses f
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from multibot_rewrite.model import UsageError
@@ -56,12 +56,22 @@ def filled(arguments: Arguments, robot: str = "") -> dict[str, str]:
     return {name: _PLACEHOLDER.sub(robot, text) for name, text in arguments.items()}
 
 
-def marked(arguments: Arguments, words: Sequence[str]) -> dict[str, str]:
-    """The arguments with a mark for each word of a robot; the first word is what fills ``{robot}``."""
-    return {name: _marked(text, words) for name, text in arguments.items()}
+def marked(
+    arguments: Arguments, words: Sequence[str], common: Collection[str] = ()
+) -> dict[str, str]:
+    """The arguments with a mark for each word of a robot; the first word is what fills ``{robot}``.
+
+    Those that are ``common`` to robots name none of them.
+    """
+    return {
+        name: text if name in common else _marked(text, words) for name, text in arguments.items()
+    }
 
 
 def _marked(text: str, words: Sequence[str]) -> str:
+    if ROBOT in text:
+        # It says where the robot is: another left in it is the left finger.
+        return text.replace(ROBOT, MARKS[0])
     for word, mark in zip(words, MARKS, strict=False):
         token = rf"(?<![A-Za-z0-9]){re.escape(word)}(?![A-Za-z0-9])"
         text = re.sub(token, mark, text)
@@ -74,9 +84,20 @@ def templates(arguments: Arguments, robot: str) -> dict[str, str]:
     return {name: text.replace(MARKS[0], ROBOT) for name, text in texts.items()}
 
 
-def name_robot(arguments: Arguments, words: Sequence[str]) -> bool:
+def name_robot(arguments: Arguments, words: Sequence[str], common: Collection[str] = ()) -> bool:
     """Does any of the arguments hold a word of the robot?"""
-    return marked(arguments, words) != dict(arguments)
+    return marked(arguments, words, common) != dict(arguments)
+
+
+def common_to(robots: Sequence[tuple[Arguments, Sequence[str]]]) -> frozenset[str]:
+    """The arguments that all of several robots have alike, and in which a word of one is a part of a
+    name, as in ``left_finger``: the fingers of all robots are called so."""
+    first = robots[0][0] if len(robots) > 1 else {}
+    alike = {name for name in first if all(it.get(name) == first[name] for it, _ in robots)}
+    words = {word for _, own in robots for word in own}
+    return frozenset(
+        it for it in alike if ROBOT not in first[it] and first[it].strip("_/") not in words
+    )
 
 
 def own_names(inventory: Inventory, words: Sequence[str]) -> OwnNames:

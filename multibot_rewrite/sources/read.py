@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Mapping
+from contextlib import suppress
 from typing import NamedTuple
 
 from multibot_rewrite.bounded import MAX_BYTES, read_bytes
@@ -12,6 +14,10 @@ from multibot_rewrite.sources.known_arguments import KnownArguments, known_argum
 
 Source = str | bytes | os.PathLike[str]
 NO_ARGUMENTS = KnownArguments()
+XACRO = ".xacro"
+_MAYBE_XACRO = (".urdf", ".srdf", ".sdf", ".xml")
+_COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
+_SPACE = re.compile(rb"""xmlns:([\w.-]+)\s*=\s*["'][^"'<>]*/xacro/?["']""")
 
 
 class SourceText(NamedTuple):
@@ -33,7 +39,24 @@ def args_for(source: Source, other: Source | None, args: Mapping[str, str]) -> M
 
 
 def _is_xacro(source: Source) -> bool:
-    return not isinstance(source, bytes) and os.fspath(source).endswith(".xacro")
+    return not isinstance(source, bytes) and is_xacro(os.fspath(source))
+
+
+def is_xacro(path: str) -> bool:
+    """Is it a xacro, by its name or, as turtlebot3's .urdf files are, by what is in it?"""
+    if not path.endswith(_MAYBE_XACRO):
+        return path.endswith(XACRO)
+    with suppress(InputError):
+        return has_xacro(read_file(path))
+    return False
+
+
+def has_xacro(data: bytes) -> bool:
+    """Does a text have elements of xacro, under whatever prefix?"""
+    if b"xacro" not in data:
+        return False
+    text = _COMMENT.sub(b"", data)
+    return any(b"<" + prefix + b":" in text for prefix in _SPACE.findall(text))
 
 
 def read_source(
@@ -51,7 +74,7 @@ def read_whole(source: Source, xacro_args: Mapping[str, str], trust: bool = Fals
     if isinstance(source, str) and source.lstrip("\ufeff \t\r\n").startswith("<"):
         return SourceText(_encoded(source), "<text>")
     path = os.fspath(source)
-    if path.endswith(".xacro"):
+    if is_xacro(path):
         from multibot_rewrite.sources.access import BOUNDED, TRUSTED
         from multibot_rewrite.sources.expand import expand_whole
 
@@ -59,7 +82,7 @@ def read_whole(source: Source, xacro_args: Mapping[str, str], trust: bool = Fals
         known = known_arguments(texts.values()) if xacro_args else NO_ARGUMENTS
         return SourceText(data, f"{path} (expanded)", tuple(texts), known)
     if xacro_args:
-        raise UsageError(f"{path}: xacro arguments given, but the file is not named ….xacro")
+        raise UsageError(f"{path}: xacro arguments given, but the file is no xacro")
     return SourceText(read_file(path), path, (path,))
 
 

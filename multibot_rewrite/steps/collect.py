@@ -49,10 +49,13 @@ class Inventory(NamedTuple):
         return [(it.element, it.node.section) for it in self.hosts if it.node.section is not None]
 
 
-def collect(document: Document, tree: Tree, urdf_declarations: Declared = NOTHING) -> Inventory:
+def collect(
+    document: Document, tree: Tree, urdf_declarations: Declared = NOTHING, apart: bool = False
+) -> Inventory:
     """Walk the document in order along the tree of rewriters.
 
-    ``urdf_declarations`` is what the URDF beside an SRDF declares.
+    ``urdf_declarations`` is what the URDF beside an SRDF declares; ``apart`` says that frames are not
+    spelled as links are.
     """
     claims: list[Claim] = []
     hosts: list[Host] = []
@@ -83,7 +86,7 @@ def collect(document: Document, tree: Tree, urdf_declarations: Declared = NOTHIN
             claims += _text_claim(found.text, element, start)
     claims = below_models(claims, document.source, tree.vocabulary.release)
     declared = _declared(claims, urdf_declarations)
-    names = resolved_names(claims, declared)
+    names = resolved_names(claims, declared, apart)
     release = tree.vocabulary.release
     return Inventory(document, claims, hosts, declared, format_, names, release)
 

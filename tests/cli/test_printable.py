@@ -124,9 +124,11 @@ LINES = (
     *(["doctor", "--snapshot", "graph.json"], ["doctor", "--snapshot", f"{EVIL}.json"]),
     *(["doctor", "--snapshot", "graph.json", "--suggest", f"{EVIL}out"],),
     *(["build", "fleet.yaml", "-o", "out", "--check"],),
+    *(["init", ".", "-o", "-"], ["init", f"{EVIL}.xacro", f"a:={EVIL}", "-o", f"{EVIL}f.yaml"]),
     *(["check-launch", f"{EVIL}.launch.py"], ["check-launch", EVIL, "x.launch.py"]),
     *(["zenoh", f"{EVIL}.yaml", "--router", "tcp/h:1", "-o", f"{EVIL}zenoh"],),
     *(["zenoh", "plan.yaml", "--router", EVIL, "-o", "zenoh"],),
+    *(["view", FILE, "-o", f"{EVIL}.html"], ["view", f"{EVIL}.yaml"], ["view", FILE, EVIL]),
     *(["rehearse", FILE, "robot1", "--stack", EVIL], ["snapshot", "--domain", EVIL]),
 )
 

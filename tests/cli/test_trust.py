@@ -30,12 +30,14 @@ COMMAND_LINES: dict[str, tuple[Callable[[Sequence[str]], int], list[str], int]] 
     "check": (multibot.main, ["check", "fleet.yaml", "--snapshot", "graph.json"], 2),
     "check-launch": (multibot.main, ["check-launch", "r.launch.py", "--plan", "fleet.yaml"], 2),
     "coverage": (multibot.main, ["coverage", PATH], 2),
+    "init": (multibot.main, ["init", PATH, "-o", "-"], 2),
     "plan": (multibot.main, ["plan", PATH, "robot1", "--stack", "nav2"], 2),
     "plan of a fleet": (multibot.main, ["plan", "fleet.yaml"], 2),
     "remap": (multibot.main, ["remap", PATH, "robot1", "--stack", "nav2"], 2),
     "remap of a fleet": (multibot.main, ["remap", "fleet.yaml"], 2),
     "rehearse": (multibot.main, ["rehearse", PATH, "robot1", "--stack", "nav2"], 2),
     "zenoh": (multibot.main, ["zenoh", "fleet.yaml", "--router", "tcp/h:1", "-o", "out"], 2),
+    "view": (multibot.main, ["view", PATH, "-o", "-"], 2),
     "vocabulary": (multibot.main, ["vocabulary", "--suggest", PATH], 2),
 }
 # Those that read no description.

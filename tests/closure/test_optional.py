@@ -43,3 +43,21 @@ def test_an_optional_node_needs_nothing_until_it_has_parameters(
     found = [it.message for it in make_outputs(plan).findings if it.code == "MF814"]
     assert bool(found) is told
     assert not told or "light" in found[0]
+
+
+@pytest.mark.parametrize(("other", "meant"), [("start_motors", True), ("request_update", False)])
+def test_a_common_type_alone_makes_no_two_names_alike(
+    other: str, meant: bool, tmp_path: Path
+) -> None:
+    nodes = f"""\
+nodes:
+  a: {{package: own, calls: {{robot/base/start_motor: std_srvs/srv/Empty}}}}
+  b: {{package: own, serves: {{robot/base/{other}: std_srvs/srv/Empty}}}}
+stacks:
+  own: {{about: x, nodes: [a, b]}}
+"""
+    for name, text in (("nodes.yaml", nodes), ("r.urdf", ROBOT), ("fleet.yaml", FLEET)):
+        (tmp_path / name).write_text(text)
+    plan = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "jazzy", {}))
+    found = [it.code for it in make_outputs(plan).findings if "start_motor" in it.message]
+    assert found == ["MF812" if meant else "MF814"]

@@ -70,7 +70,8 @@ def value(node: str, line: str, policy: tuple[str, str] = L2, distro: str = "jaz
         (L4, "/**/smoother_server", "/**/smoother_server_robot1"),
         (L2, "front/driver", "/robot1/front/driver"),
         (L4, "front/driver", "/front/driver_robot1"),
-        (L2, "<robot_namespace>/amcl_x", "<robot_namespace>/amcl_x"),
+        (L2, "<robot_namespace>/amcl_x", "/robot1/amcl_x"),
+        (L2, "<area>/amcl_x", "<area>/amcl_x"),
         (L2, '"planner_server"', '"/robot1/planner_server"'),
     ],
 )
@@ -146,11 +147,20 @@ def test_a_controllers_section_has_the_one_key_that_the_spawner_looks_for() -> N
         ("bad-name", "MF106"),
         ("1node", "MF106"),
         ("robot*", "MF106"),
-        ("<robot_namespace>", "MF110"),
+        ("<area>", "MF110"),
     ],
 )
 def test_a_section_with_a_doubtful_name_is_reported(name: str, code: str) -> None:
     assert code in codes(made(section(name, "x: 1"))[1])
+
+
+def test_a_slash_above_a_node_is_the_root_namespace() -> None:
+    """As rcl_yaml_param_parser reads it: the node is /amcl; a slash alone is no node."""
+    text, findings = made("/:\n  amcl:\n    ros__parameters: {base_frame_id: base_link}\n", L2)
+    assert text.splitlines()[:2] == ["/robot1:", "  amcl:"]
+    assert "r1/base_link" in text
+    assert not {"MF104", "MF105", "MF106"} & set(codes(findings))
+    assert "MF106" in codes(made("/:\n  ros__parameters: {a: 1}\n")[1])
 
 
 def test_a_robots_name_in_a_file_is_an_error() -> None:
@@ -255,7 +265,7 @@ def test_a_repeated_key_is_rewritten_twice() -> None:
         (L4, "amcl", "scan_topic: front/scan", "scan_topic: front/scan/robot1"),
         (L2, "other", "scan_topic: /clock", "scan_topic: /clock"),
         (L2, "other", "x_topic: $(var scan)", "x_topic: $(var scan)"),
-        (L2, "other", "x_topic: <robot_namespace>/scan", "x_topic: <robot_namespace>/scan"),
+        (L2, "other", "x_topic: <area>/scan", "x_topic: <area>/scan"),
         (L2, "other", 'x_topic: ""', 'x_topic: ""'),
         (L2, "ekf_filter_node", "odom0: /wheel/odom", "odom0: /robot1/wheel/odom"),
         (L2, "ekf_filter_node", "odom0_config: [true]", "odom0_config: [true]"),

@@ -160,6 +160,29 @@ def test_a_parameter_chooses_the_type(run: Graph, stamped: bool, type_: str) -> 
     assert found == f"geometry_msgs/msg/{type_}"
 
 
+@pytest.mark.parametrize(("release", "wanted"), [("jazzy", "Twist"), ("kilted", "TwistStamped")])
+def test_the_type_that_a_release_has_by_default(release: str, wanted: str) -> None:
+    """nav2_util twist_publisher.hpp: false in 1.3.13, true in 1.4.2."""
+    facts = Knowledge(built_in(release).nodes, load_known_nodes("", release), release)
+    monitor = node("nav2_collision_monitor/collision_monitor", "collision_monitor")
+    for given, type_ in (({}, wanted), ({"enable_stamped_cmd_vel": False}, "Twist")):
+        one = (
+            monitor if not given else node("nav2_collision_monitor/collision_monitor", "c", **given)
+        )
+        made = would_run(LaunchGraph((one,)), facts)
+        (found,) = {it.type for it in made.endpoints if it.name == "/robot1/cmd_vel"}
+        assert found == f"geometry_msgs/msg/{type_}"
+
+
+def test_a_controller_that_two_spawners_load_is_told(run: Graph) -> None:
+    """What an event starts has the launch configurations of the end: those of the last robot."""
+    both = [node("controller_manager/spawner", "", "/robot2", arguments=("drive",)) for _ in "ab"]
+    said = [it.message for it in run(*both).environment.caveats]
+    assert any("/robot2/controller_manager gets drive from 2 spawners" in it for it in said)
+    one = run(both[0], both[0]._replace(namespace="/robot1"))
+    assert not any("spawners" in it.message for it in one.environment.caveats)
+
+
 def test_a_controller_runs_beside_its_manager_with_the_rules_of_both(run: Graph) -> None:
     manager = node(
         *("controller_manager/ros2_control_node", "controller_manager", "/robot1", TF),

@@ -258,3 +258,28 @@ def test_a_node_without_a_name_has_that_of_its_code(
     assert found[name].when == ""
     assert found[name].package == package
     assert runs(launched(started("acme", "driver")))["driver"].when
+
+
+@pytest.mark.parametrize(
+    ("release", "target"),
+    [("humble", "platform/odom"), ("jazzy", "platform/odom"), ("lyrical", "")],
+)
+def test_rules_of_a_manager_reach_its_controllers_where_the_release_forwards_them(
+    release: str, target: str
+) -> None:
+    text = """\
+/**:
+  controller_manager: {ros__parameters: {wheels: {type: diff_drive_controller/DiffDriveController}}}
+  wheels: {ros__parameters: {left_wheel_names: [l], right_wheel_names: [r]}}
+"""
+    own = (ParameterText("control.yaml", text),)
+    rules = (("wheels/odom", "platform/odom"),)
+    manager = started(
+        *("controller_manager", "ros2_control_node"),
+        namespace="/robot1",
+        parameters=own,
+        remappings=rules,
+    )
+    spawner = started("controller_manager", "spawner", namespace="/robot1", arguments=("wheels",))
+    ends = runs(launched(manager, spawner, release=release))["wheels"].endpoints
+    assert next(it.remapped for it in ends if it.name == "~/odom") == target

@@ -17,6 +17,7 @@ from multibot_rewrite.findings.finding import NOTE, Finding
 from multibot_rewrite.fleets.build import make_outputs
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import plan_fleet
+from multibot_rewrite.remap.applied_rules import running_nodes
 
 MOCK = "mock_components/GenericSystem"
 FRANKA = "franka_hardware/FrankaHardwareInterface"
@@ -261,3 +262,131 @@ def test_two_arms_on_a_world_of_their_own_stand_where_their_poses_are(
     assert "--frame-id map --child-frame-id right/world" in lines[1]
     assert "odom" not in files["commands.md"]
     assert "cmd_vel" not in files["commands.md"]
+
+
+@pytest.mark.parametrize("finger", ["left_finger", "{robot}_left_finger"])
+def test_a_part_that_is_called_as_a_robot_is_no_name_of_it(finger: str, tmp_path: Path) -> None:
+    """Kinova's gripper_joint_name is robotiq_85_left_knuckle_joint, also of the robot right."""
+    for name in ("arm.urdf.xacro", "arm.srdf.xacro"):
+        text = URDF if "urdf" in name else SRDF.replace("OWN", "").replace("GROUP", "arm")
+        text = text.replace("PLUGIN", MOCK).replace("$(arg prefix)", "")
+        (tmp_path / name).write_text(text.replace("${p}hand", "$(arg finger)"))
+        head = (
+            (tmp_path / name)
+            .read_text()
+            .replace(HEAD, HEAD + '<xacro:arg name="finger" default="f"/>')
+        )
+        (tmp_path / name).write_text(head)
+    fleet = "layout: both\naffix: prefix\ndescription: arm.urdf.xacro\nsrdf: arm.srdf.xacro\n"
+    more = f"arguments: {{finger: '{finger}'}}\n{TWO}"
+    (tmp_path / "fleet.yaml").write_text(fleet + more)
+    made = make_outputs(plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {})))
+    files = {it.path: it.data.decode() for it in made.files}
+    names = {"left_finger": "right/left_finger", "{robot}_left_finger": "right_left_finger"}
+    for path in ("right/arm.urdf", "right/arm.srdf"):
+        assert f'"{names[finger]}"' in files[path]
+    assert errors(list(made.findings)) == []
+
+
+CONTROLLERS = """\
+controller_manager:
+  ros__parameters:
+    force_mode_controller: {type: ur_controllers/ForceModeController}
+force_mode_controller:
+  ros__parameters: {tf_prefix: ""}
+"""
+
+
+def test_a_listener_in_a_controllers_code_has_the_rules_of_its_process(tmp_path: Path) -> None:
+    """ur_controllers force_mode_controller.cpp makes a tf2_ros::TransformListener of a buffer alone."""
+    (tmp_path / "controllers.yaml").write_text(CONTROLLERS)
+    more = f"{TWO}".replace("{name: left}", "{name: left, companions: {params: controllers.yaml}}")
+    files, _ = built(tmp_path, more)
+    # One spawner loads it, with what its own node needs.
+    lines = [it for it in files["commands.md"].splitlines() if "spawner force_mode" in it]
+    assert len(lines) == 1
+    table = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {})).fleet.table
+    (node,) = (it for it in running_nodes(table) if it.node.node == "force_mode_controller")
+    assert set(node.process_rules) >= {("/tf", "tf"), ("/tf_static", "tf_static")}
+
+
+FILLED_BY_LAUNCH = """\
+controller_manager:
+  ros__parameters:
+    arm_controller: {type: joint_trajectory_controller/JointTrajectoryController}
+    io_controller: {type: ur_controllers/GPIOController}
+arm_controller:
+  ros__parameters:
+    joints: [$(var tf_prefix)elbow]
+    command_interfaces: [position]
+    state_interfaces: [position]
+    constraints:
+      $(var tf_prefix)elbow: {trajectory: 0.2, goal: 0.1}
+io_controller:
+  ros__parameters: {tf_prefix: "$(var tf_prefix)"}
+"""
+
+
+@pytest.mark.parametrize("own", ["", OWN])
+def test_a_controllers_file_that_a_launch_file_fills_is_taken_unedited(
+    own: str, tmp_path: Path
+) -> None:
+    """ur_controllers.yaml has its prefix in keys, lists and alone."""
+    (tmp_path / "controllers.yaml").write_text(FILLED_BY_LAUNCH)
+    more = TWO.replace("{name: left}", "{name: left, companions: {params: controllers.yaml}}")
+    files, findings = built(tmp_path, own + more, "frames-per-robot")
+    made = yaml.safe_load(files["left/controllers.yaml"])
+    arm = made["/left/arm_controller"]["ros__parameters"]
+    assert arm["joints"] == ["left_elbow"]
+    assert arm["constraints"] == {"left_elbow": {"trajectory": 0.2, "goal": 0.1}}
+    assert made["/left/io_controller"]["ros__parameters"] == {"tf_prefix": "left_"}
+    # The mock lacks what io_controller claims; of the arm nothing is open.
+    assert {it.code for it in findings} <= {"MF811", "MF801", "MF814"}
+    assert "elbow" not in str([it.message for it in findings])
+
+
+def test_move_group_is_started_with_what_the_files_say(tmp_path: Path) -> None:
+    """As moveit_configs.py (to_dict) of moveit_configs_utils."""
+    files, _ = built(tmp_path, f"groups: rename\n{TWO}")
+    made = yaml.safe_load(files["left/moveit_parameters.yaml"])["/**"]["ros__parameters"]
+    assert made["robot_description_semantic"] == files["left/arm.srdf"]
+    assert list(made["robot_description_kinematics"]) == ["left_manipulator"]
+    assert made["moveit_servo"]["move_group_name"] == "left_manipulator"
+    assert made["sensors"] == ["lidar"]
+    assert made["lidar"]["point_cloud_topic"] == "/left/points"
+    assert made["planning_pipelines"] == ["ompl"]
+    assert made["ompl"]["planning_plugins"] == ["ompl_interface/OMPLPlanner"]
+    lines = files["commands.md"].splitlines()
+    given = "--params-file left/moveit_parameters.yaml"
+    for start in ("ros2 run moveit_ros_move_group move_group", "ros2 run moveit_servo", "rviz2 -d"):
+        (line,) = (it for it in lines if it.startswith(start) and "/left" in it)
+        assert line.endswith(given)
+        assert "-r __ns:=/left" in line
+    assert files["fleet.launch.py"].count('file("left/moveit_parameters.yaml")') >= 2
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "path"),
+    [
+        ("limits.yaml", "joint_limits: {elbow: {max_velocity: 1}}", "robot_description_planning"),
+        (
+            "controllers.yaml",
+            "controller_names: [a]\na: {type: T}",
+            "moveit_simple_controller_manager",
+        ),
+        ("moveit.yaml", "moveit_controller_manager: m/M", "moveit_controller_manager"),
+        ("chomp_planning.yaml", "planning_plugins: [c/C]\nempty: []", "chomp"),
+    ],
+)
+def test_where_the_content_of_a_moveit_file_goes(
+    name: str, text: str, path: str, tmp_path: Path
+) -> None:
+    (tmp_path / name).write_text(text)
+    more = TWO.replace("{name: left}", f"{{name: left, companions: {{moveit: {name}}}}}")
+    files, _ = built(tmp_path, more)
+    made = yaml.safe_load(files["left/moveit_parameters.yaml"])["/**"]["ros__parameters"]
+    assert path in made
+    # rcl takes no empty list.
+    assert "empty" not in str(made)
+    assert ("ompl" in made) == (path != "chomp")
+    assert made["default_planning_pipeline"] == ("chomp" if path == "chomp" else "ompl")

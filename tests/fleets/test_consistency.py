@@ -12,10 +12,10 @@ from paths import CORPUS
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.build import Outputs, make_outputs
 from multibot_rewrite.fleets.consistency import consistency
+from multibot_rewrite.fleets.doubled_names import twice
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.fleets.output_values import OutputText, line_in_source, values_in
-from multibot_rewrite.fleets.value_checks import twice
 from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
 from multibot_rewrite.model import MultibotError
 
@@ -205,6 +205,74 @@ def test_a_robot_whose_link_is_called_like_it_is_no_fault(tmp_path: Path) -> Non
     made = make_outputs(plan)
     assert "robot1/robot1" in next(it.data for it in made.files if "robot1/" in it.path).decode()
     assert looked(plan, written(made)) == []
+
+
+NAMED_ROBOT1 = '<robot name="x"><link name="robot1"/><link name="base_link"/></robot>'
+
+
+def test_a_link_called_like_its_robot_hides_no_fault(tmp_path: Path) -> None:
+    plan = planned(tmp_path, PARENTS.replace("r1", "robot1"), rover__urdf=NAMED_ROBOT1)
+    files = written(make_outputs(plan))
+    wrong = [
+        it._replace(text=it.text.replace("robot1/base_link", "robot1/robot1/base_link"))
+        for it in files
+    ]
+    assert [it.code for it in looked(plan, wrong)] == ["MF603"]
+
+
+PARTS = """\
+<robot name="rover">
+  <link name="base_link"/>
+  <link name="left_wheel"/>
+  <joint name="axle" type="fixed"><parent link="base_link"/><child link="left_wheel"/></joint>
+  <gazebo reference="base_link">
+    <sensor name="lidar" type="gpu_lidar"><topic>left_scan</topic></sensor>
+  </gazebo>
+</robot>
+"""
+SIDES = """\
+layout: LAYOUT
+affix: prefix
+separators: {link: _}
+description: rover.urdf
+robots: [{name: left}, {name: right}]
+companions: {params: params.yaml}
+"""
+OWN_SCAN = "collision_monitor:\n  ros__parameters: {scan: {type: scan, topic: /left_scan}}\n"
+
+
+@pytest.mark.parametrize("layout", ["L1", "L2", "L3", "L4"])
+def test_a_part_called_like_its_robot_is_no_fault(layout: str, tmp_path: Path) -> None:
+    text = SIDES.replace("LAYOUT", layout)
+    plan = planned(tmp_path, text, rover__urdf=PARTS, params__yaml=OWN_SCAN)
+    made = make_outputs(plan)
+    params = next(it.data.decode() for it in made.files if it.path == "left/params.yaml")
+    assert "/left/left_scan" in params
+    assert [it for it in made.findings if it.code in ("MB106", "MF603")] == []
+
+
+@pytest.mark.parametrize(
+    "name", ["left_left_base_link", "left/left_base_link", "left/left/lamp", "/left/left/lamp"]
+)
+def test_a_robot_called_like_a_part_twice_in_a_name(name: str, tmp_path: Path) -> None:
+    params = f"{OWN_SCAN}acme: {{ros__parameters: {{it: WRONG}}}}\n"
+    text = SIDES.replace("LAYOUT", "L2")
+    plan = planned(tmp_path, text, rover__urdf=PARTS, params__yaml=params)
+    files = written(make_outputs(plan))
+    wrong = [
+        it._replace(text=it.text.replace("WRONG", name if it.path.startswith("left") else "x"))
+        for it in files
+    ]
+    assert [it.code for it in looked(plan, wrong)] == ["MF603"]
+
+
+def test_an_author_s_own_prefix_in_a_parameter_is_an_error(tmp_path: Path) -> None:
+    """The parameter's own finding is a warning: it names no frame."""
+    params = "amcl: {ros__parameters: {base_frame_id: left_base_link}}\n"
+    text = SIDES.replace("LAYOUT", "L2")
+    made = make_outputs(planned(tmp_path, text, rover__urdf=PARTS, params__yaml=params))
+    levels = {it.code: it.level for it in made.findings}
+    assert (levels["MF603"], levels["MF112"]) == ("error", "warning")
 
 
 # ---------------------------------------------------------------- parents

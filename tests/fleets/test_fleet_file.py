@@ -270,7 +270,7 @@ BAD: dict[str, tuple[str, ...]] = {
     "no-description": ("robots:\n  - {name: a}\n", "2: robot 'a' has no description; name its"),
     "arguments-without-xacro": (
         "robots:\n  - {name: a, description: rover.urdf, arguments: {x: 1}}\n",
-        "2: 'a' has arguments but no xacro file; remove them, or give a file that ends in .xacro",
+        "2: 'a' has arguments but no xacro file; remove them, or give a xacro",
     ),
     "arguments-list": (f"{ONE}arguments: [a]\n", "3: arguments: ['a'] is not valid; write keys"),
     "companions-none": (f"{ONE}companions:\n", "3: companions: the value is missing"),

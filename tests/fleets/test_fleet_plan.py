@@ -81,9 +81,12 @@ def scalars(value: Any) -> Iterator[str]:
 def test_every_robot_has_its_files_and_no_other(fleet: tuple[str, dict[str, str]]) -> None:
     layout, files = fleet
     common = {"plan.yaml", "remappings.yaml", "remappings.py", "commands.md", "bridge.yaml"}
+    common |= {"fleet.launch.py", "fleet.launch.xml"}
     own = {
         "scout": {"rover.urdf", "params.yaml", "bridge.yaml", "one_robot.rviz", "start_pose.yaml"},
-        "reach": {"arm.urdf", "arm.srdf", "limits.yaml", "one_robot.rviz"},
+        "reach": {
+            *("arm.urdf", "arm.srdf", "limits.yaml", "moveit_parameters.yaml", "one_robot.rviz")
+        },
         "grip": {"arm.urdf", "one_robot.rviz"},
         "bare": {"rover.urdf", "one_robot.rviz"},
     }
@@ -244,12 +247,24 @@ def test_affixes_that_make_one_name_of_two_are_refused(tmp_path: Path) -> None:
     assert (Path(told[0].file).name, told[0].line) == ("fleet.yaml", 5)
 
 
-def test_companions_of_one_name_would_be_one_file(tmp_path: Path) -> None:
+def test_companions_of_one_name_are_in_folders_of_their_own(tmp_path: Path) -> None:
     (tmp_path / "more").mkdir()
     (tmp_path / "more" / "params.yaml").write_text("x:\n  ros__parameters: {a: 1}\n")
     text = SMALL.replace("[params.yaml]", "[params.yaml, more/params.yaml]")
+    files = made(tmp_path, text)
+    assert "/robot1/x:" in files["robot1/more/params.yaml"]
+    assert f"robot1/{tmp_path.name}/params.yaml" in files
+    assert "robot1/params.yaml" not in files
+    assert "robot1/more/params.yaml" in files["fleet.launch.py"]
+
+
+def test_companions_that_no_folder_tells_apart_are_refused(tmp_path: Path) -> None:
+    for folder in ("a/more", "b/more"):
+        (tmp_path / folder).mkdir(parents=True)
+        (tmp_path / folder / "params.yaml").write_text("x:\n  ros__parameters: {a: 1}\n")
+    text = SMALL.replace("[params.yaml]", "[a/more/params.yaml, b/more/params.yaml]")
     with pytest.raises(
-        MultibotError, match=r"robot1/params\.yaml: two files would be written here"
+        MultibotError, match=r"robot1/more/params\.yaml: two files would be written"
     ):
         made(tmp_path, text)
 
@@ -265,7 +280,7 @@ def test_a_held_robot_is_a_planned_publisher(tmp_path: Path) -> None:
     found = with_start_pose_nodes(plan)
     assert [it.name for it in found.table.nodes] == ["start_pose"]
     assert found.edges["robot1", "start_pose"][0][:2] == ("map", "robot1/base_link")
-    assert with_start_pose_nodes(plan._replace(robots=())) is plan.fleet
+    assert with_start_pose_nodes(plan._replace(robots=())) == plan.fleet
 
 
 def test_each_robot_alone_is_the_fleet_in_parts(tmp_path: Path) -> None:

@@ -400,6 +400,8 @@ SPACE = "<ros><namespace>/here</namespace></ros>"
         ((SPACE, SPACE), "L2", [], []),
         ((SPACE, ""), "L2", [], ["MF706", "MF706"]),
         (("", ""), "L4", [], []),
+        # Names have a postfix there, and no plugin gets a namespace.
+        ((SPACE, ""), "L4", [], []),
     ],
 )
 def test_a_namespace_of_the_description_is_not_overwritten(

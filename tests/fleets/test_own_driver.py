@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite import load_fleet
+from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleets.start_pose_rules import OWN_ODOMETRY
 
 ROBOT = """\
@@ -74,3 +75,13 @@ def test_the_pose_is_that_of_the_odometry_frame_that_it_sends(tmp_path: Path) ->
 
 def test_a_driver_that_is_described_and_sends_nothing(tmp_path: Path) -> None:
     assert children(tmp_path, "{odom_frame: odom}", DESCRIBED) == ["robot1/base_link"]
+
+
+def test_the_commands_that_plan_say_it_too(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A rehearsal has the transform of no driver that nobody describes: it cannot see two parents."""
+    assert children(tmp_path, "{odom_frame: odom}") == []
+    assert main(["plan", str(tmp_path / "fleet.yaml")]) == 0
+    (line,) = (it for it in capsys.readouterr().err.splitlines() if "MF710" in it)
+    assert "fleet.yaml:5" in line and "the same for robot2" in line and "params.yaml:2" in line

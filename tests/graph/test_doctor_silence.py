@@ -36,6 +36,9 @@ def two_windows(graph: Snapshot) -> Snapshot:
 
 
 SILENT: dict[str, Callable[[Snapshot], Snapshot]] = {
+    "the ground truth of a simulator is no tree of the robot": added(
+        "/robot1/gz_bridge", (PUBLISHES, "/tf_ground_truth", TF)
+    ),
     "hidden topics are nobody's business": both(
         added("/robot1/lidar_driver", (PUBLISHES, "/_raw/scan", SCAN)),
         added("/robot2/lidar_driver", (PUBLISHES, "/_raw/scan", SCAN)),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 
 import pytest
 from counted_steps import growth
@@ -198,6 +199,21 @@ def edges(
 
 def test_a_frame_with_two_parents() -> None:
     assert edges(lambda f: [*f, f[1]._replace(parent="map")]) == ["MG201", "MG203"]
+
+
+def test_a_chain_through_frames_of_nobody_is_one_tree() -> None:
+    """TurtleBot 4: static transforms between the frames of the controller and the bare ones."""
+
+    def relayed(frames: Sequence[GraphFrame]) -> Sequence[GraphFrame]:
+        odom, *rest = frames
+        names = (odom.parent, "own/odom", "own/base", odom.child)
+        return [
+            *(odom._replace(parent=a, child=b) for a, b in pairwise(names)),
+            *rest,
+        ]
+
+    assert "MG203" not in edges(relayed, "L1")
+    assert "MG203" in edges(lambda f: [*relayed(f)[:1], *relayed(f)[2:]], "L1")
 
 
 def test_a_torn_tree() -> None:

@@ -21,7 +21,7 @@ from paths import ROOT
 
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.plan_file import from_yaml
-from multibot_rewrite.graph.transforms import description_edges
+from multibot_rewrite.graph.transforms import edges_in
 from multibot_rewrite.library import rewrite
 from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.records import PUBLISHES, SERVES, SUBSCRIBES
@@ -89,7 +89,7 @@ def edges(robot: str, layout: str) -> tuple[list[list[str]], list[list[str]]]:
     """Transforms of the rewritten rover, moving ones and fixed ones; the last moving is odometry."""
     text = rewrite(ROVER, robot, layout=layout).text
     inventory = collect(read_document(text.encode(), ROVER), builtin_tree((), NEWEST_LTS))
-    found = list(description_edges(inventory))
+    found = list(edges_in(inventory.document.root))
     moving = [[it.parent, it.child] for it in found if not it.static]
     fixed = [[it.parent, it.child] for it in found if it.static]
     odometry = [f"odom/{robot}", f"base_footprint/{robot}"]

@@ -28,7 +28,7 @@ from multibot_rewrite.graph.snapshot import (
 )
 from multibot_rewrite.graph.states import NodeState, Parameter
 from multibot_rewrite.model import InputError
-from multibot_rewrite.remap.records import SERVES, SERVICE
+from multibot_rewrite.remap.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
 
 PLAN = """\
 layout: frames-per-robot
@@ -102,6 +102,45 @@ def built(tmp_path: Path) -> Path:
     (tmp_path / "robot2").mkdir()
     (tmp_path / "robot2" / "nav2.yaml").write_text(FILE.replace("robot1", "robot2"))
     return tmp_path
+
+
+CLOCKS = """\
+states:
+  /robot1/amcl: {parameters: {use_sim_time: true}}
+  /robot1/driver: {parameters: {use_sim_time: true}}
+  /robot2/amcl: {parameters: {use_sim_time: false}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("timed", "published", "wanted"),
+    [
+        (("/robot1/amcl", "/robot1/driver"), True, []),
+        (("/robot1/amcl",), True, [("MG134", "/robot1/driver", "true")]),
+        (("/robot1/amcl", "/robot1/driver"), False, [("MG501", "/robot1/amcl", "nobody")]),
+        (
+            ("/robot1/amcl", "/robot1/driver", "/robot2/amcl"),
+            True,
+            [("MG134", "/robot2/amcl", "false")],
+        ),
+    ],
+)
+def test_planned_clocks_are_seen_without_asking(
+    timed: tuple[str, ...], published: bool, wanted: list[tuple[str, str, str]]
+) -> None:
+    """A node subscribes to the clock by ``use_sim_time`` alone (rclcpp time_source.cpp)."""
+    ends = [(SUBSCRIBES, it) for it in timed] + [(PUBLISHES, "/bridge")] * published
+    clock, type_ = "/clock", "rosgraph_msgs/msg/Clock"
+    ways = tuple(GraphEndpoint(TOPIC, role, clock, type_, "", it, None, "") for role, it in ends)
+    seen = graph()._replace(endpoints=ways)
+    codes = ("MG134", "MG501", "MG503")
+    told = [it for it in check(plan(CLOCKS), seen) if it.code in codes]
+    assert [(it.code, it.node) for it in told] == [it[:2] for it in wanted]
+    assert all(word in it.message for it, (_, _, word) in zip(told, wanted, strict=True))
+    # What a node answers counts more.
+    if wanted and wanted[0][0] == "MG134":
+        known = seen._replace(states=(NodeState(wanted[0][1], sim_time=wanted[0][2] == "true"),))
+        assert "MG134" not in {it.code for it in check(plan(CLOCKS), known)}
 
 
 # ---------------------------------------------------------------- the plan's own

@@ -207,7 +207,7 @@ def test_odometry_leads_to_the_root_of_the_description() -> None:
 
 def test_a_robots_frames_are_declared_or_sent_and_not_shared() -> None:
     inventory, naming = rewritten("L2")
-    frames = frames_of(inventory, [Edge("map", "odom/robot1", False)], naming)
+    frames = frames_of(inventory, [Edge("map", "odom/robot1", False)], naming, "robot1")
     assert "odom/robot1" in frames
     assert "camera_link/robot1" in frames
     assert "map" not in frames

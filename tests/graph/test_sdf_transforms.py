@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from paths import FIXTURES
 
-from multibot_rewrite.graph.transforms import Edge, description_edges
+from multibot_rewrite.graph.transforms import Edge, edges_in
 from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.steps.collect import Inventory, collect
@@ -24,7 +24,7 @@ def inventory(data: bytes) -> Inventory:
 
 
 def parent(name: str) -> str:
-    (edge,) = description_edges(inventory(MODEL.format(JOINT.format(name)).encode()))
+    (edge,) = edges_in(inventory(MODEL.format(JOINT.format(name)).encode()).document.root)
     return edge.parent
 
 
@@ -38,6 +38,8 @@ def test_a_frame_without_a_link_stays() -> None:
 
 
 def test_the_tree_of_the_rover_has_one_root() -> None:
-    edges = list(description_edges(inventory((FIXTURES / "robots" / "rover.sdf").read_bytes())))
+    edges = list(
+        edges_in(inventory((FIXTURES / "robots" / "rover.sdf").read_bytes()).document.root)
+    )
     assert Edge("base_link", "head::base_link", True) in edges
     assert {it.parent for it in edges} == {"base_link"}

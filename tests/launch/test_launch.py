@@ -7,14 +7,13 @@ from __future__ import annotations
 
 import gc
 import importlib
-import inspect
 import io
 import json
 import re
 import subprocess
 import sys
 import xml.etree.ElementTree as ET
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -549,7 +548,63 @@ def test_a_substitution_needs_a_word(frontend: Any) -> None:
 
 
 PAGE = (ROOT / "docs" / "launch.md").read_text()
-PYTHON = [it for it in re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL) if it.startswith("from")]
+BLOCKS = re.findall(r"```(?:python|yaml|xml)\n(.*?)```", PAGE, re.DOTALL)
+TUTORIAL = ROOT / "examples" / "launch_tutorial"
+STEPS = ("one.launch.py", "fleet.yaml", "two.launch.py", "three.launch.py", "three.launch.xml")
+SHOWN = [(TUTORIAL / it).read_text() for it in STEPS]
+PYTHON = [it for it in BLOCKS if it.startswith("from") and it not in SHOWN]
+THREE = "robots:=robot1={x: 1.0}; robot2={x: 3.0}; robot3={x: 5.0}"
+
+
+def test_the_page_shows_the_files_of_the_tutorial() -> None:
+    assert [it for it in BLOCKS if it in SHOWN] == SHOWN
+
+
+@pytest.mark.parametrize(
+    ("file", "robots", "count"),
+    [("one.launch.py", "", 0), ("two.launch.py", "", 2), ("three.launch.py", "robot1", 1),
+    ("three.launch.py", THREE.partition(":=")[2], 3)],
+)  # fmt: skip
+def test_a_step_of_the_tutorial(file: str, robots: str, count: int, context: Any) -> None:
+    """What it makes, in launch or in the stand-in."""
+    if REAL and file.startswith("three"):
+        pytest.skip("what an event starts is tried where it is started")
+    path = TUTORIAL / file
+    names: dict[str, Any] = {"__file__": str(path)}
+    exec(compile(path.read_text(), file, "exec"), names)
+    context.launch_configurations["robots"] = robots
+    made = run(context, names["generate_launch_description"]())
+    programs = [it.options["executable"] for it in made]
+    own = ("robot_state_publisher", "joint_state_publisher", "create")
+    assert [programs.count(it) for it in own] == [max(count, 1)] * 3
+    assert programs.count("static_transform_publisher") == count
+    assert programs.count("parameter_bridge") == (count + 1 if count else 0)
+    names_ = [it.options.get("namespace") for it in made if it.options["executable"] == own[0]]
+    assert names_ == ([f"/robot{at}" for at in range(1, count + 1)] or [None])
+
+
+@in_launch
+@pytest.mark.parametrize("file", ["one.launch.py", "two.launch.py", *STEPS[3:]])
+def test_a_step_of_the_tutorial_in_launch(file: str, tmp_path: Path) -> None:
+    """As it is started: three robots where the launch file takes their number."""
+    words = [THREE] if file.startswith("three") else []
+    programs = {"joint_state_publisher": "joint_state_publisher"}
+    told, said = launched(TUTORIAL / file, tmp_path, *words, programs=programs)
+    assert "ERROR" not in said
+    names = [Path(it["words"][0]).name for it in told]
+    count = {"o": 1, "t": 2}[file[0]] + len(words)
+    own = ("robot_state_publisher", "joint_state_publisher", "create")
+    assert [names.count(it) for it in own] == [count] * 3
+    assert names.count("parameter_bridge") == (count + 1 if count > 1 else 0)
+    if count == 1:
+        return
+    fleet = load_fleet(TUTORIAL / "fleet.yaml", robots=THREE.partition(":=")[2] if words else "")
+    texts = "".join(text for it in told for text in it["files"].values())
+    for robot in fleet.robots:
+        assert f"/{robot.name}/robot_state_publisher" in texts
+        (model,) = (it for it in told if {*robot.spawn_arguments} <= {*it["words"]})
+        assert Path(model["words"][0]).name == "create"
+        assert f"/{robot.name}/bridge.yaml" in texts
 
 
 @pytest.mark.parametrize("code", PYTHON, ids=["plain", "running"])
@@ -574,7 +629,7 @@ def test_the_words_of_the_page_are_those_there_are() -> None:
 
 @in_launch
 def test_the_xml_of_the_page(fleet: str, tmp_path: Path) -> None:
-    (text,) = re.findall(r"```xml\n(.*?)```", PAGE, re.DOTALL)
+    (text,) = (it for it in BLOCKS if it.startswith("<launch>") and it not in SHOWN)
     (tmp_path / "page.launch.xml").write_text(text)
     more = {"amcl": "nav2_amcl", "driver": "my_driver"}
     told, _ = launched(tmp_path / "page.launch.xml", tmp_path, f"fleet:={fleet}", programs=more)
@@ -583,32 +638,14 @@ def test_the_xml_of_the_page(fleet: str, tmp_path: Path) -> None:
     assert len([it for it in told if it["words"][0].endswith("amcl")]) == 2
 
 
-def signature(thing: Any) -> Sequence[str]:
-    """The names of the parameters, and which are only given by name."""
-    made = inspect.signature(thing).parameters.values()
-    return [f"{'*' if it.kind is it.KEYWORD_ONLY else ''}{it.name}" for it in made]
+def test_the_stand_in_is_like_launch() -> None:
+    """By the table that is made of the real one."""
+    ours = launch_signatures.signatures(lambda module, name: launch_stand_in.MODULES[module][name])
+    assert ours == SIGNATURES["launch"]
 
 
 @in_launch
-@pytest.mark.parametrize(
-    ("module", "name"),
-    [(module, name) for module, names in launch_stand_in.MODULES.items() for name in names],
-)
-def test_the_stand_in_is_like_launch(module: str, name: str) -> None:
-    real = getattr(importlib.import_module(module), name)
-    ours = launch_stand_in.MODULES[module][name]
-    if not inspect.isclass(ours):
-        assert callable(real)
-        return
-    if name != "Entity":
-        assert signature(real.__init__) == signature(ours.__init__)
-    for method, function in vars(ours).items():
-        if inspect.isfunction(function) and not method.startswith("_"):
-            assert signature(getattr(real, method)) == signature(function), method
-
-
-@in_launch
-def test_the_table_of_options_is_that_of_launch_ros() -> None:
+def test_the_table_is_that_of_launch_and_launch_ros() -> None:
     assert launch_signatures.table() == SIGNATURES
 
 

@@ -10,8 +10,12 @@ import sys
 from pathlib import Path
 
 import pytest
+import yaml
+from launched_programs import launched
+from paths import ROOT
 
 from multibot_rewrite import InputError
+from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.evidence.launch_child import launch_graph
 from multibot_rewrite.evidence.launch_records import LaunchedNode, LaunchGraph, LaunchOrder
 from multibot_rewrite.launch import missing
@@ -38,6 +42,7 @@ from launch.launch_description_sources import *
 from launch.substitutions import *
 from launch_ros.actions import *
 from launch_ros.descriptions import *
+from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import *
 
 
@@ -149,14 +154,123 @@ def test_functions_run_and_what_starts_later_says_so(tmp_path: Path) -> None:
     )
     assert [(it.executable, bool(it.later)) for it in graph.nodes] == [
         ("f", False),
-        ("t", True),
-        ("e", True),
         ("l", False),
         ("r", False),
+        ("t", True),
+        ("e", True),
     ]
-    assert (graph.nodes[-1].name, graph.nodes[-1].remappings) == ("n", (("a", "b"),))
+    assert (graph.nodes[2].name, graph.nodes[2].remappings) == ("n", (("a", "b"),))
     (note,) = graph.notes
     assert (note.place.line, "run time" in note.message) == (NAMES + 4, True)
+
+
+EVENTS = """\
+from launch import LaunchDescription
+from launch.actions import *
+from launch.event_handlers import *
+from launch.substitutions import *
+from launch_ros.actions import *
+
+
+def one(robot):
+    first = Node(package="acme", executable="first")
+    late = [
+        Node(package="acme", executable="late", namespace=LaunchConfiguration("robot")),
+        Node(package="acme", executable="last"),
+    ]
+    end = Node(package="acme", executable="second", on_exit=[
+        Node(package="acme", executable="ended")])
+    return [
+        SetLaunchConfiguration("robot", robot),
+        GroupAction([
+            PushRosNamespace(robot),
+            first,
+            end,
+            RegisterEventHandler(OnProcessExit(target_action=first, on_exit=late)),
+            TimerAction(period=0.1, actions=[Node(package="acme", executable="timed")]),
+        ]),
+    ]
+
+
+def generate_launch_description():
+    return LaunchDescription([*one("robot1"), *one("robot2")])
+"""
+
+
+@in_launch
+def test_what_starts_later_is_outside_of_its_group(tmp_path: Path) -> None:
+    """As in the real launch: a group has ended by then, and a configuration has its last value."""
+    file = tmp_path / "events.launch.py"
+    file.write_text(EVENTS)
+    programs = ("first", "second", "late", "last", "ended", "timed")
+    told, _ = launched(file, tmp_path, programs=dict.fromkeys(programs, "acme"))
+    real = [
+        (
+            Path(it["words"][0]).name,
+            next((w[6:] for w in it["words"] if w.startswith("__ns:=")), "/"),
+        )
+        for it in told
+    ]
+    graph = launch_graph(LaunchOrder(str(file), (), (), True))
+    assert graph.notes == ()
+    found = [(it.executable, it.namespace) for it in graph.nodes]
+    assert sorted(found) == sorted(real)
+    assert found.count(("late", "/robot2")) == 2
+
+
+AGAIN = """\
+from launch import LaunchDescription
+from launch.actions import OpaqueFunction, TimerAction
+from launch_ros.actions import Node
+
+
+def again(context):
+    timer = TimerAction(period=1.0, actions=[OpaqueFunction(function=again)])
+    return [Node(package="acme", executable="d"), timer]
+
+
+def generate_launch_description():
+    return LaunchDescription([OpaqueFunction(function=again)])
+"""
+
+
+@in_launch
+def test_a_timer_that_starts_itself_again_is_told(tmp_path: Path) -> None:
+    file = tmp_path / "again.launch.py"
+    file.write_text(AGAIN)
+    graph = launch_graph(LaunchOrder(str(file), (), (), True))
+    (note,) = graph.notes
+    assert "again and again" in note.message
+    assert 1 < len(graph.nodes) < 100
+
+
+@in_launch
+def test_a_configuration_that_is_gone_at_an_event_is_told(tmp_path: Path) -> None:
+    late = 'Node(package="acme", executable="e", namespace=LaunchConfiguration("robot"))'
+    event = f"RegisterEventHandler(OnProcessExit(on_exit=[{late}]))"
+    actions = f'GroupAction([SetLaunchConfiguration("robot", "r"), {event}]),'
+    (note,) = read(tmp_path, f'        Node(package="a", executable="b"),\n{actions}').notes
+    assert note.message.startswith("at an event (OnProcessExit) SubstitutionFailure")
+    assert (
+        "'robot' does not exist; groups and their launch configurations have ended" in note.message
+    )
+
+
+@in_launch
+def test_what_starts_later_is_outside_the_group_that_it_stands_in(tmp_path: Path) -> None:
+    """launch leaves the scope of a group before any event (LaunchService, GroupAction)."""
+    graph = read(
+        tmp_path,
+        """\
+        GroupAction([
+            PushRosNamespace("robot1"),
+            RegisterEventHandler(OnProcessExit(on_exit=[
+                Node(package="acme", executable="e", namespace="robot1"),
+                TimerAction(period=1.0, actions=[Node(package="acme", executable="t")])])),
+            Node(package="acme", executable="n")]),""",
+    )
+    found = {it.executable: it.namespace for it in graph.nodes}
+    assert found == {"n": "/robot1", "e": "/robot1", "t": "/"}
 
 
 @in_launch
@@ -326,3 +440,125 @@ def test_the_text_of_a_file_that_the_launch_makes_is_kept(tmp_path: Path) -> Non
     )
     (node,) = launch_graph(LaunchOrder(str(file), (), (), True)).nodes
     assert "- {topic_name: scan}\n" in [it.text for it in node.parameters]
+
+
+XACRO = """\
+<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="rover"><xacro:arg name="end" default="tip"/>
+<link name="base_link"/><link name="$(arg end)"/><joint name="j" type="fixed">
+<parent link="base_link"/><child link="$(arg end)"/></joint></robot>
+"""
+COMMANDS = """\
+["xacro ", FILE, " end:=", "lidar"]
+[FindExecutable(name="xacro"), " ", FILE, " -o here.urdf end:=a"]
+["urdf-postfix ", FILE, " robot1 end:=eye --layout postfix"]
+["urdf-postfix ", FILE, " robot1 -o there.urdf"]
+["touch there.urdf"]
+["xacro /nowhere.xacro"]
+"""
+
+
+@in_launch
+def test_the_output_of_commands_is_known_and_nothing_is_started(tmp_path: Path) -> None:
+    file, plain = tmp_path / "rover.urdf.xacro", tmp_path / "plain.txt"
+    file.write_text(XACRO)
+    plain.write_text("wheel: left: 1")
+    lines = COMMANDS.replace("FILE", repr(str(file))).splitlines()
+    texts = [f"ParameterValue(Command({it}), value_type=str)" for it in lines]
+    nodes = [
+        f'        Node(package="a", executable="b", parameters=[{{"text": {it}}}]),'
+        for it in (*texts, f"Command(['cat ', {str(plain)!r}])")
+    ]
+    before = {*tmp_path.iterdir()}
+    graph = read(tmp_path, "\n".join(nodes))
+    values = [
+        yaml.safe_load(it.parameters[0].text)["/**"]["ros__parameters"]["text"]
+        for it in graph.nodes
+        if it.parameters
+    ]
+    xacro, unknown, postfix, other, touch, nowhere = values
+    assert '<child link="lidar"/>' in xacro
+    assert '<child link="eye/robot1"/>' in postfix
+    # Options that write a file, and other programs: their output is not known.
+    assert (unknown, other, touch, nowhere) == ("", "", "", "")
+    # launch_ros refuses a text that is no YAML, and says what to do.
+    note, fault = graph.notes
+    assert fault.parameters and "'xacro /nowhere.xacro'" in fault.message
+    assert "/nowhere.xacro: cannot be read" in fault.message
+    assert note.parameters and "as yaml" in note.message and "value_type=str" in note.message
+    assert {*tmp_path.iterdir()} - before == {tmp_path / "bringup.launch.py"}
+
+
+TWO = """\
+from launch import LaunchDescription
+from launch.actions import *
+from launch.substitutions import *
+from launch_ros.actions import *
+from launch_ros.parameter_descriptions import ParameterValue
+from pathlib import Path
+
+HERE = str(Path(__file__).parent / "rover.urdf.xacro")
+
+
+def state(context, robot, *rules):
+    text = ParameterValue(Command(["xacro ", HERE]), value_type=str)
+    return [GroupAction([
+        PushRosNamespace(robot),
+        Node(package="robot_state_publisher", executable="robot_state_publisher", name="rsp",
+             parameters=[{"robot_description": text}], remappings=RULES),
+    ])]
+
+
+def generate_launch_description():
+    return LaunchDescription([
+        OpaqueFunction(function=state, args=[robot]) for robot in ("robot1", "robot2")])
+"""
+
+
+@in_launch
+@pytest.mark.parametrize(
+    ("rules", "code"),
+    [("[]", 1), ("[('/tf', 'tf'), ('/tf_static', 'tf_static')]", 0), ("[('/tf', '1tf')]", 3)],
+)
+def test_the_whole_command(
+    rules: str, code: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Two robots whose descriptions a xacro makes: on one /tf, apart, with a rule that rcl refuses."""
+    (tmp_path / "rover.urdf.xacro").write_text(XACRO)
+    file = tmp_path / "two.launch.py"
+    file.write_text(TWO.replace("RULES", rules))
+    plan = tmp_path / "plan.yaml"
+    assert main(["check-launch", str(file), "--distro", "jazzy"]) == code
+    told = capsys.readouterr()
+    assert ("MG402" in told.out) == (code == 1)
+    assert ("rcl refuses 2 nodes" in told.err) == (code == 3)
+    assert "description is not known" not in told.err
+    if code == 0:
+        words = ["plan", "--from-launch", str(file), "--distro", "jazzy", "-o", str(plan)]
+        assert main(words) == 0
+        assert "tip" in plan.read_text()
+        other = tmp_path / "other.launch.py"
+        other.write_text(TWO.replace("RULES", "[]"))
+        assert main(["check-launch", str(other), "--plan", str(plan), "--distro", "jazzy"]) == 1
+        assert "MG102" in capsys.readouterr().out
+
+
+@in_launch
+@pytest.mark.parametrize("name", ["two.launch.py", "three.launch.py", "three.launch.xml"])
+def test_actions_for_robots_are_read_with_their_names(name: str) -> None:
+    """Their names are known when they run: of two robots with everything of their own."""
+    file = ROOT / "examples" / "launch_tutorial" / name
+    graph = launch_graph(LaunchOrder(str(file), (), (), True))
+    state = [it for it in graph.nodes if it.package == "robot_state_publisher"]
+    assert [(it.namespace, it.name) for it in state] == [
+        ("/robot1", "robot_state_publisher"),
+        ("/robot2", "robot_state_publisher"),
+    ]
+    for robot, it in zip(("robot1", "robot2"), state, strict=True):
+        assert any(f"{robot}/base_link" in text.text for text in it.parameters)
+        assert it.place.file == str(file)
+        assert it.place.line > 1 or file.suffix == ".xml"
+    placed = [it for it in graph.nodes if it.package == "tf2_ros"]
+    assert [it.name for it in placed] == ["start_pose", "start_pose"]
+    made = main(["check-launch", str(file), "--plan", str(file.with_name("fleet.yaml"))])
+    # Only what the simulator sends is not known.
+    assert made == 3

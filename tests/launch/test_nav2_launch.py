@@ -84,7 +84,7 @@ def full(row: dict[str, Any]) -> str:
 def values(row: dict[str, Any], node: str) -> dict[str, Any]:
     """The parameters that files of a process have for a node by its full name."""
     found: dict[str, Any] = {}
-    for text in row["texts"].values():
+    for text in row["params"].values():
         # What launch_ros makes of lists; rcl does not look at it.
         data = yaml.safe_load(text.replace("!!python/tuple", ""))
         for key in ("/**", node):
@@ -104,7 +104,7 @@ def test_components_in_a_layout_without_namespaces(tmp_path: Path) -> None:
     assert ["cmd_vel", "/cmd_vel_nav/robot2"] in server["rules"]
     # Its costmap has the rules and the files of the container.
     assert ["local_costmap:/tf", "/tf/robot2"] in box["rules"]
-    costmap = yaml.safe_load(next(iter(box["texts"].values())))["/robot2/local_costmap"]
+    costmap = yaml.safe_load(next(iter(box["params"].values())))["/robot2/local_costmap"]
     assert costmap["local_costmap"]["ros__parameters"]["global_frame"] == "odom/robot2"
     manager = dict(found["/lifecycle_manager_navigation_robot2"]["parameters"])
     # The name that a node has without its namespace: the bond's id.

@@ -108,7 +108,7 @@ WRONG: list[tuple[Sequence[str], str]] = [
     ([""], "the name of a file is empty"),
     (["nowhere.urdf"], "nowhere.urdf: there is no such file or folder"),
     (["good.urdf", "nowhere"], "nowhere: there is no such file or folder"),
-    (["empty"], "empty: no *.urdf or *.xacro or *.srdf there"),
+    (["empty"], "empty: no *.urdf or *.xacro or *.srdf or *.yaml or *.yml or *.rviz there"),
     (["good.urdf", "--select", "MB999"], "no rule has the code 'MB999'"),
     (["good.urdf", "--ignore", "MB2,nonsense"], "no rule has the code 'nonsense'"),
     (["good.urdf", "--select", "mb2"], "did you mean 'MB2'?"),

@@ -293,7 +293,7 @@ WRONG = [
     ("levels = {MB5 = false}", "levels: 'MB5' is a boolean, write a text in quotes"),
     ("robots = ['r1', 'r-2']", "robots: robot name 'r-2': character 2, '-'"),
     ("robots = ['r1', 'r1']", "robots: the robot 'r1' is named twice"),
-    ("layout = 'L5'", "layout 'L5' is not known"),
+    ("layout = 'L9'", "layout 'L9' is not known"),
     ("layout = ''", "layout is empty"),
     ("affix = 'infix'", "affix 'infix' is not known, use one of postfix, prefix"),
     ("separators = {links = '_'}", "separator kind 'links' is not known"),

@@ -228,7 +228,7 @@ def test_worlds_are_told_one_by_one() -> None:
     source = (
         '<?xml version="1.0"?>\n<sdf version="1.9">\n<world name="w"/>\n<world name="v"/></sdf>'
     )
-    found = lint_data("w.sdf", source.encode(), Settings(select=("MB109",)))
+    found = lint_data("w.sdf", source.encode(), Settings(select=("MB109",), robots=("r1",)))
     assert [it.line for it in found] == [3, 4]
 
 

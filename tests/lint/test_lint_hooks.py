@@ -9,7 +9,7 @@ import shlex
 import shutil
 import subprocess
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -46,7 +46,9 @@ def example(language: str, has: str) -> str:
 
 
 PRE_COMMIT = example("yaml", "hooks:")
-WORKFLOW = example("yaml", "runs-on:")
+WORKFLOW = example("yaml", "workflow_call:")
+SHORT = example("yaml", "- uses: OWNER/")
+ACTION = ROOT / "action.yml"
 GITLAB = example("yaml", "codequality:")
 JENKINS = example("groovy", "pipeline")
 
@@ -89,12 +91,20 @@ def repository(folder: Path, document: str) -> Path:
             id="github",
         ),
         pytest.param(
+            ["check_jsonschema", "--builtin-schema", "vendor.github-workflows", "short.yaml"],
+            id="github-short",
+        ),
+        pytest.param(
+            ["check_jsonschema", "--builtin-schema", "vendor.github-actions", str(ACTION)],
+            id="action",
+        ),
+        pytest.param(
             ["check_jsonschema", "--builtin-schema", "vendor.gitlab-ci", "gitlab.yaml"], id="gitlab"
         ),
     ],
 )
 def test_it_holds_by_the_schema_of_its_reader(words: list[str], tmp_path: Path) -> None:
-    examples = {"config": PRE_COMMIT, "workflow": WORKFLOW, "gitlab": GITLAB}
+    examples = {"config": PRE_COMMIT, "workflow": WORKFLOW, "short": SHORT, "gitlab": GITLAB}
     for name, content in examples.items():
         (tmp_path / f"{name}.yaml").write_text(content)
     done = run([sys.executable, "-m", *words], tmp_path)
@@ -274,6 +284,68 @@ def test_a_job_that_reads_the_repository_may_write_nothing() -> None:
     assert checkout["with"] == {"persist-credentials": False}
     assert "secrets." not in PAGE
     assert "pull_request_target" not in WORKFLOW
+
+
+def test_the_action_is_pinned_and_reads_nothing_as_a_command() -> None:
+    steps = yaml.safe_load(ACTION.read_text())["runs"]["steps"]
+    used = [it["uses"] for it in steps if "uses" in it]
+    assert {it.partition("@")[0] for it in used} <= KNOWN_ACTIONS | PASSIVE_ACTIONS
+    assert all(re.fullmatch(r"[\w/-]+@[0-9a-f]{40}", it) for it in used)
+    assert not any("${{" in it.get("run", "") for it in steps)
+    workflow = yaml.safe_load(SHORT)
+    assert workflow["permissions"] == {"contents": "read"}
+    assert "permissions" not in workflow["jobs"]["urdf-lint"]
+
+
+def test_the_action_installs_what_the_package_needs_in_one_version() -> None:
+    def names(lines: Iterable[str]) -> set[str]:
+        return {re.split(r"[<>=;! ]", it)[0].lower() for it in lines if it and it[0] != "#"}
+
+    pins = (ROOT / ".ci" / "lint-constraints.txt").read_text().splitlines()
+    assert all(re.fullmatch(r"[\w-]+==[\d.]+", it) for it in pins if it[0] != "#")
+    text = (ROOT / "pyproject.toml").read_text()
+    (listed,) = re.findall(r"(?m)^dependencies = \[\n(.*?)^\]", text, re.DOTALL)
+    needed = re.findall(r'"(.+)"', listed)
+    # The action's Python is newer than the one that needs this.
+    assert names(needed) - {"tomli"} <= names(pins)
+    # The hook's environment: nothing heavy may come in unseen.
+    assert names(needed) == {"jsonschema", "lxml", "pyyaml", "rich", "tomli", "xacro"}
+
+
+@pytest.mark.deep
+@pytest.mark.parametrize(
+    ("document", "inputs", "code"),
+    [
+        pytest.param(GOOD, {}, 0, id="good"),
+        pytest.param(BAD, {}, 1, id="bad"),
+        pytest.param(BAD, {"OPTIONS": "--ignore MB501"}, 0, id="options"),
+        pytest.param(GOOD, {"PATHS": "nowhere; touch hacked"}, 2, id="wrong-use"),
+        pytest.param(GOOD, {"OPTIONS": "$(touch hacked) `touch hacked`"}, 2, id="no-commands"),
+    ],
+)
+def test_the_action_runs(
+    document: str, inputs: dict[str, str], code: int, clone: Path, venv: Path, tmp_path: Path
+) -> None:
+    here = repository(tmp_path / "r", document)
+    env = {
+        "PYTHON": str(venv / "bin" / "python"),
+        "RUNNER_TEMP": str(venv.parent),
+        "GITHUB_ACTION_PATH": str(clone),
+        "GITHUB_OUTPUT": str(tmp_path / "output"),
+        "GITHUB_STEP_SUMMARY": str(tmp_path / "summary.md"),
+        "PYTHONPATH": "",
+        **{"PATHS": ".", "OPTIONS": "", **inputs},
+    }
+    steps = [it["run"] for it in yaml.safe_load(ACTION.read_text())["runs"]["steps"] if "run" in it]
+    install, lint_step = (run([*BASH, it], here, env) for it in steps)
+    assert install.returncode == 0, install.stderr
+    assert bool(lint_step.returncode) == bool(code), lint_step.stderr
+    assert not (here / "hacked").exists()
+    assert ("::error file=urdf/rover.urdf" in lint_step.stdout) == (code == 1)
+    if code < 2:
+        name, _, report = (tmp_path / "output").read_text().strip().partition("=")
+        assert name == "sarif"
+        assert json.loads(Path(report).read_text())["version"] == "2.1.0"
 
 
 @pytest.mark.deep

@@ -72,7 +72,9 @@ def linted(workspace: Path, *names: str, select: str = "MB7", roots: bool = True
         ("../meshes/Base.stl", []),
         ("meshes/Base.stl", []),
         ("../meshes/base.stl", ["MB703"]),
-        ("Base.stl", ["MB701"]),
+        ("Base.stl", ["MB713"]),
+        ("../../meshes/Base.stl", ["MB713"]),
+        ("Bass.stl", ["MB701"]),
         ("file:///home/me/Base.stl", ["MB704"]),
         ("/home/me/Base.stl", ["MB704"]),
         ("C:\\me\\Base.stl", ["MB704", "MB705"]),
@@ -119,6 +121,10 @@ def test_what_is_wrong_in_many_places_is_told_once(workspace: Path) -> None:
     assert sorted(linted(workspace, *names)) == ["MB702", "MB708"]
     assert linted(workspace, *[f"/home/me/{at}.stl" for at in range(5)]) == ["MB704"]
     assert linted(workspace, *["package://arm/meshes/No.stl"] * 5) == ["MB701"]
+    # The folder is there, or it is missing with all that should be in it.
+    assert linted(workspace, *[f"package://arm/meshes/{at}.stl" for at in "xy"]) == ["MB701"] * 2
+    assert linted(workspace, *[f"package://arm/visual/{at}.stl" for at in "xy"]) == ["MB701"]
+    assert linted(workspace, "../visual/x.stl", "../visual/y.stl", "../hard/x.stl") == ["MB701"] * 2
 
 
 def test_mixed_schemes(workspace: Path) -> None:

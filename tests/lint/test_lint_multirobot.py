@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from multibot_rewrite.lint.check import lint_file
+from multibot_rewrite.lint.check import lint_data, lint_file
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.naming import make_naming
 
@@ -345,3 +345,34 @@ def test_sensors_by_bare_name(options: dict[str, Any], expected: list[str], tmp_
 def test_empty_things_are_no_crash(text: str, tmp_path: Path) -> None:
     for options in ({}, {"robots": TWO}, {"robots": TWO, "naming": make_naming("postfix")}):
         assert "MB001" not in codes(tmp_path, text, "MB", **options)  # type: ignore[arg-type]
+
+
+NO_SENSOR = IMU.replace('<sensor name="s"/></ros2', "</ros2")
+
+
+def test_hardware_without_sensors_looks_none_up(tmp_path: Path) -> None:
+    """gz_system.cpp looks for the sensors of its component alone."""
+    assert "<sensor" in NO_SENSOR
+    assert codes(tmp_path, NO_SENSOR, "MB415 MB425", robots=TWO, naming=BARE) == []
+    assert codes(tmp_path, NO_SENSOR, "MB415 MB425") == []
+    # Others look nothing up.
+    other = IMU.replace("gz_ros2_control/GazeboSimSystem", "mock_components/GenericSystem")
+    for options in ({}, {"robots": TWO, "naming": BARE}):
+        assert codes(tmp_path, other, "MB001 MB415 MB425", **options) == []  # type: ignore[arg-type]
+
+
+SYSTEM = '<plugin filename="gz-sim-sensors-system" name="gz::sim::systems::Sensors"/>'
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        (f'<world name="w">{SYSTEM}</world>', []),
+        (f'<world name="w"><model name="m">{SYSTEM}<link name="a"/></model></world>', ["MB416"]),
+        (f'<model name="m">{SYSTEM}<link name="a"/></model>', ["MB416"]),
+    ],
+)
+def test_a_world_is_where_its_systems_belong(text: str, found: list[str]) -> None:
+    source = f'<?xml version="1.0"?><sdf version="1.9">{text}</sdf>'.encode()
+    settings = Settings(select=("MB416", "MB109"))
+    assert [it.code for it in lint_data("w.sdf", source, settings)] == found

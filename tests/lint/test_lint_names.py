@@ -137,6 +137,11 @@ def test_a_link_and_a_joint_of_one_name(body: str, expected: list[str]) -> None:
         (linked("a", "b", "a/j"), []),
         (control('<joint name="j"><state_interface name=" "/></joint>'), ["MB313"]),
         (control('<joint name="j"><command_interface name="my position"/></joint>'), ["MB313"]),
+        (control('<joint name="j"><state_interface name="position velocity"/></joint>'), ["MB313"]),
+        (control('<gpio name="io 1"/>'), ["MB313"]),
+        # What Dynamixels call their registers.
+        (control('<gpio name="dxl"><state_interface name="Present Position"/></gpio>'), []),
+        (control('<gpio name="dxl"><command_interface name="Goal Current"/></gpio>'), []),
         (control('<gpio name=""/>'), ["MB313"]),
         # The parser strips what is around a name.
         (control('<joint name="j"><state_interface name=" position "/></joint>'), []),

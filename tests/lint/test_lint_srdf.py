@@ -29,6 +29,10 @@ URDF = (
 )
 ARM = '<group name="arm"><chain base_link="base" tip_link="tool"/></group>'
 STATE = ARM + '<group_state name="s" group="arm"><joint name="{}" value="{}"/></group_state>'
+PARTLY = (
+    '<group name="all"><joint name="jl"/><group name="typo"/></group>'
+    '<group_state name="s" group="all"><joint name="{}" value="0"/></group_state>'
+)
 VIRTUAL = '<virtual_joint name="v" type="{}" parent_frame="odom" child_link="base"/>'
 PAIR = '<disable_collisions link1="{}" link2="{}" reason="Never"/>'
 ALL = PAIR.format("base", "left") + PAIR.format("right", "base")
@@ -74,6 +78,8 @@ def lint(folder: Path, body: str, urdf: str = "") -> list[str]:
         (STATE.format("jl", "1.001"), ["MB813"]),
         (STATE.format("jl", "-1.001"), ["MB813"]),
         (STATE.format("jr", "100"), ["MB812"]),
+        # What a group without one of its groups holds is not known.
+        (PARTLY.format("jr"), ["MB805"]),
         (STATE.format("jl", "0 0"), ["MB814"]),
         (STATE.format("jl", ""), ["MB814"]),
         (STATE.format("jl", "nan"), ["MB814"]),

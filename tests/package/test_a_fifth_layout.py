@@ -16,7 +16,7 @@ SMALL = '<robot name="rover"><link name="base"/></robot>'
 FIFTH = """\
 import sys
 from multibot_rewrite import naming
-row = naming.Layout("bare", "L5", False, False, False, "nothing is renamed but topics")
+row = naming.Layout("bare", "L9", False, False, False, "nothing is renamed but topics")
 naming.LAYOUTS = (*naming.LAYOUTS, row)
 from importlib import import_module
 sys.exit(import_module("multibot_rewrite.cli." + sys.argv[1]).main(sys.argv[2:]))
@@ -28,7 +28,7 @@ def python(code: str, *arguments: object) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, capture_output=True, text=True, check=False)
 
 
-@pytest.mark.parametrize("word", ["bare", "L5"])
+@pytest.mark.parametrize("word", ["bare", "L9"])
 def test_a_fifth_layout_rewrites(word: str, tmp_path: Path) -> None:
     (tmp_path / "r.urdf").write_text(SMALL)
     arguments = ("urdf_postfix", tmp_path / "r.urdf", "r1", "--layout", word)
@@ -38,7 +38,7 @@ def test_a_fifth_layout_rewrites(word: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("word", ["bare", "L5"])
+@pytest.mark.parametrize("word", ["bare", "L9"])
 def test_a_fifth_layout_builds(word: str, tmp_path: Path) -> None:
     (tmp_path / "r.urdf").write_text(SMALL)
     text = f"layout: {word}\nrobots:\n  - {{name: r1, description: r.urdf}}\n"
@@ -56,7 +56,7 @@ def test_a_fifth_layout_builds(word: str, tmp_path: Path) -> None:
 def test_the_help_lists_a_fifth_layout(command: tuple[str, ...]) -> None:
     done = python(FIFTH, *command, "--help")
     assert done.returncode == 0, done.stderr
-    assert "bare (L5" in re.sub(r"\s+", " ", done.stdout)
+    assert "bare (L9" in re.sub(r"\s+", " ", done.stdout)
 
 
 def test_the_default_layout_is_a_row() -> None:

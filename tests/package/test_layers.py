@@ -32,6 +32,7 @@ FLOORS = (
     ("library", "evidence"),
     ("closure",),
     ("fleets", "lint"),
+    ("proposal", "view"),
     ("__init__", "launch", "catalogue"),
     ("cli",),
     ("__main__",),

@@ -44,6 +44,33 @@ def fleet(layout: str, source: str | bytes = ROBOT):
     return bridged_topics(inventories, make_naming(layout))
 
 
+CLASSIC = """<robot name="rover"><link name="base"/><gazebo reference="base">
+<sensor name="imu" type="imu"/>{}</gazebo><gazebo>
+<plugin name="drive" filename="libgazebo_ros_diff_drive.so"/>{}</gazebo></robot>"""
+
+
+@pytest.mark.parametrize(
+    ("sensor", "plugin", "left"),
+    [
+        # Gazebo Classic publishes it on a topic of its own, which no ros_gz_bridge can read.
+        ("", "", []),
+        ('<sensor name="eye" type="camera"><topic>eye</topic></sensor>', "", []),
+        ('<sensor name="lidar" type="gpu_lidar"/>', "", ["sensor lidar_robot1"]),
+        (
+            "",
+            '<plugin name="p" filename="gz-sim-pose-publisher-system"/>',
+            ["sensor imu_robot1"],
+        ),
+    ],
+)
+def test_a_robot_of_gazebo_classic_has_no_gz_topics(
+    sensor: str, plugin: str, left: list[str]
+) -> None:
+    bridged, unbridged = fleet("L4", CLASSIC.format(sensor, plugin))
+    assert [it.what for it in unbridged if it.robot == "robot1"] == left
+    assert {it.robot for it in bridged} == {""}
+
+
 NAMESPACED = """<sdf version="1.12"><model name="rover" namespace="{}"><link name="base"/>
 <plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive">
 <odom_topic>odom</odom_topic><tf_topic>/tf</tf_topic></plugin></model></sdf>"""

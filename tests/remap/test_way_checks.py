@@ -65,6 +65,13 @@ def test_on_humble_the_second_robot_has_the_rules_of_the_first() -> None:
         ("jazzy", "diff_drive_controller:~/odom:=odom", "gz_ros2_control", []),
         ("jazzy", "joint_trajectory_controller:~/odom:=odom", "gz_ros2_control", ["MR103"]),
         ("jazzy", "~/odmo:=odom", "gz_ros2_control", ["MR103"]),
+        # For a controller that other robots of the description have, or of another release.
+        ("jazzy", "~/reference:=cmd_vel", "gz_ros2_control", []),
+        ("jazzy", "drive_controller/cmd_vel:=cmd_vel", "gz_ros2_control", []),
+        ("jazzy", "~/cmd_vel_unstamped:=cmd_vel", "gz_ros2_control", []),
+        ("jazzy", "/diagnostics:=diagnostics", "gz_ros2_control", []),
+        ("jazzy", "drive_controller/cmd_vle:=cmd_vel", "gz_ros2_control", ["MR103"]),
+        ("lyrical", "drive_controller/cmd_vel:=cmd_vel", "gz_ros2_control", ["MR103"]),
         # Nobody knows the controllers.
         ("jazzy", "~/odom:=odom", "", []),
         ("lyrical", "~/odom:=odom", "", ["MB435", "MR103", "MR105"]),

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from itertools import product
+from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from multibot_rewrite import UsageError
 from multibot_rewrite.naming import (
+    FRAME_KINDS,
     LAYOUTS,
     NAMESPACE,
     POSTFIX,
@@ -31,6 +33,7 @@ ROBOT = "r1"
 POLICIES = [
     pytest.param(layout.short, side, topics, id=f"{layout.short}-{side}-{topics}")
     for layout, side, topics in product(LAYOUTS, (POSTFIX, PREFIX), STRATEGIES)
+    if side == PREFIX or not layout.at_run_time
 ]
 TEXTS = (
     "a", "arm", "/a", "a/", "/", "", "r1", "/r1", "r1/", "r1/a", "a/r1", "a_r1", "r1_a", "r1/r1",
@@ -88,6 +91,7 @@ def test_removal_undoes_affix_for_any_text(
     namespaced: bool,
 ) -> None:  # fmt: skip
     kind, mark = marked
+    assume(not layout.at_run_time or (side == PREFIX and (mark == "/" or kind not in FRAME_KINDS)))
     naming = make_naming(layout.name, side, topics, {kind: mark})
     assert_inverse(naming, kind, text, robot, namespaced)
 
@@ -215,6 +219,29 @@ def test_a_stem_stays_where_a_namespace_reaches_it(namespaced: bool, expected: s
     assert spelled(make_naming("L1"), "stem", "cam", namespaced) == expected
 
 
+def test_frames_named_at_run_time_leave_links_and_joints() -> None:
+    naming = make_naming("frame-prefix")
+    kinds = ("frame", "link", "joint", "sensor", "hardware", "model")
+    names = [spelled(naming, kind, "x") for kind in kinds]
+    assert names == ["r1/x", "x", "x", "x", "x", "x"]
+    assert spelled(naming, "topic", "/scan") == "/r1/scan"
+    assert spelled(naming, "topic", "/tf") == "/tf"
+    assert spelled(naming, "frame", "map") == "map"
+
+
+@pytest.mark.parametrize(
+    ("options", "hint"),
+    [
+        ({"affix": "postfix"}, "use affix: prefix"),
+        ({"separators": {"frame": "_"}}, "use frame=/"),
+        ({"separators": {"link": "_"}}, "use frame=/"),
+    ],
+)
+def test_nodes_name_frames_in_one_way(options: dict[str, Any], hint: str) -> None:
+    with pytest.raises(UsageError, match=hint):
+        make_naming("frame-prefix", **options)
+
+
 def test_shared_names_are_a_choice() -> None:
     naming = make_naming(shared_frames=["/odom"], shared_topics=["points/"])
     frames = [spelled(naming, "frame", text) for text in ("odom", "world")]
@@ -266,7 +293,7 @@ def test_a_separator_ros_does_not_allow_is_refused(kind: str, mark: str) -> None
 @pytest.mark.parametrize(
     ("options", "parts"),
     [
-        ({"layout": "L5"}, ["layout 'L5'", *(layout.name for layout in LAYOUTS)]),
+        ({"layout": "L9"}, ["layout 'L9'", *(layout.name for layout in LAYOUTS)]),
         ({"layout": "tf_per_robot"}, ["did you mean 'tf-per-robot'?"]),
         ({"layout": "bothe"}, ["did you mean 'both'?"]),
         ({"affix": "postfx"}, ["affix 'postfx'", "did you mean 'postfix'?"]),

@@ -128,11 +128,18 @@ def test_a_sourced_workspace_is_read_through_its_links(
     assert "is outside of the folders" in said
 
 
+def test_a_package_of_the_same_repository_needs_no_sourced_ros(repository: Path) -> None:
+    file = repository / "arm" / "r.xacro"
+    assert '<link name="part"/>' in including(file, "$(find tool)/urdf/part.xacro")
+    (repository / "tool" / "package.xml").unlink()
+    assert "needs a sourced ROS 2" in including(file, "$(find tool)/urdf/part.xacro")
+
+
 def test_a_package_that_is_nowhere(
     tmp_path: Path, repository: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     file = repository / "arm" / "r.xacro"
-    assert "needs a sourced ROS 2" in including(file, "$(find tool)/part.xacro")
+    assert "needs a sourced ROS 2" in including(file, "$(find more)/part.xacro")
     sourced(tmp_path, repository, monkeypatch)
     assert "package 'more' is not found; source" in including(file, "$(find more)/part.xacro")
 

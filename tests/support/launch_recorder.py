@@ -1,8 +1,8 @@
 """Which nodes a launch file starts, told by the real ``ros2 launch`` with programs that do nothing.
 
-``python launch_recorder.py FILE [NAME:=VALUE ...]`` prints them as JSON. It knows nothing of the
-project:
-it is the judge of what the project reads in launch files. Needs launch and launch_ros.
+``python launch_recorder.py [--xacro] FILE [NAME:=VALUE ...]`` prints them as JSON, with the values of
+their parameter files; ``--xacro`` expands descriptions, else they are empty. It knows nothing of the
+project: it is the judge of what the project reads in launch files. Needs launch and launch_ros.
 """
 
 from __future__ import annotations
@@ -10,11 +10,14 @@ from __future__ import annotations
 import asyncio
 import json
 import os
+import shlex
 import sys
 from pathlib import Path
 from typing import Any
 
 import launch_ros.actions as ros_actions
+import xacro
+import yaml
 from launch import LaunchDescription, LaunchService
 from launch.actions import IncludeLaunchDescription, TimerAction, execute_local
 from launch.launch_description_sources import AnyLaunchDescriptionSource
@@ -22,6 +25,7 @@ from launch.substitutions import Command, FindExecutable
 from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
 from launch_ros.actions.load_composable_nodes import get_composable_node_load_request
 from launch_ros.substitutions import ExecutableInPackage
+from launch_ros.utilities import evaluate_parameters
 from rclpy.parameter import parameter_value_to_python
 
 # They do their work and end, so that what waits for their end starts.
@@ -54,7 +58,30 @@ def words_of(command: list[str]) -> dict[str, Any]:
     return found
 
 
-def record(rows: Rows) -> None:
+def values_of(path: str) -> dict[str, str]:
+    """A parameter file and its text when a program is started with it; no name if launch made it of
+    parameters in the launch file."""
+    made = Path(path).name.startswith("launch_params_")
+    return {"file": "" if made else path, "text": Path(path).read_text()}
+
+
+def texts(words: list[str]) -> dict[str, str]:
+    """The files among the arguments of a program, with what is in them."""
+    given = (Path(it) for it in words if it.endswith((".rviz", ".yaml")) or it.startswith("/tmp/"))
+    return {str(it): it.read_text() for it in given if it.is_file()}
+
+
+def expanded(line: str) -> str:
+    """What ``xacro FILE NAME:=VALUE`` prints; the text of another command is not needed."""
+    program, *words = shlex.split(line)
+    if Path(program).name != "xacro":
+        return "<robot name='r'/>"
+    file = next(it for it in words if ":=" not in it)
+    given = dict(it.split(":=", 1) for it in words if ":=" in it)
+    return str(xacro.process_file(file, mappings=given).toxml())
+
+
+def record(rows: Rows, with_xacro: bool = False) -> None:
     """From now on launch notes programs and components in ``rows``; it starts none of them."""
     real = execute_local.async_execute_process
 
@@ -63,10 +90,10 @@ def record(rows: Rows) -> None:
         words = cmd[1:]
         if [executable, *words[:1]] == ["ros2", "run"]:
             package, executable, *words = words[1:]
-        told = words_of(words)
-        texts = {file: Path(file).read_text() for file in told["files"]}
-        row = {"package": package, "executable": executable, "words": words, "texts": texts}
-        rows.append({**row, **told})
+        row = {"package": package, "executable": executable, "words": words, **words_of(words)}
+        params = {it: Path(it).read_text() for it in row["files"]}
+        values = [values_of(it) for it in row["files"]]
+        rows.append({**row, "params": params, "values": values, "texts": texts(row["own"])})
         program = ["true"] if executable in ENDING else ["sleep", "600"]
         return await real(protocol, cmd=program, **{**options, "shell": False})
 
@@ -76,7 +103,11 @@ def record(rows: Rows) -> None:
 
     execute_local.async_execute_process = started
     ExecutableInPackage.perform = found
-    Command.perform = lambda self, context: "<robot name='r'/>"
+    Command.perform = lambda self, context: (
+        expanded(perform_substitutions(context, self.command))
+        if with_xacro
+        else "<robot name='r'/>"
+    )
     FindExecutable.perform = lambda self, context: perform_substitutions(context, self.name)
     TimerAction.execute = lambda self, context: self.actions
     ros_actions.LifecycleNode.execute = ros_actions.Node.execute
@@ -102,6 +133,7 @@ def load(action: Any, context: Any, rows: Rows) -> None:
                     "namespace": getattr(request, "node_namespace", ""),
                     "rules": [rule.split(":=", 1) for rule in getattr(request, "remap_rules", ())],
                     "container": container,
+                    "values": parameters_of(it, context),
                     "parameters": [
                         [it.name, plain(parameter_value_to_python(it.value))]
                         for it in getattr(request, "parameters", ())
@@ -110,9 +142,20 @@ def load(action: Any, context: Any, rows: Rows) -> None:
             )
 
 
-def plain(value: Any) -> Any:
-    """A parameter's value as JSON has it."""
-    return value if isinstance(value, str | bool | int | float) else list(value or ())
+def parameters_of(component: Any, context: Any) -> list[Any]:
+    """The parameters of a component, as parameter files would have them."""
+    given = evaluate_parameters(context, component.parameters or ())
+    return [
+        values_of(str(it))
+        if isinstance(it, Path)
+        else {"file": "", "text": yaml.safe_dump({"/**": {"ros__parameters": plain(it)}})}
+        for it in given
+    ]
+
+
+def plain(values: Any) -> Any:
+    """Parameters without the types of launch, which YAML cannot write."""
+    return json.loads(json.dumps(values, default=list))
 
 
 async def quiet(rows: Rows) -> None:
@@ -134,13 +177,13 @@ async def launched(service: LaunchService, rows: Rows) -> None:
 
 
 if __name__ == "__main__":
-    file, *given = sys.argv[1:]
+    file, *given = (it for it in sys.argv[1:] if it != "--xacro")
     started: Rows = []
-    record(started)
+    record(started, "--xacro" in sys.argv)
     service = LaunchService(noninteractive=True)
     source = AnyLaunchDescriptionSource(file)
     arguments = [tuple(it.split(":=", 1)) for it in given]
     include = IncludeLaunchDescription(source, launch_arguments=arguments)
     service.include_launch_description(LaunchDescription([include]))
     asyncio.run(launched(service, started))
-    print(json.dumps(started, indent=1))
+    print(json.dumps(started, indent=1, default=str))

@@ -68,6 +68,13 @@ class OnShutdown:
         return self.on_shutdown(event, context)
 
 
+class OnProcessExit:
+    def __init__(self, *, target_action: Any = None, on_exit: Any = None, **kwargs: Any) -> None:
+        if not (target_action is None or hasattr(target_action, "execute")):
+            raise TypeError("action_matcher must be an 'ExecuteLocal' instance or a callable")
+        self.on_exit = on_exit
+
+
 class IfCondition:
     def __init__(self, predicate_expression: Any) -> None:
         self.predicate_expression = predicate_expression
@@ -104,6 +111,17 @@ class OpaqueFunction(Action):
 
     def execute(self, context: LaunchContext) -> Any:
         return self.function(context)
+
+
+class RegisterEventHandler(Action):
+    """The event happens at once."""
+
+    def __init__(self, event_handler: OnProcessExit, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self.handler = event_handler
+
+    def execute(self, context: LaunchContext) -> list[Any]:
+        return [*self.handler.on_exit]
 
 
 class SetLaunchConfiguration(Action):
@@ -265,10 +283,11 @@ MODULES: Mapping[str, Mapping[str, Any]] = {
         "DeclareLaunchArgument": DeclareLaunchArgument,
         "GroupAction": GroupAction,
         "OpaqueFunction": OpaqueFunction,
+        "RegisterEventHandler": RegisterEventHandler,
         "SetLaunchConfiguration": SetLaunchConfiguration,
     },
     "launch.conditions": {"IfCondition": IfCondition},
-    "launch.event_handlers": {"OnShutdown": OnShutdown},
+    "launch.event_handlers": {"OnProcessExit": OnProcessExit, "OnShutdown": OnShutdown},
     "launch.frontend": {
         "Entity": Entity,
         "Parser": Parser,

@@ -52,15 +52,21 @@ PROGRAMS = {
 
 
 def launched(
-    file: Path, folder: Path, *arguments: str, programs: Mapping[str, str] = MappingProxyType({})
+    file: Path,
+    folder: Path,
+    *arguments: str,
+    programs: Mapping[str, str] = MappingProxyType({}),
+    more: Mapping[str, str] = MappingProxyType({}),
 ) -> tuple[list[dict[str, Any]], str]:
-    """What the programs of a launch file were told, and what launch said."""
+    """What the programs of a launch file were told, and what launch said; ``more`` are files of
+    packages, by their paths below ``share``."""
     share = {
         f"share/multibot_example/{path.relative_to(EXAMPLE)}": path.read_text()
         for path in EXAMPLE.glob("*/*.*")
     }
     included = ("ros_gz_sim/launch/gz_sim.launch.py", "gazebo_ros/launch/gazebo.launch.py")
     files = {**share, **{f"share/{it}": EMPTY for it in included}}
+    files |= {f"share/{path}": text for path, text in more.items()}
     fake_packages(folder / "install", files, {**PROGRAMS, **programs})
     (folder / "told").mkdir()
     (folder / "tmp").mkdir()
@@ -79,6 +85,6 @@ def launched(
     )
     assert done.returncode == 0, done.stderr + done.stdout
     told = [json.loads(it.read_text()) for it in (folder / "told").iterdir()]
-    left = [it.name for it in (folder / "tmp").iterdir()]
-    assert [it for it in left if not it.startswith("launch_params_")] == []
+    # Others leave their files: launch_ros its launch_params_, nav2_common those that it makes.
+    assert [it.name for it in (folder / "tmp").iterdir() if it.name.startswith("multibot")] == []
     return told, done.stderr + done.stdout

@@ -289,7 +289,7 @@ def processes(fleet: LoadedFleet, rows: list[dict[str, Any]], folder: Path) -> l
         code = CODE.get(name, name)
         if name == "lifecycle_manager":
             name = row["name"].partition("_robot")[0]
-        words = [_kept(word, row["texts"], folder / f"file{number}") for word in row["words"]]
+        words = [_kept(word, row["params"], folder / f"file{number}") for word in row["words"]]
         nodes = [*with_hosted(name, code, [], [])]
         inside = [it for it in rows if it.get("container", "").strip("/") == _full(row)]
         for it in inside if name == "nav2_container" else ():

@@ -128,11 +128,20 @@ def problems(document: YamlText, text: str, naming: Naming) -> Iterator[str]:
     if gaps(document.text, old) != gaps(bare.removeprefix("\ufeff"), new):
         yield "more than scalars changed"
     for before, after in zip(old, new, strict=True):
+        if is_filled(before.value, after.value):
+            continue
         if not is_respelled(before.value, after.value) and not is_off(before, after):
             yield f"{before.value!r} became {after.value!r}"
         if before.value != after.value and before.tag != after.tag:
             yield f"{before.value!r} was {before.tag}, {after.value!r} is {after.tag}"
     yield from wrong_names(document.root, root, naming)
+
+
+def is_filled(old: str, new: str) -> bool:
+    """Is it as launch files fill it in, but that a name gets the robot's as any other does?"""
+    bare = re.sub(r"<(robot_namespace|namespace|robot_name)>|\$\(var (namespace|ns)\)", "", old)
+    whole = old.replace(old.strip("/"), ROBOT)
+    return bare != old and (new == whole if not bare.strip("/") else is_respelled(bare, new))
 
 
 def without_lines(text: str, source: str) -> str:

@@ -22,6 +22,7 @@ from multibot_rewrite.fleets.fleet_plan import plan_fleet
 from multibot_rewrite.fleets.robot_groups import group_robots
 from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.dangers.find import find_dangers
+from multibot_rewrite.lint.beside.kinds import KINDS
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.naming import Policy
@@ -93,6 +94,12 @@ def lint_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
         options["urdf"] = str(folder / options["urdf"])
     options["vocabulary"] = tuple(str(folder / it) for it in options.get("vocabulary", ()))
     return lint_file(str(file), Settings(select=(rule.code,), **options))
+
+
+def beside_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
+    """The example as a file of a package, with the rule's files beside it."""
+    _write(folder, {"example.yaml": example})
+    return lint_file(str(folder / "example.yaml"), Settings(select=(rule.code,)))
 
 
 def rewrite_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
@@ -185,6 +192,7 @@ def danger_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
 RUNNERS: dict[str, Callable[[Rule, str, Path], list[Finding]]] = {
     **dict.fromkeys((URDF, SRDF, XACRO), lint_example),
     **dict.fromkeys(COMPANIONS, companion_example),
+    **dict.fromkeys(KINDS, beside_example),
     "lua by hand": lua_by_hand_example,
     "rewrite": rewrite_example,
     "fleet": fleet_example,

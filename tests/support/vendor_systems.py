@@ -150,8 +150,7 @@ def started_by(row: Mapping[str, Any], named: Mapping[str, Mapping[str, Any]]) -
         return
     namespace = f"/{row['namespace'].strip('/')}".rstrip("/")
     if row["executable"] == "spawner":
-        above = _manager(row["own"]).strip("/").rpartition("/")[0]
-        home = f"/{above}" if above else namespace
+        home = _home(row["own"], namespace)
         yield from (Started(f"{home}/{it}", by) for it in _positional(row["own"]))
         return
     names = named.get(by, {}).get("nodes", [""])
@@ -169,10 +168,14 @@ def _below(it: Started, namespace: str) -> Started:
     return it if alone else it._replace(name=f"/{namespace}{it.name}")
 
 
-def _manager(words: list[str]) -> str:
-    """The controller manager that a spawner is told; controllers run in its namespace."""
-    given = (word for flag, word in pairwise(words) if flag in ("-c", "--controller-manager"))
-    return next(given, "")
+def _home(words: list[str], namespace: str) -> str:
+    """The namespace of the controller manager that a spawner is told: controllers run in it. A relative
+    name is below that of the spawner, which is an option, too (spawner.py)."""
+    given = dict(pairwise(words))
+    manager = given.get("-c") or given.get("--controller-manager") or "controller_manager"
+    own = given.get("-n") or given.get("--namespace") or namespace
+    above = "" if manager.startswith("/") else f"/{own.strip('/')}"
+    return f"{above}/{manager.strip('/')}".rpartition("/")[0].replace("//", "/").rstrip("/")
 
 
 def _positional(words: Iterable[str]) -> Iterator[str]:

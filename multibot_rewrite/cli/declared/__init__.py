@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from multibot_rewrite.cli.declared.description import LINT, POSTFIX
-from multibot_rewrite.cli.declared.fleet import BUILD, PLAN, REHEARSE, REMAP
+from multibot_rewrite.cli.declared.fleet import BUILD, INIT, PLAN, REHEARSE, REMAP, VIEW
 from multibot_rewrite.cli.declared.graph import (
     CHECK,
     CHECK_LAUNCH,
@@ -37,11 +37,13 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             DOCTOR,
             EXPLAIN,
             HELP,
+            INIT,
             LEARN,
             PLAN,
             REHEARSE,
             REMAP,
             SNAPSHOT,
+            VIEW,
             VOCABULARY_LOOKUP,
             ZENOH_FILES,
         )

@@ -116,7 +116,10 @@ LINT = Command(
     "%(prog)s PATH... [NAME:=VALUE...] [options]",
     "Find what is wrong with robot descriptions, alone and among other robots.",
     (
-        Example("urdf-lint urdf/", "every .urdf, .xacro and .srdf below it"),
+        Example(
+            "urdf-lint urdf/",
+            "descriptions, SRDF, parameters, RViz, MoveIt",
+        ),
         Example("urdf-lint rover.urdf --select MB2,MB5", "references and structure only"),
         Example("urdf-lint rover.urdf.xacro sim:=gz", "with xacro arguments, too"),
         Example("urdf-lint rover.urdf --robots robot1,robot2 --layout frames-per-robot"),

@@ -10,12 +10,14 @@ from multibot_rewrite.cli.declared.shared import (
     GENERAL,
     KNOWN_NODES,
     LAUNCH_ROOTS,
+    LAYOUT_NAMES,
     LIVE,
     LIVE_CODES,
     NAMING,
     PICTURES,
     RESULT_OUTPUT,
     ROBOTS,
+    SAVED,
     TRUST,
     VOCABULARY,
 )
@@ -72,6 +74,59 @@ _TABLE_CODES = "0 done; 1 findings at the level of --fail-on; 2 wrong use or unr
 _BESIDE = (
     " Findings go to standard error; with a --format other than text they go to standard output, and"
     " the result needs -o."
+)
+INIT = Command(
+    "init",
+    "init",
+    "%(prog)s [PATH...] [-n COUNT] [-o FLEET] [options]",
+    "Write a first fleet file for the robots of descriptions, packages or a repository.",
+    (
+        Example("multibot init rover.urdf", "two robots of one description"),
+        Example("multibot init -n 3 my_robot_ws/src", "the robot and all files found there"),
+        Example("multibot init arm.urdf.xacro rover.urdf --yes", "no questions"),
+        Example("multibot init ur.urdf.xacro name:=ur ur_type:=ur5e", "arguments of the xacro"),
+    ),
+    (
+        OptionGroup(
+            "input",
+            (
+                argument(
+                    "words",
+                    "PATH",
+                    "descriptions (URDF, xacro, SDF) and folders with packages; default: the working"
+                    " directory; NAME:=VALUE is for xacro",
+                    "*",
+                ),
+                TRUST,
+            ),
+        ),
+        OptionGroup(
+            "answers, which are asked for on a terminal where they are not given",
+            (
+                value(
+                    "-n",
+                    "--count",
+                    metavar="COUNT",
+                    about="robots of each description; default: 2",
+                    type=values.count,
+                ),
+                choice("--layout", "NAME", LAYOUT_NAMES, "default: what the files are made for"),
+                choice(
+                    "--simulator", "NAME", ("none", "gazebo"), "default: what the plugins are for"
+                ),
+                DISTRO,
+                switch("-y", "--yes", about="ask nothing, take the defaults"),
+            ),
+        ),
+        output_group(
+            output("the fleet file; default: fleet.yaml; - prints it", default="fleet.yaml"),
+            switch("--force", about="overwrite files that no build made"),
+        ),
+        GENERAL,
+    ),
+    "0 done, and it builds; 1 written, but it does not build yet; 2 wrong use or unreadable input",
+    more="Every key comes with its reason. The fleet is built once in memory; where a layout does not"
+    " work, the first one that does is taken.",
 )
 BUILD = Command(
     "build",
@@ -148,6 +203,38 @@ PLAN = Command(
     ),
     _TABLE_CODES,
     more=_FLEET_FILE + _BESIDE,
+    fail_on=ERROR,
+)
+VIEW = Command(
+    "view",
+    "view",
+    "%(prog)s INPUT [ROBOT...] [NAME:=VALUE...] [options]",
+    "Show the rewritten robots in 3D, in one HTML file that needs no network.",
+    (
+        Example("multibot view fleet.yaml", "all robots at their poses, in view.html"),
+        Example("multibot view rover.urdf robot1 robot2 -o rover.html"),
+        Example("multibot view fleet.yaml --snapshot graph.json", "which frames are on tf?"),
+    ),
+    (
+        OptionGroup(
+            "input",
+            (
+                argument(
+                    "input", "INPUT", "the robot's description before any rewrite, or a fleet file"
+                ),
+                argument("words", "ROBOT", "names of robots; NAME:=VALUE is for xacro", "*"),
+                SAVED,
+                DISTRO,
+                TRUST,
+            ),
+        ),
+        output_group(output("the page; default: view.html; - prints it", default="view.html")),
+        NAMING,
+        FINDINGS,
+        GENERAL,
+    ),
+    "0 done; 1 the description is refused; 2 wrong use or unreadable input; 4 no yourdfpy",
+    more="It needs pip install 'multibot_rewrite[view]'. Meshes are put into the page.",
     fail_on=ERROR,
 )
 REHEARSE = Command(

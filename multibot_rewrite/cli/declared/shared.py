@@ -27,13 +27,13 @@ from multibot_rewrite.releases import NEWEST_LTS, RELEASES, VARIABLE
 # argparse's word for an option that leaves what is there alone.
 SUPPRESS = "==SUPPRESS=="
 _LAYOUTS = ", ".join(f"{it.name} ({it.short}: {it.about})" for it in LAYOUTS)
-_LAYOUT_NAMES = tuple(name for it in LAYOUTS for name in (it.name, it.short))
+LAYOUT_NAMES = tuple(name for it in LAYOUTS for name in (it.name, it.short))
 _SEPARATORS = " ".join(f"{kind}={mark}" for kind, mark in SEPARATORS.items())
 
 NAMING = OptionGroup(
     "names of a robot",
     (
-        choice("--layout", "NAME", _LAYOUT_NAMES, f"{_LAYOUTS}; default: {DEFAULT_LAYOUT}"),
+        choice("--layout", "NAME", LAYOUT_NAMES, f"{_LAYOUTS}; default: {DEFAULT_LAYOUT}"),
         choice(
             "--affix",
             "SIDE",

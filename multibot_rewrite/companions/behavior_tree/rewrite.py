@@ -21,6 +21,7 @@ from multibot_rewrite.companions.behavior_tree.ports import (
 from multibot_rewrite.companions.context import Companion, Context
 from multibot_rewrite.companions.names.by_kind import SPELLERS, is_plain
 from multibot_rewrite.companions.names.node_topics import FROM_NODE, spell_topic
+from multibot_rewrite.companions.names.placeholders import without_robot
 from multibot_rewrite.companions.template import check_no_slots, make_template
 from multibot_rewrite.companions.yaml_text import Splice
 from multibot_rewrite.model import InputError
@@ -50,6 +51,7 @@ def rewrite_behavior_tree(data: bytes, file: str, context: Context) -> Companion
 
 
 def _new_text(context: Context, kind: str, value: str) -> str:
+    value = without_robot(value, "/" if kind in GRAPH_KINDS else "")
     if kind in GRAPH_KINDS:
         # Written out even if a rule would do: rules do not reach the navigator's helper nodes.
         return spell_topic(context, NAVIGATOR, GRAPH_KINDS[kind], value, FROM_NODE, {}).text

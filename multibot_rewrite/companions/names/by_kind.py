@@ -133,6 +133,16 @@ def joint_stem(context: Context, value: str) -> str:
     return whole.removesuffix(STEM_END) if whole.endswith(STEM_END) else value
 
 
+def before_frames(between: str) -> Speller:
+    """What a node puts before frames: where that names the robot's frames, the robot's name."""
+
+    def speller(context: Context, value: str) -> str:
+        named = context.names.naming.layout.at_run_time and (value or between)
+        return f"{TAG_SLOT}{between}" if named else value
+
+    return speller
+
+
 def words(context: Context, value: str) -> str:
     """Text with names of the description in it: ``joints(shoulder,elbow)``."""
     return _WORD.sub(lambda found: _word(context, found[0]), value)
@@ -184,6 +194,8 @@ SPELLERS: Mapping[str, Speller] = {
     "joint_prefix": joint_prefix,
     "gpio_prefix": gpio_prefix,
     "joint_stem": joint_stem,
+    "doubles": before_frames(""),
+    "doubles_as_is": before_frames("/"),
     "component": component,
     "words": words,
     **{word: _declared(word) for word in ("frame", "link", "sensor", "gpio", "hardware", "group")},

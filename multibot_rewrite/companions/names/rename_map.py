@@ -45,7 +45,10 @@ def spell(names: CompanionNames, word: str, value: str, namespaced: bool = True)
     """
     if not value or not NOT_PLAIN.isdisjoint(value) or "<" in value:
         return value
-    kind = resolve(value, KINDS[word], "uses", names.declared)
+    # What nodes name at run time is a frame, whatever the description calls so.
+    apart = names.naming.layout.at_run_time and word == "frame"
+    kinds = (word,) if apart else KINDS[word]
+    kind = resolve(value, kinds, "uses", names.declared, apart=apart)
     if (kind, value) in names.own:
         return names.own[kind, value]
     return spelled(names.naming, names.robot, kind, value, namespaced)

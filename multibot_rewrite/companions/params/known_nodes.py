@@ -41,7 +41,9 @@ NAME_KINDS = (
 GRAPH_NAME_KINDS = ("topic", "service", "node", "controller", "namespace")
 # Put before names by the node; an empty one is a default.
 PREFIX_KINDS = ("joint_prefix", "gpio_prefix", "joint_stem")
-OTHER_KINDS = ("stem", "link_prefix", *PREFIX_KINDS, "words", "text", "pattern", "doubles")
+# Put before frames by the node; what it puts behind them.
+RUN_TIME = {"doubles": "", "doubles_as_is": "/"}
+OTHER_KINDS = ("stem", "link_prefix", *PREFIX_KINDS, "words", "text", "pattern", *RUN_TIME)
 SWITCH_KINDS = ("off", "no_prefix")
 KINDS = (*NAME_KINDS, *GRAPH_NAME_KINDS, *OTHER_KINDS, *SWITCH_KINDS, "exclusive", "keep")
 # Placeholders for a segment of a path; an id holds no name of a robot.

@@ -14,8 +14,9 @@ from multibot_rewrite.companions.names.by_kind import (
     is_plain,
     is_shared_frame,
 )
+from multibot_rewrite.companions.names.placeholders import is_robot
 from multibot_rewrite.companions.names.rename_map import is_declared
-from multibot_rewrite.companions.params.known_nodes import PREFIX_KINDS
+from multibot_rewrite.companions.params.known_nodes import PREFIX_KINDS, RUN_TIME
 from multibot_rewrite.companions.params.name_sites import NameSite
 from multibot_rewrite.companions.params.values import ParamsJob, renamed
 from multibot_rewrite.companions.yaml_text import YamlText, found_at
@@ -40,7 +41,7 @@ def name_findings(job: ParamsJob, site: NameSite) -> Iterator[Finding]:
         yield from _invalid_topic(job, site)
     elif site.kind in ("stem", "link_prefix", *PREFIX_KINDS):
         yield from _inexpressible(job, site)
-    elif site.kind == "doubles":
+    elif site.kind in RUN_TIME and not job.context.names.naming.layout.at_run_time:
         yield from _prefix_twice(job, site)
     elif site.kind == "exclusive":
         yield from _same_for_all(job, site)
@@ -232,6 +233,8 @@ robot_state_publisher:
 
 
 def _prefix_twice(job: ParamsJob, site: NameSite) -> Iterator[Finding]:
+    if not site.value or is_robot(site.value):
+        return  # there is none, or none is filled in
     certain = frames_differ(job.context) and is_plain(site.value)
     message = f"{site.key.value} {site.value!r} adds a prefix to frames a second time"
     found = found_at(job.document, site.scalar, PREFIX_TWICE, message, 'write ""')

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import yaml
 
+from multibot_rewrite.companions.names.placeholders import is_robot, without_robot
 from multibot_rewrite.companions.params.known_nodes import (
     PREFIX_KINDS,
     Branch,
@@ -28,7 +29,10 @@ _STEM = re.compile(r"(.*?)\d+")
 # Segments of a path that hold no name of the robot.
 _IDS = frozenset({"id", "*"})
 # An empty prefix is replaced as well.
-_TAKE_EMPTY = ("link_prefix", *PREFIX_KINDS, "no_prefix")
+_TAKE_EMPTY = ("link_prefix", *PREFIX_KINDS, "no_prefix", "doubles_as_is")
+_PREFIXES = ("link_prefix", *PREFIX_KINDS)
+# Names below a namespace.
+_BELOW = ("topic", "service", "node", "namespace")
 # ~ is no text for YAML.
 _ANY_TYPE = ("off", "no_prefix", "exclusive")
 _NO_NAMES = frozenset(f"tag:yaml.org,2002:{it}" for it in ("int", "float", "bool"))
@@ -140,7 +144,7 @@ def _claim(
             param = branch.params[0]
             names.known.add(param.path)
             for mark, at, kind in marks:
-                word = mark.value.split(".")[at]
+                word = _without_robot(mark.value.split(".")[at], kind)
                 names.sites.append(NameSite(mark, mark, kind, param, word, at, layer))
             break
     if param is None or param.kind != "keep":
@@ -164,10 +168,18 @@ def _values(
         if not text and not (scalar.style and kind in _TAKE_EMPTY):
             continue
         kind = kind or guess(known, key.value)
+        text = _without_robot(text, kind)
         if kind:
             names.sites.append(NameSite(scalar, key, kind, param, text, -1, layer))
         else:
             names.unclaimed.append(scalar)
+
+
+def _without_robot(text: str, kind: str) -> str:
+    """A name that stands for the robot in front is that of one robot; a prefix of that kind is none."""
+    if kind in _PREFIXES and is_robot(text):
+        return ""
+    return without_robot(text, "/" if kind in _BELOW else "")
 
 
 def name_in(scalar: yaml.ScalarNode) -> str:

@@ -67,6 +67,7 @@ def rewrite_params(
     facts: Iterable[NodeFacts] = (),
     robots: Iterable[str] = (),
     own: Iterable[str] = (),
+    at_run_time: Iterable[str] = (),
     clock: bool | None = None,
 ) -> Companion:
     """A parameter file with slots for a robot, and the findings about it.
@@ -75,8 +76,9 @@ def rewrite_params(
     what they set is not inserted here. ``facts`` are those of the robot's nodes, whose remap rules
     move topics too. ``robots`` are namespaces and tags of robots: a name that holds one of them is
     an error.
-    A file for one robot may have its sections below one of ``own``. ``clock`` is the
-    ``use_sim_time`` of all its nodes, None if they keep their own. Raises InputError for a file that
+    A file for one robot may have its sections below one of ``own``. ``at_run_time`` are the nodes that
+    put the robot's name before their frames themselves. ``clock`` is the ``use_sim_time`` of all its
+    nodes, None if they keep their own. Raises InputError for a file that
     is not a parameter file or that rcl rejects.
     """
     with gc_paused():
@@ -89,6 +91,7 @@ def rewrite_params(
             facts_by_name(facts, context.distro),
             words,
             tuple(own),
+            frozenset(at_run_time),
             clock,
         )
         return _params(job, beside)

@@ -11,6 +11,7 @@ from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.names.by_kind import is_plain
 from multibot_rewrite.companions.params.name_sites import SectionNames
 from multibot_rewrite.companions.params.sections import ANY, PLACEHOLDER, ParamSection
+from multibot_rewrite.companions.params.values import is_filled
 from multibot_rewrite.companions.yaml_text import YamlText, found_at
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
@@ -88,16 +89,16 @@ PLACEHOLDER_KEPT = declare(
     "MF110",
     "placeholder-kept",
     WARNING,
-    what="A section or a name holds a placeholder, such as $(var robot) or <robot_namespace>, and "
-    "stays as it is.",
+    what="A section or a name holds a placeholder, such as $(var area) or <area>, that does not stand "
+    "for the robot, and stays as it is.",
     why="Only a launch file can replace it. Until it does, no node has the section, and the name is "
     "the placeholder itself; what it is replaced by does not get the robot's name from the build.",
-    fix="If it stands for the robot's name, write the name without it: the build adds each robot's. "
-    "Otherwise let the launch file replace it (ParameterFile with allow_substs).",
+    fix="If it stands for the robot, call it so: <robot_namespace>, <robot_name>, $(var namespace) and "
+    "the like are filled in. Otherwise let the launch file replace it (ParameterFile, allow_substs).",
     bad="""\
 amcl:
   ros__parameters:
-    scan_topic: <robot_namespace>/scan
+    scan_topic: <area>/scan
 """,
     good="""\
 amcl:
@@ -112,7 +113,7 @@ amcl:
 def placeholders_in_key(document: YamlText, section: ParamSection) -> Iterator[Finding]:
     """Placeholders in the name of a section."""
     for key in section.keys:
-        if PLACEHOLDER.search(key.value):
+        if PLACEHOLDER.search(section.path) and PLACEHOLDER.search(key.value):
             message = f"section {section.path} holds a placeholder and stays as it is"
             hint = "write only the node's name; the build adds each robot's namespace"
             yield found_at(document, key, PLACEHOLDER_KEPT, message, hint)
@@ -121,6 +122,8 @@ def placeholders_in_key(document: YamlText, section: ParamSection) -> Iterator[F
 def placeholders_in_names(document: YamlText, names: SectionNames) -> Iterator[Finding]:
     """Placeholders in the names of a section."""
     for site in names.sites:
+        if is_filled(site):
+            continue
         if not is_plain(site.value) and (found := _IN_VALUE.search(site.value)):
             message = f"the placeholder {found[0]} stays; a launch file must replace it"
             hint = "if it stands for the robot's name, write the value without it"

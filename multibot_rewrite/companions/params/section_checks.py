@@ -118,6 +118,8 @@ def invalid_names(document: YamlText, section: ParamSection) -> Iterator[Finding
     for at, key in enumerate(section.keys):
         if PLACEHOLDER.search(key.value):
             continue
+        if not at and key.value == "/" and len(section.keys) > 1:
+            continue  # the root namespace
         names = (it for it in key.value.strip("/").split("/") if it not in ANY)
         faults = ((it, check_node_name(it)) for it in names)
         bad = next((f"{it!r}: {fault.reason}" for it, fault in faults if fault), "")

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import yaml
 
 from multibot_rewrite.companions.context import Context, full_name
+from multibot_rewrite.companions.names.placeholders import without_robot
 from multibot_rewrite.companions.params.known_nodes import KnownNode, KnownNodes
 from multibot_rewrite.companions.template import NAMESPACE_SLOT
 from multibot_rewrite.companions.yaml_text import (
@@ -148,8 +149,10 @@ def _below(
                 f"{place}: {PARAMETERS} has no node name above it; write /**: above it"
             )
         if isinstance(value, yaml.MappingNode):
-            path = "/".join(it.value.strip("/") for it in above)
-            yield RawSection(above, path, value)
+            # rcl takes / alone above a node for the root namespace.
+            names = above[1:] if above[0].value == "/" and len(above) > 1 else above
+            whole = "/".join(it.value.strip("/") for it in names)
+            yield RawSection(above, without_robot(whole), value)
         elif not (isinstance(value, yaml.ScalarNode) and not value.value):
             place = f"{document.file}:{line_of(value)}"
             raise InputError(f"{place}: {PARAMETERS} must hold names and values")

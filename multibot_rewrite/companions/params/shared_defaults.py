@@ -19,7 +19,7 @@ from multibot_rewrite.companions.params.sections import (
     flattened,
     pattern_of,
 )
-from multibot_rewrite.companions.params.values import NO_PREFIX, ParamsJob
+from multibot_rewrite.companions.params.values import NO_PREFIX, ParamsJob, frames_stay
 from multibot_rewrite.companions.template import NAMESPACE_SLOT
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, found_at, pairs, quoted
 from multibot_rewrite.findings.finding import WARNING, Finding
@@ -53,7 +53,9 @@ def default_lines(
         done.add(section.full)
         same = [names.known for other, names in pages if other.full == section.full]
         here = set().union(*same) | _set_for(section, everywhere)
-        lines = list(missing_defaults(job.context, section.node, here))
+        bare = {it.path for it in section.node.defaults if it.kind == "frame"}
+        there = here | bare if frames_stay(job, section) else here
+        lines = list(missing_defaults(job.context, section.node, there))
         if lines:
             yield inserted(job.document, section.body, lines)
         yield from _inexpressible(job, section, section.node, here)

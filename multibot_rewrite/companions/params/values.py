@@ -16,10 +16,19 @@ from multibot_rewrite.companions.names.node_topics import (
     Facts,
     spell_topic,
 )
+from multibot_rewrite.companions.names.placeholders import filled, is_robot
 from multibot_rewrite.companions.names.rename_map import is_declared
-from multibot_rewrite.companions.params.known_nodes import KnownNodes, Param, is_absolute
+from multibot_rewrite.companions.params.known_nodes import (
+    GRAPH_NAME_KINDS,
+    RUN_TIME,
+    SWITCH_KINDS,
+    KnownNodes,
+    Param,
+    is_absolute,
+)
 from multibot_rewrite.companions.params.name_sites import NameSite, SectionNames
 from multibot_rewrite.companions.params.sections import PLACEHOLDER, ParamSection
+from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, found_at, pairs, replaced
 from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
@@ -36,7 +45,8 @@ class ParamsJob(NamedTuple):
     """One parameter file to rewrite, and all that its steps need.
 
     ``robots`` are the namespaces and tags of the fleet's robots, ``own`` the words for the one robot
-    that the file is for. ``clock`` is their ``use_sim_time``, None where nothing says.
+    that the file is for. ``at_run_time`` are nodes that put the robot's name before their frames
+    themselves. ``clock`` is their ``use_sim_time``, None where nothing says.
     """
 
     document: YamlText
@@ -45,6 +55,7 @@ class ParamsJob(NamedTuple):
     facts: Facts
     robots: frozenset[str] = frozenset()
     own: tuple[str, ...] = ()
+    at_run_time: frozenset[str] = frozenset()
     clock: bool | None = None
 
 
@@ -65,12 +76,18 @@ def name_splices(
 ) -> Iterator[Splice | Finding]:
     """A splice for every name of a section that changes, and a finding where that is not possible."""
     keys: dict[int, tuple[yaml.ScalarNode, list[str]]] = {}
+    bare = frames_stay(job, section)
     for site in names.sites:
+        if bare and site.kind == "frame":
+            yield from _replaced(job, site, site.value)
+            continue
         if site.at >= 0:
             words = keys.setdefault(
                 id(site.scalar), (site.scalar, str(site.scalar.value).split("."))
             )[1]
             words[site.at] = renamed(job.context, site)
+        elif is_filled(site):
+            yield from _replaced(job, site, _as_robot(job, site))
         elif site.kind in ("topic", "service"):
             yield from _topic(job, section, site)
         elif site.kind in SPELLERS:
@@ -79,9 +96,36 @@ def name_splices(
             yield from _off(job, site)
         elif site.kind == "no_prefix":
             yield from _no_prefix(job, site)
+    yield from _filled(job, names)
     for key, words in keys.values():
         if (text := ".".join(words)) != key.value:
             yield replaced(key, text)
+
+
+def is_filled(site: NameSite) -> bool:
+    """Does a value stand for the robot alone? A switch for a prefix has an answer of its own."""
+    return is_robot(site.value) and site.kind not in SWITCH_KINDS
+
+
+def _as_robot(job: ParamsJob, site: NameSite) -> str:
+    """What stands for the robot alone: its name, and no prefix where frames have it already."""
+    if site.kind in RUN_TIME:
+        run_time = job.context.names.naming.layout.at_run_time
+        return renamed(job.context, site) if run_time else ""
+    return NAMESPACE_SLOT if site.kind in GRAPH_NAME_KINDS else TAG_SLOT
+
+
+def _filled(job: ParamsJob, names: SectionNames) -> Iterator[Splice]:
+    """Values that are not known to be names, with what stands for the robot in them filled in."""
+    for scalar in names.unclaimed:
+        text = filled(str(scalar.value), NAMESPACE_SLOT)
+        if text != scalar.value and scalar.style not in ("|", ">"):
+            yield replaced(scalar, text)
+
+
+def frames_stay(job: ParamsJob, section: ParamSection) -> bool:
+    """Does the node of a section put the robot's name before its frames?"""
+    return section.path.rpartition("/")[2] in job.at_run_time
 
 
 def renamed(context: Context, site: NameSite) -> str:
@@ -137,7 +181,7 @@ amcl:
 
 
 def _replaced(job: ParamsJob, site: NameSite, text: str) -> Iterator[Splice | Finding]:
-    if text == site.value:
+    if text == site.scalar.value:
         return
     if site.scalar.style in ("|", ">"):
         message = f"{site.key.value} is a block of text, so the name in it is not rewritten"

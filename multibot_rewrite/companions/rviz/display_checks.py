@@ -14,7 +14,7 @@ from multibot_rewrite.companions.rviz.read_config import (
     text_of,
     value,
 )
-from multibot_rewrite.companions.rviz.values import GRAPH_NAMESPACE, TF_PREFIX, RvizRobot
+from multibot_rewrite.companions.rviz.values import GRAPH_NAMESPACE, LINK, TF_PREFIX, RvizRobot
 from multibot_rewrite.companions.yaml_text import found_at, pairs
 from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
@@ -94,7 +94,7 @@ Visualization Manager:
 
 def _tf_prefix(config: RvizConfig, place: ValuePlace, robot: RvizRobot) -> Iterator[Finding]:
     given = str(place.node.value)
-    if place.word != TF_PREFIX or not robot.names.naming.layout.frames:
+    if place.word != TF_PREFIX or not robot.names.naming.layout.frames or robot.tf_prefix:
         return
     if given and given != robot.tf_prefix:
         name = _named(place)
@@ -148,7 +148,8 @@ def _why_not(one: RvizItem, place: ValuePlace, robot: RvizRobot) -> tuple[str, s
     if place.word == "regex" and frames:
         return "is a pattern for frames and stays unchanged", "make it match the robots' frames"
     if place.word == "file" and text_of(one.node, "Description Source") == "File":
-        hint = "set Description Source to Topic" if frames else "fine if all robots look the same"
+        renamed = LINK in naming.separators
+        hint = "set Description Source to Topic" if renamed else "fine if all robots look the same"
         return "is one description file, shown for every robot", hint
     if place.word == GRAPH_NAMESPACE and naming.topics != NAMESPACE:
         problem = "is a namespace of topics, but this layout renames each topic instead"

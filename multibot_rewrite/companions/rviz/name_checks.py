@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 
 import yaml
 
+from multibot_rewrite.companions.names.placeholders import without_robot
 from multibot_rewrite.companions.names.rename_map import is_declared
 from multibot_rewrite.companions.rviz.display_groups import Robots
 from multibot_rewrite.companions.rviz.read_config import RvizConfig, RvizItem, ValuePlace, rviz_data
@@ -15,7 +16,6 @@ from multibot_rewrite.companions.rviz.values import (
     LINK,
     RvizRobot,
     is_name,
-    without_placeholder,
 )
 from multibot_rewrite.companions.yaml_text import found_at, is_text, pairs
 from multibot_rewrite.findings.finding import WARNING, Finding
@@ -103,7 +103,7 @@ Visualization Manager:
 
 
 def _has_placeholder(given: str) -> bool:
-    return "<" in without_placeholder(given, "") and given != "<Fixed Frame>"
+    return "<" in without_robot(given) and given != "<Fixed Frame>"
 
 
 def _placeholder(config: RvizConfig, place: ValuePlace) -> Finding:

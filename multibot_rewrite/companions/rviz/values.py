@@ -7,10 +7,11 @@ from typing import NamedTuple
 
 import yaml
 
+from multibot_rewrite.companions.names.placeholders import without_robot
 from multibot_rewrite.companions.names.rename_map import CompanionNames, spell
 from multibot_rewrite.companions.names.robot_topics import NOTHING, robot_topic
 from multibot_rewrite.companions.rviz.colours import Colour
-from multibot_rewrite.companions.rviz.read_config import RvizItem, ValuePlace, rviz_data, text_of
+from multibot_rewrite.companions.rviz.read_config import RvizItem, ValuePlace, text_of
 from multibot_rewrite.companions.yaml_text import Splice, replaced
 from multibot_rewrite.naming import NAMESPACE
 
@@ -57,23 +58,11 @@ def robot_value(place: ValuePlace, robot: RvizRobot) -> str:
     if place.word == TF_PREFIX:
         return robot.tf_prefix if robot.names.naming.layout.frames else value
     if place.word == TOPIC:
-        return robot_topic(robot.topics, without_placeholder(value, "/"), robot.known)
+        return robot_topic(robot.topics, without_robot(value, "/"), robot.known)
     if place.word == GRAPH_NAMESPACE:
         reached = robot.topics.naming.topics == NAMESPACE
-        return robot_topic(robot.topics, without_placeholder(value, "/")) if reached else value
-    return spell(robot.names, place.word, without_placeholder(value, ""))
-
-
-def without_placeholder(value: str, lead: str) -> str:
-    """A name without the placeholder that a launch file replaces by the robot's namespace.
-
-    It stays if nothing else is in it, or if another placeholder is left.
-    """
-    for word in rviz_data()["placeholders"]:
-        bare = value.lstrip("/").removeprefix(word).lstrip("/")
-        if value.lstrip("/").startswith(word) and bare and "<" not in bare:
-            return lead + bare
-    return value
+        return robot_topic(robot.topics, without_robot(value, "/")) if reached else value
+    return spell(robot.names, place.word, without_robot(value, ""))
 
 
 def changed_values(one: RvizItem, robot: RvizRobot) -> Iterator[tuple[ValuePlace, str]]:
@@ -107,4 +96,4 @@ def painted(node: yaml.ScalarNode, colour: Colour) -> Splice:
 def frame_of(node: yaml.Node | None, robot: RvizRobot) -> str:
     """The robot's version of the frame in a scalar; empty for any other node."""
     given = str(node.value) if isinstance(node, yaml.ScalarNode) else ""
-    return spell(robot.names, FRAME, without_placeholder(given, ""))
+    return spell(robot.names, FRAME, without_robot(given, ""))

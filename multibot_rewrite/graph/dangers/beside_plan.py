@@ -11,6 +11,7 @@ from multibot_rewrite.graph.dangers.seen import Owners, unique
 from multibot_rewrite.graph.expectation import PlannedState
 from multibot_rewrite.graph.questions import SIM_TIME
 from multibot_rewrite.graph.rules.comparison import View
+from multibot_rewrite.graph.rules.planned_states import clock_not_planned, planned_clocks
 from multibot_rewrite.graph.snapshot import GraphEndpoint, Snapshot
 from multibot_rewrite.graph.states import NodeState
 from multibot_rewrite.remap.records import CALLS, PUBLISHES
@@ -76,7 +77,10 @@ def _robot(view: View, name: str) -> str:
 
 
 def _is_meant(view: View, danger: Finding) -> bool:
-    """Whether somebody sends or calls each of its names, and all who do are planned to."""
+    """Whether somebody sends or calls each of its names, and all who do are planned to; the clocks of
+    the plan are compared with it."""
+    if DANGERS[danger.code].options["planned"] == clock_not_planned.code:
+        return danger.node in dict(planned_clocks(view.plan.states))
     return bool(danger.names) and all(_is_used_as_planned(view, it) for it in danger.names)
 
 

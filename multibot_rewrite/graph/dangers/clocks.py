@@ -102,6 +102,7 @@ def two_clocks(seen: Seen) -> Iterator[Finding]:
     "clocks-mixed",
     ERROR,
     absence=True,
+    planned="MG134",
     what="Of the nodes of one robot that compare times, some are on simulated time and some are not.",
     why="Their messages are decades apart: tf refuses every lookup between them (`extrapolation into"
     " the future`).",

@@ -6,9 +6,18 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.findings.finding import ERROR, Finding
-from multibot_rewrite.graph.dangers.seen import Seen, is_viewer, only, robots_of, unique
+from multibot_rewrite.graph.dangers.seen import (
+    Seen,
+    is_viewer,
+    last_word,
+    only,
+    robots_of,
+    unique,
+)
 from multibot_rewrite.graph.rules.declaration import danger_rule
 from multibot_rewrite.graph.wording import shorten
+
+TF = "tf"
 
 
 @danger_rule(
@@ -32,10 +41,11 @@ running: /robot1/driver publishes /robot1/tf tf2_msgs/msg/TFMessage
     line=2,
 )
 def tf_on_two_topics(seen: Seen) -> Iterator[Finding]:
-    """Where the odd topic is another robot's, it is that robot's tree that is disturbed."""
+    """Where the odd topic is another robot's, it is that robot's tree that is disturbed. One that is
+    not called tf, such as that of a simulator's ground truth, is no robot's tree."""
     senders: dict[str, dict[str, list[str]]] = defaultdict(dict)
     listeners: dict[str, dict[str, list[str]]] = defaultdict(dict)
-    for tree in seen.trees:
+    for tree in (it for it in seen.trees if last_word(seen.plain(it.topic)) == TF):
         for found, nodes in ((senders, tree.senders), (listeners, tree.listeners)):
             for node in (it for it in nodes if seen.robot(it) and not is_viewer(it)):
                 found[seen.robot(node)].setdefault(tree.topic, []).append(node)

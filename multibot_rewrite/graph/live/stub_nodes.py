@@ -68,7 +68,17 @@ def _create_node(stubs: _Stubs, stub: StubNode, number: int) -> Iterator[Publish
             arguments = stub.process_arguments
             helpers[endpoint.by] = ros.add_node(stubs.session, name, arguments=arguments)
         owner = helpers[endpoint.by] if endpoint.helper else node
-        yield from _create_endpoint(stubs, owner, endpoint, stub.edges)
+        yield from _create_endpoint(stubs, owner, _named(node, endpoint), stub.edges)
+
+
+def _named(node: Any, endpoint: StubEndpoint) -> StubEndpoint:
+    """An endpoint of a helper node below the name of the node that makes it.
+
+    As moveit_servo does (src/utils/common.cpp:510): with ~ it would be below the helper's own name.
+    """
+    if not endpoint.by or not endpoint.name.startswith("~/"):
+        return endpoint
+    return endpoint._replace(name=node.get_fully_qualified_name() + endpoint.name[1:])
 
 
 def _create_endpoint(

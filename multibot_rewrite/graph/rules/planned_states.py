@@ -1,9 +1,9 @@
-"""Rules about states of the plan: life cycle, parameters, machines."""
+"""Rules about states of the plan: life cycle, parameters, clocks, machines."""
 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.expectation import PlannedParameter, PlannedState
@@ -13,7 +13,9 @@ from multibot_rewrite.graph.rules.comparison import View
 from multibot_rewrite.graph.rules.declaration import graph_rule
 from multibot_rewrite.graph.states import NodeState, parameter_text, parameter_value
 from multibot_rewrite.graph.wording import FEW, SEVERAL, shorten
+from multibot_rewrite.remap.records import SUBSCRIBES
 
+CLOCK = "/clock"
 # A planned parameter, and its value there.
 Difference = tuple[PlannedParameter, str]
 
@@ -150,6 +152,55 @@ def _whose(view: View, node: str, found: Sequence[Difference]) -> str:
         if wanted <= {(it.name, it.value) for it in other.parameters}:
             return theirs
     return ""
+
+
+@graph_rule(
+    "MG134",
+    "clock-not-planned",
+    ERROR,
+    absence=True,
+    what="A node of which the plan or fleet file says `use_sim_time: true` does not subscribe to"
+    " `/clock`, or one of which it says false does. What a node answers is compared by MG132.",
+    why="Every node with `use_sim_time` subscribes to `/clock`, and no other one does. Nodes on two"
+    " clocks refuse each other's messages and transforms as decades old.",
+    fix="Start all nodes of the robot with the value of the fleet file: `use_sim_time:=...` of the"
+    " launch file, `SetParameter`, the files that `multibot build` wrote, the lines of commands.md.",
+    bad="""\
+planned: parameter use_sim_time of /robot1/amcl: true
+as planned: /robot1/amcl
+""",
+    good="""\
+planned: parameter use_sim_time of /robot1/amcl: true
+as planned: /robot1/amcl
+running: /robot1/amcl subscribes /clock rosgraph_msgs/msg/Clock
+running: /bridge publishes /clock rosgraph_msgs/msg/Clock
+""",
+    line=2,
+)
+def clock_not_planned(view: View) -> Iterator[Finding]:
+    """One finding for the nodes of a robot that differ alike."""
+    timed = {it.node for it in view.by_name.get(CLOCK, ()) if it.role == SUBSCRIBES}
+    asked = {it.node for it in view.graph.states if it.sim_time is not None}
+    differing: dict[tuple[str, str], list[str]] = defaultdict(list)
+    for node, wanted in planned_clocks(view.plan.states):
+        if node in view.seen and node not in asked and wanted != parameter_text(node in timed):
+            differing[view.robot_of.get(node, ""), wanted].append(node)
+    for (robot, wanted), nodes in differing.items():
+        seen = "do not subscribe" if wanted == parameter_text(True) else "subscribe"
+        which = f"these nodes {seen} to {CLOCK}: {shorten(nodes)}"
+        yield clock_not_planned.finding(
+            f"{SIM_TIME} is planned to be {wanted}, but {which}",
+            f"start them with {SIM_TIME}: {wanted}",
+            robot=robot,
+            node=nodes[0],
+            names=tuple(nodes),
+        )
+
+
+def planned_clocks(states: Iterable[PlannedState]) -> Iterator[tuple[str, str]]:
+    """By node: the clock that it is planned to have."""
+    for state in states:
+        yield from ((state.node, it.value) for it in state.parameters if it.name == SIM_TIME)
 
 
 @graph_rule(

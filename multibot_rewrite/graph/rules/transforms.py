@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 
 from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.graph.expectation import PlannedRobot
@@ -96,14 +96,25 @@ running: transform camera_link/robot1 -> lens/robot1 on /tf_static
 def disconnected_tf_tree(view: View) -> Iterator[Finding]:
     """On the robot's own tf topic."""
     for tree in view.trees:
-        parent_of: dict[str, dict[str, str]] = defaultdict(dict)
+        # A chain may go through frames that are nobody's, as a relay names them.
+        above = {edge.child: edge.parent for edge in tree.edges}
+        roots_of: dict[str, set[str]] = defaultdict(set)
         for edge in tree.edges:
             for robot in _robots_at_home(view, tree, edge):
-                parent_of[robot][edge.child] = edge.parent
-        for robot, parents in parent_of.items():
-            roots = sorted({parent for parent in parents.values() if parent not in parents})
+                roots_of[robot].add(_root(above, edge.parent))
+        for robot, found in roots_of.items():
+            roots = sorted(found - {""})
             if len(roots) > 1:
                 yield _disconnected(view, view.robots[robot], roots)
+
+
+def _root(above: Mapping[str, str], frame: str) -> str:
+    """What a frame hangs from in the end; empty for a circle, which has no root."""
+    for _ in above:
+        if frame not in above:
+            return frame
+        frame = above[frame]
+    return "" if frame in above else frame
 
 
 def _robots_at_home(view: View, tree: TfTree, edge: GraphFrame) -> Set[str]:

@@ -10,7 +10,7 @@ import os
 import pathlib
 import re
 import tempfile
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 import yaml
@@ -24,6 +24,8 @@ from multibot_rewrite.launch.graph.made_files import source_of
 from multibot_rewrite.launch.graph.places import place_of
 
 _LIMIT = 1 << 24
+# launch_ros says so of a text that is no YAML or value (jazzy, utilities/evaluate_parameters.py:82).
+_FAILS = "try wrapping it"
 # The commands of Gazebo, and what ROS starts it with.
 _SIMULATORS = ("gz", "ign", "gazebo", "gzserver")
 _GAZEBO = ("ros_gz_sim", "gzserver")
@@ -32,14 +34,17 @@ _NOT_FOUND = re.compile(r"package '(\w+)' not found|No module named '(\w+)")
 
 
 class Visit(NamedTuple):
-    """A visit: the context, what has been found, the place of what is visited, and what starts it if
-    not the launch itself."""
+    """A visit: the context, what has been found, what an event or a timer starts with its visit and the
+    locals that it keeps, the place of what is visited, what starts it if not the launch itself, and
+    after how many events."""
 
     context: Any
     nodes: list[LaunchedNode]
     notes: list[LaunchNote]
+    waiting: list[tuple[Any, Any, Mapping[str, Any]]]
     place: Place
     later: str = ""
+    events: int = 0
 
     def note(self, message: str, parameters: bool = False) -> None:
         """Keep what is not known here: nodes, or only ``parameters`` of one."""
@@ -180,8 +185,10 @@ def _evaluated(given: Any, here: Visit) -> Iterator[ParameterText]:
     try:
         (found,) = of_launch_ros("utilities").evaluate_parameters(here.context, [given])
     except Exception as error:
-        # A value may be the output of a program, such as a description: no name is in it.
-        if not isinstance(given, dict):
+        # A value may be the output of a program that is not started; other ones fail in a launch, too.
+        if _FAILS in str(error):
+            here.note(failure(error), parameters=True)
+        elif not isinstance(given, dict):
             here.note(f"a parameter file is not known: {failure(error)}", parameters=True)
         return
     if isinstance(found, dict):

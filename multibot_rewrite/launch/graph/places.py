@@ -15,7 +15,7 @@ from multibot_rewrite.launch.door import of_launch, of_launch_ros
 
 _KEPT = "multibot_place"
 # What makes actions for a launch file, and what reads launch files: neither is one.
-_MAKERS = ("launch", "launch_ros", "launch_xml", "launch_yaml")
+_MAKERS = ("launch", "launch_ros", "launch_xml", "launch_yaml", "multibot_rewrite")
 
 
 def keep_places() -> None:
@@ -27,7 +27,9 @@ def keep_places() -> None:
 def _keeping(made: Callable[..., None]) -> Callable[..., None]:
     @wraps(made)
     def keeping(self: Any, *words: Any, **options: Any) -> None:
-        setattr(self, _KEPT, _maker(sys._getframe(1)))
+        # An action for a robot is made again when it runs.
+        if getattr(self, _KEPT, None) is None:
+            setattr(self, _KEPT, _maker(sys._getframe(1)))
         made(self, *words, **options)
 
     return keeping

@@ -9,11 +9,12 @@ from typing import Any
 from multibot_rewrite.evidence.launch_records import LaunchGraph, LaunchOrder
 from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.launch.door import of_launch, of_launch_ros
+from multibot_rewrite.launch.graph.commands import faults, read_commands
 from multibot_rewrite.launch.graph.describe import Visit, failure
 from multibot_rewrite.launch.graph.made_files import keep_sources
 from multibot_rewrite.launch.graph.packages import add_sources
 from multibot_rewrite.launch.graph.places import keep_places
-from multibot_rewrite.launch.graph.visit import visit
+from multibot_rewrite.launch.graph.visit import visit_all
 
 
 class UnreadableError(Exception):
@@ -30,7 +31,7 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
     of_launch_ros("actions")
     keep_places()
     keep_sources()
-    _without_programs()
+    read_commands()
     # A launch file may look at the command line itself.
     sys.argv = order.command_line
     try:
@@ -38,8 +39,10 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
     except (Exception, SystemExit) as error:
         raise UnreadableError(failure(error)) from error
     context = of_launch().LaunchContext(noninteractive=True)
-    seen = Visit(context, [], [], Place(os.path.abspath(order.file), 1))
-    visit(description, seen)
+    seen = Visit(context, [], [], [], Place(os.path.abspath(order.file), 1))
+    visit_all(description, seen)
+    for it in faults(context):
+        seen.note(it, parameters=True)
     return LaunchGraph(tuple(seen.nodes), tuple(dict.fromkeys(seen.notes)))
 
 
@@ -50,10 +53,3 @@ def _included(order: LaunchOrder) -> Any:
     source.get_launch_description(of_launch().LaunchContext(noninteractive=True))
     include = of_launch("actions").IncludeLaunchDescription
     return include(source, launch_arguments=list(order.arguments))
-
-
-def _without_programs() -> None:
-    """The programs of ``Command`` substitutions are not started: their output is empty."""
-    command = getattr(sys.modules.get("launch.substitutions"), "Command", None)
-    if command is not None:
-        command.perform = lambda self, context: ""

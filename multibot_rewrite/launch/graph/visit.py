@@ -20,10 +20,12 @@ from multibot_rewrite.launch.graph.describe import (
     text,
 )
 from multibot_rewrite.launch.graph.places import place_of
+from multibot_rewrite.launch.later import resolved
 
 # They only change the context, or give further entities.
 _EXECUTED = (
     *("LaunchDescription", "GroupAction", "IncludeLaunchDescription", "OpaqueFunction"),
+    *("ForEach", "ForLoop"),
     *("DeclareLaunchArgument", "SetLaunchConfiguration", "UnsetLaunchConfiguration"),
     *("PushLaunchConfigurations", "PopLaunchConfigurations", "ResetLaunchConfigurations"),
     *("PushEnvironment", "PopEnvironment", "ResetEnvironment", "ReplaceEnvironmentVariables"),
@@ -34,28 +36,49 @@ _EXECUTED = (
         "SetParameter",
         "SetParametersFromFile",
         "SetRemap",
-        "SetUseSimTime",
     ),
 )
-# They start no node.
+# They start no node; SetUseSimTime is for the node that launch itself would have.
 _PASSED = (
+    "SetUseSimTime",
     *("LogInfo", "EmitEvent", "Shutdown", "SetROSLogDir", "LifecycleTransition"),
     "UnregisterEventHandler",
 )
 
 
+# One after the other; a timer may start itself again.
+_MOST_EVENTS = 20
+
+
+def visit_all(entity: Any, seen: Visit) -> None:
+    """Visit a description, then what its events and timers start: by then all groups have ended, with
+    their namespaces and launch configurations (launch jazzy, launch_service.py)."""
+    visit(entity, seen)
+    while seen.waiting:
+        later, here, kept = seen.waiting.pop(0)
+        seen.context._push_locals()
+        seen.context.extend_locals(kept)
+        visit(later, here)
+        seen.context._pop_locals()
+
+
 def visit(entity: Any, seen: Visit) -> None:
     """Visit an entity and what is below it; what cannot be visited becomes a note."""
-    seen.context._push_locals()
     here = _at(entity, seen)
+    # An include has the path of its file for what is below it; other actions may leave theirs.
+    own = _is(entity, "IncludeLaunchDescription")
+    if own:
+        seen.context._push_locals()
     try:
         for below in _handler(entity)(entity, here) or ():
             visit(below, here)
     except (Exception, SystemExit) as error:
         # A launch file is a program: it may raise anything.
-        here.note(failure(error))
+        ended = "; groups and their launch configurations have ended by then" if here.later else ""
+        here.note(f"{here.later} {failure(error)}{ended}".strip())
     finally:
-        seen.context._pop_locals()
+        if own:
+            seen.context._pop_locals()
 
 
 def _at(entity: Any, seen: Visit) -> Visit:
@@ -78,9 +101,13 @@ def _pass(entity: Any, seen: Visit) -> None:
 
 
 def _node(entity: Any, seen: Visit) -> Iterable[Any] | None:
-    if is_wanted(entity, seen.context):
+    if not is_wanted(entity, seen.context):
+        return None
+    instead = resolved(entity, seen.context)
+    if instead is None:
         seen.nodes.append(node(entity, seen))
-    return None
+        _ended(entity, seen)
+    return instead
 
 
 def _container(entity: Any, seen: Visit) -> Iterable[Any] | None:
@@ -116,11 +143,12 @@ def _components(descriptions: Iterable[Any] | None, container: str, seen: Visit)
 def _process(entity: Any, seen: Visit) -> Iterable[Any] | None:
     if is_wanted(entity, seen.context):
         seen.nodes.extend(process(entity, seen))
+        _ended(entity, seen)
     return None
 
 
 def _later(entity: Any, seen: Visit) -> Iterable[Any] | None:
-    """The actions of a timer or an event handler, as they would be with what is known now."""
+    """The actions of a timer or an event handler wait for the end of the description."""
     if not is_wanted(entity, seen.context):
         return None
     timer = _is(entity, "TimerAction")
@@ -132,9 +160,25 @@ def _later(entity: Any, seen: Visit) -> Iterable[Any] | None:
     if not timer and not actions:
         message = f"what {type(handler).__name__} starts is decided only at run time"
         seen.note(message)
-    for it in actions:
-        visit(it, seen._replace(later=word))
+    kept = dict(seen.context.get_locals_as_dict()) if timer else {}
+    _wait(actions, word, seen, kept)
     return None
+
+
+def _wait(actions: Iterable[Any], word: str, seen: Visit, kept: Mapping[str, Any]) -> None:
+    actions = [*actions]
+    if actions and seen.events >= _MOST_EVENTS:
+        seen.note(f"what starts {word} starts something {word} again and again")
+        return
+    later = seen._replace(later=word, events=seen.events + 1)
+    seen.waiting.extend((it, later, kept) for it in actions)
+
+
+def _ended(entity: Any, seen: Visit) -> None:
+    """What ``on_exit`` of a program starts."""
+    actions = getattr(entity, "_ExecuteLocal__on_exit", None)
+    if not callable(actions):
+        _wait(_flat(actions), "at an event (on_exit)", seen, {})
 
 
 def _flat(actions: Any) -> list[Any]:

@@ -8,8 +8,8 @@ gazebo_plugins/src/gazebo_ros_diff_drive.cpp (ros2: the same), gazebo_ros_skid_s
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from typing import NamedTuple
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
 
 from lxml.etree import _Element
 
@@ -25,6 +25,11 @@ from multibot_rewrite.rewriters.text import text_of
 
 # Axes that point the same way, as a cosine.
 ALONG = 0.99
+# Relative. A wheel of a mesh may stand beside its joint, and wheels that skid turn a robot as if they
+# were further apart than they are.
+TOLERANCE, UNSEEN, SKIDDING = 0.1, 0.25, 2.0
+# A robot that is more than a few millimetres off: CAD programs round.
+ROUNDING = 0.003
 
 
 class Tags(NamedTuple):
@@ -67,7 +72,7 @@ class Wheel(NamedTuple):
     """A driven wheel in the root's frame: its joint, the pose of its link, the axis it turns
     about, and the element that names it."""
 
-    named: _Element
+    named: Any
     joint: Joint
     pose: Pose
     axis: Vector
@@ -121,19 +126,80 @@ def _drive(subject: Subject, plugin: _Element, kinds: Sequence[Tags]) -> Drive |
 
 
 def _wheels(subject: Subject, plugin: _Element, tags: Sequence[str]) -> Iterator[Wheel]:
-    poses = link_poses(subject)
-    for named in plugin.iterchildren(*tags):
-        joint = subject.robot.joint.get(text_of(named))
-        axis = None if joint is None else axis_of(joint)
-        if joint is not None and axis is not None and joint.child in poses:
-            pose = poses[joint.child]
-            yield Wheel(named, joint, pose, turned(pose.matrix, axis))
+    found = (wheel_of(subject, text_of(it), it) for it in plugin.iterchildren(*tags))
+    return (it for it in found if it is not None)
+
+
+def wheel_of(subject: Subject, name: str, named: object) -> Wheel | None:
+    """The wheel on a joint; None where it is not known where that is, or about which axis it turns."""
+    joint = subject.robot.joint.get(name)
+    axis = None if joint is None else axis_of(joint)
+    pose = None if joint is None else link_poses(subject).get(joint.child)
+    if joint is None or axis is None or pose is None:
+        return None
+    return Wheel(named, joint, pose, turned(pose.matrix, axis))
 
 
 def size_of(drive: Drive, name: str, default: float) -> float | None:
     """A size as the plugin reads it; None where it is no number."""
     element = drive.sizes[name]
     return default if element is None else number(text_of(element))
+
+
+class Measured(NamedTuple):
+    """What a size may be, and what it is best."""
+
+    low: float
+    high: float
+    best: float
+
+    def holds(self, value: float) -> bool:
+        """Is a size one of these?"""
+        return self.low <= value <= self.high
+
+
+def separation(robot: Robot, left: Wheel, right: Wheel, several: bool) -> Measured | None:
+    """How far two wheels are apart, by their joints or shapes; None where their axes are not parallel.
+
+    ``several`` wheels of a side skid in a turn.
+    """
+    if abs(dot(left.axis, right.axis)) < ALONG:
+        return None
+    slack = TOLERANCE if radii(robot, left) else UNSEEN
+    found = [
+        abs(apart(one, other, left.axis))
+        for one in middles(robot, left)
+        for other in middles(robot, right)
+    ]
+    most = SKIDDING if several else 1 + slack
+    low, high = min(found) * (1 - slack) - ROUNDING, max(found) * most + ROUNDING
+    return Measured(low, high, found[0]) if found[0] > 0 else None
+
+
+def radius(robot: Robot, wheels: Iterable[Wheel]) -> Measured | None:
+    """The radius of round shapes of all wheels; None where none has a round shape."""
+    found = [it for wheel in wheels for it in radii(robot, wheel)]
+    if not found:
+        return None
+    low, high = min(found) * (1 - TOLERANCE) - ROUNDING, max(found) * (1 + TOLERANCE) + ROUNDING
+    return Measured(low, high, max(found))
+
+
+def are_swapped(left: Wheel, right: Wheel) -> float:
+    """How far the left wheel is on the right, seen in the direction in which a positive speed
+    turns them; 0 where it is on the left, or that is not known.
+
+    A wheel that turns about an axis to the left rolls forward.
+    """
+    if dot(left.axis, right.axis) < ALONG or abs(left.axis[2]) > 1 - ALONG:
+        return 0.0
+    across = apart(left.pose.at, right.pose.at, left.axis)
+    return -across if across < -ROUNDING else 0.0
+
+
+def are_opposite(left: Wheel, right: Wheel) -> bool:
+    """Do the axes of two wheels point in opposite directions?"""
+    return dot(left.axis, right.axis) < -ALONG
 
 
 def radii(robot: Robot, wheel: Wheel) -> list[float]:

@@ -11,6 +11,7 @@ from io import StringIO
 from typing import NamedTuple
 
 from multibot_rewrite.checks.links_and_joints import Robot, read_robot
+from multibot_rewrite.lint.beside.kinds import is_beside
 from multibot_rewrite.lint.config.settings import Settings, matches
 from multibot_rewrite.lint.files.named import files_like, robot_name
 from multibot_rewrite.model import InputError
@@ -19,7 +20,7 @@ from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.sources.access import Reach
 from multibot_rewrite.sources.packages import package_folder
-from multibot_rewrite.sources.read import read_file
+from multibot_rewrite.sources.read import is_xacro, read_file
 from multibot_rewrite.steps.collect import NOTHING, Inventory, collect
 from multibot_rewrite.steps.document import read_document
 
@@ -46,8 +47,8 @@ NO_PAIR = Pair(None, NOTHING)
 
 
 def named_urdfs(paths: Sequence[str], included: frozenset[str]) -> tuple[tuple[str, str], ...]:
-    """The robot names of the files that are no SRDF, where an SRDF is among them."""
-    others = [it for it in paths if SRDF_MARK not in os.path.basename(it)]
+    """The robot names of the descriptions, where an SRDF or another file beside them is among them."""
+    others = [it for it in paths if SRDF_MARK not in os.path.basename(it) and not is_beside(it)]
     if len(others) == len(paths):
         return ()
     whole = (it for it in others if it not in included or not it.endswith(".xacro"))
@@ -109,7 +110,7 @@ def _stem(path: str) -> str:
 
 
 def _read(path: str, srdf: Inventory, settings: Settings) -> Pair:
-    data, name = _described(path, settings)
+    data, name = described(path, settings)
     inventory = collect(
         read_document(data, name), builtin_tree(settings.vocabulary, settings.distro)
     )
@@ -119,9 +120,9 @@ def _read(path: str, srdf: Inventory, settings: Settings) -> Pair:
     return Pair(read_robot(inventory.document.root), declared, misses)
 
 
-def _described(path: str, settings: Settings) -> tuple[bytes, str]:
+def described(path: str, settings: Settings) -> tuple[bytes, str]:
     """With the default arguments, else with the first that the settings have for the file."""
-    if not path.endswith(".xacro"):
+    if not is_xacro(path):
         return read_file(path), path
     from multibot_rewrite.sources.expand import expand
 

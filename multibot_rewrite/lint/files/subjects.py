@@ -22,6 +22,8 @@ from multibot_rewrite.model import InputError
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.sources.packages import package_folder
+from multibot_rewrite.sources.read import XACRO as ENDING
+from multibot_rewrite.sources.read import has_xacro
 from multibot_rewrite.steps.collect import NOTHING, collect
 from multibot_rewrite.steps.collect import SRDF as SRDF_SECTION
 from multibot_rewrite.steps.document import Document, read_document
@@ -49,11 +51,11 @@ def read_subjects(path: str, data: bytes, settings: Settings) -> Iterator[Subjec
     others use, is not expanded alone, and may have any root element.
     """
     document = read_document(data, path)
-    xacro, included = path.endswith(".xacro"), path in settings.included
+    xacro, included = path.endswith(ENDING) or has_xacro(data), path in settings.included
     part = included or (xacro and _only_defines(document.root))
     if part and (not xacro or document.root.tag not in ROOTS):
         return
-    written = _subject(document, settings)
+    written = make_subject(document, settings)
     yield written._replace(format=XACRO) if xacro else _shaped(written)
     if xacro and not part:
         yield from _expansions(path, data, settings)
@@ -77,7 +79,7 @@ def _expanded(path: str, data: bytes, given: ArgumentSet, settings: Settings) ->
     # Warnings of xacro are not findings, and would be printed between them.
     with redirect_stderr(StringIO()):
         found = expand_traced(path, data, dict(given.arguments), find, reach_of(settings))
-    subject = _shaped(_subject(read_document(found.data, path + EXPANDED), settings))
+    subject = _shaped(make_subject(read_document(found.data, path + EXPANDED), settings))
     names = tuple(name for name, _ in given.arguments)
     return subject._replace(
         origins=found.origins, sources=found.sources, arguments=str(given), given=names
@@ -104,13 +106,18 @@ def _local(element: _Element) -> str:
     return name if "xacro" in space else ""
 
 
-def _subject(document: Document, settings: Settings) -> Subject:
+def make_subject(document: Document, settings: Settings) -> Subject:
+    """The subject of a document; a URDF's has no faults of its structure yet."""
     tree = builtin_tree(settings.vocabulary, settings.distro)
     called = SRDF_MARK in os.path.basename(document.file)
     inventory = collect(document, tree, NO_URDF if called else NOTHING)
     elements, robot = Elements(document), read_robot(document.root)
     # In the source of a xacro file names are not complete yet.
-    if inventory.format != SRDF_SECTION or document.file.endswith(".xacro"):
+    if (
+        inventory.format != SRDF_SECTION
+        or document.file.endswith(XACRO)
+        or has_xacro(document.source)
+    ):
         return Subject(URDF, document, elements, inventory, tree, robot, settings, {})
     pair = find_pair(document.file.removesuffix(EXPANDED), inventory, settings)
     inventory = collect(document, tree, pair.declared or NO_URDF)

@@ -24,7 +24,7 @@ from multibot_rewrite.lint.schema.sections import (
 )
 from multibot_rewrite.lint.schema.values import COUNTS, is_fine, shortened, wrong_numbers
 from multibot_rewrite.lint.schema.versions import is_known, version_of
-from multibot_rewrite.nearest import nearest
+from multibot_rewrite.nearest import MISTYPED, nearest
 from multibot_rewrite.steps.document import Document, tag_end
 
 # What a child of <robot> can be a misspelling of: anything else there is an extension.
@@ -257,7 +257,7 @@ def _near(name: str, known: Collection[str]) -> str:
     low = name.lower()
     letters = sorted(low)
     same = next((it for it in known if sorted(it.lower()) == letters), "")
-    return same or nearest(low, known)
+    return same or nearest(low, known, MISTYPED)
 
 
 def _value(element: etree._Element, kind: Kind, attribute: str, value: str) -> Iterator[Fault]:

@@ -9,11 +9,11 @@ from typing import NamedTuple
 from multibot_rewrite.lint.schema.versions import OLDEST, Version, read_version
 
 _FILE = Path(__file__).parent / "readers.schema"
-URDFDOM, RVIZ, CAPSULE = "urdfdom", "RViz", "capsule"
+URDFDOM, RVIZ, SDFORMAT, CAPSULE = "urdfdom", "RViz", "sdformat", "capsule"
 
 
 class Reader(NamedTuple):
-    """A program in a release; ``reads`` is a version of URDF, or an element."""
+    """A program in a release; ``reads`` is a version of URDF or SDF, or an element."""
 
     release: str
     name: str

@@ -1,5 +1,6 @@
-"""MB1: what a file is, how it is encoded, and the shape of its XML."""
+"""MB1: what a file is, how it is encoded, the shape of its XML, and the values in it."""
 
+from multibot_rewrite.lint.rules import gazebo
 from multibot_rewrite.lint.rules.files import (
     given_arguments,
     materials,
@@ -10,4 +11,4 @@ from multibot_rewrite.lint.rules.files import (
     versions,
 )
 
-THEMES = (reading, shape, values, versions, materials, text, given_arguments)
+THEMES = (reading, shape, values, versions, materials, text, given_arguments, *gazebo.THEMES)

@@ -8,11 +8,11 @@ from itertools import islice
 from multibot_rewrite.checks.audit import leftover_xacro, worlds
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.checks.twice import already_rewritten
-from multibot_rewrite.findings.finding import ERROR, WARNING
+from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.findings.rule import declare, rule
 from multibot_rewrite.lint.records import Subject
 
-# These three are reported where a file is read or expanded: see ``failures``.
+# These four are reported where a file is read or expanded: see ``failures``.
 not_xml = declare(
     "MB101",
     "not-xml",
@@ -45,8 +45,8 @@ xacro_failed = declare(
     "MB103",
     "xacro-failed",
     ERROR,
-    what="xacro cannot expand the file: an argument, property, macro or package is missing, or an "
-    "expression is wrong.",
+    what="xacro cannot expand the file: an argument, property or macro is missing, or an expression is "
+    "wrong.",
     why="There is no URDF: the Command substitution of the launch file fails and nothing starts.",
     fix="Give every <xacro:arg> a default, or pass the arguments to urdf-lint; for other errors "
     "see the message.",
@@ -57,6 +57,25 @@ xacro_failed = declare(
     '  <xacro:arg name="side" default="left"/>\n'
     '  <link name="$(arg side)_arm"/>\n'
     "</robot>\n",
+    line=2,
+)
+
+
+package_not_found = declare(
+    "MB119",
+    "not-expanded",
+    NOTE,
+    what="A package that the xacro file reads from with $(find PACKAGE) was not found in the searched "
+    "folders, so the file was not expanded and not checked.",
+    why="It is looked up in the packages of the sourced workspace at run time; a checkout of one "
+    "repository need not have it.",
+    fix="Give the source folder of the workspace as a root (--roots), or source the workspace; where "
+    "it has to be there, set its level to error.",
+    bad='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
+    '  <xacro:include filename="$(find no_such_package)/a.xacro"/>\n'
+    '  <link name="a"/>\n'
+    "</robot>\n",
+    good='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="a"/></robot>',
     line=2,
 )
 
@@ -106,13 +125,14 @@ def already(subject: Subject) -> Iterator[Problem]:
     "MB109",
     "sdf-world",
     ERROR,
-    what="The file is an SDF world, which holds several models.",
+    what="The file is an SDF world, which holds several models, and robots are named that it is for.",
     why="It is unknown which of the models is the robot, so names cannot be checked or renamed for "
     "one robot.",
     fix="Keep the robot in a model.sdf of its own and include it in the world.",
     bad='<?xml version="1.0"?><sdf version="1.9"><world name="w"/></sdf>',
     good='<?xml version="1.0"?><sdf version="1.9"><model name="r"><link name="a"/></model></sdf>',
+    options={"robots": ("robot1", "robot2")},
 )
 def sdf_world(subject: Subject) -> Iterator[Problem]:
-    """Every world of the file."""
-    return worlds(subject.inventory)
+    """Every world of the file; one that is only a world has no robots."""
+    return worlds(subject.inventory) if subject.settings.robots else iter(())

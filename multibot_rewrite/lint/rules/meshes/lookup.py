@@ -14,7 +14,7 @@ from multibot_rewrite.lint.facts.memo import memoized
 from multibot_rewrite.lint.files.subjects import EXPANDED
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.meshes.shared import MESH, Used, problem, used_files
-from multibot_rewrite.sources.packages import entries, find_in, package_folders
+from multibot_rewrite.sources.packages import entries, find_in, package_folders, package_of
 
 
 class Lookup(NamedTuple):
@@ -82,11 +82,70 @@ def _may_be_the_package(names: frozenset[str], first: str) -> bool:
 )
 def mesh_missing(subject: Subject) -> Iterator[Problem]:
     """Files of packages that were found, and relative ones."""
+    lost: dict[tuple[str, ...], list[Lookup]] = {}
     for it in _lookups(subject):
-        if it.folders and not it.found:
-            near = _nearest(it)
-            hint = f"did you mean {near!r}?" if near else f"looked in {it.folders[0]}"
-            yield problem(it.used, f"{it.used.name!r} does not exist", hint)
+        if it.folders and not it.found and not _elsewhere(subject, it):
+            lost.setdefault(_missing_folder(it) or (it.path,), []).append(it)
+    for first, *others in lost.values():
+        near = _nearest(first)
+        hint = f"did you mean {near!r}?" if near else f"looked in {first.folders[0]}"
+        more = f", nor do {len(others)} more in its folder" if others else ""
+        yield problem(first.used, f"{first.used.name!r} does not exist{more}", hint)
+
+
+def _missing_folder(it: Lookup) -> tuple[str, ...]:
+    """The folder that a file should be in, wherever it was looked for; empty if one of them exists."""
+    inner = os.path.dirname(it.path)
+    there = any(not inner or find_in(folder, inner) for folder in it.folders)
+    return () if there else (*it.folders, inner)
+
+
+@rule(
+    "MB713",
+    "mesh-elsewhere",
+    NOTE,
+    what="A relative path does not lead to the file from the folder of the description, and the "
+    "package has it elsewhere.",
+    why="Who reads relative paths starts at a folder of its own: that of the description (yourdfpy, "
+    "MuJoCo, gz), or of the process. robot_state_publisher and RViz get the text of the description, "
+    "not its folder, and show the link without a shape.",
+    fix="Name it from its package: package://PACKAGE/meshes/base.stl.",
+    bad=MESH % "base.stl",
+    good=MESH % "meshes/base.stl",
+    beside={
+        "package.xml": "<package><name>arm_description</name></package>",
+        "meshes/base.stl": "solid",
+    },
+)
+def mesh_elsewhere(subject: Subject) -> Iterator[Problem]:
+    """Relative files that are in the package, but not where the path says."""
+    for it in _lookups(subject):
+        found = _elsewhere(subject, it) if it.folders and not it.found else ""
+        if found:
+            yield problem(it.used, f"{it.used.name!r} is not there from here", f"use {found}")
+
+
+def _elsewhere(subject: Subject, it: Lookup) -> str:
+    """A relative file in the description's package, below a folder above it or in meshes."""
+    file = os.path.abspath(subject.document.file.removesuffix(EXPANDED))
+    own = package_of(file) if it.used.scheme == "" else None
+    if own is None:
+        return ""
+    package, root = own
+    tail = os.path.normpath(it.path).replace("../", "")
+    here = os.path.dirname(file)
+    above = [here[: len(here) - len(rest)] for rest in _ends(here[len(root) :])]
+    places = [*((folder, tail) for folder in above), (root, f"meshes/{os.path.basename(tail)}")]
+    for folder, path in places:
+        found = find_in(folder, path)
+        if found:
+            return f"package://{package}/{os.path.relpath(os.path.join(folder, found), root)}"
+    return ""
+
+
+def _ends(path: str) -> list[str]:
+    """The ends of a path that start with a slash, the shortest first, and with it the empty one."""
+    return ["", *(path[at:] for at in range(len(path) - 1, -1, -1) if path[at] == os.sep)]
 
 
 def _nearest(it: Lookup) -> str:

@@ -145,7 +145,9 @@ def _has_fixed_sensor(subject: Subject) -> bool:
 def world_system_in_robot(subject: Subject) -> Iterator[Problem]:
     """Plugins whose library is one of the world's systems."""
     for host in subject.inventory.hosts:
-        if host.element.tag != "plugin":
+        above = host.element.getparent()
+        # In a world it is where it belongs.
+        if host.element.tag != "plugin" or (above is not None and above.tag == "world"):
             continue
         key = library_key(host.element.get("filename", ""))
         if key in WORLD_SYSTEMS:

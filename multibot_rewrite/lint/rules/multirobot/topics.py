@@ -20,7 +20,7 @@ from multibot_rewrite.lint.rules.multirobot.shared import (
 )
 from multibot_rewrite.model import Claim
 from multibot_rewrite.naming import TF_TOPICS
-from multibot_rewrite.rewriters.tree import library_key
+from multibot_rewrite.remap.bridged_topics import GZ_LIBRARIES, plugin_libraries
 from multibot_rewrite.rosnames import split_remap
 
 ROS_KINDS = ("topic", "service")
@@ -28,7 +28,6 @@ REMAP_FORMS = ("remap", "argument")
 # What a plugin has a default of, in a message.
 NOUNS = {"topic": "topic", "service": "service", "stem": "name"}
 GZ_SECTIONS = ("plugin gz-", "element sensor", "element gazebo", "sensor ")
-GZ_LIBRARIES = ("gz-", "gz_", "ign_", "ignition-")
 
 
 @rule(
@@ -122,8 +121,7 @@ def _is_gz(claim: Claim) -> bool:
 
 def _is_classic(subject: Subject) -> bool:
     """Is it for Gazebo Classic, which itself puts the model's name before sensor topics?"""
-    hosts = (it.element for it in subject.inventory.hosts)
-    keys = [library_key(it.get("filename", "")) for it in hosts if it.tag == "plugin"]
+    keys = plugin_libraries(subject.inventory)
     return bool(keys) and not any(key.startswith(GZ_LIBRARIES) for key in keys)
 
 

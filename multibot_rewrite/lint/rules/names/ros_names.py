@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import NOTE, WARNING
 from multibot_rewrite.findings.rule import SRDF, URDF, rule
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.records import Subject
-from multibot_rewrite.lint.rules.names.shared import BLANK, SUBSTITUTION, TOKEN, name_of_robot
+from multibot_rewrite.lint.rules.names.shared import SUBSTITUTION, TOKEN, name_of_robot
 from multibot_rewrite.model import Claim, Edit
 from multibot_rewrite.naming import FRAME_KINDS, NOT_PLAIN
 from multibot_rewrite.rosnames import check_topic_name, propose_token, split_remap
 from multibot_rewrite.steps.document import value_slot
 
+# Interfaces that ros2_control has names for (hardware_interface_type_values.hpp).
+STANDARD = frozenset(("position", "velocity", "effort", "acceleration"))
 ROS_KINDS = frozenset({"topic", "service", "namespace"})
 # ROS 1, ROS 2 and both Gazebos agree on these.
 _ALLOWED_EVERYWHERE = lazy_compile(r"[\w/~]*", re.ASCII)
@@ -178,10 +180,12 @@ def _name_fault(name: str, section: str) -> str:
     "MB313",
     "odd-interface-name",
     WARNING,
-    what="A <ros2_control> component or interface has an empty name, or a name with white space.",
+    what="A <ros2_control> component or interface has an empty name, a component's has white space, or "
+    "an interface's has it beside a name of ros2_control (position, velocity, effort, acceleration).",
     why="Controllers ask for NAME/INTERFACE exactly: the parser strips white space around a name "
-    "but not inside it, and an empty name cannot be requested.",
-    fix="Write the name without spaces.",
+    "but not inside it, and an empty name cannot be requested. Interfaces of a driver's own may have "
+    "it on purpose, as the registers of Dynamixel's: 'Present Position'.",
+    fix="Write the name without spaces, or two interfaces for two names.",
     bad='<ros2_control name="c" type="system">\n'
     "  <hardware><plugin>p/P</plugin></hardware>\n"
     '  <joint name="j"><state_interface name=""/></joint>\n'
@@ -199,5 +203,10 @@ def odd_interface(subject: Subject) -> Iterator[Problem]:
             "ros2_control", "sensor", "gpio", "command_interface", "state_interface"
         ):
             name = it.get("name")
-            if name is not None and (not name.strip() or BLANK.search(name.strip())):
+            if name is not None and (not name.strip() or _is_odd(it.tag, name.split())):
                 yield Problem(it, f"<{it.tag}> has the name {name!r}", "name")
+
+
+def _is_odd(tag: str, words: Collection[str]) -> bool:
+    """Is white space inside a name a slip, not the way a driver calls its registers?"""
+    return len(words) > 1 and (not tag.endswith("_interface") or not STANDARD.isdisjoint(words))

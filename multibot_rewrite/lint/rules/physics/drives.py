@@ -11,24 +11,18 @@ from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import ERROR, WARNING
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.drives import (
-    ALONG,
     Drive,
-    apart,
+    are_opposite,
+    are_swapped,
     drives,
-    middles,
-    radii,
+    radius,
+    separation,
     size_of,
     wheel_joints,
 )
-from multibot_rewrite.lint.facts.poses import dot
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.physics.shared import LEFT, RIGHT, a_rover, a_wheel
 
-# Relative. A wheel of a mesh may stand beside its joint, and wheels that skid turn a robot as if they
-# were further apart than they are.
-TOLERANCE, UNSEEN, SKIDDING = 0.1, 0.25, 2.0
-# A robot that is more than a few millimetres off: CAD programs round.
-ROUNDING = 0.003
 # A wheel with limits so far apart is not meant to stop, in radians.
 ENDLESS = 20 * pi
 
@@ -50,20 +44,9 @@ def wheel_separation(subject: Subject) -> Iterator[Problem]:
     """The distance along the axis of the first pair, of joints or of shapes."""
     for drive in drives(subject):
         value = size_of(drive, drive.tags.separation, drive.tags.defaults[0])
-        left, right = drive.pairs[0]
-        if value is None or value <= 0 or abs(dot(left.axis, right.axis)) < ALONG:
-            continue
-        robot = subject.robot
-        slack = TOLERANCE if radii(robot, left) else UNSEEN
-        found = [
-            abs(apart(one, other, left.axis))
-            for one in middles(robot, left)
-            for other in middles(robot, right)
-        ]
-        most = SKIDDING if drive.left[1:] else 1 + slack
-        low, high = min(found) * (1 - slack) - ROUNDING, max(found) * most + ROUNDING
-        if not low <= value <= high and found[0] > 0:
-            yield _size(drive, drive.tags.separation, value, "the wheels are", found[0])
+        found = separation(subject.robot, *drive.pairs[0], bool(drive.left[1:]))
+        if value is not None and value > 0 and found and not found.holds(value):
+            yield _size(drive, drive.tags.separation, value, "the wheels are", found.best)
 
 
 @rule(
@@ -82,13 +65,10 @@ def wheel_radius(subject: Subject) -> Iterator[Problem]:
     """The radii of round shapes of all wheels of a drive; of other wheels it is unknown."""
     for drive in drives(subject):
         value = size_of(drive, drive.tags.radius, drive.tags.defaults[1])
-        wheels = (*drive.left, *drive.right)
-        found = [it for wheel in wheels for it in radii(subject.robot, wheel)]
-        if value is None or value <= 0 or not found:
-            continue
-        sizes = [it / drive.tags.radius_of for it in found]
-        if not min(sizes) * 0.9 - ROUNDING <= value <= max(sizes) * 1.1 + ROUNDING:
-            yield _size(drive, drive.tags.radius, value, "the wheels have", max(sizes))
+        found = radius(subject.robot, (*drive.left, *drive.right))
+        unit = drive.tags.radius_of
+        if value is not None and value > 0 and found and not found.holds(value * unit):
+            yield _size(drive, drive.tags.radius, value, "the wheels have", found.best / unit)
 
 
 def _size(drive: Drive, name: str, value: float, words: str, measured: float) -> Problem:
@@ -116,14 +96,12 @@ def _size(drive: Drive, name: str, value: float, words: str, measured: float) ->
     line=26,
 )
 def wheels_swapped(subject: Subject) -> Iterator[Problem]:
-    """A wheel that turns about an axis to the left rolls forward: the left wheel is where it points."""
+    """The first pair of each drive whose plugin turns left with slower left wheels."""
     for drive in drives(subject):
         left, right = drive.pairs[0]
-        if not drive.tags.turns_left or dot(left.axis, right.axis) < ALONG:
-            continue
-        across = apart(left.pose.at, right.pose.at, left.axis)
-        if across < -ROUNDING and abs(left.axis[2]) < 1 - ALONG:
-            names = f"{left.joint.name!r} is {-across:.3g} m right of {right.joint.name!r}"
+        way = are_swapped(left, right) if drive.tags.turns_left else 0.0
+        if way:
+            names = f"{left.joint.name!r} is {way:.3g} m right of {right.joint.name!r}"
             hint = "swap left and right, or turn the axes of both joints around"
             yield Problem(left.named, f"left wheel {names}", "", hint)
 
@@ -144,7 +122,7 @@ def wheel_axes_opposite(subject: Subject) -> Iterator[Problem]:
     """Pairs whose axes are against each other in the robot's frame."""
     for drive in drives(subject):
         for left, right in drive.pairs:
-            if dot(left.axis, right.axis) < -ALONG:
+            if are_opposite(left, right):
                 names = f"{left.joint.name!r} and {right.joint.name!r}"
                 message = f"the axes of wheels {names} point in opposite directions"
                 yield Problem(right.named, message, "", "turn one of them around")

@@ -6,8 +6,20 @@ from multibot_rewrite.lint.rules.references import (
     duplicates,
     frames,
     gazebo,
+    interfaces,
+    simulated,
     transforms,
     undeclared,
 )
 
-THEMES = (undeclared, frames, duplicates, gazebo, control, controllers, transforms)
+THEMES = (
+    undeclared,
+    frames,
+    duplicates,
+    gazebo,
+    control,
+    controllers,
+    interfaces,
+    simulated,
+    transforms,
+)

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.checks.references import where
 from multibot_rewrite.findings.finding import NOTE, WARNING
 from multibot_rewrite.findings.rule import rule
+from multibot_rewrite.lint.facts.typos import meant_name
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.examples import a_link
 from multibot_rewrite.lint.rules.references.lookup import references
 from multibot_rewrite.lint.rules.references.shared import a_plugin
 from multibot_rewrite.model import Claim
 from multibot_rewrite.naming import FRAME_KINDS
-from multibot_rewrite.nearest import COMPARED, HINTED, fold
+from multibot_rewrite.nearest import HINTED
 from multibot_rewrite.rewriters.spelling import must_be_declared, names_in
 
 # Frames that exist at run time though nothing in the file declares them.
@@ -87,32 +88,5 @@ def _frames(subject: Subject) -> Iterator[tuple[Claim, str, str]]:
             if own in AT_RUN_TIME or f"/{own}" in links or any(known):
                 continue
             if name not in meant:
-                meant[name] = _meant_link(own, links) if len(meant) < HINTED else ""
+                meant[name] = meant_name(own, links) if len(meant) < HINTED else ""
             yield claim, name, meant[name]
-
-
-def _meant_link(name: str, known: Iterable[str]) -> str:
-    """The known name that differs from ``name`` by one typing mistake in one word."""
-    folded = fold(name)
-    for it, _ in zip(known, range(COMPARED), strict=False):
-        other = fold(it)
-        if folded == other or _one_typo(folded.split("_"), other.split("_")):
-            return it
-    return ""
-
-
-def _one_typo(words: list[str], others: list[str]) -> bool:
-    """Do they differ in one long word without digits, by a letter or two letters swapped?"""
-    if len(words) != len(others):
-        return False
-    pairs = [pair for pair in zip(words, others, strict=True) if pair[0] != pair[1]]
-    if len(pairs) != 1:
-        return False
-    one, two = pairs[0]
-    if not (one.isalpha() and two.isalpha()) or max(len(one), len(two)) < 4:
-        return False
-    while one and two and one[0] == two[0]:
-        one, two = one[1:], two[1:]
-    while one and two and one[-1] == two[-1]:
-        one, two = one[:-1], two[:-1]
-    return max(len(one), len(two)) == 1 or (len(one) == 2 and one == two[::-1])

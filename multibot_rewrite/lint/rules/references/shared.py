@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from lxml.etree import _Element
 
+from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.examples import a_joint, a_link, block
 
 LINKS = a_link("a") + a_link("b")
@@ -26,6 +29,29 @@ def a_plugin(library: str, name: str, *inside: str) -> str:
     """A plugin of Gazebo Classic."""
     opening = f'<plugin filename="lib{library}.so" name="{name}">'
     return block("<gazebo>", block(opening, *inside))
+
+
+OWNERS = ("joint", "sensor", "gpio")
+COMMAND, STATE = "command_interface", "state_interface"
+STANDARD = ("position", "velocity", "effort", "acceleration")
+VELOCITY = '<command_interface name="velocity"/>'
+
+
+def driven(*interfaces: str) -> str:
+    """A joint of a <ros2_control>; with a command for its velocity where nothing else is said."""
+    return block('<joint name="j">', *(interfaces or (VELOCITY,)))
+
+
+def hardware_system(class_: str, *inside: str, name: str = "s") -> str:
+    """A <ros2_control> with its hardware class."""
+    hardware = f"<hardware><plugin>{class_}</plugin></hardware>"
+    return block(f'<ros2_control name="{name}" type="system">', hardware, *inside)
+
+
+def owners(subject: Subject) -> Iterator[_Element]:
+    """What has interfaces in every <ros2_control>: joints, sensors, gpios."""
+    for system in subject.elements.tops("ros2_control"):
+        yield from system.iterchildren(*OWNERS)
 
 
 def name_of(element: _Element) -> str:

@@ -8,7 +8,7 @@ from math import isfinite
 from lxml.etree import _Element
 
 from multibot_rewrite.checks.links_and_joints import Joint
-from multibot_rewrite.checks.planning_groups import groups_of, joints_of, text_of
+from multibot_rewrite.checks.planning_groups import groups_of, is_whole, joints_of, text_of
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import ERROR, WARNING
 from multibot_rewrite.lint.records import Subject
@@ -56,14 +56,14 @@ def duplicate_state(subject: Subject) -> Iterator[Problem]:
     line=2,
 )
 def state_of_another_group(subject: Subject) -> Iterator[Problem]:
-    """Joints of states that exist and are not in the group."""
+    """Joints of states that exist and are not in the group, of which all groups are known."""
     robot = subject.beside
     if robot is None:
         return
     groups = groups_of(subject.document.root)
     joints: dict[str, frozenset[str]] = {}
     for it, group, joint in _states(subject.document.root):
-        if group not in groups or joint not in robot.joint:
+        if not is_whole(group, groups) or joint not in robot.joint:
             continue
         if group not in joints:
             joints[group] = frozenset(joints_of(group, groups, robot))

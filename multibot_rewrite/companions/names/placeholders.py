@@ -1,0 +1,47 @@
+"""What stands for a robot in vendors' files until a launch file replaces it: one meaning everywhere.
+
+At the start of a name it is taken out, since the name gets the robot's as any other does; alone it is
+the robot's namespace. Any other placeholder stays.
+
+Sources: nav2_common ReplaceString (``<robot_namespace>``), launch files of husarion_ugv_ros
+(``<namespace>/``), launch_ros ParameterFile (``$(var namespace)``), turtlebot3_description
+(``${namespace}``).
+"""
+
+from __future__ import annotations
+
+import re
+
+from multibot_rewrite.naming import NOT_PLAIN
+
+_ROBOT = r"(?:robot_namespace|robot_name|robot_ns|namespace|ns|robot|tf_prefix|frame_prefix|prefix)"
+_STANDS = rf"(?:<{_ROBOT}>|\$\((?:var|arg)\s+{_ROBOT}\)|\$\{{{_ROBOT}\}})"
+_PREFIX = r"(?:tf_prefix|frame_prefix|prefix)"
+_PREFIX_ALONE = re.compile(rf"<{_PREFIX}>|\$\((?:var|arg)\s+{_PREFIX}\)|\$\{{{_PREFIX}\}}")
+_ALONE = re.compile(rf"/?{_STANDS}/?")
+_FIRST = re.compile(rf"/?{_STANDS}(?P<between>[/_]?)(?P<name>[^/].*)")
+_ANYWHERE = re.compile(_STANDS)
+
+
+def is_robot(value: str) -> bool:
+    """Does a value stand for the robot, and nothing else is in it?"""
+    return _ALONE.fullmatch(value) is not None
+
+
+def without_robot(value: str, lead: str = "") -> str:
+    """A name without what stands for the robot in front of it; ``lead`` comes before what is below a
+    namespace. It stays if nothing else is in it, or if another placeholder is left."""
+    found = _FIRST.fullmatch(value)
+    if found is None or "<" in found["name"] or not NOT_PLAIN.isdisjoint(found["name"]):
+        return value
+    return f"{lead}{found['name']}" if found["between"] == "/" else found["name"]
+
+
+def of_one_robot(value: str) -> str:
+    """A value of a parameter as it is for one robot without a prefix."""
+    return "" if _PREFIX_ALONE.fullmatch(value) else without_robot(value)
+
+
+def filled(value: str, robot: str) -> str:
+    """A text that is no name of a known kind, with the robot in every place that stands for it."""
+    return _ANYWHERE.sub(lambda _: robot, value)

@@ -1,0 +1,57 @@
+"""``fleet.launch.py`` and ``fleet.launch.xml``: one command that starts the fleet that was built."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Collection, Iterator, Sequence
+
+from multibot_rewrite.fleets import launch_actions, teleop
+from multibot_rewrite.fleets.fleet_plan import FleetPlan
+from multibot_rewrite.fleets.launch_actions import RobotStarts
+from multibot_rewrite.fleets.launch_python import FleetStarts, to_python
+from multibot_rewrite.fleets.launch_xml import to_xml
+from multibot_rewrite.fleets.output_file import OutputFile
+from multibot_rewrite.fleets.rviz_outputs import RvizOutput
+from multibot_rewrite.plural import plural
+from multibot_rewrite.releases import facts_of_release
+
+PYTHON, XML = "fleet.launch.py", "fleet.launch.xml"
+
+
+def launch_files(
+    plan: FleetPlan,
+    each: Sequence[FleetPlan],
+    configs: Sequence[RvizOutput],
+    files: Sequence[OutputFile],
+    bridged: Collection[str],
+) -> Iterator[OutputFile]:
+    """The launch files; ``each`` is every robot as a fleet of its own, ``configs`` are the windows of
+    RViz, ``files`` what else is built, ``bridged`` the topics that bridges bring."""
+    paths = frozenset(it.path for it in files)
+    robots = [launch_actions.of_robot(one, paths, bridged) for one in each]
+    starts = _starts(plan, each, configs, paths, robots)
+    yield OutputFile(PYTHON, to_python(starts).encode())
+    yield OutputFile(XML, to_xml(starts).encode())
+
+
+def _starts(
+    plan: FleetPlan,
+    each: Sequence[FleetPlan],
+    configs: Sequence[RvizOutput],
+    paths: frozenset[str],
+    robots: Sequence[RobotStarts],
+) -> FleetStarts:
+    simulators = launch_actions.simulators(plan)
+    clocks = {it.spec.use_sim_time for it in plan.robots}
+    clock = clocks.pop() if len(clocks) == 1 else None
+    source = os.path.basename(plan.file.file) or "a fleet"
+    count = plural(len(plan.robots), "robot")
+    return FleetStarts(
+        f"Start {count} of {source}{facts_of_release(plan.file.distro)}.",
+        simulators,
+        launch_actions.of_all(plan, paths),
+        robots,
+        launch_actions.windows(configs, paths),
+        bool(simulators) if clock is None else clock,
+        [teleop.command(it) for one in each for it in teleop.teleops(one)],
+    )

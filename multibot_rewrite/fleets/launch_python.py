@@ -1,0 +1,271 @@
+"""What a fleet starts -> ``fleet.launch.py``: plain launch and launch_ros, to be read and edited."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
+
+from multibot_rewrite.fleets.launch_actions import Component, File, RobotStarts, Start, Text
+
+CLASSIC, GZ = "classic", "gz"
+_Files = tuple[File, ...]
+
+
+class FleetStarts(NamedTuple):
+    """All that the launch file of a fleet starts: the simulators, what is for all robots, the robots,
+    the windows. ``head`` is its title, ``use_sim_time`` the default, ``driving`` are lines to type."""
+
+    head: str
+    simulators: Sequence[str]
+    shared: Sequence[Start]
+    robots: Sequence[RobotStarts]
+    windows: Sequence[Start]
+    use_sim_time: bool
+    driving: Sequence[str]
+
+
+_BODY = '''\
+from pathlib import Path
+
+from launch import LaunchDescription
+from launch.actions import {actions}
+from launch.conditions import IfCondition
+from launch.substitutions import {substitutions}
+from launch_ros.actions import {ros_actions}
+{more}from launch_ros.parameter_descriptions import ParameterValue
+{share}
+FOLDER = Path(__file__).resolve().parent
+CLOCK = {{"use_sim_time": ParameterValue(LaunchConfiguration("use_sim_time"), value_type=bool)}}
+
+
+def file(name):
+    """The path of a file beside this one."""
+    return str(FOLDER / name)
+
+
+def text(name):
+    """What a file beside this one holds, as a parameter."""
+    return ParameterValue((FOLDER / name).read_text(), value_type=str)
+'''
+_CHOSEN = '''\
+def chosen(context):
+    """What the robots run that robots:= names; all of them by default."""
+    words = LaunchConfiguration("robots").perform(context).replace(",", " ").split()
+    unknown = [it for it in words if it not in ROBOTS]
+    if unknown:
+        raise RuntimeError(f"robots:={unknown[0]} is not in this fleet; it has {', '.join(ROBOTS)}")
+    return [action for name in words or ROBOTS for action in ROBOTS[name]()]
+'''
+
+
+def to_python(it: FleetStarts) -> str:
+    """The text of the file."""
+    return "".join(f"{line}\n" for part in _parts(it) for line in part)
+
+
+def _parts(it: FleetStarts) -> Iterator[Iterable[str]]:
+    yield _head(it)
+    yield _imports(it)
+    for robot in it.robots:
+        yield ("", "", *_robot(robot, bool(it.simulators)))
+    names = (f'    "{robot.name}": start_{robot.name},' for robot in it.robots)
+    yield "", "", "ROBOTS = {", *names, "}", "", "", *_CHOSEN.splitlines()
+    yield "", "", *_description(it)
+
+
+def _head(it: FleetStarts) -> Iterator[str]:
+    yield f'"""{it.head}'
+    yield ""
+    yield "Plain launch and launch_ros: read it, edit it, or include it from another launch file."
+    yield ""
+    yield "    ros2 launch fleet.launch.py"
+    yield f"    ros2 launch fleet.launch.py robots:={it.robots[0].name}"
+    if it.driving:
+        yield ""
+        yield "In other terminals, to drive:"
+        yield ""
+        yield from (f"    {line}" for line in it.driving)
+    yield '"""'
+    yield ""
+
+
+def _imports(it: FleetStarts) -> list[str]:
+    components = any(start.components for robot in it.robots for start in robot.starts)
+    actions = ["DeclareLaunchArgument", "GroupAction", "OpaqueFunction"]
+    substitutions = ["LaunchConfiguration"]
+    if it.simulators:
+        actions.insert(2, "IncludeLaunchDescription")
+        substitutions += ["PathJoinSubstitution", "PythonExpression"]
+    ros = ["ComposableNodeContainer", "Node"] if components else ["Node"]
+    more = "from launch_ros.descriptions import ComposableNode\n" if components else ""
+    share = "from launch_ros.substitutions import FindPackageShare\n" if it.simulators else ""
+    body = _BODY.format(
+        actions=", ".join(actions),
+        substitutions=", ".join(substitutions),
+        ros_actions=", ".join(ros),
+        more=more,
+        share=share,
+    )
+    return body.splitlines()
+
+
+def _robot(it: RobotStarts, simulated: bool) -> Iterator[str]:
+    yield f"def start_{it.name}():"
+    yield f'    """{it.about}."""'
+    for name, why in it.left:
+        if why:
+            yield f"    # Not started: {name} ({why})"
+    if it.files:
+        yield f"    params = [{', '.join(_value(File(path)) for path in it.files)}]"
+    own = tuple(File(path) for path in it.files)
+    yield "    return ["
+    for start in it.starts:
+        yield from _process(start, 8, own)
+    if it.spawned:
+        yield "        GroupAction("
+        yield "            ["
+        for start in it.spawned:
+            yield from _process(start, 16)
+        yield "            ],"
+        yield '            condition=IfCondition(LaunchConfiguration("simulator")),'
+        yield "        ),"
+    yield "    ]"
+
+
+def _process(it: Start, indent: int, own: _Files = ()) -> Iterator[str]:
+    space = " " * indent
+    yield f"{space}{'ComposableNodeContainer' if it.components else 'Node'}("
+    yield from (f"{space}    {line}" for line in _keywords(it, own))
+    if it.components:
+        yield f"{space}    composable_node_descriptions=["
+        for one in it.components:
+            yield from _component(one, indent + 8, own)
+        yield f"{space}    ],"
+    yield f"{space}),"
+
+
+def _keywords(it: Start, own: _Files) -> Iterator[str]:
+    yield f'package="{it.package}",'
+    yield f'executable="{it.executable}",'
+    yield from _names(it.namespace, it.name)
+    if it.arguments:
+        yield f"arguments=[{', '.join(_value(word) for word in it.arguments)}],"
+    yield from _given(it.parameters, it.remappings, own)
+    yield 'output="screen",'
+
+
+def _names(namespace: str, name: str) -> Iterator[str]:
+    if namespace:
+        yield f'namespace="{namespace}",'
+    if name:
+        yield f'name="{name}",'
+
+
+def _given(
+    parameters: Sequence[File | Mapping[str, Any]],
+    remappings: Iterable[tuple[str, str]],
+    own: _Files,
+) -> Iterator[str]:
+    """``own`` are the files that the robot's function calls ``params``."""
+    common = bool(own) and tuple(parameters[: len(own)]) == own
+    words = ["*params"] if common else []
+    words += [_value(it) for it in parameters[len(own) * common :]]
+    yield f"parameters=[{', '.join([*words, 'CLOCK'])}],"
+    pairs = list(remappings)
+    if pairs:
+        yield "remappings=["
+        yield from (f"    ({_value(old)}, {_value(new)})," for old, new in pairs)
+        yield "],"
+
+
+def _component(it: Component, indent: int, own: _Files) -> Iterator[str]:
+    space = " " * indent
+    yield f"{space}ComposableNode("
+    yield f'{space}    package="{it.package}",'
+    yield f'{space}    plugin="{it.plugin}",'
+    lines = (*_names(it.namespace, it.name), *_given(it.parameters, it.remappings, own))
+    yield from (f"{space}    {line}" for line in lines)
+    yield f"{space}),"
+
+
+def _value(it: Any) -> str:
+    if isinstance(it, File):
+        return f"file({_quoted(it.path)})"
+    if isinstance(it, Text):
+        return f"text({_quoted(it.path)})"
+    if isinstance(it, str):
+        return _quoted(it)
+    if isinstance(it, Mapping):
+        return "{" + ", ".join(f"{_quoted(key)}: {_value(one)}" for key, one in it.items()) + "}"
+    if isinstance(it, list):
+        return f"[{', '.join(map(_value, it))}]"
+    return repr(it)
+
+
+def _quoted(text: str) -> str:
+    import json
+
+    return json.dumps(text)
+
+
+def _description(it: FleetStarts) -> Iterator[str]:
+    yield "def generate_launch_description():"
+    yield '    """The simulator, then robot by robot, then the windows."""'
+    yield "    return LaunchDescription("
+    yield "        ["
+    for name, default, about in launch_arguments(it):
+        yield f'            DeclareLaunchArgument("{name}", default_value="{default}",'
+        yield f'                                  description="{about}"),'
+    for simulator in it.simulators:
+        yield from (f"            {line}" for line in _SIMULATORS[simulator])
+    for start in it.shared:
+        yield from _process(start, 12)
+    yield "            OpaqueFunction(function=chosen),"
+    if it.windows:
+        yield "            GroupAction("
+        yield "                ["
+        for start in it.windows:
+            yield from _process(start, 20)
+        yield "                ],"
+        yield '                condition=IfCondition(LaunchConfiguration("rviz")),'
+        yield "            ),"
+    yield "        ]"
+    yield "    )"
+
+
+def launch_arguments(it: FleetStarts) -> Iterator[tuple[str, str, str]]:
+    """The launch arguments: name, default, what it is."""
+    yield "robots", "", "only these: robot1,robot2"
+    yield "use_sim_time", str(it.use_sim_time).lower(), "whether all nodes use /clock"
+    if it.windows:
+        yield "rviz", "true", "whether to open RViz"
+    if it.simulators:
+        yield "simulator", "true", "whether to start the simulator and to spawn the robots in it"
+        yield "headless", "false", "whether the simulator has no window"
+        yield "world", "empty.sdf" if GZ in it.simulators else "", "the world of the simulator"
+
+
+_SIMULATORS: Mapping[str, tuple[str, ...]] = {
+    GZ: (
+        "IncludeLaunchDescription(",
+        '    PathJoinSubstitution([FindPackageShare("ros_gz_sim"), "launch", "gz_sim.launch.py"]),',
+        "    launch_arguments=[",
+        '        ("gz_args", ["-r ", PythonExpression(["\'-s \' if \'", '
+        'LaunchConfiguration("headless"),',
+        "                     \"'.lower() == 'true' else ''\"]), LaunchConfiguration(\"world\")]),",
+        "    ],",
+        '    condition=IfCondition(LaunchConfiguration("simulator")),',
+        "),",
+    ),
+    CLASSIC: (
+        "IncludeLaunchDescription(",
+        '    PathJoinSubstitution([FindPackageShare("gazebo_ros"), "launch", "gazebo.launch.py"]),',
+        "    launch_arguments=[",
+        '        ("gui", PythonExpression(["\'false\' if \'", LaunchConfiguration("headless"),',
+        "                                  \"'.lower() == 'true' else 'true'\"])),",
+        '        ("world", LaunchConfiguration("world")),',
+        "    ],",
+        '    condition=IfCondition(LaunchConfiguration("simulator")),',
+        "),",
+    ),
+}

@@ -1,0 +1,72 @@
+"""The checks of generate_parameter_library on a value.
+
+Source: PickNikRobotics/rsl and generate_parameter_library, parameter_validators (README, "Built-In
+Validators"); control_filters of ros2_controllers take nan as well.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from multibot_rewrite.bounded import load_yaml
+
+_Number = Callable[[float, float], bool]
+# Check -> whether a number holds it, and its words.
+_NUMBERS: dict[str, tuple[_Number, str]] = {
+    "gt": (lambda value, bound: value > bound, "above"),
+    "gt_eq": (lambda value, bound: value >= bound, "at least"),
+    "lower_bounds": (lambda value, bound: value >= bound, "at least"),
+    "lt": (lambda value, bound: value < bound, "below"),
+    "lt_eq": (lambda value, bound: value <= bound, "at most"),
+    "upper_bounds": (lambda value, bound: value <= bound, "at most"),
+}
+_SIZES: dict[str, tuple[_Number, str]] = {
+    "fixed_size": (lambda size, bound: size == bound, "with a size of"),
+    "size_gt": (lambda size, bound: size > bound, "with a size above"),
+    "size_lt": (lambda size, bound: size < bound, "with a size below"),
+}
+_OR_NAN = "_or_nan"
+
+
+def beyond(check: str, arguments: str, value: Any) -> str:
+    """What a value has to be and is not; empty if it is, or the check is not known."""
+    name = check.rpartition("::")[2]
+    given = load_yaml(arguments) if arguments else []
+    given = given if isinstance(given, list) else [given]
+    if name.endswith(_OR_NAN):
+        name = name.removesuffix(_OR_NAN)
+        if isinstance(value, float) and math.isnan(value):
+            return ""
+    return _said(name, given, value)
+
+
+def _said(name: str, given: list[Any], value: Any) -> str:
+    first: Any = given[0] if given else None
+    if name in _NUMBERS and _is_number(value) and _is_number(first):
+        holds, words = _NUMBERS[name]
+        return "" if holds(value, first) else f"{words} {first}"
+    if name in _SIZES and isinstance(value, str | list) and _is_number(first):
+        holds, words = _SIZES[name]
+        return "" if holds(len(value), first) else f"{words} {first}"
+    if name == "bounds" and _is_number(value) and len(given) == 2:
+        return "" if given[0] <= value <= given[1] else f"from {given[0]} to {given[1]}"
+    if name == "not_empty" and value in ("", []):
+        return "not empty"
+    return _of_list(name, first, value)
+
+
+def _of_list(name: str, choices: Any, value: Any) -> str:
+    if not isinstance(choices, list) or not all(isinstance(it, str) for it in choices):
+        return ""
+    words = ", ".join(choices)
+    if name == "one_of" and isinstance(value, str) and value not in choices:
+        return f"one of {words}"
+    if name == "subset_of" and isinstance(value, list) and not set(value) <= set(choices):
+        return f"of {words}"
+    return ""
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)

@@ -1,0 +1,56 @@
+"""MoveIt's controllers against the parameter files beside them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+
+import yaml
+
+from multibot_rewrite.closure.moveit import moveit_gaps
+from multibot_rewrite.companions.params.known_nodes import built_in_nodes
+from multibot_rewrite.companions.params.sections import PLACEHOLDER
+from multibot_rewrite.companions.yaml_text import YamlText, line_of, read_yaml
+from multibot_rewrite.evidence.parameter_files import given_nodes
+from multibot_rewrite.lint.beside.kinds import PARAMS, is_beside, kind_of
+from multibot_rewrite.lint.beside.records import Beside, Remark
+from multibot_rewrite.model import InputError
+from multibot_rewrite.remap.stacks import load_nodes
+from multibot_rewrite.sources.packages import entries
+from multibot_rewrite.sources.read import read_file
+
+
+def unknown_controllers(beside: Beside) -> Iterator[Remark]:
+    """Controllers that no parameter file in the folder declares, though one declares others."""
+    release = beside.settings.distro
+    try:
+        given = given_nodes(_parameter_files(beside), built_in_nodes(release))
+    except InputError:  # it is told where that file is linted
+        return
+    for gap in moveit_gaps([beside.document], given, load_nodes(release)):
+        node = _at(beside.document, gap.place.line) if gap.place else None
+        if node is not None and not PLACEHOLDER.search(gap.name):
+            hint = f"did you mean {gap.near}?" if gap.near else ""
+            yield Remark(node, f"MoveIt uses {gap.name}, which no parameter file here has", hint)
+
+
+def _parameter_files(beside: Beside) -> Iterator[YamlText]:
+    folder = os.path.dirname(os.path.abspath(beside.document.file))
+    for name in sorted(entries(folder)):
+        path = os.path.join(folder, name)
+        data = read_file(path) if is_beside(name) else b""
+        if kind_of(data) == PARAMS:
+            yield read_yaml(data, path)
+
+
+def _at(document: YamlText, line: int) -> yaml.Node | None:
+    """The first scalar in a line."""
+    waiting = [document.root] if document.root is not None else []
+    for node in waiting:  # grows
+        if isinstance(node, yaml.ScalarNode):
+            if line_of(node) == line:
+                return node
+            continue
+        for it in node.value:
+            waiting += it if isinstance(it, tuple) else (it,)
+    return None

@@ -1,0 +1,213 @@
+"""Parameters of a file against what their nodes declare: unknown, of another type, out of bounds."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import yaml
+
+from multibot_rewrite.companions.params.known_nodes import KnownNode, built_in_nodes
+from multibot_rewrite.companions.params.name_sites import params_at
+from multibot_rewrite.companions.params.rcl_parameters import Value, value_of
+from multibot_rewrite.companions.params.sections import (
+    ANY,
+    PLACEHOLDER,
+    controller_types,
+    identify_node,
+    raw_sections,
+)
+from multibot_rewrite.companions.yaml_text import YamlText, pairs
+from multibot_rewrite.lint.beside.bounds import beyond
+from multibot_rewrite.lint.beside.parameter_facts import Fact, facts_of_node, of_release
+from multibot_rewrite.lint.beside.records import Beside, Remark
+from multibot_rewrite.lint.facts.typos import meant_name
+from multibot_rewrite.model import InputError
+from multibot_rewrite.nearest import MISTYPED, Guesses
+
+# What every node has, or every controller and plugin; prefixes end in a dot.
+_EVERYWHERE = re.compile(
+    r"use_sim_time|start_type_description_service|qos_overrides\..*|diagnostic_updater\..*|bond_\w+|type"
+    r"|params_file|update_rate|is_async|async_parameters\..*|introspection.*|.*\.plugin|enable_parameter_\w+"
+    r"|.*plugin_?\w*|robot_description.*|fallback_controllers|node_options_args|autostart_node|service_\w+"
+)
+_ARRAY = re.compile(r"(\w+?)_array(?:_fixed_\d+)?")
+_CAPITALS = re.compile(r"[A-Z][A-Z0-9]*_[A-Z0-9_]+")
+_NUMBERS = frozenset(("double", "int", "bool"))
+_WORDS = {bool: "bool", int: "int", float: "double", str: "string"}
+
+
+class Given(NamedTuple):
+    """A parameter of a section: its dotted name, its key, and its value where rcl reads one."""
+
+    name: str
+    key: yaml.ScalarNode
+    node: yaml.Node
+    value: Value | None
+
+
+class Section(NamedTuple):
+    """The parameters of one node, and what it declares."""
+
+    title: str
+    node: KnownNode | None
+    given: tuple[Given, ...]
+    facts: tuple[Fact, ...]
+
+
+def sections(beside: Beside) -> list[Section]:
+    """The sections of a parameter file whose node is known; none where rcl rejects the file."""
+    if sections not in beside.memo:
+        beside.memo[sections] = list(_sections(beside))
+    found: list[Section] = beside.memo[sections]
+    return found
+
+
+def _sections(beside: Beside) -> Iterator[Section]:
+    document, settings = beside.document, beside.settings
+    try:
+        raw = raw_sections(document)
+    except InputError:  # what rcl rejects is told where a fleet is built
+        return
+    known, types = built_in_nodes(settings.distro), controller_types(raw)
+    for it in raw:
+        name = it.path.rpartition("/")[2]
+        if name in ANY or PLACEHOLDER.search(it.path):
+            continue
+        given = tuple(_given(document, it.body, ""))
+        type_ = types.get(name) or next((str(at.value) for at in given if at.name == "type"), "")
+        node = identify_node(name, it.body, known, types)
+        if node is not None and not _is_surely(node, name, type_, given):
+            node = None
+        facts = facts_of_node(node, type_, document.file, settings.roots)
+        yield Section(it.path, node, given, facts)
+
+
+def _is_surely(node: KnownNode, name: str, type_: str, given: Sequence[Given]) -> bool:
+    """Is it this controller, not another one that is often called the same?"""
+    if not node.types or type_ in node.types:
+        return True
+    words = {it.name.partition(".")[0] for it in given}
+    by_words = bool(node.known_by) and words.issuperset(node.known_by)
+    return "/" not in type_ and (name == node.name or by_words)
+
+
+def _given(document: YamlText, body: yaml.Node, above: str) -> Iterator[Given]:
+    for key, value in pairs(body):
+        name = f"{above}{key.value}"
+        if isinstance(value, yaml.MappingNode):
+            yield from _given(document, value, f"{name}.")
+        else:
+            yield Given(name, key, value, _value(document, value))
+
+
+def _value(document: YamlText, node: yaml.Node) -> Value | None:
+    try:
+        value = value_of(document, node)
+    except InputError:
+        return None
+    texts = value if isinstance(value, list) else [value]
+    filled = any(isinstance(it, str) and PLACEHOLDER.search(it) for it in texts)
+    return None if filled else value
+
+
+def unknown_parameters(beside: Beside) -> Iterator[Remark]:
+    """Parameters that no release of their node declares, with a name nearly that of one."""
+    guesses = Guesses()
+    for section in sections(beside):
+        facts = [it for it in section.facts if it.is_declared]
+        there = [it.path for it in of_release(facts, beside.settings.distro) if "<" not in it.path]
+        said = {it.name for it in section.given}
+        free = [it for it in there if it not in said]
+        for it in section.given if there else ():
+            near = "" if _is_known(section, it) else _meant(it.name, free, guesses)
+            if near:
+                message = f"{section.title} has no parameter {it.name!r}"
+                yield Remark(it.key, message, f"did you mean {near!r}?")
+
+
+def _is_known(section: Section, it: Given) -> bool:
+    return (
+        any(fact.pattern.fullmatch(it.name) for fact in section.facts)
+        or _EVERYWHERE.fullmatch(it.name) is not None
+        or (section.node is not None and bool(params_at(section.node, it.name, it.key)))
+    )
+
+
+def _meant(name: str, known: Sequence[str], guesses: Guesses) -> str:
+    """The parameter in the same place, or the same one in another, that differs by little."""
+    above, _, last = name.rpartition(".")
+    beside = {it.rpartition(".")[2]: it for it in known if it.rpartition(".")[0] == above}
+    near = meant_name(last, beside) or guesses.nearest(last, beside, MISTYPED)
+    return beside.get(near, "") or meant_name(name, known)
+
+
+def wrong_types(beside: Beside) -> Iterator[Remark]:
+    """Values of another type than the one that all declarations of a parameter have."""
+    for section in sections(beside):
+        for it, facts in _declared(section, beside.settings.distro):
+            types = {fact.type for fact in facts}
+            if len(types) != 1 or it.value is None or it.value == []:
+                continue
+            (type_,) = types
+            given = _type_of(it.value)
+            # What code gives as a default may be a variable of any type.
+            sure = all(fact.is_checked for fact in facts) or type_ in _NUMBERS
+            if sure and _expected(type_) not in ("", given) and not _is_filled_in(it.value):
+                message = f"{section.title}: {it.name} is {_article(given)}, not {_article(type_)}"
+                yield Remark(it.node, message, _other_type(type_, given, it))
+
+
+def out_of_bounds(beside: Beside) -> Iterator[Remark]:
+    """Values that a check of generate_parameter_library rejects."""
+    for section in sections(beside):
+        for it, facts in _declared(section, beside.settings.distro):
+            given = None if it.value is None else _type_of(it.value)
+            for fact in facts if len(facts) == 1 else ():
+                if given != _expected(fact.type):
+                    continue
+                said = [beyond(*check, it.value) for check in fact.bounds]
+                for words in filter(None, said):
+                    message = f"{section.title}: {it.name} is {it.value!r}, and has to be {words}"
+                    yield Remark(it.node, message, f"declared in {fact.source}")
+
+
+def _is_filled_in(value: Value) -> bool:
+    """Is it a word in capitals, which a launch file of Nav2 puts a value in place of?"""
+    return isinstance(value, str) and _CAPITALS.fullmatch(value) is not None
+
+
+def _declared(section: Section, release: str) -> Iterator[tuple[Given, list[Fact]]]:
+    """Each parameter with its declarations in a release: those of its name, else those of a pattern."""
+    facts = [it for it in of_release(section.facts, release) if it.is_declared]
+    for it in section.given:
+        found = [fact for fact in facts if fact.pattern.fullmatch(it.name)]
+        exact = [fact for fact in found if fact.path == it.name]
+        if found:
+            yield it, exact or found
+
+
+def _type_of(value: Value) -> str:
+    if isinstance(value, list):
+        return f"{_WORDS[type(value[0])]}_array" if value else "array"
+    return _WORDS[type(value)]
+
+
+def _expected(type_: str) -> str:
+    """The type that rclcpp compares; empty where any is taken."""
+    array = _ARRAY.fullmatch(type_)
+    word = f"{array[1]}_array" if array else type_.partition("_fixed")[0]
+    return word if word.removesuffix("_array") in _WORDS.values() else ""
+
+
+def _article(type_: str) -> str:
+    return f"{'an' if type_.startswith('int') else 'a'} {type_}"
+
+
+def _other_type(type_: str, given: str, it: Given) -> str:
+    if type_ == "double" and given == "int":
+        return f"write {it.value}.0"
+    if type_.startswith("double_array") and given == "int_array" and isinstance(it.value, list):
+        return f"write [{', '.join(f'{value}.0' for value in it.value)}]"
+    return "rclcpp throws InvalidParameterTypeException, and the node does not come up"

@@ -1,0 +1,122 @@
+"""Rows of ``sdf.schema``, ``plugins.schema`` and ``units.schema``: read when the first description
+needs them, by section.
+
+The first two are made from sources by ``multibot_rewrite.interfaces``; the first lines of each have its
+grammar.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from pathlib import Path
+from typing import NamedTuple
+
+from multibot_rewrite.lazy import lazy_compile
+
+_FOLDER = Path(__file__).parent
+SDF, PLUGINS, UNITS = "sdf.schema", "plugins.schema", "units.schema"
+NO_WORDS: tuple[str, ...] = ()
+_VERSION = lazy_compile(r"\d+\.\d+")
+
+
+class Row(NamedTuple):
+    """What a source says of an attribute, element or parameter.
+
+    ``place`` is where, ``section`` has what is below it. The value is ``low`` to ``high``, or one of
+    ``words``. It is read by the versions of SDF from ``first`` to ``last``, or in ``releases``, where
+    those are not all. In ``units.schema`` the type is a unit, and above ``low`` is meant where it
+    ``is_open``.
+    """
+
+    name: str
+    type: str
+    place: str
+    section: str = ""
+    first: tuple[int, ...] = ()
+    last: tuple[int, ...] = ()
+    releases: str = ""
+    required: bool = False
+    low: float | None = None
+    high: float | None = None
+    is_open: bool = False
+    words: tuple[str, ...] = NO_WORDS
+    default: str = ""
+
+
+class Described(NamedTuple):
+    """A section: its names, the words behind them, its rows by name, the names that are required."""
+
+    names: tuple[str, ...]
+    about: tuple[str, ...]
+    rows: Mapping[str, tuple[Row, ...]]
+    needed: tuple[str, ...]
+
+
+@lru_cache
+def chunks(file: str) -> Mapping[str, str]:
+    """The text of every section of a file by each of its names; nothing is read of it yet."""
+    found: dict[str, str] = {}
+    _, *parts = (_FOLDER / file).read_text(encoding="utf-8").split("\n[")
+    for part in parts:
+        head = part[: part.index("]")]
+        kind, _, rest = head.partition(" ")
+        names = [f"{kind} {it}" for it in rest.split()] if kind in ("words", "hardware") else None
+        for name in names or head.split():
+            found[name] = part
+    return found
+
+
+@lru_cache(maxsize=512)
+def described(file: str, name: str) -> Described | None:
+    """The section of that name."""
+    text = chunks(file).get(name)
+    if text is None:
+        return None
+    head, *lines = text.splitlines()
+    names, _, about = head.partition("]")
+    rows: dict[str, tuple[Row, ...]] = {}
+    for row in _rows(lines):
+        rows[row.name] = (*rows.get(row.name, ()), row)
+    needed = tuple(name for name, its in rows.items() if any(it.required for it in its))
+    return Described(tuple(names.split()), tuple(about.split()), rows, needed)
+
+
+def _rows(lines: list[str]) -> Iterator[Row]:
+    for line in lines:
+        words, _, default = line.partition(" =")
+        if not words:
+            continue
+        name, type_, *rest = words.split()
+        row = Row(name, type_, rest[0] if rest else type_, default=default)
+        for word in rest[1:]:
+            row = _with(row, word)
+        yield row
+
+
+def _with(row: Row, word: str) -> Row:
+    """A row with what one word behind its place says."""
+    if word[0] == ">":
+        return row._replace(section=word[1:])
+    if word.startswith("one:"):
+        return row._replace(words=tuple(word[4:].split("|")))
+    if word.startswith("releases="):
+        return row._replace(releases=word[9:])
+    if word in ("above:0", "from:0"):
+        return row._replace(low=0.0, is_open=word == "above:0")
+    return row._replace(required=True) if word == "required" else _bounded(row, word)
+
+
+def _bounded(row: Row, word: str) -> Row:
+    """A range of numbers or of versions; else it is the tag of a row that the newest one lacks."""
+    low, dots, high = word.partition("..")
+    if dots:
+        return row._replace(low=float(low) if low else None, high=float(high) if high else None)
+    first, dash, last = word.partition("-")
+    if dash and _VERSION.fullmatch(first):
+        return row._replace(first=_version(first), last=_version(last))
+    return row
+
+
+def _version(text: str) -> tuple[int, ...]:
+    return tuple(map(int, text.split(".")))

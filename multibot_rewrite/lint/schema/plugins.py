@@ -1,0 +1,176 @@
+"""The parameters of a ``<plugin>`` and of ros2_control hardware against what their code reads.
+
+Sources: ``plugins.schema``. A parameter counts as known where any release reads it: what only other
+releases read is a fault of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from functools import lru_cache
+from math import radians, tau
+
+from lxml.etree import _Element
+
+from multibot_rewrite.lint.schema.described import PLUGINS, UNITS, Described, Row, chunks, described
+from multibot_rewrite.lint.schema.faults import Fault
+from multibot_rewrite.lint.schema.sdf_values import misread, number_in
+from multibot_rewrite.lint.schema.sections import is_own
+from multibot_rewrite.lint.schema.values import shortened
+from multibot_rewrite.nearest import fold, nearest, slip_of
+from multibot_rewrite.releases import has_release, releases_with
+from multibot_rewrite.rewriters.text import text_at, text_of
+from multibot_rewrite.rewriters.tree import plugin_keys
+
+GZ, GAZEBO_ROS = "gz-sim-", "gazebo_ros_"
+HARDWARE = "hardware "
+# No angle of a wheel or wing is as large; a little more than a turn is one that was rounded.
+TURN = tau * 1.001
+
+
+def section_of_plugin(element: _Element) -> Described | None:
+    """What is known of a plugin, by its library, else by its class."""
+    known = chunks(PLUGINS)
+    key = next((it for it in plugin_keys(element) if it in known), "")
+    return described(PLUGINS, key) if key else None
+
+
+def section_of_library(library: str) -> Described | None:
+    """What is known of a library alone."""
+    return described(PLUGINS, library)
+
+
+def hardware_classes() -> list[str]:
+    """The ros2_control hardware whose code was read."""
+    return [it.removeprefix(HARDWARE) for it in chunks(PLUGINS) if it.startswith(HARDWARE)]
+
+
+def plugin_faults(element: _Element, release: str) -> Iterator[Fault]:
+    """The faults of a plugin's parameters; none where the plugin is not known."""
+    section = section_of_plugin(element)
+    if section is None:
+        return
+    given: dict[str, _Element] = {}
+    for child in element.iterchildren("*"):
+        if is_own(child.tag):
+            given.setdefault(str(child.tag), child)
+            yield from _parameter(child, str(child.tag), text_of(child), section, release)
+    yield from _missing(element, section, given, release)
+
+
+def hardware_faults(hardware: _Element, release: str) -> Iterator[Fault]:
+    """The faults of the parameters in a ``<hardware>``."""
+    section = described(PLUGINS, HARDWARE + text_at(hardware, "plugin"))
+    if section is None:
+        return
+    given: dict[str, _Element] = {}
+    for child in hardware.iterchildren("param"):
+        name = child.get("name", "")
+        given.setdefault(name, child)
+        yield from _parameter(child, name, text_of(child), section, release)
+    yield from _missing(hardware, section, given, release)
+
+
+def _parameter(
+    child: _Element, name: str, text: str, section: Described, release: str
+) -> Iterator[Fault]:
+    rows = section.rows.get(name)
+    if rows is None:
+        if "open" not in section.about:
+            yield from _unknown(child, name, section)
+        return
+    row = rows[0]
+    if row.releases and not has_release(row.releases, release):
+        message = f"{title(section)} of {release} does not read {name!r}"
+        hint = f"that of {', '.join(releases_with(row.releases))} does"
+        yield Fault("later", child, None, message, hint)
+    elif text and "$" not in text:
+        yield from _value(child, row, text, section)
+
+
+def _value(child: _Element, row: Row, text: str, section: Described) -> Iterator[Fault]:
+    where = f"{row.name} {shortened(text)!r}"
+    wrong = misread(row.type, text)
+    unit = described(UNITS, section.names[0])
+    if unit and row.name in unit.rows and not wrong:
+        yield from _measure(child, unit.rows[row.name][0], text, where)
+    if wrong:
+        instead = f", and counts as {'false' if row.type == 'boolean' else 0}" * wrong.fails
+        yield Fault("type", child, "", f"{where} {wrong.problem}{instead}")
+    elif row.words and text not in row.words:
+        near = nearest(text, row.words)
+        if near:
+            message = f"{where} is not a word that {title(section)} knows"
+            yield Fault("word", child, "", message, f"did you mean {near!r}?")
+
+
+def _measure(child: _Element, unit: Row, text: str, where: str) -> Iterator[Fault]:
+    """A number outside of what makes sense, or an angle of more than a turn."""
+    value = number_in(text)
+    if value is None:
+        return
+    if unit.low is not None and (value < unit.low or (unit.is_open and value == unit.low)):
+        limit = f"has to be {'above' if unit.is_open else 'at least'} {unit.low:g}"
+        yield Fault("range", child, "", f"{where} {limit} ({unit.place})")
+    elif unit.high is not None and value > unit.high:
+        yield Fault("range", child, "", f"{where} may be {unit.high:g} at most ({unit.place})")
+    elif unit.type == "rad" and abs(value) > TURN:
+        hint = f"{value:g} degrees are {radians(value):.4g}"
+        yield Fault("degrees", child, "", f"{where} is more than a turn: it is in radians", hint)
+
+
+def _unknown(child: _Element, name: str, section: Described) -> Iterator[Fault]:
+    message = f"{title(section)} does not read {name!r}"
+    there = {str(it.tag) for it in child.itersiblings(preceding=True)} | {
+        str(it.tag) for it in child.itersiblings()
+    }
+    free = [it for it in section.rows if it not in there]
+    near = slip_of(name, free)
+    other = _of_another(name, section.names[0])
+    if other:
+        hint = f"{other} does; did you mean {near!r}?" if near else f"{other} does"
+        yield Fault("simulator", child, None, message, hint)
+    elif near:
+        yield Fault("misspelt", child, None, message, f"did you mean {near!r}?")
+    elif child.tag != "param":
+        # Hardware may have the names of its parameters where nobody looked: in constants, in libraries.
+        yield Fault("unread", child, None, message)
+
+
+def _of_another(name: str, library: str) -> str:
+    """The plugin of the other simulator that does the same and has this parameter."""
+    own = _subject(library)
+    for other in _counterparts(library.startswith(GZ)):
+        section = described(PLUGINS, other)
+        if own and _subject(other) & own and section and name in section.rows:
+            return other
+    return ""
+
+
+@lru_cache
+def _counterparts(is_gz: bool) -> tuple[str, ...]:
+    start = GAZEBO_ROS if is_gz else GZ
+    return tuple(sorted(it for it in chunks(PLUGINS) if it.startswith(start) and "::" not in it))
+
+
+def _subject(library: str) -> frozenset[str]:
+    """What a plugin is about by the words of its library; none where they say too little."""
+    bare = library.removeprefix(GZ).removeprefix(GAZEBO_ROS).removesuffix("-system")
+    return frozenset({fold(bare).removesuffix("_sensor")})
+
+
+def _missing(
+    element: _Element, section: Described, given: Iterable[str], release: str
+) -> Iterator[Fault]:
+    for name in section.needed:
+        row = section.rows[name][0]
+        if name not in given and has_release(row.releases, release):
+            message = f"{title(section)} needs {name!r}"
+            yield Fault(
+                "missing", element, None, message, f"without it, it is not loaded ({row.place})"
+            )
+
+
+def title(section: Described) -> str:
+    """What a section is about, as a message has it."""
+    return section.names[-1] if section.names[0] == HARDWARE.strip() else section.names[0]

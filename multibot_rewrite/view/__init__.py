@@ -1,0 +1,1 @@
+"""The robots of a fleet as one page in 3D: what they look like, where they stand, what was renamed."""

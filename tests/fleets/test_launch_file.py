@@ -1,0 +1,239 @@
+"""``fleet.launch.py`` and ``fleet.launch.xml``: what they start, without launch and in the real one."""
+
+from __future__ import annotations
+
+import json
+import re
+import shlex
+import shutil
+import sys
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+from xml.etree import ElementTree
+
+import pytest
+from launched_programs import launched
+from paths import ROBOTS, ROOT
+from told_nodes import nodes_of, words_of
+
+from multibot_rewrite import launch, load_fleet
+from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.cli.rehearse import stage
+from multibot_rewrite.graph.check import check, doubts
+from multibot_rewrite.graph.live.child import RUN_STUBS, observe, running
+from multibot_rewrite.graph.live.request import Request, to_text
+from multibot_rewrite.graph.plan_file import read_plan
+from multibot_rewrite.graph.rehearsal import split_over_processes, to_order, with_substitutes
+
+LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
+TWO = "robots:\n  - {name: robot1, pose: {x: 1.0}}\n  - {name: robot2, pose: {x: 3.0}}\n"
+CONTROLLERS = """\
+controller_manager:
+  ros__parameters:
+    update_rate: 100
+    joint_state_broadcaster: {type: joint_state_broadcaster/JointStateBroadcaster}
+    wheels: {type: diff_drive_controller/DiffDriveController}
+wheels:
+  ros__parameters: {left_wheel_names: [left_wheel_joint], right_wheel_names: [right_wheel_joint]}
+"""
+FLEETS = {
+    "classic": f"description: rover.urdf\n{TWO}",
+    "gz": f"description: rover_gz.urdf\nstack: gz_ros2_control\ncompanions: {{params: c.yaml}}\n{TWO}",
+    "sdf": f"description: rover.sdf\n{TWO}",
+    "real": f"description: two_finger_arm.urdf\nsimulator: none\nstack: robot_state\n{TWO}",
+    "kinds": (
+        "robots:\n  - {name: robot1, description: rover.urdf, pose: {x: 1.0}}\n"
+        "  - {name: arm, description: two_finger_arm.urdf, pose: {x: 3.0}}\n"
+    ),
+    "ten": "description: rover.urdf\nrobots:\n  - {name: robot, count: 10, step: {y: 2.0}}\n",
+}
+
+
+def built(folder: Path, kind: str, layout: str) -> Path:
+    """The folder of a fleet that was built."""
+    for name in ("rover.urdf", "rover_gz.urdf", "rover.sdf", "two_finger_arm.urdf"):
+        shutil.copy(ROBOTS / name, folder)
+    (folder / "c.yaml").write_text(CONTROLLERS)
+    fleet = folder / "fleet.yaml"
+    fleet.write_text(f"layout: {layout}\n{FLEETS[kind]}")
+    assert main(["build", str(fleet), "-o", str(folder / "out"), "-q"]) == 0
+    return folder / "out"
+
+
+def of_xml(out: Path) -> list[tuple[Any, ...]]:
+    """The processes of the XML file: program, namespace, name, rules, number of own words."""
+    root = ElementTree.parse(out / "fleet.launch.xml").getroot()
+    return sorted(
+        (
+            it.get("pkg"),
+            it.get("exec"),
+            it.get("namespace") or "",
+            it.get("name") or "",
+            tuple((one.get("from"), one.get("to")) for one in it.iter("remap")),
+            sum(1 for one in it.iter("param") if one.get("from")),
+            len(shlex.split((it.get("args") or "").replace("$(var folder)", "."))),
+        )
+        for it in root.iter("node")
+    )
+
+
+def of_python(out: Path, monkeypatch: pytest.MonkeyPatch) -> list[tuple[Any, ...]]:
+    """The same of the Python file, with classes that note what they are given."""
+    noted: list[dict[str, Any]] = []
+
+    class Noting:
+        def __init__(self, *words: Any, **named: Any) -> None:
+            if "executable" in named:
+                noted.append(named)
+
+        def perform(self, context: Any) -> str:
+            return ""
+
+    for name in (
+        *("launch", "launch.actions", "launch.conditions", "launch.substitutions", "launch_ros"),
+        *("launch_ros.actions", "launch_ros.substitutions", "launch_ros.descriptions"),
+        "launch_ros.parameter_descriptions",
+    ):
+        module = ModuleType(name)
+        module.__getattr__ = lambda _: Noting  # type: ignore[method-assign]
+        monkeypatch.setitem(sys.modules, name, module)
+    text = (out / "fleet.launch.py").read_text()
+    names: dict[str, Any] = {"__file__": str(out / "fleet.launch.py"), "__name__": "fleet"}
+    exec(compile(text, "fleet.launch.py", "exec"), names)
+    names["generate_launch_description"]()
+    names["chosen"](None)
+    return sorted(
+        (
+            it["package"],
+            it["executable"],
+            it.get("namespace", ""),
+            it.get("name", ""),
+            tuple(it.get("remappings", ())),
+            sum(1 for one in it["parameters"] if isinstance(one, str)),
+            len(it.get("arguments", ())),
+        )
+        for it in noted
+    )
+
+
+def test_what_two_robots_of_gazebo_classic_are_started_with(tmp_path: Path) -> None:
+    out = built(tmp_path, "classic", "tf-per-robot")
+    tf = (("/tf", "tf"), ("/tf_static", "tf_static"))
+    state = "robot_state_publisher"
+    assert of_xml(out) == [
+        ("gazebo_ros", "spawn_entity.py", "", "", (), 0, 16),
+        ("gazebo_ros", "spawn_entity.py", "", "", (), 0, 16),
+        (state, state, "/robot1", state, tf, 0, 0),
+        (state, state, "/robot2", state, tf, 0, 0),
+        ("tf2_ros", "static_transform_publisher", "", "", (), 0, 23),
+        ("tf2_ros", "static_transform_publisher", "", "", (), 0, 23),
+    ]
+    text = (out / "fleet.launch.py").read_text()
+    assert '"robot_description": text("robot1/rover.urdf")' in text
+    assert 'FindPackageShare("gazebo_ros")' in text
+    assert "ros2 run teleop_twist_keyboard" in text
+
+
+@pytest.mark.parametrize("kind", FLEETS)
+@pytest.mark.parametrize("layout", ["tf-per-robot", "postfix"])
+def test_both_files_start_the_same(
+    kind: str, layout: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    out = built(tmp_path, kind, layout)
+    in_python = of_python(out, monkeypatch)
+    assert len(in_python) > 3
+    assert of_xml(out) == in_python
+
+
+def test_the_nodes_of_nav2_with_their_lifecycle_and_windows(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shutil.copytree(ROOT / "examples" / "namespace_and_prefix", tmp_path / "example")
+    fleet, out = tmp_path / "example" / "nav2.yaml", tmp_path / "out"
+    assert main(["build", str(fleet), "-o", str(out), "-q"]) == 0
+    text = (out / "fleet.launch.py").read_text()
+    assert '"node_names": ["map_server", "amcl"]' in text
+    assert of_xml(out) == of_python(out, monkeypatch)
+
+
+def test_a_plugin_of_the_simulator_is_not_started_again(tmp_path: Path) -> None:
+    """gz_ros2_control makes the controller manager; controllers that files declare are spawned."""
+    out = built(tmp_path, "gz", "frames-per-robot")
+    found = {(it[1], it[2]) for it in of_xml(out)}
+    assert ("ros2_control_node", "/robot1") not in found
+    assert ("spawner", "/robot1") in found
+    text = (out / "fleet.launch.py").read_text()
+    assert 'arguments=["wheels"' in text
+
+
+def test_an_sdf_is_spawned_from_its_file(tmp_path: Path) -> None:
+    text = (built(tmp_path, "sdf", "both") / "fleet.launch.py").read_text()
+    assert '"-file", file("robot1/rover.sdf")' in text
+    assert "-topic" not in text
+
+
+def test_a_real_robot_needs_no_simulator(tmp_path: Path) -> None:
+    text = (built(tmp_path, "real", "both") / "fleet.launch.py").read_text()
+    assert "ros_gz_sim" not in text
+    assert 'DeclareLaunchArgument("use_sim_time", default_value="false"' in " ".join(text.split())
+    assert 'executable="joint_state_publisher"' in text, "nothing else sends its joint states"
+
+
+REAL = pytest.mark.skipif(
+    bool(launch.missing()),
+    reason=f"not tried in the real launch, which is not here: {launch.missing()}",
+)
+
+
+def programs(out: Path) -> dict[str, str]:
+    """The programs of the launch file with their packages."""
+    text = (out / "fleet.launch.py").read_text()
+    pairs = re.findall(r'package="(\w+)",\s+executable="([\w.]+)"', text)
+    return {executable: package for package, executable in pairs}
+
+
+@REAL
+def test_arguments_choose_robots_and_windows(tmp_path: Path) -> None:
+    out = built(tmp_path, "classic", "both")
+    for form in ("py", "xml"):
+        (tmp_path / form).mkdir()
+        told, _ = launched(
+            out / f"fleet.launch.{form}", tmp_path / form, "robots:=robot2", programs=programs(out)
+        )
+        spaces = [word for it in told for word in words_of(it)[2] if word.startswith("__ns")]
+        assert set(spaces) == {"__ns:=/robot2"}
+
+
+def runs() -> Iterator[Any]:
+    for kind in FLEETS:
+        for layout in LAYOUTS:
+            deep = () if (kind, layout) == ("gz", "both") else (pytest.mark.deep,)
+            yield pytest.param(kind, layout, marks=deep)
+
+
+@REAL
+@pytest.mark.live
+@pytest.mark.parametrize(("kind", "layout"), list(runs()))
+def test_what_is_started_is_as_planned(kind: str, layout: str, tmp_path: Path) -> None:
+    pytest.importorskip("rclpy", reason="no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)")
+    out = built(tmp_path, kind, layout)
+    fleet = load_fleet(tmp_path / "fleet.yaml")
+    form = "xml" if layout == "both" else "py"
+    told, _ = launched(
+        out / f"fleet.launch.{form}", tmp_path, "rviz:=false", programs=programs(out)
+    )
+    plan = read_plan((out / "plan.yaml").read_bytes(), "plan.yaml")
+    environ, replaced = stage(None), {}
+    with ExitStack() as stack:
+        children = [
+            stack.enter_context(running(RUN_STUBS, to_text(to_order(nodes)), environ))
+            for nodes in split_over_processes(list(nodes_of(told, fleet)))
+        ]
+        for child in children:
+            replaced |= json.loads(child.next_message() or b"{}")
+        graph = observe(Request(40.0, substitutes=True), environ)
+    assert doubts(graph) == ()
+    assert [it.message for it in check(with_substitutes(plan, replaced), graph)] == []

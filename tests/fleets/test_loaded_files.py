@@ -1,0 +1,75 @@
+"""Parameter files that descriptions load: rewritten, and loaded by each robot's own one."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from paths import ROBOTS
+
+from multibot_rewrite.cli.multibot import main
+
+CONTROLLERS = """\
+controller_manager:
+  ros__parameters:
+    update_rate: 100
+    wheels: {type: diff_drive_controller/DiffDriveController}
+wheels:
+  ros__parameters: {left_wheel_names: [left_wheel_joint], right_wheel_names: [right_wheel_joint]}
+"""
+FLEET = "layout: both\naffix: prefix\nstack: gz_ros2_control\ndescription: rover_gz.urdf\n"
+ROBOTS_TWO = "robots: [{name: robot1}, {name: robot2, pose: {y: 2}}]\n"
+
+
+def package(folder: Path, path: str) -> Path:
+    """A package with a robot that loads ``path``; returns the folder of its description."""
+    text = (ROBOTS / "rover_gz.urdf").read_text()
+    assert text.count("config/controllers.yaml") == 1
+    (folder / "config").mkdir(parents=True)
+    (folder / "package.xml").write_text("<package><name>rover</name></package>")
+    (folder / "config" / "c.yaml").write_text(CONTROLLERS)
+    (folder / "rover_gz.urdf").write_text(text.replace("config/controllers.yaml", path))
+    (folder / "fleet.yaml").write_text(FLEET + ROBOTS_TWO)
+    return folder
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "config/c.yaml",
+        "package://rover/config/c.yaml",
+        "/ws/install/rover/share/rover/config/c.yaml",
+    ],
+)
+def test_each_robot_loads_its_own(path: str, tmp_path: Path) -> None:
+    folder, out = package(tmp_path / "src", path), tmp_path / "out"
+    assert main(["build", str(folder / "fleet.yaml"), "-o", str(out), "-q"]) == 0
+    for robot in ("robot1", "robot2"):
+        text = (out / robot / "rover_gz.urdf").read_text()
+        assert f"<parameters>{out}/{robot}/c.yaml</parameters>" in text
+        own = (out / robot / "c.yaml").read_text()
+        assert f"/{robot}/wheels:" in own
+        assert f"{robot}_left_wheel_joint" in own
+    assert (folder / "config" / "c.yaml").read_text() == CONTROLLERS
+
+
+def test_its_controllers_are_planned_and_started(tmp_path: Path) -> None:
+    folder, out = package(tmp_path / "src", "config/c.yaml"), tmp_path / "out"
+    assert main(["build", str(folder / "fleet.yaml"), "-o", str(out), "-q"]) == 0
+    assert "/robot1/wheels" in (out / "plan.yaml").read_text()
+    assert 'arguments=["wheels"' in (out / "fleet.launch.py").read_text()
+
+
+def test_one_that_is_not_there_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = package(tmp_path / "src", "package://nowhere/config/c.yaml")
+    assert main(["build", str(folder / "fleet.yaml"), "-o", str(tmp_path / "out")]) == 0
+    said = capsys.readouterr().err
+    assert said.count("note: MF834") == 1
+    assert "'package://nowhere/config/c.yaml', which is not there" in said
+
+
+def test_a_real_robot_loads_none(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = package(tmp_path / "src", "package://nowhere/config/c.yaml")
+    (folder / "fleet.yaml").write_text(f"simulator: none\n{FLEET}{ROBOTS_TWO}")
+    assert main(["build", str(folder / "fleet.yaml"), "-o", str(tmp_path / "out")]) == 0
+    assert "MF834" not in capsys.readouterr().err

@@ -1,0 +1,103 @@
+"""Files of vendors' robots, in small: what a healthy one of them must not be told."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.fleets.build import make_outputs
+from multibot_rewrite.fleets.fleet_file import read_fleet
+from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleets.robot_nodes import companion_nodes
+from multibot_rewrite.remap.records import NodeFacts
+
+SENSOR = """\
+<robot name="r">
+  <link name="base_link"/>
+  <gazebo reference="base_link"><sensor name="lidar" type="gpu_lidar"/></gazebo>
+</robot>
+"""
+# As Husarion's: the argument stands before names of ros2_control, which no node puts it before.
+HARDWARE = """\
+<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="namespace" default=""/>
+  <link name="base_link"/>
+  <ros2_control name="$(arg namespace)/imu" type="sensor">
+    <hardware><plugin>acme/Imu</plugin></hardware>
+    <sensor name="$(arg namespace)/imu">
+      <state_interface name="orientation.x"/><state_interface name="orientation.y"/>
+      <state_interface name="orientation.z"/><state_interface name="orientation.w"/>
+      <state_interface name="angular_velocity.x"/><state_interface name="angular_velocity.y"/>
+      <state_interface name="angular_velocity.z"/><state_interface name="linear_acceleration.x"/>
+      <state_interface name="linear_acceleration.y"/><state_interface name="linear_acceleration.z"/>
+    </sensor>
+  </ros2_control>
+</robot>
+"""
+IMU = """\
+controller_manager:
+  ros__parameters: {imu: {type: imu_sensor_broadcaster/IMUSensorBroadcaster}}
+imu:
+  ros__parameters: {sensor_name: SENSOR, frame_id: base_link}
+"""
+
+
+def plan(folder: Path, description: str, more: str = "", params: str = "") -> FleetPlan:
+    name = "r.urdf.xacro" if "xacro" in description else "r.urdf"
+    (folder / name).write_text(description)
+    (folder / "p.yaml").write_text(params)
+    fleet = folder / "fleet.yaml"
+    own = "companions: {params: p.yaml}\n" if params else ""
+    head = f"description: {name}\nlayout: tf-per-robot\naffix: prefix\n{own}"
+    fleet.write_text(f"{head}{more}robots: [{{name: robot1}}, {{name: robot2}}]\n")
+    return plan_fleet(read_fleet(str(fleet), "jazzy", {}))
+
+
+def said(made: FleetPlan, code: str) -> list[Finding]:
+    return [it for it in make_outputs(made).findings if it.code == code]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        ((), True),
+        (("/world/w/model/r/link/base_link/sensor/lidar/scan@sensor_msgs/msg/LaserScan[x",), False),
+        (("/world/w/model/r/link/base_link/sensor/other/scan@sensor_msgs/msg/LaserScan[x",), True),
+    ],
+)
+def test_a_sensor_that_a_launched_bridge_carries_needs_no_topic(
+    arguments: tuple[str, ...], told: bool, tmp_path: Path
+) -> None:
+    made = plan(tmp_path, SENSOR, "stack: bridge_per_robot\n")
+    evidence = {key: it._replace(arguments=arguments) for key, it in made.evidence.items()}
+    assert bool(said(made._replace(evidence=evidence), "MF509")) is told
+
+
+@pytest.mark.parametrize(("sensor", "open_"), [("imu", False), ("robot1/imu", False), ("x", True)])
+def test_an_interface_is_found_whose_name_has_a_slash(
+    sensor: str, open_: bool, tmp_path: Path
+) -> None:
+    more = "arguments: {namespace: '{robot}'}\nstack: ros2_control\n"
+    made = plan(tmp_path, HARDWARE, more, IMU.replace("SENSOR", sensor))
+    found = [it for it in said(made, "MF811") if "of robot1 " in it.message]
+    assert bool(found) is open_
+
+
+def test_frames_that_a_node_puts_its_own_prefix_before_stay(tmp_path: Path) -> None:
+    """turtlebot3_node src/odometry.cpp:74."""
+    params = "ros__parameters: {odometry: {frame_id: odom, x_frame: odom}}"
+    plan(tmp_path, SENSOR, "", f"diff_drive_controller:\n  {params}\n")
+    (tmp_path / "fleet.yaml").write_text(
+        (tmp_path / "fleet.yaml").read_text().replace("tf-per-robot", "frames-per-robot")
+    )
+    made = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "jazzy", {}))
+    (text,) = (it.data for it in make_outputs(made).files if it.path == "robot1/p.yaml")
+    assert b"{frame_id: odom, x_frame: robot1/odom}" in text
+    assert said(made, "MF605") == []
+
+
+def test_a_node_below_the_robot_may_have_a_section() -> None:
+    below, beside = (NodeFacts(it, "acme", ()) for it in ("front/driver", "driver"))
+    assert list(companion_nodes([below, beside], [])) == [below]

@@ -1,0 +1,364 @@
+"""Files beside a description: planted defects are found at their line, what is odd and healthy is not.
+
+What a parameter is was read in the sources that the rows of parameters.tsv name.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from paths import FIXTURES, ROBOTS
+
+from multibot_rewrite.lint.beside.bounds import beyond
+from multibot_rewrite.lint.beside.kinds import BRIDGE, MOVEIT, PARAMS, RVIZ, kind_of
+from multibot_rewrite.lint.beside.parameter_table import table
+from multibot_rewrite.lint.check import lint_file
+from multibot_rewrite.lint.config.settings import Settings
+from multibot_rewrite.lint.run import lint_files
+from multibot_rewrite.remap.nodl.lookup import INDEX
+
+SHIPPED = Path(kind_of.__code__.co_filename).parent / "parameters.tsv"
+CONTROLLERS = """\
+controller_manager:
+  ros__parameters:
+    update_rate: 100
+    drive: {type: diff_drive_controller/DiffDriveController}
+    arm: {type: joint_trajectory_controller/JointTrajectoryController}
+drive:
+  ros__parameters:
+    left_wheel_names: [left_wheel_joint]
+    right_wheel_names: [right_wheel_joint]
+    wheel_separation: 0.34
+    wheel_radius: 0.07
+    base_frame_id: base_link
+    linear.x.max_velocity: 1.0
+    linear:
+      x:
+        max_acceleration: 2.0
+arm:
+  ros__parameters:
+    joints: [left_wheel_joint, right_wheel_joint]
+    command_interfaces: [position]
+    state_interfaces: [position, velocity]
+    constraints: {left_wheel_joint: {goal: 0.1}}
+"""
+NAV = """\
+amcl:
+  ros__parameters:
+    base_frame_id: base_footprint
+    laser_max_range: 12.0
+    max_particles: 2000
+    tf_broadcast: true
+    scan_topic: scan
+controller_server:
+  ros__parameters:
+    controller_frequency: 20.0
+    controller_plugins: [FollowPath]
+    FollowPath:
+      plugin: nav2_regulated_pure_pursuit_controller::RegulatedPurePursuitController
+      desired_linear_vel: 0.5
+"""
+VIEW = """\
+Visualization Manager:
+  Global Options:
+    Fixed Frame: base_link
+  Displays:
+    - Class: rviz_default_plugins/Axes
+      Reference Frame: lidar_link
+"""
+ROW = """\
+- ros_topic_name: scan
+  gz_topic_name: scan
+  ros_type_name: sensor_msgs/msg/LaserScan
+  gz_type_name: gz.msgs.LaserScan
+  direction: GZ_TO_ROS
+"""
+MOVEIT_LIMITS = """\
+joint_limits:
+  left_wheel_joint:
+    has_velocity_limits: true
+    max_velocity: 1.0
+  right_wheel_joint:
+    has_velocity_limits: true
+    max_velocity: 1.0
+"""
+# File, its text, what is put in place of what, and the codes and lines of it.
+PLANTED = {
+    "a frame's parameter": (CONTROLLERS, "base_frame_id", "base_frame_idd", "MB850:12"),
+    "a wheel's parameter": (CONTROLLERS, "wheel_radius", "wheel_raduis", "MB850:11"),
+    "a list's parameter": (CONTROLLERS, "left_wheel_names", "left_wheel_name", "MB850:8"),
+    "a nested parameter": (CONTROLLERS, "max_acceleration", "max_accelaration", "MB850:16"),
+    "a dotted parameter": (
+        CONTROLLERS,
+        "linear.x.max_velocity",
+        "linear.x.max_velocty",
+        "MB850:13",
+    ),
+    "a trajectory's parameter": (CONTROLLERS, "state_interfaces", "state_interface", "MB850:21"),
+    "the manager's parameter": (CONTROLLERS, "update_rate", "updaet_rate", "MB850:3"),
+    "a parameter of amcl": (NAV, "max_particles", "max_particels", "MB850:5"),
+    "a plugin's parameter": (NAV, "desired_linear_vel", "desired_linaer_vel", ""),
+    "an integer for a double": (CONTROLLERS, "0.34", "1", "MB851:10"),
+    "a text for a double": (CONTROLLERS, "wheel_radius: 0.07", 'wheel_radius: "0.07"', "MB851:11"),
+    "a number for a name": (
+        CONTROLLERS,
+        "base_frame_id: base_link",
+        "base_frame_id: 1",
+        "MB851:12",
+    ),
+    "a name for a list": (CONTROLLERS, "[position]", "position", "MB851:20"),
+    "an integer in a nested double": (CONTROLLERS, "2.0", "2", "MB851:16"),
+    "a double for an integer": (CONTROLLERS, "update_rate: 100", "update_rate: 100.5", "MB851:3"),
+    "a text for a boolean": (NAV, "tf_broadcast: true", "tf_broadcast: 'true'", "MB851:6"),
+    "an integer for a range": (NAV, "12.0", "12", "MB851:4"),
+    "an integer for a frequency": (NAV, "20.0", "20", "MB851:10"),
+    "a radius below 0": (CONTROLLERS, "0.07", "-0.07", "MB852:11"),
+    "a separation of 0": (CONTROLLERS, "0.34", "0.0", "MB852:10"),
+    "no wheels": (CONTROLLERS, "[left_wheel_joint]", '[""]', ""),
+    "an unknown interface": (CONTROLLERS, "[position, velocity]", "[position, speed]", "MB852:21"),
+    "an acceleration below 0": (CONTROLLERS, "2.0", "-2.0", "MB852:16"),
+    "a frame of amcl": (NAV, "base_footprint", "base_footprnt", "MB853:3"),
+    "a frame of a controller": (CONTROLLERS, "base_link", "base_lnik", "MB853:12"),
+    "the fixed frame of RViz": (VIEW, "base_link", "base_linkk", "MB853:3"),
+    "a display's frame": (VIEW, "lidar_link", "lidra_link", "MB853:6"),
+    "a wheel": (CONTROLLERS, "[left_wheel_joint]", "[left_whel_joint]", "MB854:8"),
+    "a joint that is nowhere": (
+        CONTROLLERS,
+        "joints: [left_wheel_joint",
+        "joints: [elbow",
+        "MB854:19",
+    ),
+    "a joint of MoveIt": (MOVEIT_LIMITS, "left_wheel_joint", "left_wheel", "MB854:2"),
+    "a separation of another robot": (CONTROLLERS, "0.34", "0.5", "MB856:10"),
+    "a separation to the middle": (CONTROLLERS, "0.34", "0.17", "MB856:10"),
+    "a diameter for a radius": (CONTROLLERS, "0.07", "0.14", "MB856:11"),
+    "wheels that are swapped": (
+        CONTROLLERS,
+        "[left_wheel_joint]\n    right_wheel_names: [right_wheel_joint]",
+        "[right_wheel_joint]\n    right_wheel_names: [left_wheel_joint]",
+        "MB856:9",
+    ),
+    "a direction": (ROW, "GZ_TO_ROS", "GZ_TO_ROSS", "MB855:5"),
+    "a direction in small letters": (ROW, "GZ_TO_ROS", "gz_to_ros", "MB855:5"),
+    "a type's key": (ROW, "ros_type_name", "ros_type", "MB855:1 MB855:3"),
+    "a topic twice": (
+        ROW,
+        "- ros_topic_name",
+        "- topic_name: a\n  ros_topic_name",
+        "MB855:2 MB855:3",
+    ),
+    "no type": (ROW, "  gz_type_name: gz.msgs.LaserScan\n", "", "MB855:1"),
+}
+HEALTHY = {
+    "nothing": (CONTROLLERS, "", ""),
+    "nothing of Nav2": (NAV, "", ""),
+    "nothing of RViz": (VIEW, "", ""),
+    "nothing of a bridge": (ROW, "", ""),
+    "nothing of MoveIt": (MOVEIT_LIMITS, "", ""),
+    "a controller of another package": (CONTROLLERS, "diff_drive_controller/Diff", "my_drive/Diff"),
+    "another controller with a usual name": (
+        "diffdrive_controller:\n  ros__parameters:\n    type: acme/Drive\n    wheel_raduis: 1\n",
+        "",
+        "",
+    ),
+    "a separation a little larger": (CONTROLLERS, "0.34", "0.36"),
+    "a separation with its multiplier": (
+        CONTROLLERS,
+        "wheel_separation: 0.34",
+        "wheel_separation: 0.2\n    wheel_separation_multiplier: 1.7",
+    ),
+    "wheels of another robot": (CONTROLLERS, "[right_wheel_joint]", "[$(var right)]"),
+    "a placeholder": (CONTROLLERS, "0.34", "$(var separation)"),
+    "a placeholder of a launch file": (NAV, "true", "TF_BROADCAST_ON"),
+    "a section for all nodes": (NAV, "amcl:", "/**:"),
+    "no limit": (CONTROLLERS, "max_velocity: 1.0", "max_velocity: .nan"),
+    "an empty list": (CONTROLLERS, "command_interfaces: [position]", "command_interfaces: []"),
+    "a number for rcl alone": (CONTROLLERS, "2.0", "2e0"),
+    "an octal number": (CONTROLLERS, "update_rate: 100", "update_rate: 0100"),
+    "a parameter of its own": (CONTROLLERS, "base_frame_id", "acme_extra"),
+    "a parameter of every node": (NAV, "scan_topic: scan", "use_sim_time: true"),
+    "quality of service": (NAV, "scan_topic: scan", "qos_overrides./tf.publisher.depth: 3"),
+    "a plugin's own parameter": (NAV, "desired_linear_vel: 0.5", "acme_velocity: 1"),
+    "a frame of another node": (NAV, "base_frame_id: base_footprint", "base_frame_id: gps_mast"),
+    "a frame at run time": (VIEW, "base_link", "map"),
+    "a frame with a slash": (VIEW, "base_link", "/base_link"),
+    "a frame of a robot": (VIEW, "base_link", "robot1/base_link"),
+    "joints of another robot": (
+        MOVEIT_LIMITS.replace("left_", "l_").replace("right_", "r_"),
+        "",
+        "",
+    ),
+    "one topic for both": (
+        ROW.replace("- ros_topic_name: scan\n  gz_topic_name", "- topic_name"),
+        "",
+        "",
+    ),
+    "a bridged service": (
+        ROW + "- service_name: /world/empty/control\n  ros_type_name: a/srv/B\n",
+        "",
+        "",
+    ),
+    "a lazy row": (ROW, "  direction: GZ_TO_ROS\n", "  lazy: true\n"),
+}
+NAMES = {CONTROLLERS: "controllers.yaml", VIEW: "view.rviz"}
+
+
+def found(text: str, folder: Path, name: str = "") -> list[str]:
+    """Codes and lines in a file of a package with the rover."""
+    (folder / "package.xml").write_text("<package><name>rover_bringup</name></package>")
+    (folder / "urdf").mkdir(exist_ok=True)
+    (folder / "urdf/rover.urdf").write_text((ROBOTS / "rover_gz.urdf").read_text())
+    file = folder / (name or "file.yaml")
+    file.write_text(text)
+    return [f"{it.code}:{it.line}" for it in lint_file(str(file), Settings())]
+
+
+@pytest.mark.parametrize("name", PLANTED)
+def test_a_planted_defect_is_found(name: str, tmp_path: Path) -> None:
+    text, old, new, expected = PLANTED[name]
+    assert old in text
+    assert found(text.replace(old, new, 1), tmp_path, NAMES.get(text, "")) == expected.split()
+
+
+@pytest.mark.parametrize("name", HEALTHY)
+def test_what_is_odd_and_healthy_is_left_alone(name: str, tmp_path: Path) -> None:
+    text, old, new = HEALTHY[name]
+    assert old in text
+    assert found(text.replace(old, new, 1) if old else text, tmp_path, NAMES.get(text, "")) == []
+
+
+def test_sources_of_a_package_say_what_its_controllers_declare(tmp_path: Path) -> None:
+    (tmp_path / "acme/src").mkdir(parents=True)
+    (tmp_path / "acme/package.xml").write_text("<package><name>acme</name></package>")
+    (tmp_path / "acme/src/drive_parameters.yaml").write_text(
+        "drive:\n  gain: {type: double, default_value: 1.0, validation: {bounds<>: [0.0, 2.0]}}\n"
+        "  __map_joints:\n    offset: {type: double}\n"
+    )
+    head = "controller_manager: {ros__parameters: {drive: {type: acme/Drive}}}\ndrive:\n"
+    file = tmp_path / "acme/config.yaml"
+    file.write_text(f"{head}  ros__parameters: {{gian: 1.0, gain: 3.0, elbow: {{offset: 1}}}}\n")
+    codes = [it.code for it in lint_file(str(file), Settings())]
+    assert codes == ["MB852", "MB851"]  # gain is said, so gian is not meant to be it
+    file.write_text(f"{head}  ros__parameters: {{gian: 1.0}}\n")
+    assert [it.code for it in lint_file(str(file), Settings())] == ["MB850"]
+
+
+def test_an_installed_nodl_document_adds_to_what_is_known(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    index = tmp_path / "install" / INDEX
+    index.mkdir(parents=True)
+    (index / "nav2_amcl__amcl").write_text(
+        "nodl_version: 2\nparameters:\n  acme_gain: {type: double}\n"
+    )
+    text = NAV.replace("scan_topic: scan", "acme_gian: 1.0")
+    assert found(text, tmp_path) == []
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path / "install"))
+    assert found(text, tmp_path) == ["MB850:7"]
+    assert found(text.replace("acme_gian: 1.0", "acme_gain: 1"), tmp_path) == ["MB851:7"]
+    (index / "nav2_amcl__amcl").write_text("parameters: [\n")
+    assert found(text, tmp_path) == []
+
+
+def test_parameters_are_those_of_the_release(tmp_path: Path) -> None:
+    """collision_monitor has ``enabled`` from Lyrical on."""
+    file = tmp_path / "nav.yaml"
+    file.write_text("collision_monitor:\n  ros__parameters: {enable: true}\n")
+    codes = {it: lint_file(str(file), Settings(distro=it)) for it in ("jazzy", "lyrical")}
+    assert [len(its) for its in codes.values()] == [0, 1]
+
+
+@pytest.mark.parametrize(
+    ("check", "arguments", "value", "expected"),
+    [
+        ("gt", "[0.0]", 0.0, "above 0.0"),
+        ("gt_eq", "[0.0]", 0.0, ""),
+        ("lt", "[1]", 1, "below 1"),
+        ("lt_eq", "[1]", 2, "at most 1"),
+        ("bounds", "[0, 1]", 1, ""),
+        ("bounds", "[0, 1]", 2, "from 0 to 1"),
+        ("control_filters::gt_eq_or_nan", "[0.0]", float("nan"), ""),
+        ("control_filters::lt_eq_or_nan", "[0.0]", 1.0, "at most 0.0"),
+        ("one_of", "[[a, b]]", "c", "one of a, b"),
+        ("one_of", "[[a, b]]", "a", ""),
+        ("subset_of", "[[a, b]]", ["a", "c"], "of a, b"),
+        ("not_empty", "[]", [], "not empty"),
+        ("fixed_size", "[6]", [1.0], "with a size of 6"),
+        ("size_gt", "[0]", ["a"], ""),
+        ("size_lt", "[2]", ["a", "b"], "with a size below 2"),
+        ("unique", "", ["a", "a"], ""),
+        ("acme::even", "[2]", 3, ""),
+    ],
+)
+def test_what_a_check_takes(check: str, arguments: str, value: object, expected: str) -> None:
+    assert beyond(check, arguments, value) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "kind"),
+    [
+        (CONTROLLERS, PARAMS),
+        (VIEW, RVIZ),
+        (ROW, BRIDGE),
+        (MOVEIT_LIMITS, MOVEIT),
+        ("arm:\n  kinematics_solver: kdl/KDL\n", MOVEIT),
+        ("image: map.pgm\nresolution: 0.05\n", ""),
+        ("on: [push]\njobs: {}\n", ""),
+        ("", ""),
+    ],
+)
+def test_files_are_told_apart_by_their_text(text: str, kind: str) -> None:
+    assert kind_of(text.encode()) == kind
+
+
+def test_controllers_of_moveit_are_those_of_the_parameters_beside_them(tmp_path: Path) -> None:
+    moveit = (
+        "moveit_simple_controller_manager:\n  controller_names: [arm]\n"
+        "  arm: {type: FollowJointTrajectory, action_ns: follow_joint_trajectory, joints: [JOINTS]}\n"
+    )
+    (tmp_path / "ros2_controllers.yaml").write_text(CONTROLLERS)
+    right = moveit.replace("JOINTS", "left_wheel_joint, right_wheel_joint")
+    assert found(right, tmp_path) == []
+    assert found(right.replace("arm", "amr"), tmp_path) == ["MB857:3"]
+    both = found(right.replace("left_wheel_joint", "elbow"), tmp_path)
+    assert sorted(both) == ["MB854:3", "MB857:3"]
+    assert found(right.replace("_trajectory,", "_trajectories,"), tmp_path) == ["MB857:3"]
+    (tmp_path / "ros2_controllers.yaml").unlink()
+    assert found(right.replace("arm", "amr"), tmp_path) == []
+
+
+def test_sizes_are_those_of_one_of_several_descriptions(tmp_path: Path) -> None:
+    (tmp_path / "urdf").mkdir()
+    wide = (ROBOTS / "rover_gz.urdf").read_text().replace("0.17 0", "0.25 0")
+    (tmp_path / "urdf/wide.urdf").write_text(wide)
+    assert found(CONTROLLERS.replace("0.34", "0.5"), tmp_path) == []
+    assert found(CONTROLLERS.replace("0.34", "0.8"), tmp_path) == ["MB856:10"]
+
+
+def test_bad_input_is_one_finding(tmp_path: Path) -> None:
+    for name, data in (
+        ("broken.yaml", b"a:\n  ros__parameters: [\n"),
+        ("other.yaml", b"image: map.pgm\n"),
+        ("letters.yaml", b"a:\n  ros__parameters: {b: \xff}\n"),
+        ("deep.yaml", b"a:\n  ros__parameters: " + b"[" * 100_000),
+    ):
+        (tmp_path / name).write_bytes(data)
+        (it,) = lint_file(str(tmp_path / name), Settings())
+        assert (it.code, it.level) == ("MB101", "error"), name
+        assert it.message
+
+
+def test_a_file_is_judged_with_the_descriptions_beside_it(tmp_path: Path) -> None:
+    found(NAV.replace("base_footprint", "base_footprnt"), tmp_path)
+    paths = [str(tmp_path / "file.yaml"), str(tmp_path / "urdf/rover.urdf")]
+    assert [it.code for it in lint_files(paths, Settings(select=("MB85",)))] == ["MB853"]
+
+
+def test_the_known_parameters_are_those_of_the_sources() -> None:
+    """After a change: python -m multibot_rewrite.lint.beside.parameter_table fixtures/interfaces"""
+    assert SHIPPED.read_text() == table(FIXTURES / "interfaces")
+
+
+def test_so_many_defects_and_oddities_were_tried() -> None:
+    assert (len(PLANTED), len(HEALTHY)) == (39, 29)

@@ -1,0 +1,308 @@
+"""Values below ``<gazebo>`` and parameters of plugins: what is found, and what is left alone.
+
+What libsdformat makes of a value was tried with libsdformat 12.3 (``sdf::Root::Load``,
+``Element::Get`` of a plugin's parameters).
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from multibot_rewrite.lint.check import lint_data
+from multibot_rewrite.lint.config.settings import Settings
+from multibot_rewrite.lint.schema.described import PLUGINS, SDF, UNITS, chunks, described
+from multibot_rewrite.lint.schema.sdf_values import misread
+
+NEW = Settings(select=("MB15", "MB16", "MB17"))
+LINK = (
+    '<link name="a"><inertial><mass value="1"/>'
+    '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>'
+    '<link name="b"/><joint name="j" type="continuous"><parent link="a"/><child link="b"/></joint>'
+)
+
+
+def codes(inside: str, distro: str = "jazzy") -> list[str]:
+    """The codes of what is found in a robot of two links and a joint."""
+    text = f'<robot name="r">{LINK}{inside}</robot>'
+    found = lint_data("r.urdf", text.encode(), NEW._replace(distro=distro))
+    return [it.code for it in found]
+
+
+def in_link(inside: str) -> str:
+    return f'<gazebo reference="a">{inside}</gazebo>'
+
+
+def sensor(type_: str, inside: str = "") -> str:
+    return in_link(f'<sensor name="s" type="{type_}">{inside}</sensor>')
+
+
+def system(library: str, class_: str, inside: str = "") -> str:
+    name = f'name="gz::sim::systems::{class_}" filename="gz-sim-{library}-system"'
+    return f"<gazebo><plugin {name}>{inside}</plugin></gazebo>"
+
+
+def classic(library: str, inside: str = "") -> str:
+    return f'<gazebo><plugin name="p" filename="lib{library}.so">{inside}</plugin></gazebo>'
+
+
+def a_plugin(name: str, library: str) -> str:
+    return f'<gazebo><plugin name="{name}" filename="{library}"/></gazebo>'
+
+
+def hardware(class_: str, inside: str = "") -> str:
+    inside = f"<hardware><plugin>{class_}</plugin>{inside}</hardware>"
+    return f'<ros2_control name="s" type="system">{inside}</ros2_control>'
+
+
+def camera(inside: str) -> str:
+    return sensor("camera", f"<camera>{inside}</camera>")
+
+
+DRIVE = ("diff-drive", "DiffDrive")
+MOTOR = ("multicopter-motor-model", "MulticopterMotorModel")
+PLANTED = {
+    "type of a sensor": (sensor("camra"), "MB152"),
+    "type in capitals": (sensor("Camera"), "MB152"),
+    "field of view in degrees": (camera("<horizontal_fov>60</horizontal_fov>"), "MB151"),
+    "image format": (camera("<image><format>R8G8B</format></image>"), "MB152"),
+    "image format of ROS": (camera("<image><format>rgb8</format></image>"), "MB152"),
+    "rate in words": (sensor("imu", "<update_rate>fast</update_rate>"), "MB150"),
+    "rate with a decimal comma": (sensor("imu", "<update_rate>0,5</update_rate>"), "MB158"),
+    "rate with a unit": (sensor("imu", "<update_rate>30 Hz</update_rate>"), "MB158"),
+    "yes for true": (sensor("imu", "<always_on>yes</always_on>"), "MB150"),
+    "1.0 for true": (sensor("imu", "<visualize>1.0</visualize>"), "MB150"),
+    "five numbers in a pose": (sensor("imu", "<pose>0 0 0 0 0</pose>"), "MB150"),
+    "two numbers in a direction": (
+        in_link('<light name="l" type="spot"><direction>1 0</direction></light>'),
+        "MB150",
+    ),
+    "a colour of 255": (
+        in_link('<light name="l" type="spot"><diffuse>255 0 0 1</diffuse></light>'),
+        "MB150",
+    ),
+    "type of a light": (in_link('<light name="l" type="spott"/>'), "MB152"),
+    "type of a noise": (camera("<noise><type>gausian</type></noise>"), "MB152"),
+    "friction in words": (in_link("<mu1>high</mu1>"), "MB150"),
+    "self collision": (in_link("<selfCollide>maybe</selfCollide>"), "MB158"),
+    "gravity off": (in_link("<gravity>off</gravity>"), "MB150"),
+    "a pixel and a half": (camera("<image><width>640.5</width></image>"), "MB158"),
+    "negative samples": (
+        sensor("ray", "<ray><scan><horizontal><samples>-5</samples></horizontal></scan></ray>"),
+        "MB158",
+    ),
+    "a negative deviation": (
+        sensor("air_pressure", '<air_pressure><pressure><noise type="gaussian">'
+               "<stddev>-1</stddev></noise></pressure></air_pressure>"),
+        "MB151",
+    ),
+    "a sensor without name": (in_link('<sensor type="imu"/>'), "MB153"),
+    "a sensor with an empty name": (in_link('<sensor name="" type="imu"/>'), "MB153"),
+    "a sensor without type": (in_link('<sensor name="s"/>'), "MB153"),
+    "updateRate": (sensor("imu", "<updateRate>9</updateRate>"), "MB154"),
+    "horizontal_fow": (camera("<horizontal_fow>1</horizontal_fow>"), "MB154"),
+    "provide_feedback of a joint": (
+        '<gazebo reference="j"><provide_feedback>true</provide_feedback></gazebo>',
+        "MB154",
+    ),
+    "max_contacts of a link": (in_link("<max_contacts>9</max_contacts>"), "MB154"),
+    "rate in the camera": (camera("<update_rate>9</update_rate>"), "MB155"),
+    "friction without reference": ("<gazebo><mu1>1</mu1></gazebo>", "MB155"),
+    "friction of a joint": ('<gazebo reference="j"><mu1>1</mu1></gazebo>', "MB155"),
+    "feedback of a link": (in_link("<provideFeedback>true</provideFeedback>"), "MB155"),
+    "a plugin without library": ('<gazebo><plugin name="p"/></gazebo>', "MB159"),
+    "a class in capitals": (system("imu", "IMU"), "MB160"),
+    "a class of another library": (system("imu", "DiffDrive"), "MB160"),
+    "a label for a class": (
+        '<gazebo><plugin name="drive" filename="gz-sim-diff-drive-system"/></gazebo>',
+        "MB160",
+    ),
+    "a library": (
+        '<gazebo><plugin name="gz::sim::systems::X" filename="gz-sim-dif-drive-system"/></gazebo>',
+        "MB161",
+    ),
+    "a library of Classic": (classic("gazebo_ros_dif_drive"), "MB161"),
+    "a class of hardware": (hardware("mock_components/GenericSytem"), "MB171"),
+    "hardware with another case": (hardware("gz_ros2_control/GazeboSimsystem"), "MB171"),
+    "a parameter": (system(*DRIVE, "<wheel_seperation>1</wheel_seperation>"), "MB162"),
+    "a parameter in camel case": (
+        classic("gazebo_ros_diff_drive", "<ros/><robotBaseFrame>a</robotBaseFrame>"),
+        "MB162",
+    ),
+    "a parameter of hardware": (
+        hardware("kortex_driver/KortexMultiInterfaceHardware", '<param name="robot_ipp">1</param>'),
+        "MB162",
+    ),
+    "Classic's parameter in gz": (system(*DRIVE, "<wheel_diameter>1</wheel_diameter>"), "MB163"),
+    "gz's parameter in Classic": (
+        classic("gazebo_ros_diff_drive", "<ros/><wheel_radius>1</wheel_radius>"),
+        "MB163",
+    ),
+    "a parameter nobody reads": (system(*DRIVE, "<use_sim_time>true</use_sim_time>"), "MB164"),
+    "no joint of a thruster": (system("thruster", "Thruster"), "MB165"),
+    "no link of p3d": (classic("gazebo_ros_p3d", "<ros/>"), "MB165"),
+    "a radius in words": (system(*DRIVE, "<wheel_radius>ten cm</wheel_radius>"), "MB166"),
+    "a radius with a comma": (system(*DRIVE, "<wheel_radius>0,1</wheel_radius>"), "MB166"),
+    "on for true": (
+        classic("gazebo_ros_diff_drive", "<ros/><publish_odom>on</publish_odom>"),
+        "MB166",
+    ),
+    "a turning direction": (
+        system("multicopter-motor-model", "MulticopterMotorModel",
+               "<turningDirection>ccww</turningDirection>"),
+        "MB167",
+    ),
+    "no radius": (system(*DRIVE, "<wheel_radius>0</wheel_radius>"), "MB169"),
+    "a negative rate": (
+        system(*DRIVE, "<odom_publish_frequency>-1</odom_publish_frequency>"),
+        "MB169",
+    ),
+    "a label above 255": (system("label", "Label", "<label>256</label>"), "MB169"),
+    "a steering limit in degrees": (
+        system("ackermann-steering", "AckermannSteering", "<steering_limit>30</steering_limit>"),
+        "MB170",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("defect", PLANTED)
+def test_a_planted_defect_is_found_by_its_rule_alone(defect: str) -> None:
+    text, code = PLANTED[defect]
+    assert codes(text) == [code]
+
+
+HEALTHY = {
+    "a type of SDF 1.6": sensor("ray"),
+    "a type of Gazebo Classic": sensor("depth"),
+    "a type with a dash of its own": sensor("custom", "<topic>dvl</topic>"),
+    "true in capitals": sensor("imu", "<always_on>TRUE</always_on>"),
+    "1 for true": sensor("imu", "<always_on>1</always_on>"),
+    "a rate of a whole number": sensor("imu", "<update_rate>30</update_rate>"),
+    "a rate with an exponent": sensor("imu", "<update_rate>3e1</update_rate>"),
+    "a rate behind a comment": sensor("imu", "<update_rate><!-- Hz -->30</update_rate>"),
+    "an empty rate": sensor("imu", "<update_rate/>"),
+    "pixels with a point": camera("<image><width>640.0</width></image>"),
+    "a pose over lines": sensor("imu", "<pose>0 0 0\n  0 0 1.57</pose>"),
+    "a pose relative to a link": sensor("imu", '<pose relative_to="b">0 0 0 0 0 0</pose>'),
+    "no pose": sensor("imu", "<pose></pose>"),
+    "a colour of three": in_link('<light name="l" type="spot"><diffuse>1 0 0</diffuse></light>'),
+    "a light in the old way": in_link('<light name="l" type="directional"/>'),
+    "an old image format": camera("<image><format>R8G8B8</format></image>"),
+    "a new image format": camera("<image><format>RGB_INT8</format></image>"),
+    "a mask of all bits": camera("<visibility_mask>-1</visibility_mask>"),
+    "kd with an exponent": in_link("<kp>1e+13</kp><kd>1.0</kd>"),
+    "a value as an attribute": in_link('<mu1 value="0.2"/>'),
+    "yes where the converter takes it": in_link("<selfCollide>yes</selfCollide>"),
+    "a material of Classic": in_link("<material>Gazebo/Blue</material>"),
+    "a material for the visual": in_link(
+        "<visual><material><ambient>1 0 0 1</ambient></material></visual>"
+    ),
+    "a frame of gz-sensors": sensor("imu", "<gz_frame_id>a</gz_frame_id>"),
+    "an element in a namespace": sensor("imu", '<gz:frame xmlns:gz="gz">a</gz:frame>'),
+    "a value that xacro fills in": sensor("imu", "<update_rate>$(arg rate)</update_rate>"),
+    "a reference that is not there": '<gazebo reference="x"><mu1>high</mu1></gazebo>',
+    "a plugin of our own": classic("our_drive", "<wheel_seperation>x</wheel_seperation>"),
+    "a plugin of our own among systems": a_plugin("our::Drive", "gz-sim-our-drive-system"),
+    "a versioned library": a_plugin("gz::sim::systems::Imu", "libgz-sim8-imu-system.so"),
+    "joints named twice": system(*DRIVE, "<left_joint>j</left_joint><left_joint>k</left_joint>"),
+    "a negative limit": system(*DRIVE, "<min_velocity>-1</min_velocity>"),
+    "a plugin of ROS 1": classic(
+        "gazebo_ros_diff_drive", "<robotNamespace>/a</robotNamespace><legacyMode>false</legacyMode>"
+    ),
+    "hardware of our own": hardware("our_driver/System", '<param name="robot_ipp">1</param>'),
+    "a parameter of a base class": hardware(
+        "husarion_ugv_hardware_interfaces/PantherSystem", '<param name="gear_ratio">30</param>'
+    ),
+    "a plugin without name in jazzy": '<gazebo><plugin filename="gz-sim-imu-system"/></gazebo>',
+    "a mode of a motor": system(*MOTOR, "<motorType>velocity</motorType>"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("oddity", HEALTHY)
+def test_a_healthy_oddity_is_left_alone(oddity: str) -> None:
+    assert codes(HEALTHY[oddity]) == []
+
+
+def test_a_name_is_required_in_humble_alone() -> None:
+    plugin = '<gazebo><plugin filename="gz-sim-imu-system"/></gazebo>'
+    assert codes(plugin, "humble") == ["MB159"]
+
+
+def test_a_release_has_its_own_elements_and_parameters() -> None:
+    frame = sensor("imu", "<frame_id>a</frame_id>")
+    assert [codes(frame, it) for it in ("humble", "jazzy", "kilted")] == [["MB157"], ["MB157"], []]
+
+
+def test_a_type_that_a_plugin_of_classic_adds_is_left_alone_in_humble() -> None:
+    assert codes(sensor("dsros_dvl"), "humble") == []
+    assert codes(sensor("dsros_dvl")) == ["MB152"]
+
+
+def test_models_of_sdf_are_read_as_well() -> None:
+    text = (
+        '<sdf version="1.9"><model name="m"><link name="l">'
+        '<sensor name="s" type="imu"><update_rate>x</update_rate></sensor></link></model></sdf>'
+    )
+    assert [it.code for it in lint_data("model.sdf", text.encode(), NEW)] == ["MB150"]
+
+
+# As libsdformat 12.3 reads them: Element::Get of the type; None is read as it stands.
+@pytest.mark.parametrize(
+    ("type_", "text", "fails"),
+    [
+        ("double", "1.5", None),
+        ("double", "abc", True),
+        ("double", "30 Hz", False),
+        ("double", "1 2", False),
+        ("double", "true", None),
+        ("double", "0x10", None),
+        ("double", ".5", None),
+        ("double", "-inf", None),
+        ("int", "1.0", None),
+        ("int", "1.5", False),
+        ("unsigned_int", "-3", False),
+        ("unsigned_int", "-1", None),
+        ("bool", "True", None),
+        ("bool", "1.0", True),
+        ("bool", "yes", True),
+        ("vector3", "1 2 3", None),
+        ("vector3", "1 2 3 4", None),
+        ("vector3", "1, 2, 3", True),
+        ("vector3", "1 2", True),
+        ("pose", "0 0 0, 0 0 0", None),
+        ("pose", "0 0 0 0 0", True),
+        ("color", "1 0 0", None),
+        ("color", "2 0 0 1", True),
+        ("string", "anything", None),
+        ("double", "", None),
+    ],
+)
+def test_a_value_is_read_as_libsdformat_reads_it(type_: str, text: str, fails: bool | None) -> None:
+    found = misread(type_, text)
+    assert (found.fails if found else None) == fails
+
+
+@pytest.mark.parametrize("file", [SDF, PLUGINS, UNITS])
+def test_every_row_has_a_source(file: str) -> None:
+    for name in chunks(file):
+        section = described(file, name)
+        assert section is not None
+        if file != UNITS:
+            assert section.about, f"{name} says not where it was read"
+        for row in (row for rows in section.rows.values() for row in rows):
+            line = row.place.rpartition(":")[2]
+            assert line.isdigit(), f"{name}/{row.name} has no line"
+            assert int(line) > 0
+
+
+def test_units_are_those_of_parameters_that_are_read() -> None:
+    for name in chunks(UNITS):
+        units, known = described(UNITS, name), described(PLUGINS, name)
+        assert units
+        assert known
+        assert set(units.rows) <= set(known.rows)
+
+
+def test_nothing_is_loaded_for_a_robot_without_gazebo() -> None:
+    chunks.cache_clear()
+    assert codes("") == []
+    assert chunks.cache_info().currsize == 0

@@ -1,0 +1,181 @@
+"""``multibot init``: from descriptions and folders to a fleet file that builds."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Mapping
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from paths import ROBOTS, ROOT
+
+from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.proposal import trying
+from multibot_rewrite.proposal.choosing import names_of, unlike
+
+ARM = """\
+<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="prefix" default=""/>
+  <xacro:arg name="title" default=""/>
+  <xacro:include filename="tool.xacro"/>
+  <link name="$(arg prefix)base_link"/>
+  <link name="$(arg prefix)hand"/>
+  <link name="$(arg title)sign"/>
+  <joint name="$(arg prefix)shoulder" type="continuous">
+    <parent link="$(arg prefix)base_link"/><child link="$(arg prefix)hand"/>
+  </joint>
+  <joint name="sign_joint" type="fixed">
+    <parent link="$(arg prefix)base_link"/><child link="$(arg title)sign"/>
+  </joint>
+</robot>
+"""
+TOOL = '<robot name="tool" xmlns:xacro="http://www.ros.org/wiki/xacro"/>'
+
+
+def init(*words: object) -> int:
+    return main(["init", *map(str, words)])
+
+
+def made(folder: Path, *words: object, code: int = 0) -> Mapping[str, Any]:
+    """The fleet file for these words, which also builds."""
+    file = folder / "fleet.yaml"
+    assert init(*words, "-o", file) == code
+    found = yaml.safe_load(file.read_text())
+    assert isinstance(found, dict)
+    if code == 0:
+        assert main(["build", str(file), "-o", str(folder / "out"), "-q"]) == 0
+    return found
+
+
+def test_two_robots_of_a_description(tmp_path: Path) -> None:
+    shutil.copy(ROBOTS / "rover.urdf", tmp_path)
+    fleet = made(tmp_path, tmp_path / "rover.urdf")
+    assert fleet["description"] == "rover.urdf"
+    assert fleet["simulator"] == "gazebo"
+    assert [it["name"] for it in fleet["robots"]] == ["robot1", "robot2"]
+    assert (tmp_path / "out" / "robot2" / "rover.urdf").exists()
+
+
+def test_so_many_robots_apart_from_each_other(tmp_path: Path) -> None:
+    shutil.copy(ROBOTS / "rover.urdf", tmp_path)
+    fleet = made(tmp_path, tmp_path, "-n", 4, "--layout", "L4", "--distro", "jazzy")
+    assert fleet["layout"] == "postfix"
+    assert fleet["distro"] == "jazzy"
+    places = [it["pose"]["y"] for it in fleet["robots"]]
+    assert len(places) == 4
+    assert all(b - a >= 0.5 for a, b in pairwise(places))
+
+
+def test_a_prefix_argument_of_a_xacro_is_used_and_no_other(tmp_path: Path) -> None:
+    """``title`` is empty and goes in front of a name, too; it is not called as a prefix is."""
+    (tmp_path / "arm.urdf.xacro").write_text(ARM)
+    (tmp_path / "tool.xacro").write_text(TOOL)
+    fleet = made(tmp_path, tmp_path)
+    assert fleet["arguments"] == {"prefix": "{robot}_"}
+    assert fleet["description"] == "arm.urdf.xacro", "what it includes is no robot of its own"
+    assert 'name="robot1_base_link"' in (tmp_path / "out/robot1/arm.urdf").read_text()
+
+
+def test_companions_and_stacks_of_a_folder(tmp_path: Path) -> None:
+    shutil.copytree(ROOT / "examples" / "namespace_and_prefix", tmp_path / "source")
+    for name in ("fleet", "joint_states", "nav2"):
+        (tmp_path / "source" / f"{name}.yaml").unlink()
+    other = tmp_path / "source" / "nav2_params_other.yaml"
+    other.write_text((tmp_path / "source" / "nav2_params.yaml").read_text())
+    fleet = made(tmp_path, tmp_path / "source")
+    assert fleet["stack"] == ["nav2"]
+    assert fleet["layout"] == "tf-per-robot"
+    names = fleet["companions"]
+    assert names["rviz"] == "source/nav2.rviz"
+    assert names["bridge"] == ["source/bridge.yaml"]
+    assert "source/nav2_params.yaml" in names["params"]
+    assert "source/nav2_params_other.yaml" not in names["params"]
+    text = (tmp_path / "fleet.yaml").read_text()
+    assert "#   source/nav2_params_other.yaml: nav2_params.yaml has parameters of" in text
+
+
+def test_ros2_control_and_a_real_robot(tmp_path: Path) -> None:
+    shutil.copy(ROBOTS / "rover_gz.urdf", tmp_path)
+    assert made(tmp_path, tmp_path)["stack"] == ["gz_ros2_control"]
+
+
+def test_different_robots_have_names_of_their_own(tmp_path: Path) -> None:
+    for name in ("rover.urdf", "two_finger_arm.urdf"):
+        shutil.copy(ROBOTS / name, tmp_path)
+    fleet = made(tmp_path, tmp_path / "rover.urdf", tmp_path / "two_finger_arm.urdf", "-n", 1)
+    robots = {it["name"]: it["description"] for it in fleet["robots"]}
+    assert robots == {"rover1": "rover.urdf", "two_finger_arm1": "two_finger_arm.urdf"}
+
+
+def test_a_layout_that_does_not_work_is_replaced(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def errors(data: Mapping[str, Any], *_: object) -> list[str]:
+        return [] if data["layout"] == "both" else ["MR102 they would meet"]
+
+    monkeypatch.setattr(trying, "errors_of", errors)
+    shutil.copy(ROBOTS / "rover.urdf", tmp_path)
+    fleet = made(tmp_path, tmp_path / "rover.urdf")
+    assert fleet["layout"] == "both"
+    why = "# Layout frames-per-robot does not work for these files: MR102 they would meet"
+    assert why in (tmp_path / "fleet.yaml").read_text()
+
+
+def test_a_real_arm_on_the_world_gets_a_world_of_its_own(tmp_path: Path) -> None:
+    world = '<robot name="r"><link name="world"/><link name="a"/><joint name="j" type="fixed">'
+    world += '<parent link="world"/><child link="a"/></joint></robot>'
+    (tmp_path / "r.urdf").write_text(world)
+    fleet = made(tmp_path, tmp_path / "r.urdf")
+    assert fleet["shared_frames"] == ["map"], "each real robot stands on a world of its own"
+
+
+def test_what_does_not_build_is_written_with_the_reason(tmp_path: Path, capsys: Any) -> None:
+    (tmp_path / "r.urdf").write_text(
+        '<robot name="r"><link name="a"/><link name="a_robot1"/></robot>'
+    )
+    made(tmp_path, tmp_path / "r.urdf", code=1)
+    said = capsys.readouterr().err
+    assert "It does not build yet" in said
+    assert "# It does not build yet" in (tmp_path / "fleet.yaml").read_text()
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["{there}"], "is there already; name another with -o"),
+        (["nowhere", "-o", "-"], "there is no such file or folder"),
+        (["{folder}/empty", "-o", "-"], "no description of a robot is there"),
+        (["{folder}/bad.urdf", "-o", "-"], "bad.urdf"),
+        (["{folder}/part.xacro", "-o", "-"], "it has no link; give the file that has the robot"),
+        (["{folder}/need.xacro", "-o", "-"], "give it as size:=VALUE"),
+        (["-n", "0"], "a fleet has at least one robot"),
+        (["--layout", "L9"], "--layout"),
+    ],
+)
+def test_mistakes_are_one_line(words: list[str], says: str, tmp_path: Path, capsys: Any) -> None:
+    (tmp_path / "empty").mkdir()
+    (tmp_path / "bad.urdf").write_text("<robot")
+    (tmp_path / "part.xacro").write_text(TOOL)
+    (tmp_path / "need.xacro").write_text(TOOL.replace("/>", '><link name="$(arg size)"/></robot>'))
+    there = tmp_path / "fleet.yaml"
+    there.write_text("mine")
+    given = [it.format(folder=tmp_path, there=ROBOTS / "rover.urdf") for it in words]
+    more = [] if "-o" in given else ["-o", str(there)]
+    try:
+        code = init(*given, *more)
+    except SystemExit as end:
+        code = int(str(end.code))
+    said = capsys.readouterr().err
+    assert code == 2
+    assert says in said
+    assert len(said.splitlines()) == 1
+    assert there.read_text() == "mine"
+
+
+def test_names_of_robots() -> None:
+    assert names_of(["rover"], 2) == [("robot1", "robot2")]
+    assert names_of(["Arm-7", "arm-7"], 1) == [("arm_1",), ("arm__1_1",)]
+    assert len(set(unlike(["a", "A", "7", "-"]))) == 4

@@ -1,0 +1,220 @@
+"""A vendor's robot as its launch files run it, against what is built for it: rows that differ."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from vendor_rows import (
+    Rows,
+    bridge_argument,
+    bridge_rows,
+    description_rows,
+    flat,
+    load,
+    parameter_rows,
+    static_edge,
+)
+from vendor_systems import Vendors, started_by
+
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.fleets.build import Outputs
+from multibot_rewrite.fleets.fleet import Fleet
+from multibot_rewrite.graph.expectation import Expectation
+from multibot_rewrite.remap.table import parsed
+from multibot_rewrite.rosnames import bind, resolve_bound
+from multibot_rewrite.rosnames.rules import RemapRule, parse_remap
+
+DESCRIPTION = "robot_description"
+BRIDGES = ("parameter_bridge", "bridge_node")
+_LINK = re.compile(r"robot/link\[[^]]*\]@name$")
+
+
+class Difference(NamedTuple):
+    """A value of which vendor and build say something else; ``reason`` is why ours is right."""
+
+    where: str
+    vendor: str
+    ours: str
+    reason: str = ""
+
+
+class Compared(NamedTuple):
+    """How many values are equal, and what differs."""
+
+    equal: int
+    differences: tuple[Difference, ...]
+
+
+class Built(NamedTuple):
+    """What is built of a recipe in a layout; ``refused`` says why nothing is."""
+
+    layout: str
+    robots: tuple[str, ...]
+    fleet: Fleet | None
+    plan: Expectation | None
+    outputs: Outputs | None
+    refused: str = ""
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """The warnings and errors of the build."""
+        found = self.outputs.findings if self.outputs else ()
+        return tuple(it for it in found if it.level != "note")
+
+
+def compare(built: Built, robot: str, rows: list[dict[str, Any]], vendors: Vendors) -> Compared:
+    """A robot by its vendor's launch files, and as it is built."""
+    theirs: Rows = {}
+    ours: Rows = {}
+    managers = {it["namespace"]: it for it in rows if it["executable"] == "ros2_control_node"}
+    for row in rows:
+        for node in started_by(row, vendors.named):
+            # Releases in which controllers do not get the rules of their manager are not among these.
+            manager = managers.get(node.name.rpartition("/")[0], {})
+            source = manager if row["executable"] == "spawner" else row
+            if source:
+                _node(built, robot, source, node.name, theirs, ours)
+    theirs |= {f"node {it}": "runs" for it in _names(rows, vendors)}
+    ours |= {f"node {it}": "runs" for it in _planned(built, robot, theirs)}
+    same = [it for it in theirs if theirs[it] == ours.get(it)]
+    places = [it for it in dict.fromkeys([*theirs, *ours]) if theirs.get(it) != ours.get(it)]
+    return Compared(
+        len(same), tuple(Difference(it, theirs.get(it, "-"), ours.get(it, "-")) for it in places)
+    )
+
+
+def _planned(built: Built, robot: str, theirs: Rows) -> list[str]:
+    """The nodes of a robot that have to run by the plan, and those that may and do."""
+    found = next(it for it in built.plan.robots if it.name == robot) if built.plan else None
+    nodes = found.nodes if found else ()
+    optional = found.optional if found else ()
+    return [it for it in nodes if it not in optional or f"node {it}" in theirs]
+
+
+def _names(rows: list[dict[str, Any]], vendors: Vendors) -> Iterator[str]:
+    for row in rows:
+        yield from (it.name for it in started_by(row, vendors.named))
+
+
+def _node(
+    built: Built, robot: str, row: dict[str, Any], name: str, theirs: Rows, ours: Rows
+) -> None:
+    """Put what vendor and build say of a node into their rows."""
+    files = files_of(built, robot)
+    values = row.get("values", [])
+    inline = parameter_rows([it["text"] for it in values if not it["file"]], name)
+    given = parameter_rows([it["text"] for it in values if it["file"]], name)
+    mine = parameter_rows([it for path, it in files.items() if path.endswith(".yaml")], name)
+    theirs |= {f"{name} parameter {at}": it for at, it in given.items()}
+    ours |= {f"{name} parameter {at}": mine[at] for at in given if at in mine}
+    urdf = next((it for path, it in files.items() if path.endswith(".urdf")), "")
+    # A dock or another thing may have a robot_state_publisher, too.
+    if urdf and DESCRIPTION in inline and _same_robot(inline[DESCRIPTION], urdf):
+        prefix = inline.get("frame_prefix", "").lstrip("/")
+        theirs |= _put("description", description_rows(inline[DESCRIPTION], robot, prefix))
+        later = built.layout == "frame-prefix"
+        ours |= _put("description", description_rows(urdf, robot, prefix if later else ""))
+    if row["executable"] not in BRIDGES:
+        _topics(built, row, name, theirs, ours)
+    _special(row, name, files, built, theirs, ours)
+
+
+def _same_robot(one: str, other: str) -> bool:
+    counts = [sum(bool(_LINK.match(at)) for at in description_rows(it, "")) for it in (one, other)]
+    return counts[0] == counts[1]
+
+
+def _put(word: str, rows: Rows) -> Rows:
+    return {f"{word} {at}": it for at, it in rows.items()}
+
+
+def files_of(built: Built, robot: str) -> dict[str, str]:
+    """The texts of what is built for a robot, by their paths in its folder."""
+    files = built.outputs.files if built.outputs else ()
+    mine = (it for it in files if it.path.startswith(f"{robot}/"))
+    return {it.path.partition("/")[2]: it.data.decode() for it in mine}
+
+
+def _topics(built: Built, row: dict[str, Any], name: str, theirs: Rows, ours: Rows) -> None:
+    """Where the names of a node lead by the vendor's rules, and by those of the table."""
+    nodes = built.fleet.table.nodes if built.fleet else ()
+    table = next((it for it in nodes if it.full_name == name), None)
+    if table is None or built.fleet is None:
+        return
+    facts = next((it for it in built.fleet.facts if it.name == table.node), None)
+    vendor = bind(table.name, table.namespace, rules_of(row))
+    own = bind(table.name, table.namespace, parsed(table.rules))
+    for it in facts.endpoints if facts else ():
+        if "<" not in it.name and not it.helper:
+            kind = "service" if it.kind == "service" else "topic"
+            at = f"{name} {it.kind} {it.name}"
+            theirs[at] = resolve_bound(it.name, kind, vendor)
+            ours[at] = resolve_bound(it.name, kind, own)
+
+
+def rules_of(row: dict[str, Any]) -> list[RemapRule]:
+    """The remap rules of a program."""
+    found = (parse_remap(f"{old}:={new}") for old, new in row["rules"])
+    return [it for it in found if it is not None]
+
+
+def _special(
+    row: dict[str, Any],
+    name: str,
+    files: Mapping[str, str],
+    built: Built,
+    theirs: Rows,
+    ours: Rows,
+) -> None:
+    """Bridges, RViz and static transforms."""
+    program = row["executable"]
+    if program == "static_transform_publisher":
+        theirs[f"{name} sends"] = static_edge(row["own"])
+        ours[f"{name} sends"] = dict(built.plan.sends).get(name, "-") if built.plan else "-"
+    if program == "rviz2":
+        vendor = next((it for it in row.get("texts", {}).values()), "")
+        mine = next((it for path, it in files.items() if path.endswith(".rviz")), "")
+        theirs |= {f"{name} rviz {at}": it for at, it in flat(load(vendor) or {}, "")}
+        ours |= {f"{name} rviz {at}": it for at, it in flat(load(mine) or {}, "")}
+    if program in BRIDGES:
+        _bridge(row, name, files, theirs, ours)
+        _bridge_arguments(row, name, built, theirs, ours)
+
+
+def _bridge(
+    row: dict[str, Any], name: str, files: Mapping[str, str], theirs: Rows, ours: Rows
+) -> None:
+    namespace, _, node = name.rpartition("/")
+    bound = bind(node, namespace or "/", rules_of(row))
+    given = parameter_rows([it["text"] for it in row["values"]], name)
+    pairs = [*bridge_rows(Path(given["config_file"]).read_text())] if "config_file" in given else []
+    # The bridge expands the names in the simulator, too, if it is told (parameter_bridge.cpp).
+    above = f"{namespace}/" if given.get("expand_gz_topic_names") == "True" else ""
+    for topic, what in pairs:
+        theirs[f"bridge {resolve_bound(topic, 'topic', bound)}"] = _gz(what, above)
+    here = bind("bridge", namespace or "/", [])
+    for text in (it for path, it in files.items() if "bridge" in path):
+        for topic, what in bridge_rows(text):
+            ours[f"bridge {resolve_bound(topic, 'topic', here)}"] = _gz(what, "")
+
+
+def _bridge_arguments(
+    row: dict[str, Any], name: str, built: Built, theirs: Rows, ours: Rows
+) -> None:
+    """The ROS side of what a bridge is told by arguments: the launch file of the vendor runs it."""
+    namespace, _, node = name.rpartition("/")
+    bound = bind(node, namespace or "/", rules_of(row))
+    ends = built.plan.endpoints if built.plan else ()
+    mine = {it.name for it in ends if it.node == name}
+    for topic, _ in (it for it in map(bridge_argument, row["own"]) if it):
+        full = resolve_bound(topic, "topic", bound)
+        theirs[f"{name} bridges {full}"] = "known"
+        ours[f"{name} bridges {full}"] = "known" if full in mine else "-"
+
+
+def _gz(what: str, above: str) -> str:
+    """What a bridge passes on, with the slash that Gazebo puts before a topic."""
+    return what if what.startswith("/") else f"{above or '/'}{what}"

@@ -1,0 +1,142 @@
+"""The pages of vendors' robots, docs/robots/.
+
+    python tests/support/vendor_pages.py [ROBOT ...]      print the pages
+    python tests/support/vendor_pages.py --write          write all of them
+
+MULTIBOT_SOURCES as in ``vendor_systems.py``. Needs launch and launch_ros.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from vendor_compare import Built, Difference
+from vendor_recipes import ROBOTS, Outcome, Recipe, false_findings, outcome, read_recipes
+from vendor_sources import WITHOUT, sources_folder
+from vendor_systems import read_vendors
+
+PAGES = Path(__file__).parent.parent.parent / "docs" / "robots"
+_WIDE = 60
+MADE = "Made by `MULTIBOT_SOURCES=FOLDER python tests/support/vendor_pages.py --write`."
+COMMANDS = """\
+In a workspace that has the vendor's packages:
+
+    multibot build fleet.yaml -o fleet/
+    multibot rehearse fleet.yaml
+    multibot check fleet/plan.yaml"""
+HEAD = f"""\
+# Vendors' robots as they ship
+
+{MADE} Each robot is built from its vendor's own files, in the vendor's
+layout and one other, with two robots and with three. Its first two are compared with what the vendor's
+own launch files and generators make of two robots: descriptions, parameters, names of nodes, where
+topics, services and actions lead, bridges, RViz and static transforms. *Better* is a difference that
+the page of the robot gives a reason for, *wrong* any other. *False* are warnings and errors of the
+build that are not true of the vendor's files. Which nodes are known is in [vendors](../vendors.md).
+
+| robot | vendor's layout | 2 | 3 | other layout | 2 | 3 | equal | better | wrong |
+|---|---|---|---|---|---|---|--:|--:|--:|\
+"""
+
+
+def page(found: Outcome, revisions: Mapping[str, str], uses: list[str]) -> str:
+    """The page of a robot."""
+    it = found.recipe
+    lines = [f"# {it.title}", "", MADE, "", it.about.strip(), "", "## The fleet file", ""]
+    lines += ["```yaml", plain_paths(found.text).rstrip(), "```", "", COMMANDS, ""]
+    lines += ["Sources: " + ", ".join(revisions[use] for use in uses) + ".", ""]
+    lines += ["## Against the vendor's two robots", "", verdict(found), ""]
+    lines += [*_reasons(found), *_findings(found)]
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def plain_paths(text: str) -> str:
+    """A fleet file with paths as a user has them."""
+    return text.replace("{sources}/", "src/").replace("{work}/", "")
+
+
+def verdict(found: Outcome) -> str:
+    """The figures of a comparison in a line."""
+    better = [it for it in found.compared.differences if it.reason]
+    wrong = [it for it in found.compared.differences if not it.reason]
+    return f"{found.compared.equal} values are equal, {len(better)} better, {len(wrong)} wrong."
+
+
+def _reasons(found: Outcome) -> Iterator[str]:
+    alike: dict[str, list[Difference]] = {}
+    for it in found.compared.differences:
+        if ROBOTS[1] not in it.where or it.reason:
+            alike.setdefault(it.reason, []).append(it)
+    yield from (
+        ("| where | vendor | here | values | why |", "|---|---|---|--:|---|") if alike else ()
+    )
+    for reason, rows in alike.items():
+        first = rows[0]
+        shown = [f"`{_short(it)}`" for it in first[:3]]
+        yield f"| {' | '.join(shown)} | {len(rows)} | {reason or '**wrong**'} |"
+    yield ""
+
+
+def _short(text: str) -> str:
+    text = text.replace("|", "/")
+    return text if len(text) <= _WIDE else f"{text[: _WIDE // 2]}...{text[-_WIDE // 2 :]}"
+
+
+def _findings(found: Outcome) -> Iterator[str]:
+    said = {
+        rule["code"]: rule["reason"]
+        for rule in found.recipe.right
+        if any(it.code == rule["code"] for built in found.built for it in built.findings)
+    }
+    yield from ("## What the build says of the vendor's files, and is right", "") if said else ()
+    yield from (f"- {code}: {reason}" for code, reason in said.items())
+
+
+def readme(found: Mapping[str, Outcome]) -> str:
+    """The table of all robots."""
+    return "\n".join([HEAD, *(_row(name, it) for name, it in found.items()), ""])
+
+
+def _row(name: str, it: Outcome) -> str:
+    better = sum(bool(row.reason) for row in it.compared.differences)
+    wrong = len(it.compared.differences) - better
+    builds = [_built(it.recipe, one) for one in it.built]
+    vendor, other = it.recipe.layouts
+    cells = [f"[{it.recipe.title}]({name}.md)", vendor, builds[0], builds[1], other, *builds[2:]]
+    return f"| {' | '.join(map(str, [*cells, it.compared.equal, better, wrong]))} |"
+
+
+def _built(recipe: Recipe, it: Built) -> str:
+    if it.refused:
+        return "refused"
+    false = len(false_findings(recipe, it))
+    return f"yes, {false} false" if false else "yes"
+
+
+def main(words: list[str]) -> int:
+    """Print the pages of some robots, or write those of all."""
+    folder = sources_folder()
+    if folder is None:
+        print(WITHOUT, file=sys.stderr)
+        return 2
+    vendors, recipes = read_vendors(), read_recipes()
+    names = [it for it in words if not it.startswith("--")] or list(recipes)
+    found = {it: outcome(recipes[it], vendors, folder) for it in names}
+    pages = {
+        name: page(it, vendors.sources, vendors.systems[it.recipe.system]["uses"])
+        for name, it in found.items()
+    }
+    pages |= {"README": readme(found)}
+    for name, text in pages.items():
+        if "--write" in words:
+            PAGES.mkdir(exist_ok=True)
+            (PAGES / f"{name}.md").write_text(text)
+        else:
+            print(text)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,76 @@
+"""The page in a real browser: it draws, and a click tells what a name was."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from paths import ROBOTS
+from selenium import webdriver
+from selenium.webdriver.common.by import By
+from selenium.webdriver.support.select import Select
+from selenium.webdriver.support.wait import WebDriverWait
+
+from multibot_rewrite.cli.multibot import main
+
+BROWSER = shutil.which("chromium") or shutil.which("google-chrome")
+DRIVER = shutil.which("chromedriver")
+pytestmark = [
+    pytest.mark.live,
+    pytest.mark.skipif(not (BROWSER and DRIVER), reason="no chromium and chromedriver on the PATH"),
+]
+FLAGS = ("--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader")
+# How many colours the picture has: an empty stage has one.
+COLOURS = """
+draw();
+const gl = renderer.getContext(), size = 4 * gl.drawingBufferWidth * gl.drawingBufferHeight;
+const data = new Uint8Array(size), seen = new Set();
+gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, data);
+for (let at = 0; at < size; at += 4) seen.add(data.slice(at, at + 4).join());
+return seen.size;
+"""
+
+
+@pytest.fixture
+def chromium(tmp_path: Path) -> Iterator[webdriver.Chrome]:
+    options = webdriver.ChromeOptions()
+    options.binary_location = str(BROWSER)
+    for flag in (*FLAGS, "--enable-unsafe-swiftshader", "--window-size=1200,800"):
+        options.add_argument(flag)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    made = webdriver.Chrome(options, webdriver.ChromeService(str(DRIVER)))
+    yield made
+    made.quit()
+
+
+def test_the_page_draws_and_tells(chromium: webdriver.Chrome, tmp_path: Path) -> None:
+    out = tmp_path / "view.html"
+    words = [str(ROBOTS / "rover.urdf"), "robot1", "robot2"]
+    assert main(["view", *words, "-o", str(out), "-q"]) == 0
+    chromium.get(out.as_uri())
+    WebDriverWait(chromium, 30).until(
+        lambda it: it.find_element(By.TAG_NAME, "body").get_attribute("data-ready")
+    )
+    assert chromium.execute_script(COLOURS) > 20
+    chromium.find_element(By.ID, "robot1 link base_link/robot1").click()
+    about = chromium.find_element(By.ID, "about").text
+    assert "base_link/robot1" in about
+    assert "rover.urdf:" in about
+    Select(chromium.find_element(By.ID, "right")).select_by_visible_text(
+        "robot1 before the rewrite"
+    )
+    assert chromium.execute_script(COLOURS) > 20
+    before = chromium.execute_script(
+        "return data.robots[0].built[0].moving['left_wheel_joint_robot1'].turn.quaternion.y"
+    )
+    chromium.execute_script(
+        "const it = document.querySelector('#about input'); it.value = 1;"
+        "it.dispatchEvent(new Event('input'))"
+    )
+    after = chromium.execute_script(
+        "return data.robots[0].built[0].moving['left_wheel_joint_robot1'].turn.quaternion.y"
+    )
+    assert before != after
+    assert [it for it in chromium.get_log("browser") if it["level"] == "SEVERE"] == []
