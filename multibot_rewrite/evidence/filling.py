@@ -17,6 +17,9 @@ from multibot_rewrite.rosnames import check_topic_name
 _ID = re.compile(r"<([a-z_ ]+)>")
 # What stands for a number in the name of a parameter: odomN is odom0, odom1 and so on.
 _NUMBER = "N"
+# A type that a list has behind the name is called list/msg/Type and so on.
+OF_LIST = "list/"
+_TYPE = re.compile(r"/(?:msg|srv|action)/")
 Ids = Mapping[str, str]
 
 
@@ -82,8 +85,9 @@ def _endpoint(node: NodeFacts, raw: Endpoint, values: Mapping[str, Given]) -> It
             decided = bool(binding or bound.condition)
             named = bound._replace(when="" if decided else bound.when)
             typed = _typed(named, lookup(node, values))
-            words = [ids[it] for it in _ID.findall(raw.name) if it in ids]
-            listed = values.get(_put(words[-1], binding)) if words else None
+            words = [it for it in _ID.findall(raw.name) if it in ids]
+            listed = values.get(_put(ids[words[-1]], binding)) if words else None
+            typed = _listed_type(typed, listed, binding[words[-1]] if words else "")
             for it in _named(typed, values, _ending(node, raw)):
                 yield _checked(it, listed)
 
@@ -151,7 +155,20 @@ def _words(given: Given | None) -> list[str]:
     if given is None:
         return []
     value = given.value
-    return [str(it) for it in value] if isinstance(value, list) else str(value).split()
+    words = [str(it) for it in value] if isinstance(value, list) else str(value).split()
+    return [it for it in words if not _TYPE.search(it)]
+
+
+def _listed_type(endpoint: Endpoint, listed: Given | None, word: str) -> Endpoint:
+    """The endpoint with the type that stands behind its word in a list of names and types."""
+    if (
+        not endpoint.type.startswith(OF_LIST)
+        or listed is None
+        or not isinstance(listed.value, list)
+    ):
+        return endpoint
+    behind = [str(it) for it in listed.value][[str(it) for it in listed.value].index(word) + 1 :]
+    return endpoint._replace(type=next(filter(_TYPE.search, behind[:1]), ""))
 
 
 def _put(text: str, binding: Ids) -> str:

@@ -55,9 +55,10 @@ class BridgeFile(NamedTuple):
 
 
 def rewrite_bridge(
-    document: YamlText, context: Context, known: Mapping[str, str] = NOTHING
+    document: YamlText, context: Context, known: Mapping[str, str] = NOTHING, above: str = ""
 ) -> BridgeFile:
-    """Find what each robot needs for itself; ``known`` is ``fleet_topics`` of the namespace slot.
+    """Find what each robot needs for itself; ``known`` is ``fleet_topics`` of the namespace slot,
+    ``above`` the namespace in the robot's that the file is for.
 
     Names come out in full, so it makes no difference which namespace the bridge runs in, whether it
     expands gz names, and whether one bridge carries all robots. Raises InputError for a file that
@@ -65,7 +66,7 @@ def rewrite_bridge(
     """
     _refuse(document)
     findings: list[Finding] = []
-    entries = _entries(document, context, known, findings)
+    entries = _entries(document, context, known, above, findings)
     own = [it for it in entries if it.own]
     shared = [it for it in entries if not it.own]
     splices = [splice for it in own for splice in _splices(document, it, context)]
@@ -79,7 +80,11 @@ def rewrite_bridge(
 
 
 def _entries(
-    document: YamlText, context: Context, known: Mapping[str, str], findings: list[Finding]
+    document: YamlText,
+    context: Context,
+    known: Mapping[str, str],
+    above: str,
+    findings: list[Finding],
 ) -> list[BridgeEntry]:
     """The entries that the bridge loads; what is wrong with others goes to ``findings``."""
     model = model_of(document)
@@ -91,7 +96,7 @@ def _entries(
         if faults:
             findings += faults
             continue
-        found.append(_entry(node, block, context, model, known))
+        found.append(_entry(node, block, context, model, known, above))
         findings += entry_findings(document, found[-1], context)
     return found
 
@@ -112,12 +117,18 @@ def _refuse(document: YamlText) -> None:
 
 
 def _entry(
-    node: yaml.MappingNode, block: Block, context: Context, model: str, known: Mapping[str, str]
+    node: yaml.MappingNode,
+    block: Block,
+    context: Context,
+    model: str,
+    known: Mapping[str, str],
+    above: str,
 ) -> BridgeEntry:
     both = text_of(node, BOTH)
     ros = both or text_of(node, ROS) or text_of(node, GZ)
     gz = both or text_of(node, GZ) or text_of(node, ROS)
     bare_ros, bare_gz = (without_robot(name, "/") for name in (ros, gz))
+    bare_ros = below(bare_ros, above)
     found = GZ_MODEL.fullmatch(bare_gz)
     another = found and found["model"] != model and not PLACEHOLDER.search(found["model"])
     if text_of(node, SERVICE) or another:
@@ -128,6 +139,11 @@ def _entry(
     if own:
         new_gz, new_ros = _in_full(new_gz), _in_full(new_ros)
     return BridgeEntry(node, block, bare_ros, bare_gz, new_ros, new_gz, own)
+
+
+def below(name: str, above: str) -> str:
+    """A ROS name of a bridge that runs in a namespace below the robot's."""
+    return f"/{above}/{name}" if above and not name.startswith("/") else name
 
 
 def _in_full(name: str) -> str:

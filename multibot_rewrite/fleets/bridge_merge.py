@@ -21,7 +21,7 @@ from multibot_rewrite.remap.bridged_topics import BridgedTopic, as_yaml
 # Topics that several gz topics may come out on.
 TF = frozenset({"/tf", "/tf_static"})
 # What gz-transport takes in a topic (gz-transport TopicUtils).
-_GZ_WORD = re.compile(r"[A-Za-z0-9_.-]+")
+_GZ_WORD = re.compile(r"[A-Za-z0-9_.-]+(?:/[A-Za-z0-9_.-]+)*")
 
 
 def fill_bridge(template: FileTemplate, namespace: str, tag: str, model: str) -> str:

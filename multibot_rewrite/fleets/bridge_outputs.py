@@ -54,7 +54,9 @@ def bridge_outputs(plan: FleetPlan) -> FilesAndFindings:
 
 def _read(group: RobotGroup) -> GroupBridges:
     paths = group.companions.get("bridge", ())
-    return GroupBridges(group, {it: rewrite_bridge(yaml_of(it), group.context) for it in paths})
+    above = group.robots[0].spec.bridge_namespace
+    made = {it: rewrite_bridge(yaml_of(it), group.context, above=above) for it in paths}
+    return GroupBridges(group, made)
 
 
 def _for_robot(

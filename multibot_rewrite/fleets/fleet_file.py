@@ -50,7 +50,8 @@ class RobotSpec(NamedTuple):
     is its line in ``file``. ``filled`` are texts of parameter files in which a launch replaces
     something, by path. ``simulator`` is ``REAL``, or what the robot runs in; empty if nothing says so.
     ``use_sim_time`` is what all its nodes have, None if the file does not say. ``simulated`` is the
-    model that the simulator gets, empty where that is the description.
+    model that the simulator gets, empty where that is the description. ``bridge_namespace`` is the one
+    below its own that its bridge files are for.
     """
 
     name: str
@@ -71,6 +72,7 @@ class RobotSpec(NamedTuple):
     simulator: str = ""
     use_sim_time: bool | None = None
     simulated: str = ""
+    bridge_namespace: str = ""
 
     @property
     def words(self) -> tuple[str, str, str]:
@@ -213,6 +215,7 @@ def _robot(read: FleetData, naming: Naming, at: int, release: str) -> RobotSpec:
         simulator=own.get("simulator", data.get("simulator", "")),
         use_sim_time=own.get("use_sim_time", data.get("use_sim_time")),
         simulated=_simulated(data, own),
+        bridge_namespace=own.get("bridge_namespace", data.get("bridge_namespace", "")).strip("/"),
     )
 
 

@@ -33,7 +33,8 @@ def group_robots(plan: FleetPlan) -> Iterator[RobotGroup]:
     for robot in plan.robots:
         spec = robot.spec
         files = tuple(spec.companions.items())
-        key = spec.sources, spec.stacks, spec.launch, spec.simulator, files, spec.use_sim_time
+        said = spec.use_sim_time, spec.bridge_namespace
+        key = spec.sources, spec.stacks, spec.launch, spec.simulator, files, said
         groups.setdefault(key, []).append(robot)
     for robots in groups.values():
         spec = robots[0].spec

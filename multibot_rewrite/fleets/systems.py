@@ -15,6 +15,7 @@ from multibot_rewrite.evidence.hardware import Exported, exported
 from multibot_rewrite.evidence.nodes import children_of
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import GivenNode, Place
+from multibot_rewrite.fleets.bridge_file import below
 from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.fleets.fleet_file import REAL
 from multibot_rewrite.fleets.member import without_simulator
@@ -61,7 +62,7 @@ def system_before(robot: RewrittenRobot, evidence: RobotEvidence) -> System:
     ends = [
         *(end for node in nodes if not node.shared for end in _ends_of(node, given)),
         *(end for node in reading.nodes for end in _plugin_ends(node)),
-        *(end for it in bridges for end in bridge_ends(it)),
+        *(end for it in bridges for end in bridge_ends(it, robot.spec.bridge_namespace)),
     ]
     sent = {child for node in nodes for child in children_of(node)}
     sent |= {it.name for it in reading.names if it.kind == FRAME and it.tag == "plugin"}
@@ -193,8 +194,8 @@ def _plugin_ends(node: ReadNode) -> Iterator[End]:
         yield End(node.full_name, *own, None, not it.off)
 
 
-def bridge_ends(document: YamlText) -> Iterator[End]:
-    """The ROS ends of the rows of a ros_gz_bridge file."""
+def bridge_ends(document: YamlText, above: str = "") -> Iterator[End]:
+    """The ROS ends of the rows of a ros_gz_bridge file that runs in the namespace ``above``."""
     for row in items(document.root):
         values = {key.value: value for key, value in pairs(row)}
         name = values.get(ROS) or values.get(BOTH)
@@ -202,7 +203,7 @@ def bridge_ends(document: YamlText) -> Iterator[End]:
             continue
         words = {key: str(value.value) for key, value in values.items()}
         place = Place(document.file, line_of(name))
-        full = f"/{str(name.value).lstrip('/')}"
+        full = f"/{below(str(name.value), above).lstrip('/')}"
         for role in ROLES.get(words.get("direction", "BIDIRECTIONAL"), ("",)):
             type_ = words.get("ros_type_name", "")
             yield End(f"/{BRIDGE_NODE}", TOPIC, role, full, type_, full, BRIDGE_NODE, place)

@@ -13,6 +13,7 @@ from multibot_rewrite.companions.bridge_entry import BOTH, GZ, ROS
 from multibot_rewrite.companions.names.robot_topics import robot_topic
 from multibot_rewrite.companions.rviz.read_config import text_of
 from multibot_rewrite.companions.yaml_text import items
+from multibot_rewrite.fleets.bridge_file import below
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.output_file import yaml_of
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
@@ -99,7 +100,10 @@ def _bridged(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, str]
         for entry in items(root) if root is not None else ():
             ros = text_of(entry, BOTH) or text_of(entry, ROS) or text_of(entry, GZ)
             if text_of(entry, "direction") == TO_GZ and ros:
-                yield robot_topic(robot.topics, ros), text_of(entry, "ros_type_name")
+                yield (
+                    robot_topic(robot.topics, below(ros, robot.spec.bridge_namespace)),
+                    text_of(entry, "ros_type_name"),
+                )
     own = {robot.spec.namespace: plan.fleet.inventories[robot.spec.namespace]}
     made, _ = bridged_topics(own, plan.fleet.naming)
     yield from ((it.ros, it.ros_type) for it in made if it.direction == TO_GZ)

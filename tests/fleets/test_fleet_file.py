@@ -227,7 +227,7 @@ BAD: dict[str, tuple[str, ...]] = {
         "robots:\n  - {name: a, namespace: b/1}\n",
         "2: robots[0].namespace: 'b/1' is not valid; write words of letters",
     ),
-    "model-slash": ("robots:\n  - {name: a, model: a/b}\n", "2: robots[0].model: 'a/b' is not"),
+    "model-slash": ("robots:\n  - {name: a, model: a//b}\n", "2: robots[0].model: 'a//b' is not"),
     "model-date": (
         "robots:\n  - {name: a, model: 2020-01-01}\n",
         "2: robots[0].model: datetime.date(2020, 1, 1) is not valid; write it in quotes",

@@ -103,6 +103,15 @@ def test_a_row_has_the_newest_tag_and_the_releases_that_read_it(tmp_path: Path) 
     assert older == "old integer Drive.cc:2 ignition-gazebo6_6.1.0 releases=humble"
 
 
+def test_what_some_tags_need_is_not_required(tmp_path: Path) -> None:
+    asked = 'if (!_sdf->HasElement("x")) { gzerr << "no"; return; }'
+    needs = checkout(tmp_path / "a", "gz-sim8_8.1.0", asked)
+    reads = checkout(tmp_path / "b", "gz-sim9_9.1.0", '_sdf->Get<int>("x");')
+    again = checkout(tmp_path / "c", "gz-sim9_9.2.0", asked)
+    assert plugin_files.to_schema([needs, reads]).rstrip().endswith("x integer Drive.cc:2")
+    assert plugin_files.to_schema([needs, again]).rstrip().endswith("x any Drive.cc:2 required")
+
+
 def test_hardware_and_what_it_needs(tmp_path: Path) -> None:
     package = tmp_path / "arm"
     package.mkdir()

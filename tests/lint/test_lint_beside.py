@@ -336,6 +336,20 @@ def test_sizes_are_those_of_one_of_several_descriptions(tmp_path: Path) -> None:
     assert found(CONTROLLERS.replace("0.34", "0.8"), tmp_path) == ["MB856:10"]
 
 
+def test_a_comment_at_the_end_of_the_line_silences_its_codes(tmp_path: Path) -> None:
+    text = CONTROLLERS.replace("0.07", "-0.07")
+    for comment, expected in (
+        ("", ["MB851:10", "MB852:11"]),
+        ("# urdf-lint: ignore MB851 - why", ["MB852:11"]),
+        ("# urdf-lint: ignore MB850, MB851", ["MB852:11"]),
+        ("# urdf-lint: ignore MB852", ["MB851:10", "MB852:11"]),
+        ("# ignore MB851", ["MB851:10", "MB852:11"]),
+    ):
+        assert (
+            found(text.replace("0.34", f"1 {comment}"), tmp_path, NAMES[CONTROLLERS]) == expected
+        ), comment
+
+
 def test_bad_input_is_one_finding(tmp_path: Path) -> None:
     for name, data in (
         ("broken.yaml", b"a:\n  ros__parameters: [\n"),

@@ -110,6 +110,11 @@ PLANTED = {
     "friction of a joint": ('<gazebo reference="j"><mu1>1</mu1></gazebo>', "MB155"),
     "feedback of a link": (in_link("<provideFeedback>true</provideFeedback>"), "MB155"),
     "a plugin without library": ('<gazebo><plugin name="p"/></gazebo>', "MB159"),
+    "a scan in degrees": (
+        sensor("ray", "<ray><scan><horizontal><max_angle>180</max_angle></horizontal></scan></ray>"),
+        "MB173",
+    ),
+    "a pose in degrees": (sensor("imu", "<pose>0 0 0 0 0 -90</pose>"), "MB173"),
     "a class in capitals": (system("imu", "IMU"), "MB160"),
     "a class of another library": (system("imu", "DiffDrive"), "MB160"),
     "a label for a class": (
@@ -126,6 +131,10 @@ PLANTED = {
     "a parameter": (system(*DRIVE, "<wheel_seperation>1</wheel_seperation>"), "MB162"),
     "a parameter in camel case": (
         classic("gazebo_ros_diff_drive", "<ros/><robotBaseFrame>a</robotBaseFrame>"),
+        "MB162",
+    ),
+    "a parameter of a sensor's plugin": (
+        sensor("ray", classic("gazebo_ros_ray_sensor", "<ros/><output_typ>a</output_typ>")[8:-9]),
         "MB162",
     ),
     "a parameter of hardware": (
@@ -183,6 +192,10 @@ HEALTHY = {
     "pixels with a point": camera("<image><width>640.0</width></image>"),
     "a pose over lines": sensor("imu", "<pose>0 0 0\n  0 0 1.57</pose>"),
     "a pose relative to a link": sensor("imu", '<pose relative_to="b">0 0 0 0 0 0</pose>'),
+    "a pose that says degrees": sensor("imu", '<pose degrees="true">0 0 0 0 0 90</pose>'),
+    "a quaternion": sensor("imu", '<pose rotation_format="quat_xyzw">0 0 0 0 0 0 1</pose>'),
+    "a pose far away": sensor("imu", "<pose>100 0 0 0 0 0</pose>"),
+    "a whole turn": camera("<horizontal_fov>6.283186</horizontal_fov>"),
     "no pose": sensor("imu", "<pose></pose>"),
     "a colour of three": in_link('<light name="l" type="spot"><diffuse>1 0 0</diffuse></light>'),
     "a light in the old way": in_link('<light name="l" type="directional"/>'),
@@ -257,6 +270,9 @@ def test_models_of_sdf_are_read_as_well() -> None:
         ("double", "0x10", None),
         ("double", ".5", None),
         ("double", "-inf", None),
+        ("double", "1e999", True),
+        ("double", "\uff11", True),
+        ("int", "9" * 30, True),
         ("int", "1.0", None),
         ("int", "1.5", False),
         ("unsigned_int", "-3", False),

@@ -21,6 +21,8 @@ from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphNode, Snapshot
 from multibot_rewrite.remap.records import NodeRule, NodeTable
 
 TF = ("/tf", "/tf_static")
+_EKF = "robot_localization/ekf_node"
+_TWIST = "geometry_msgs/msg/Twist"
 
 
 def findings(found: Outcome, release: str, kinds: Mapping[str, str]) -> tuple[Finding, ...]:
@@ -36,12 +38,23 @@ def findings(found: Outcome, release: str, kinds: Mapping[str, str]) -> tuple[Fi
         kind = kind_of(it, short, release, kinds)
         if kind and short in known:
             declared.add(it.name)
-            ends += endpoints(
-                kind, known[short], placed(it, short, rules.get(it.name, ())), release
-            )
+            table = placed(it, short, rules.get(it.name, ()))
+            ends += _as_set(it, endpoints(kind, known[short], table, release))
     owners = dict.fromkeys([*nodes, *(it.node for it in ends)])
     seen = Snapshot(tuple(GraphNode(it, it) for it in owners), tuple(ends), (), environment())
     return tuple(check(_of(found.launched, declared), seen))
+
+
+def _as_set(node: Started, ends: Iterable[GraphEndpoint]) -> Iterator[GraphEndpoint]:
+    """Its ends with the type of commands that its parameters choose (use_stamped, stamped_control). The
+    filter reads commands with use_control alone (ros_filter.cpp)."""
+    stamped = any("stamped" in it for it in node.parameters)
+    controlled = "use_control" in node.parameters
+    for it in ends:
+        if it.role == "subscribes" and it.type == _TWIST and node.by == _EKF and not controlled:
+            continue
+        chosen = stamped and it.type == _TWIST
+        yield it._replace(type=f"{_TWIST}Stamped") if chosen else it
 
 
 def two(nodes: Iterable[Started]) -> Iterator[Started]:

@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import yaml
+from vendor_rows import parameter_rows
 from vendor_sources import WITHOUT, install, packages_below, sources_folder
 
 from multibot_rewrite.fleets.fleet import Fleet, expected
@@ -66,7 +67,8 @@ class Vendors(NamedTuple):
 
 
 class Started(NamedTuple):
-    """A node that runs, by the judge; ``by`` is package and executable, or what starts it."""
+    """A node that runs, by the judge; ``by`` is package and executable, or what starts it, and
+    ``parameters`` are those that are true."""
 
     name: str
     by: str
@@ -159,7 +161,9 @@ def started_by(row: Mapping[str, Any], named: Mapping[str, Mapping[str, Any]]) -
         raise SystemExit(f"{by} has no name in its launch file: add it to named, with its source")
     rules = tuple((old, new) for old, new in row["rules"])
     for name in (own, *names[1:]):
-        yield Started(f"{namespace}/{name}", by, rules, tuple(row.get("parameters", ())))
+        full = f"{namespace}/{name}"
+        values = parameter_rows((it["text"] for it in row.get("values", ())), full)
+        yield Started(full, by, rules, tuple(key for key, it in values.items() if it == "True"))
 
 
 def _below(it: Started, namespace: str) -> Started:

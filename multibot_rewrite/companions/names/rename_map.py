@@ -66,6 +66,8 @@ def companion_names(
     declared: Declared, naming: Naming, robot: str, own: Mapping[tuple[str, str], str]
 ) -> CompanionNames:
     """The names of a robot; ``own`` are declared by either of their texts."""
+    # Without its argument a name may begin with the slash behind it: /imu.
+    own = {**{(kind, plain.lstrip("/")): text for (kind, plain), text in own.items()}, **own}
     both = {kind: dict(names) for kind, names in declared.items()}
     for (kind, plain), text in own.items():
         if text in both.get(kind, ()):

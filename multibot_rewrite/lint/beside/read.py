@@ -7,11 +7,15 @@ from collections.abc import Iterator
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.findings.selection import level_of
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.beside.kinds import kind_of
 from multibot_rewrite.lint.beside.records import Beside, Remark
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.registry import active_rules
 from multibot_rewrite.model import InputError
+
+# Up to a reason, which is behind a dash.
+_COMMENT = lazy_compile(r"#\s*urdf-lint:\s*ignore\s+((?:MB\d+[,\s]*)+)(?:$|[-:])")
 
 
 def beside_findings(path: str, data: bytes, settings: Settings) -> Iterator[Finding]:
@@ -23,9 +27,17 @@ def beside_findings(path: str, data: bytes, settings: Settings) -> Iterator[Find
     from multibot_rewrite.companions.yaml_text import read_yaml  # a lint of a URDF needs none of it
 
     beside = Beside(kind, read_yaml(data, path), settings, {})
+    lines = beside.document.text.split("\n")
     for rule in active_rules(settings, kind):
-        remarks = list(rule.check(beside)) if rule.check else []
-        yield from (_found(beside, rule, it) for it in remarks)
+        for it in rule.check(beside) if rule.check else ():
+            if rule.code not in _silenced(lines[it.node.start_mark.line]):
+                yield _found(beside, rule, it)
+
+
+def _silenced(line: str) -> list[str]:
+    """The codes in a comment at the end of a line."""
+    found = _COMMENT.search(line) if "urdf-lint" in line else None
+    return found[1].replace(",", " ").split() if found else []
 
 
 def _found(beside: Beside, rule: Rule, it: Remark) -> Finding:

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
-from math import radians, tau
+from math import radians
 
 from lxml.etree import _Element
 
 from multibot_rewrite.lint.schema.described import PLUGINS, UNITS, Described, Row, chunks, described
 from multibot_rewrite.lint.schema.faults import Fault
-from multibot_rewrite.lint.schema.sdf_values import misread, number_in
+from multibot_rewrite.lint.schema.sdf_values import TURN, misread, number_in
 from multibot_rewrite.lint.schema.sections import is_own
 from multibot_rewrite.lint.schema.values import shortened
 from multibot_rewrite.nearest import fold, nearest, slip_of
@@ -24,8 +24,6 @@ from multibot_rewrite.rewriters.tree import plugin_keys
 
 GZ, GAZEBO_ROS = "gz-sim-", "gazebo_ros_"
 HARDWARE = "hardware "
-# No angle of a wheel or wing is as large; a little more than a turn is one that was rounded.
-TURN = tau * 1.001
 
 
 def section_of_plugin(element: _Element) -> Described | None:
@@ -80,7 +78,7 @@ def _parameter(
             yield from _unknown(child, name, section)
         return
     row = rows[0]
-    if row.releases and not has_release(row.releases, release):
+    if not has_release(row.releases, release):
         message = f"{title(section)} of {release} does not read {name!r}"
         hint = f"that of {', '.join(releases_with(row.releases))} does"
         yield Fault("later", child, None, message, hint)
@@ -121,11 +119,9 @@ def _measure(child: _Element, unit: Row, text: str, where: str) -> Iterator[Faul
 
 def _unknown(child: _Element, name: str, section: Described) -> Iterator[Fault]:
     message = f"{title(section)} does not read {name!r}"
-    there = {str(it.tag) for it in child.itersiblings(preceding=True)} | {
-        str(it.tag) for it in child.itersiblings()
-    }
-    free = [it for it in section.rows if it not in there]
-    near = slip_of(name, free)
+    parent, near = child.getparent(), slip_of(name, section.rows)
+    if parent is not None and near and parent.find(near) is not None:
+        near = ""  # that one is there already
     other = _of_another(name, section.names[0])
     if other:
         hint = f"{other} does; did you mean {near!r}?" if near else f"{other} does"
@@ -137,6 +133,7 @@ def _unknown(child: _Element, name: str, section: Described) -> Iterator[Fault]:
         yield Fault("unread", child, None, message)
 
 
+@lru_cache(maxsize=512)
 def _of_another(name: str, library: str) -> str:
     """The plugin of the other simulator that does the same and has this parameter."""
     own = _subject(library)

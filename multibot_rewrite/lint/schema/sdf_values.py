@@ -8,15 +8,24 @@ in a plugin it counts as 0 or false.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
-from functools import partial
+from functools import lru_cache, partial
+from math import isinf, tau
 from typing import NamedTuple
 
 from multibot_rewrite.lazy import lazy_compile
 
-_REAL = lazy_compile(r"[-+]?(?:0[xX][\da-fA-F]+|(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|inf|nan)", 2)
-_WHOLE = lazy_compile(r"[-+]?(?:0[xX][\da-fA-F]+|\d+)")
+# No digits but 0 to 9; inf and nan in capitals, too.
+_ASCII = re.ASCII | re.IGNORECASE
+_REAL = lazy_compile(
+    r"[-+]?(?:0[xX][\da-fA-F]+|(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|inf|nan)", _ASCII
+)
+_WHOLE = lazy_compile(r"[-+]?(?:0[xX][\da-fA-F]+|\d+)", _ASCII)
 _ZEROS = lazy_compile(r"\.0*")
+_DIGITS = 20
+# No angle is as large; a little more than a turn is one that was rounded.
+TURN = tau * 1.001
 _TRUTHS = ("true", "false", "1", "0")
 
 
@@ -27,6 +36,7 @@ class Misread(NamedTuple):
     fails: bool
 
 
+@lru_cache(maxsize=4096)  # values come again
 def misread(type_: str, text: str) -> Misread | None:
     """What is wrong with a text for that type, None where it is read as it stands.
 
@@ -42,10 +52,19 @@ def _number(text: str, *, whole: bool = False) -> Misread | None:
     found = (_WHOLE if whole else _REAL).match(text)
     if found is None:
         return Misread("is not a number", True)
+    if _is_too_large(found[0], whole):
+        return Misread("is too large a number", True)
     rest = text[found.end() :]
     if not rest or (whole and _ZEROS.fullmatch(rest)):
         return None
     return Misread(f"is read as {found[0]}", False)
+
+
+def _is_too_large(digits: str, whole: bool) -> bool:
+    """Do stod, stoi and stoul throw out_of_range? For whole numbers it is only asked roughly."""
+    if "x" in digits.lower() or not digits[-1].isdigit():
+        return False
+    return len(digits) > _DIGITS if whole else isinf(float(digits))
 
 
 def _unsigned(text: str) -> Misread | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import lru_cache
 
 from lxml.etree import _Element
 
@@ -99,7 +100,7 @@ def misspelt_interface(subject: Subject) -> Iterator[Problem]:
     for owner in owners(subject):
         for it in owner.iterchildren(COMMAND, STATE) if owner.tag == "joint" else ():
             name = name_of(it)
-            near = "" if name in STANDARD else slip_of(name, STANDARD)
+            near = "" if name in STANDARD else _meant(name)
             if near:
                 message = f"no controller asks for {name!r} of a joint"
                 yield Problem(it, message, "name", f"did you mean {near!r}?")
@@ -133,3 +134,9 @@ def commanded_joint_without_state(subject: Subject) -> Iterator[Problem]:
         more = f" and {len(found) - 1} more" if len(found) > 1 else ""
         message = f"joint {name_of(found[0])!r}{more} has commands and no state"
         yield Problem(found[0], message, "name", 'add <state_interface name="position"/>')
+
+
+@lru_cache(maxsize=256)
+def _meant(name: str) -> str:
+    """The interface of ros2_control that is almost called like that."""
+    return slip_of(name, STANDARD)
