@@ -1,39 +1,22 @@
-"""Where the links of a URDF are, with every joint at 0.
-
-Source: urdfdom and sdformat: the origin of a joint is the child's frame in the parent's, and its
-axis is in the child's.
-"""
+"""Where the links of a URDF are, with every joint at 0: computed once for all rules."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import lru_cache
-from math import sqrt
 
-from lxml.etree import _Element
-
-from multibot_rewrite.checks.links_and_joints import Joint, roots
-from multibot_rewrite.checks.numbers import Vector, numbers, vector
-from multibot_rewrite.lint.convert.pose import Pose, pose_of
-from multibot_rewrite.lint.convert.rotation import (
-    Matrix,
-    matrix_of_quaternion,
-    product,
-    quaternion_of_rpy,
-    turned,
-)
+from multibot_rewrite.checks import poses
+from multibot_rewrite.checks.pose import Pose
 from multibot_rewrite.lint.facts.memo import memoized
 from multibot_rewrite.lint.records import Subject
-
-STRAIGHT: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-HERE = Pose((0.0, 0.0, 0.0), STRAIGHT)
-X: Vector = (1.0, 0.0, 0.0)
 
 
 @memoized
 def link_poses(subject: Subject) -> Mapping[str, Pose]:
     """Each link's pose in the root of its tree; those below an origin that is no number are left
     out."""
+<<<<<<< HEAD
+    return poses.link_poses(subject.robot)
+=======
     robot = subject.robot
     found = {it.name: HERE for it in roots(robot)}
     todo = list(found)
@@ -48,7 +31,7 @@ def link_poses(subject: Subject) -> Mapping[str, Pose]:
 
 def origin_of(element: _Element) -> Pose | None:
     """The pose that the first ``<origin>`` in an element says."""
-    origin = element.find("origin")
+    origin = next(element.iterchildren("origin"), None)
     if origin is None:
         return HERE
     if "quat_xyzw" in origin.attrib:
@@ -86,7 +69,7 @@ def placed(outer: Pose, inner: Pose) -> Pose:
 
 def point_in(pose: Pose, point: Vector) -> Vector:
     """A point of a frame, in the frame that its pose is given in."""
-    return plus(pose.at, turned(pose.matrix, point))
+    return plus(pose.at, point if pose.matrix is STRAIGHT else turned(pose.matrix, point))
 
 
 def axis_of(joint: Joint) -> Vector | None:
@@ -125,3 +108,4 @@ def cross(one: Vector, other: Vector) -> Vector:
 def length(vector_: Vector) -> float:
     """How long a vector is."""
     return sqrt(dot(vector_, vector_))
+>>>>>>> main
