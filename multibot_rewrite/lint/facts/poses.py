@@ -48,7 +48,7 @@ def link_poses(subject: Subject) -> Mapping[str, Pose]:
 
 def origin_of(element: _Element) -> Pose | None:
     """The pose that the first ``<origin>`` in an element says."""
-    origin = element.find("origin")
+    origin = next(element.iterchildren("origin"), None)
     if origin is None:
         return HERE
     if "quat_xyzw" in origin.attrib:
@@ -86,7 +86,7 @@ def placed(outer: Pose, inner: Pose) -> Pose:
 
 def point_in(pose: Pose, point: Vector) -> Vector:
     """A point of a frame, in the frame that its pose is given in."""
-    return plus(pose.at, turned(pose.matrix, point))
+    return plus(pose.at, point if pose.matrix is STRAIGHT else turned(pose.matrix, point))
 
 
 def axis_of(joint: Joint) -> Vector | None:
