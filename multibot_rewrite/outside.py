@@ -132,6 +132,18 @@ def is_file(path: str) -> bool:
 
 
 @outside
+def is_folder(path: str) -> bool:
+    """Is it a folder, or a link to one?"""
+    return os.path.isdir(path)
+
+
+@outside
+def is_there(path: str) -> bool:
+    """Is anything there, behind a link as well?"""
+    return os.path.exists(path)
+
+
+@outside
 def real_path(path: str) -> str:
     """The path without links."""
     return os.path.realpath(path)

@@ -137,12 +137,14 @@ def _with_plugins(name: str, data: Mapping[str, Any], release: str) -> Mapping[s
 
 
 def _plain(value: Any) -> Any:
-    """A value as rcl takes it: none that is empty, and numbers of a list of one type."""
+    """A value as rcl takes it, without what it does not: nothing, and lists of several types."""
     if isinstance(value, dict):
         items = ((str(key), _plain(it)) for key, it in value.items())
         return {key: it for key, it in items if it is not None and it not in ([], {})}
     if not isinstance(value, list):
         return value
-    numbers = all(isinstance(it, int | float) and not isinstance(it, bool) for it in value)
-    mixed = numbers and any(isinstance(it, float) for it in value)
-    return [float(it) for it in value] if mixed else value
+    types = {type(it) for it in value}
+    if types == {int, float}:
+        return [float(it) for it in value]
+    # rcl takes lists of one type, launch_ros refuses others, too.
+    return value if len(types) == 1 and not types & {dict, list} else None

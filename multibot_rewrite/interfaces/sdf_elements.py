@@ -40,7 +40,11 @@ WORDS = {
     "camera.image/format": ("src/Camera.cc", ("kPixelFormatNames", "_format"), False),
     "joint/@type": ("src/Joint.cc", ("first",), True),
     "light/@type": ("src/Light.cc", ("typeString",), False),
-    "noise/@type camera.noise/type ray.noise/type": ("src/Noise.cc", ("typeLower",), True),
+    "noise/@type camera.noise/type ray.noise/type lidar.noise/type": (
+        "src/Noise.cc",
+        ("typeLower",),
+        True,
+    ),
 }
 CONVERTER = "src/parser_urdf.cc"
 _TAKEN = re.compile(r'strcmp\(childElem->Name\(\), "(\w+)"\) == 0')

@@ -133,6 +133,12 @@ def _package_name(folder: str) -> str:
     return found[1].decode("utf-8", "replace") if found else os.path.basename(folder)
 
 
+@lru_cache(maxsize=1024)
+def _by_lower_case(folder: str) -> Mapping[str, str]:
+    """The names in a folder, the first of those that differ in upper and lower case alone."""
+    return {it.lower(): it for it in sorted(entries(folder), reverse=True)}
+
+
 @outside
 def find_in(folder: str, path: str) -> str:
     """The path below a folder as it is written on the disk, whatever the case; empty if absent."""
@@ -143,7 +149,7 @@ def find_in(folder: str, path: str) -> str:
         if step == os.pardir or step in entries(here):
             found.append(step)
             continue
-        near = next((it for it in sorted(entries(here)) if it.lower() == step.lower()), "")
+        near = _by_lower_case(here).get(step.lower(), "")
         if not near:
             return ""
         found.append(near)

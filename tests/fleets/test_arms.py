@@ -375,7 +375,11 @@ def test_move_group_is_started_with_what_the_files_say(tmp_path: Path) -> None:
             "moveit_simple_controller_manager",
         ),
         ("moveit.yaml", "moveit_controller_manager: m/M", "moveit_controller_manager"),
-        ("chomp_planning.yaml", "planning_plugins: [c/C]\nempty: []", "chomp"),
+        (
+            "chomp_planning.yaml",
+            "planning_plugins: [c/C]\nempty: []\nof: {empty1: [1, a], empty2: [[1]], empty3: }",
+            "chomp",
+        ),
     ],
 )
 def test_where_the_content_of_a_moveit_file_goes(
@@ -386,7 +390,8 @@ def test_where_the_content_of_a_moveit_file_goes(
     files, _ = built(tmp_path, more)
     made = yaml.safe_load(files["left/moveit_parameters.yaml"])["/**"]["ros__parameters"]
     assert path in made
-    # rcl takes no empty list.
+    # rcl takes no empty list, and none of several types.
     assert "empty" not in str(made)
+    assert all(len({type(it) for it in one}) == 1 for one in made.values() if isinstance(one, list))
     assert ("ompl" in made) == (path != "chomp")
     assert made["default_planning_pipeline"] == ("chomp" if path == "chomp" else "ompl")

@@ -137,6 +137,9 @@ def test_planned_clocks_are_seen_without_asking(
     told = [it for it in check(plan(CLOCKS), seen) if it.code in codes]
     assert [(it.code, it.node) for it in told] == [it[:2] for it in wanted]
     assert all(word in it.message for it, (_, _, word) in zip(told, wanted, strict=True))
+    # Without a plan of them mixed clocks are a danger.
+    unplanned = [it.node for it in check(plan(), seen) if it.code == "MG503"]
+    assert bool(unplanned) == (published and len(timed) < 3)
     # What a node answers counts more.
     if wanted and wanted[0][0] == "MG134":
         known = seen._replace(states=(NodeState(wanted[0][1], sim_time=wanted[0][2] == "true"),))

@@ -331,6 +331,8 @@ def test_a_component_is_loaded_into_its_container(fleet: str, context: Any) -> N
     (node,) = made.options["composable_node_descriptions"]
     assert options.items() <= node.options.items()
     assert (node.options["name"], node.options["namespace"]) == ("amcl", "/robot1")
+    with pytest.raises(UsageError, match="component of /robot1/nav2_container: write plugin="):
+        run(context, launch.node("amcl", robot="robot1", fleet=fleet, executable="amcl"))
     (box,) = run(context, launch.node("nav2_container", robot="robot1", fleet=fleet))
     assert "composable_node_descriptions" not in box.options
 

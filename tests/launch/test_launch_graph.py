@@ -235,6 +235,14 @@ def generate_launch_description():
 
 
 @in_launch
+def test_a_timer_knows_the_folder_of_its_launch_file(tmp_path: Path) -> None:
+    """It keeps the locals of its place (timer_action.py), an event handler does not."""
+    inner = 'Node(package="acme", executable="d", arguments=[ThisLaunchFileDir()])'
+    graph = read(tmp_path, f"        TimerAction(period=1.0, actions=[{inner}]),")
+    assert one(graph).arguments == (str(tmp_path),)
+
+
+@in_launch
 def test_a_timer_that_starts_itself_again_is_told(tmp_path: Path) -> None:
     file = tmp_path / "again.launch.py"
     file.write_text(AGAIN)
@@ -462,7 +470,8 @@ def test_the_output_of_commands_is_known_and_nothing_is_started(tmp_path: Path) 
     file, plain = tmp_path / "rover.urdf.xacro", tmp_path / "plain.txt"
     file.write_text(XACRO)
     plain.write_text("wheel: left: 1")
-    lines = COMMANDS.replace("FILE", repr(str(file))).splitlines()
+    there = str(tmp_path / "there.urdf")
+    lines = COMMANDS.replace("FILE", repr(str(file))).replace("there.urdf", there).splitlines()
     texts = [f"ParameterValue(Command({it}), value_type=str)" for it in lines]
     nodes = [
         f'        Node(package="a", executable="b", parameters=[{{"text": {it}}}]),'

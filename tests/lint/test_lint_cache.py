@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import ast
 import builtins
 import os
+import re
 import subprocess
 import sys
 import threading
@@ -22,6 +24,7 @@ from multibot_rewrite.lint.cache.cache import Cache, cache_folder
 from multibot_rewrite.lint.cache.identity import identity
 from multibot_rewrite.lint.config.settings import ArgumentSet, Settings
 from multibot_rewrite.lint.run import lint_files
+from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.sources import packages
 
 XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
@@ -82,6 +85,7 @@ def forget() -> None:
     for it in (packages.entries.__wrapped__, packages._candidates, packages._own_package):
         it.cache_clear()
     packages._below.cache_clear()
+    packages._by_lower_case.cache_clear()
 
 
 def linted(settings: Settings = SETTINGS, paths: tuple[str, ...] = SOURCES) -> list[Finding]:
@@ -386,10 +390,52 @@ def test_every_look_at_the_disk_is_noted(unnoted: list[str]) -> None:
     from multibot_rewrite.lint.files.among import set_among
 
     forget()
+    builtin_tree((), SETTINGS.distro)  # the identity of a run has all vocabularies
     settings, _ = outside.recorded(lambda: set_among(SOURCES, SETTINGS))
     for path in SOURCES:
         outside.recorded(lambda path=path: lint_file(path, settings))
     assert unnoted == []
+
+
+# What asks the disk or the environment, whoever imports it.
+ASKING = re.compile(
+    r"\bos\.(?:path\.(?:exists|isfile|isdir|lexists|getsize|realpath|getmtime)|listdir|scandir|stat|lstat"
+    r"|walk|environ|getenv)\b|(?<![\w.])(?:open|glob|iglob)\(|\.read_text\(|\.read_bytes\(\)"
+)
+# The cache itself, what decides which files are linted, processes; what only marked functions call.
+ALLOWED = (
+    "lint/cache/", "lint/config/", "lint/workers.py", "lint/run.py", "lint/__main__.py",
+    "lint/beside/kinds.py", "lint/beside/parameter_table.py",
+    "sources/child/", "sources/processes.py", "sources/packages.py", "sources/access.py",
+)  # fmt: skip
+PACKAGE_DATA = ("files(", "_FILE.", "(_FOLDER / file)")
+
+
+def unmarked(path: Path) -> list[str]:
+    """The lines of functions that are not marked ``outside`` and ask the disk or the environment."""
+    tree = ast.parse(path.read_text())
+    marked: set[int] = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.FunctionDef) and any(
+            ast.unparse(it) == "outside" for it in node.decorator_list
+        ):
+            marked |= set(range(node.lineno, (node.end_lineno or 0) + 1))
+    return [
+        f"{path.name}:{number}: {line.strip()}"
+        for number, line in enumerate(path.read_text().splitlines(), 1)
+        if ASKING.search(line)
+        and number not in marked
+        and not any(it in line for it in PACKAGE_DATA)
+    ]
+
+
+def test_what_asks_the_disk_is_marked() -> None:
+    """A rule that looks at a file by itself would be right once: its result is kept."""
+    package = Path(outside.__file__).parent
+    paths = [it for room in ("lint", "sources") for it in sorted((package / room).rglob("*.py"))]
+    looked = [it for it in paths if not it.relative_to(package).as_posix().startswith(ALLOWED)]
+    assert len(looked) > 100
+    assert [line for it in looked for line in unmarked(it)] == []
 
 
 # ---------------------------------------------------------------- the command

@@ -110,6 +110,11 @@ PLANTED = {
     "friction of a joint": ('<gazebo reference="j"><mu1>1</mu1></gazebo>', "MB155"),
     "feedback of a link": (in_link("<provideFeedback>true</provideFeedback>"), "MB155"),
     "a plugin without library": ('<gazebo><plugin name="p"/></gazebo>', "MB159"),
+    "a scan in degrees": (
+        sensor("ray", "<ray><scan><horizontal><max_angle>180</max_angle></horizontal></scan></ray>"),
+        "MB173",
+    ),
+    "a pose in degrees": (sensor("imu", "<pose>0 0 0 0 0 -90</pose>"), "MB173"),
     "a class in capitals": (system("imu", "IMU"), "MB160"),
     "a class of another library": (system("imu", "DiffDrive"), "MB160"),
     "a label for a class": (
@@ -187,6 +192,10 @@ HEALTHY = {
     "pixels with a point": camera("<image><width>640.0</width></image>"),
     "a pose over lines": sensor("imu", "<pose>0 0 0\n  0 0 1.57</pose>"),
     "a pose relative to a link": sensor("imu", '<pose relative_to="b">0 0 0 0 0 0</pose>'),
+    "a pose that says degrees": sensor("imu", '<pose degrees="true">0 0 0 0 0 90</pose>'),
+    "a quaternion": sensor("imu", '<pose rotation_format="quat_xyzw">0 0 0 0 0 0 1</pose>'),
+    "a pose far away": sensor("imu", "<pose>100 0 0 0 0 0</pose>"),
+    "a whole turn": camera("<horizontal_fov>6.283186</horizontal_fov>"),
     "no pose": sensor("imu", "<pose></pose>"),
     "a colour of three": in_link('<light name="l" type="spot"><diffuse>1 0 0</diffuse></light>'),
     "a light in the old way": in_link('<light name="l" type="directional"/>'),

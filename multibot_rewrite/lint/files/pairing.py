@@ -20,7 +20,7 @@ from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.sources.access import Reach
 from multibot_rewrite.sources.packages import package_folder
-from multibot_rewrite.sources.read import is_xacro, read_file
+from multibot_rewrite.sources.read import XACRO, is_xacro, read_file
 from multibot_rewrite.steps.collect import NOTHING, Inventory, collect
 from multibot_rewrite.steps.document import read_document
 
@@ -134,6 +134,9 @@ def described(path: str, settings: Settings) -> tuple[bytes, str]:
         try:
             return expand(path, {}, find, reach), name
         except InputError:
+            # An expanded text may have a rest of xacro in it, and is read all the same.
+            if not sets and not path.endswith(XACRO):
+                return read_file(path), path
             if not sets:
                 raise
             return expand(path, sets[0], find, reach), name

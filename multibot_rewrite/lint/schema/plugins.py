@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
-from math import radians, tau
+from math import radians
 
 from lxml.etree import _Element
 
 from multibot_rewrite.lint.schema.described import PLUGINS, UNITS, Described, Row, chunks, described
 from multibot_rewrite.lint.schema.faults import Fault
-from multibot_rewrite.lint.schema.sdf_values import misread, number_in
+from multibot_rewrite.lint.schema.sdf_values import TURN, misread, number_in
 from multibot_rewrite.lint.schema.sections import is_own
 from multibot_rewrite.lint.schema.values import shortened
 from multibot_rewrite.nearest import fold, nearest, slip_of
@@ -24,8 +24,6 @@ from multibot_rewrite.rewriters.tree import plugin_keys
 
 GZ, GAZEBO_ROS = "gz-sim-", "gazebo_ros_"
 HARDWARE = "hardware "
-# No angle of a wheel or wing is as large; a little more than a turn is one that was rounded.
-TURN = tau * 1.001
 
 
 def section_of_plugin(element: _Element) -> Described | None:

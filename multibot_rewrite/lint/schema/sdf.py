@@ -18,7 +18,7 @@ from multibot_rewrite.checks.links_and_joints import Robot
 from multibot_rewrite.lint.schema.described import SDF, Described, Row, chunks, described
 from multibot_rewrite.lint.schema.faults import Fault
 from multibot_rewrite.lint.schema.readers import SDFORMAT, reader_of
-from multibot_rewrite.lint.schema.sdf_values import misread, number_in
+from multibot_rewrite.lint.schema.sdf_values import TURN, misread, number_in
 from multibot_rewrite.lint.schema.sections import is_own
 from multibot_rewrite.lint.schema.values import shortened
 from multibot_rewrite.lint.schema.versions import read_version
@@ -40,6 +40,8 @@ _MERGED = ("visual", "collision", "material")
 # What gz-sensors reads of a <sensor> although SDF does not have it: gz-sensors8_8.2.2
 # src/Sensor.cc:188, and ignition-sensors6 for the second.
 READ_BESIDES = frozenset({"gz_frame_id", "ignition_frame_id"})
+# Angles that SDF has no range for.
+ANGLES = frozenset({"min_angle", "max_angle"})
 _WORDS = "words"
 Version = tuple[int, ...]
 # What the last release with Gazebo Classic reads.
@@ -188,6 +190,19 @@ def _value(
         yield Fault(kind, element, at, f"{where} {wrong.problem}")
     elif row.low is not None or row.high is not None:
         yield from _range(element, at, row, text, where)
+    elif row.type == "pose" or row.name in ANGLES:
+        yield from _degrees(element, at, row, text, where)
+
+
+def _degrees(element: _Element, at: str, row: Row, text: str, where: str) -> Iterator[Fault]:
+    """An angle of more than a turn; a pose may say that its are in degrees, or be a quaternion."""
+    if element.get("degrees", "").lower() in ("true", "1") or element.get("rotation_format"):
+        return
+    angles = [number_in(it) or 0.0 for it in (text.split()[3:] if row.type == "pose" else [text])]
+    worst = max(angles, key=abs, default=0.0)
+    if abs(worst) > TURN:
+        hint = f"{worst:g} degrees are {radians(worst):.4g}"
+        yield Fault("degrees", element, at, f"{where} is more than a turn: it is in radians", hint)
 
 
 def _range(element: _Element, at: str, row: Row, text: str, where: str) -> Iterator[Fault]:

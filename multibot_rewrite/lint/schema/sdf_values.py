@@ -11,7 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from functools import lru_cache, partial
-from math import isinf
+from math import isinf, tau
 from typing import NamedTuple
 
 from multibot_rewrite.lazy import lazy_compile
@@ -24,6 +24,8 @@ _REAL = lazy_compile(
 _WHOLE = lazy_compile(r"[-+]?(?:0[xX][\da-fA-F]+|\d+)", _ASCII)
 _ZEROS = lazy_compile(r"\.0*")
 _DIGITS = 20
+# No angle is as large; a little more than a turn is one that was rounded.
+TURN = tau * 1.001
 _TRUTHS = ("true", "false", "1", "0")
 
 

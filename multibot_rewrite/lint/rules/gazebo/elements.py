@@ -131,3 +131,15 @@ partly_read_value = rule(
     good=a_sensor("imu", "<update_rate>0.5</update_rate>"),
     line=4,
 )(_found("misread"))
+
+angle_in_degrees = rule(
+    "MB173",
+    "angle-in-degrees",
+    WARNING,
+    what="An angle below <gazebo> is more than a turn: of a lidar's scan, or in a <pose>.",
+    why="SDF has radians: a scan from -180 to 180 goes round 57 times, and a pose of 90 is one of 1.9.",
+    fix='Write radians; a pose may have degrees="true" from SDF 1.9 on.',
+    bad=a_sensor("imu", "<pose>0 0 0 0 0 90</pose>"),
+    good=a_sensor("imu", "<pose>0 0 0 0 0 1.5708</pose>"),
+    line=4,
+)(_found("degrees"))

@@ -65,6 +65,7 @@ def parameter_faults(subject: Subject) -> ByKind:
     return _by_kind(found)
 
 
+@memoized
 def described_plugins(subject: Subject) -> list[_Element]:
     """The plugins of Gazebo, those of ROS 1 aside: nobody described their parameters here."""
     plugins = simulator_plugins(subject)

@@ -9,12 +9,12 @@ from lxml.etree import _Element
 
 from multibot_rewrite.checks.links_and_joints import Link
 from multibot_rewrite.checks.numbers import Vector, vector
+from multibot_rewrite.checks.poses import length, minus, origin_of
 from multibot_rewrite.checks.problem import Problem
+from multibot_rewrite.checks.rotation import is_same
+from multibot_rewrite.checks.shapes import Extent, around, extent_of, shapes_of
 from multibot_rewrite.findings.finding import WARNING
 from multibot_rewrite.findings.rule import rule
-from multibot_rewrite.lint.convert.rotation import is_same
-from multibot_rewrite.lint.facts.poses import length, minus, origin_of
-from multibot_rewrite.lint.facts.shapes import Extent, around, extent_of, shapes_of
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.examples import block
 from multibot_rewrite.lint.rules.physics.shared import BOX, INERTIA, inertials, one_link, part_of
@@ -48,7 +48,7 @@ def collision_away(subject: Subject) -> Iterator[Problem]:
     """Links with shapes of known size, and links with one mesh for both."""
     for link in subject.robot.links:
         seen, hard = (list(shapes_of(link.element, it)) for it in ("visual", "collision"))
-        if not seen or not hard:
+        if not seen or not hard or _alike(seen[0], hard[0]):
             continue
         gap = _gap(_around(seen), _around(hard)) or _moved(seen, hard)
         if gap:
@@ -57,6 +57,16 @@ def collision_away(subject: Subject) -> Iterator[Problem]:
 
 
 _Shapes = list[tuple[_Element, _Element]]
+
+
+def _alike(one: tuple[_Element, _Element], other: tuple[_Element, _Element]) -> bool:
+    """Are two shapes written alike, at one place? Most are, and nothing has to be computed."""
+    (here, shape), (there, same) = one, other
+    if shape.tag != same.tag or shape.items() != same.items():
+        return False
+    origins = [next(it.iterchildren("origin"), None) for it in (here, there)]
+    written = [[] if it is None else it.items() for it in origins]
+    return written[0] == written[1]
 
 
 def _around(shapes: _Shapes) -> Extent | None:
@@ -119,7 +129,9 @@ def _weighs(xyz: str) -> str:
 def centre_of_mass_outside(subject: Subject) -> Iterator[Problem]:
     """Links whose shapes have a known size; others only where the centre is metres away from all."""
     for link, inertial in inertials(subject.robot):
-        origin = inertial.element.find("origin") if (inertial.mass or 0) >= LIGHT else None
+        if (inertial.mass or 0) < LIGHT:
+            continue
+        origin = next(inertial.element.iterchildren("origin"), None)
         centre = None if origin is None else vector(origin.get("xyz"))
         if centre is None or not any(centre):
             continue

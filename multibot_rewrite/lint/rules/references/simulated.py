@@ -30,6 +30,7 @@ from multibot_rewrite.lint.rules.references.shared import (
     name_of,
 )
 from multibot_rewrite.nearest import slip_of
+from multibot_rewrite.outside import is_folder, is_there
 from multibot_rewrite.rewriters.text import text_of
 
 _GZ = "gz_ros2_control/GazeboSimSystem"
@@ -101,8 +102,8 @@ def no_controllers_file(subject: Subject) -> Iterator[Problem]:
             path = text_of(it)
             # Where xacro has expanded $(find), the folder of the package is there.
             home = os.path.dirname(os.path.dirname(path))
-            is_here = subject.origins and os.path.isabs(path) and os.path.isdir(home)
-            if is_here and not os.path.exists(path):
+            is_here = subject.origins and os.path.isabs(path) and is_folder(home)
+            if is_here and not is_there(path):
                 yield Problem(it, f"there is no file {path}", "", "correct the path")
 
 

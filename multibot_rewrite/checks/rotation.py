@@ -69,18 +69,16 @@ def is_same(one: Matrix, other: Matrix) -> bool:
 
 def turned(matrix: Matrix, vector: Vector) -> Vector:
     """A vector after the rotation."""
-    x, y, z = (sum(a * b for a, b in zip(row, vector, strict=True)) for row in matrix)
-    return x, y, z
+    (a, b, c), (d, e, f), (g, h, i) = matrix
+    x, y, z = vector
+    return a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z
 
 
 def product(outer: Matrix, inner: Matrix) -> Matrix:
     """The rotation ``inner``, and then ``outer``."""
-    columns = tuple(zip(*inner, strict=True))
-    a, b, c = (
-        tuple(sum(x * y for x, y in zip(row, column, strict=True)) for column in columns)
-        for row in outer
-    )
-    return (a[0], a[1], a[2]), (b[0], b[1], b[2]), (c[0], c[1], c[2])
+    columns = inverse(inner)
+    first, second, third = outer
+    return turned(columns, first), turned(columns, second), turned(columns, third)
 
 
 def inverse(matrix: Matrix) -> Matrix:
