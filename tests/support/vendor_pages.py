@@ -36,8 +36,10 @@ topics, services and actions lead, bridges, RViz and static transforms. *Better*
 the page of the robot gives a reason for, *wrong* any other. *False* are warnings and errors of the
 build that are not true of the vendor's files. Which nodes are known is in [vendors](../vendors.md).
 
-| robot | vendor's layout | 2 | 3 | other layout | 2 | 3 | equal | better | wrong |
-|---|---|---|---|---|---|---|--:|--:|--:|\
+*Before* is what was false in the vendor's layout before the package knew these robots.
+
+| robot | before | vendor's layout | 2 | 3 | other layout | 2 | 3 | equal | better | wrong |
+|---|---|---|---|---|---|---|---|--:|--:|--:|\
 """
 
 
@@ -104,7 +106,15 @@ def _row(name: str, it: Outcome) -> str:
     wrong = len(it.compared.differences) - better
     builds = [_built(it.recipe, one) for one in it.built]
     vendor, other = it.recipe.layouts
-    cells = [f"[{it.recipe.title}]({name}.md)", vendor, builds[0], builds[1], other, *builds[2:]]
+    cells = [
+        f"[{it.recipe.title}]({name}.md)",
+        it.recipe.before,
+        vendor,
+        builds[0],
+        builds[1],
+        other,
+        *builds[2:],
+    ]
     return f"| {' | '.join(map(str, [*cells, it.compared.equal, better, wrong]))} |"
 
 

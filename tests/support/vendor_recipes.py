@@ -36,7 +36,8 @@ ROBOTS = ("robot1", "robot2", "robot3")
 class Recipe(NamedTuple):
     """A robot: the system of ``vendors/*.yaml`` that it is, what its fleet file has besides, the
     layouts (the vendor's first), which differences are ``better``, and which findings are ``right``,
-    each with the reason. ``wrong`` and ``false`` (of each build) are how many others there are."""
+    each with the reason. ``wrong`` and ``false`` (of each build) are how many others there are;
+    ``before`` is what was false in the vendor's layout before the package knew these robots."""
 
     title: str
     system: str
@@ -47,6 +48,7 @@ class Recipe(NamedTuple):
     better: tuple[Mapping[str, str], ...] = ()
     right: tuple[Mapping[str, str], ...] = ()
     wrong: int = 0
+    before: str = ""
     false: tuple[int, ...] = (0, 0, 0, 0)
 
 
