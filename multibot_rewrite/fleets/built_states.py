@@ -9,6 +9,7 @@ from multibot_rewrite.companions.params.sections import PARAMETERS
 from multibot_rewrite.companions.yaml_text import YamlText, pairs, read_yaml
 from multibot_rewrite.evidence.parameter_files import named_values
 from multibot_rewrite.evidence.records import Given
+from multibot_rewrite.fleets.params_style import ZONES
 from multibot_rewrite.graph.expectation import (
     Expectation,
     PlannedParameter,
@@ -18,8 +19,8 @@ from multibot_rewrite.graph.expectation import (
 from multibot_rewrite.graph.states import parameter_text
 from multibot_rewrite.sources.read import read_file
 
-# A launch file replaces these.
-_PLACEHOLDERS = ("$(", "${", "<")
+# A launch file replaces these; the last ones stand alone (nav2_bringup bringup_launch.py, kilted+).
+_PLACEHOLDERS = ("$(", "${", "<", *ZONES)
 
 
 def with_built(plan: Expectation, folder: str) -> Expectation:
@@ -78,6 +79,9 @@ def _names(document: YamlText, robot: PlannedRobot) -> dict[str, str]:
 
 def _parameters(values: dict[str, Given]) -> Iterator[tuple[str, PlannedParameter]]:
     for name, (value, place) in values.items():
-        if not (isinstance(value, str) and any(it in value for it in _PLACEHOLDERS)):
+        texts = [
+            it for it in (value if isinstance(value, list) else [value]) if isinstance(it, str)
+        ]
+        if not any(it in text for text in texts for it in _PLACEHOLDERS):
             text = parameter_text(value)
             yield name, PlannedParameter(name, text, f"{place.file}:{place.line}")

@@ -8,15 +8,17 @@ from collections.abc import Iterable, Iterator
 
 from multibot_rewrite.evidence.parameter_files import OWN_TYPE
 from multibot_rewrite.fleets import spawn, teleop
+from multibot_rewrite.fleets.fleet_file import BRINGUP
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.moveit_parameters import moveit_commands
 from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, path_for
+from multibot_rewrite.fleets.relays import EXECUTABLE, PACKAGE, relays
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_nodes import node_sources
 from multibot_rewrite.fleets.start_poses import InitialPose, command, start_poses
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER
 from multibot_rewrite.releases import facts_of_release
-from multibot_rewrite.remap.started import SPAWN, arguments, started
+from multibot_rewrite.remap.started import SPAWN, arguments, ros_arguments, started
 from multibot_rewrite.remap.ways import SPAWNER
 
 COMMANDS, START = "commands.md", "start_pose.yaml"
@@ -43,10 +45,11 @@ def commands_file(
         rows += [f"{with_clock(command(it), clock)}\n" for it in poses.transforms]
         rows += [spawn.either(it, robot) for it in spawned if spawn.is_simulated(robot)]
         rows += _controllers(one)
-        rows += [f"{with_clock(it, clock)}\n" for it in moveit_commands(one)]
+        rows += [f"{with_clock(it, clock)}\n" for it in (*_relays(one), *moveit_commands(one))]
         driven = (with_clock(teleop.command(it), clock) for it in teleop.teleops(one))
         rows += [*(f"{it}\n" for it in driven), "```\n", *_prefixed(robot)]
-        for pose in poses.initial:
+        # nav2_bringup takes one file, which has them.
+        for pose in poses.initial if one.file.params_style != BRINGUP else ():
             path = path_for(robot, START)
             rows.append(f"\nStart its {pose.node} with `--params-file {path}` as well.\n")
             yield OutputFile(path, _start_parameters(one, pose))
@@ -54,6 +57,16 @@ def commands_file(
     if lines := [f"{with_clock(it, both)}\n" for it in windows]:
         rows += ["\n## RViz\n\n```sh\n", *lines, "```\n"]
     yield OutputFile(COMMANDS, "".join(rows).encode())
+
+
+def _relays(plan: FleetPlan) -> Iterator[str]:
+    """The commands that relay a robot's tf, if its fleet file says so."""
+    (robot,) = plan.robots
+    made = relays(robot.spec.namespace, plan.fleet.naming) if plan.file.relayed else ()
+    for it in made:
+        own = ros_arguments(it.table.namespace, it.table.name, ())
+        told = [word for pair in it.parameters.items() for word in ("-p", ":=".join(pair))]
+        yield shlex.join(["ros2", "run", PACKAGE, EXECUTABLE, *own, *told])
 
 
 def _prefixed(robot: RewrittenRobot) -> Iterator[str]:

@@ -90,7 +90,8 @@ class FleetFile(NamedTuple):
     """A fleet file with its includes. ``policy`` are the options of ``make_naming`` that it sets,
     ``files`` all files of the fleet except the robots' own: the fleet file, what it includes, nodes,
     parameters, vocabulary. ``shared_nodes`` are nodes of the stacks that run once for all robots.
-    ``sros2`` asks for a policy, ``params_style`` says how parameter files are written.
+    ``sros2`` asks for a policy, ``params_style`` says how parameter files are written,
+    ``relayed`` asks for each robot's tf on /tf as well.
     ``installed`` is where the results are when they are used, empty for where
     they are written."""
 
@@ -108,6 +109,7 @@ class FleetFile(NamedTuple):
     shared_nodes: tuple[str, ...] = ()
     sros2: bool = False
     params_style: str = ""
+    relayed: bool = False
 
 
 def read_fleet(
@@ -150,6 +152,7 @@ def read_fleet(
         tuple(it.strip("/") for it in listed(data.get("shared_nodes", []))),
         data.get("sros2", False),
         data.get("params_style", ""),
+        data.get("relayed", False),
     )
 
 

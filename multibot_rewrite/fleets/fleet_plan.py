@@ -11,6 +11,7 @@ from multibot_rewrite.fleets.fleet_file import FleetFile, Sources
 from multibot_rewrite.fleets.launched_files import with_launched_files
 from multibot_rewrite.fleets.loaded_files import with_loaded_files
 from multibot_rewrite.fleets.meeting import with_meetings
+from multibot_rewrite.fleets.relays import with_relays
 from multibot_rewrite.fleets.rewritten_robots import (
     Jobs,
     RewrittenRobot,
@@ -72,7 +73,7 @@ def plan_fleet(
         fleet = _fleet(file, robots, naming, evidence)._replace(maybe_real=maybe)
         told = ((it.spec.namespace, it.spec.use_sim_time) for it in robots)
         clocks = tuple((name, clock) for name, clock in told if clock is not None)
-        fleet = fleet._replace(clocks=clocks)
+        fleet = with_relays(fleet._replace(clocks=clocks), file)
         return FleetPlan(file, tuple(robots), fleet, read, evidence)
 
 

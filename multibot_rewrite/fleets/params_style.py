@@ -9,14 +9,17 @@ launch/bringup_launch.py, localization_launch.py, navigation_launch.py and slam_
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from types import MappingProxyType
 
 from multibot_rewrite.companions.params.bringup_style import for_bringup
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.findings.finding import NOTE, Finding
 from multibot_rewrite.findings.rule import declare
-from multibot_rewrite.fleets.fleet_file import BRINGUP, FleetFile
+from multibot_rewrite.fleets.fleet_file import BRINGUP, FleetFile, RobotSpec
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, path_for
+from multibot_rewrite.fleets.robot_nodes import stack_nodes
+from multibot_rewrite.fleets.start_poses import start_poses
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS, make_naming
 from multibot_rewrite.remap.records import EndpointName
@@ -24,6 +27,13 @@ from multibot_rewrite.remap.stacks import load_stack
 
 # The stacks that are nav2_bringup's launch files.
 _STACKS = ("nav2_composed", "nav2_slam")
+# What its launch files replace in parameter files, from Kilted on -> the node that makes it true.
+ZONES = MappingProxyType(
+    {
+        "KEEPOUT_ZONE_ENABLED": "keepout_filter_mask_server",
+        "SPEED_ZONE_ENABLED": "speed_filter_mask_server",
+    }
+)
 _TF = frozenset(f"/{it}" for it in TF_TOPICS)
 _INSTEAD = "take layout tf-per-robot or both, or start Nav2 with nav2.launch.py of multibot_rewrite"
 
@@ -75,23 +85,38 @@ def check_style(file: FleetFile) -> None:
 
 def in_style(plan: FleetPlan, files: Sequence[OutputFile]) -> FilesAndFindings:
     """The files of a fleet in the style that it asks for."""
-    if plan.file.params_style != BRINGUP:
-        yield from files
-        return
-    spaces = {
-        path_for(robot, source): robot.spec.namespace
+    robots = {
+        path_for(robot, source): robot.spec
         for robot in plan.robots
         for source in robot.spec.companions.get("params", ())
     }
+    bringup = plan.file.params_style == BRINGUP
+    poses = start_poses(plan).initial if bringup else ()
     for it in files:
-        if it.path not in spaces:
+        if it.path not in robots:
             yield it
-            continue
-        document = read_yaml(it.data, it.path)
-        text, findings = for_bringup(document._replace(file=it.sources[0]), spaces[it.path])
-        yield it._replace(data=text.encode())
-        yield from findings
-    yield from _without_rule(plan)
+        elif bringup:
+            document = read_yaml(it.data, it.path)._replace(file=it.sources[0])
+            own = robots[it.path].namespace
+            more = {pose.node: dict(pose.values) for pose in poses if pose.robot == own}
+            text, findings = for_bringup(document, own, more)
+            yield it._replace(data=text.encode())
+            yield from findings
+        else:
+            yield _with_zones(it, robots[it.path], plan.file)
+    if bringup:
+        yield from _without_rule(plan)
+
+
+def _with_zones(it: OutputFile, spec: RobotSpec, file: FleetFile) -> OutputFile:
+    """The file with what the launch files of nav2_bringup write into it: a word is no boolean."""
+    if not any(word.encode() in it.data for word in ZONES):
+        return it
+    runs = {node.name for node in stack_nodes(spec, file)}
+    data = it.data
+    for word, server in ZONES.items():
+        data = data.replace(word.encode(), b"true" if server in runs else b"false")
+    return it._replace(data=data)
 
 
 def _without_rule(plan: FleetPlan) -> Iterator[Finding]:

@@ -14,6 +14,7 @@ from multibot_rewrite.companions.rviz.rewrite import (
     rewrite_rviz,
     start_command,
 )
+from multibot_rewrite.companions.rviz.window_checks import ONE_TF_TOPIC
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.moveit_parameters import FILE, has_moveit
@@ -46,7 +47,10 @@ def rviz_outputs(plan: FleetPlan, each: Iterable[FleetPlan]) -> Iterator[RvizOut
     world = world_of(plan.file, plan.fleet.naming)
     for path, robots in robots_of.items():
         shown = [_as_rviz_robot(own[robot.spec.name]) for robot in robots]
-        yield RvizOutput(path, *rewrite_rviz(yaml_of(path), shown, world=world))
+        relayed = plan.file.relayed
+        texts, found = rewrite_rviz(yaml_of(path), shown, world=world, relayed=relayed)
+        done = ONE_TF_TOPIC.code if relayed else ""
+        yield RvizOutput(path, texts, tuple(it for it in found if it.code != done))
 
 
 def robot_windows(plan: FleetPlan, each: bool) -> list[tuple[str, RvizText]]:

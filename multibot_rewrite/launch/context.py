@@ -111,9 +111,12 @@ def file_of(context: Context, file: str, of: RobotRef = HERE) -> str:
 
 
 def node_file_of(context: Context, file: str, of: RobotRef = HERE) -> str:
-    """The same of a robot's parameter file for nodes that are started here: with their full names."""
+    """The same of a robot's parameter file for nodes that are started here: with their full names,
+    and its substitutions, such as ``$(find-pkg-share ...)``, performed."""
     robot = robot_of(context, of)
     text = robot.node_text(file)
+    if "$(" in text:
+        text = perform(context, of_launch("frontend.parse_substitution").parse_substitution(text))
     _warn(context, fleet_of(context, of.fleet).made.findings)
     return written(context, robot, f"nodes/{os.path.basename(file)}", text)
 

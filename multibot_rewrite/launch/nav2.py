@@ -89,6 +89,7 @@ def _started(robot: LoadedRobot, context: Context) -> list[Action]:
     hosted = [it for it in known if names.container(it)]
     alone = [it for it in known if it not in hosted]
     made = [it for name in alone for it in _alone(robot, name, context)]
+    made += [_relay(name, told) for name, told in robot.relays.items()]
     if hosted:
         made.append(_container(robot, hosted, context))
     if _is_on(context, "robot_state_publisher") and programs.STATE in names.nodes:
@@ -172,6 +173,12 @@ def _own(names: NodeNames, name: str, context: Context) -> list[dict[str, Any]]:
         managed = [names.name(it) for it in names.managed.get(name, ())]
         return [{"autostart": _is_on(context, "autostart"), "node_names": managed}]
     return []
+
+
+def _relay(name: str, told: dict[str, str]) -> Action:
+    """A relay of the robot's tf to /tf."""
+    package, executable, *_ = programs.RELAY
+    return node(name, package=package, executable=executable, output="screen", parameters=[told])
 
 
 def _state_publisher() -> Action:

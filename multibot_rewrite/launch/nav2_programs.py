@@ -87,6 +87,9 @@ PROGRAMS: Mapping[str, Program] = MappingProxyType(
 )
 
 
+RELAY = Program("topic_tools", "relay")
+
+
 def container_of(release: str) -> Program:
     """The program of the container in a release."""
     if has_release("lyrical+", release):

@@ -20,6 +20,7 @@ from multibot_rewrite.remap.records import (
     NodeTable,
     Table,
 )
+from multibot_rewrite.remap.targets import expanded
 
 PROCESS, HOST, COMPONENT = "process", "host", "component"
 SPAWNER, PLUGIN = "spawner", "plugin"
@@ -135,5 +136,6 @@ def _of_helpers(names: Iterable[EndpointName]) -> Sources:
     found: dict[str, frozenset[str]] = {}
     for it in names:
         if it.endpoint.helper:
-            found[it.node] = found.get(it.node, frozenset()) | {it.endpoint.name}
+            asked = {name for _, name in expanded(it.endpoint)}
+            found[it.node] = found.get(it.node, frozenset()) | asked
     return found

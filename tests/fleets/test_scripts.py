@@ -430,3 +430,48 @@ def test_parameters_are_those_of_the_real_rcl(
     wrong = [(text, theirs) for text, theirs in pairs if not same(ours(text), theirs)]
     assert wrong == []
     assert sum(it is not None for it in told) > len(texts) / 2
+
+
+COMPOSED = FLEET.replace("nav2, robot_state", "nav2_composed, robot_state")
+HOSTED = """\
+controller_server:
+  ros__parameters: {odom_topic: odom}
+local_costmap:
+  local_costmap:
+    ros__parameters: {global_frame: odom, robot_base_frame: base_link}
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "node"), [(FLEET, "controller_server"), (COMPOSED, "nav2_container")]
+)
+@pytest.mark.skipif(not find_spec("rclpy"), reason="no rclpy: rcl is the judge")
+def test_a_costmap_gets_its_parameters_by_the_process_that_it_is_in(
+    tmp_path: Path, text: str, node: str
+) -> None:
+    """Values in ``parameters`` are for one node: launch_ros writes them below its full name."""
+    loaded = fleet(tmp_path, "L3", f"{text}use_sim_time: true\n", HOSTED)
+    files = loaded.robot("robot1").node(node, "params.yaml")["parameters"]
+    assert all(isinstance(it, str) for it in files)
+    places = [("/robot1/local_costmap", "local_costmap"), ("/robot1", "controller_server")]
+    asked = "".join(json.dumps({"file": it, "nodes": places}) + "\n" for it in files)
+    done = subprocess.run(
+        [sys.executable, str(CHILD)], input=asked, capture_output=True, text=True, check=True
+    )
+    costmap, server = {}, {}
+    for line in done.stdout.splitlines():
+        mine, its = json.loads(line)
+        costmap |= mine
+        server |= its
+    assert costmap["global_frame"] == "robot1/odom"
+    assert costmap["use_sim_time"] is True
+    assert (server["odom_topic"], server["use_sim_time"]) == ("odom", True)
+
+
+def test_which_nodes_are_in_a_process(tmp_path: Path) -> None:
+    table = fleet(tmp_path, "L3", COMPOSED, HOSTED).robot("robot1").table
+    assert table.inside("controller_server") == ["local_costmap/local_costmap"]
+    assert table.inside("amcl") == []
+    whole = set(table.inside("nav2_container"))
+    assert {"amcl", "controller_server", "global_costmap/global_costmap"} <= whole
+    assert whole.isdisjoint({"robot_state_publisher", "nav2_container"})

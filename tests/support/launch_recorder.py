@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import os
 import shlex
 import sys
 from pathlib import Path
@@ -25,13 +26,14 @@ from launch.utilities import normalize_to_list_of_substitutions, perform_substit
 from launch_ros.actions.load_composable_nodes import get_composable_node_load_request
 from launch_ros.substitutions import ExecutableInPackage
 from launch_ros.utilities import evaluate_parameters
+from rclpy.parameter import parameter_value_to_python
 
 # They do their work and end, so that what waits for their end starts.
 ENDING = {
     *("spawner", "hardware_spawner", "create", "spawn_entity.py", "gz_spawn_model"),
     *("sleep", "xacro", "wait_for_robot_description"),
 }
-QUIET = 5.0
+QUIET = float(os.environ.get("RECORDER_QUIET", "5.0"))
 Rows = list[dict[str, Any]]
 
 
@@ -88,10 +90,10 @@ def record(rows: Rows, with_xacro: bool = False) -> None:
         words = cmd[1:]
         if [executable, *words[:1]] == ["ros2", "run"]:
             package, executable, *words = words[1:]
-        row = {"package": package, "executable": executable, **words_of(words)}
-        rows.append(
-            {**row, "values": [values_of(it) for it in row["files"]], "texts": texts(row["own"])}
-        )
+        row = {"package": package, "executable": executable, "words": words, **words_of(words)}
+        params = {it: Path(it).read_text() for it in row["files"]}
+        values = [values_of(it) for it in row["files"]]
+        rows.append({**row, "params": params, "values": values, "texts": texts(row["own"])})
         program = ["true"] if executable in ENDING else ["sleep", "600"]
         return await real(protocol, cmd=program, **{**options, "shell": False})
 
@@ -132,6 +134,10 @@ def load(action: Any, context: Any, rows: Rows) -> None:
                     "rules": [rule.split(":=", 1) for rule in getattr(request, "remap_rules", ())],
                     "container": container,
                     "values": parameters_of(it, context),
+                    "parameters": [
+                        [it.name, plain(parameter_value_to_python(it.value))]
+                        for it in getattr(request, "parameters", ())
+                    ],
                 }
             )
 

@@ -9,15 +9,16 @@ releases from humble (1.1.20) to rolling (a3a97043e).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
-import yaml
-
-from multibot_rewrite.companions.params.sections import PLACEHOLDER, raw_sections
+from multibot_rewrite.companions.params.rcl_parameters import parameters_text
+from multibot_rewrite.companions.params.sections import PLACEHOLDER, RawSection, raw_sections
+from multibot_rewrite.companions.params.shared_defaults import DefaultLine, inserted
 from multibot_rewrite.companions.yaml_text import (
     Splice,
     YamlText,
     found_at,
+    pairs,
     quoted,
     replaced,
     spliced,
@@ -27,6 +28,9 @@ from multibot_rewrite.findings.rule import declare
 
 _SLAM = "slam_toolbox"
 _WHY = "# nav2_bringup wants this key, and gives slam_toolbox the file without a namespace.\n"
+_MAP_NAME = DefaultLine(
+    "# /map by default, and nothing would move /map_metadata", "map_name", "map"
+)
 
 OUTSIDE = declare(
     "MF132",
@@ -51,20 +55,35 @@ amcl:
 )
 
 
-def for_bringup(document: YamlText, namespace: str) -> tuple[str, tuple[Finding, ...]]:
+Values = Mapping[str, Mapping[str, object]]
+NO_MORE: Values = {}
+
+
+def for_bringup(
+    document: YamlText, namespace: str, more: Values = NO_MORE
+) -> tuple[str, tuple[Finding, ...]]:
     """The text of a file as it was made for the robot in ``namespace``, without that namespace.
 
-    Raises InputError for a file that rcl rejects.
+    ``more`` are further values of nodes that have a section in it: there is one file for all that is
+    started. Raises InputError for a file that rcl rejects.
     """
-    keys = {id(it.keys[0]): it.keys[0] for it in raw_sections(document)}
-    made = [it for key in keys.values() for it in _changed(document, key, namespace)]
+    sections = {id(it.keys[0]): it for it in raw_sections(document)}
+    made = [it for section in sections.values() for it in _changed(document, section, namespace)]
     splices = [it for it in made if isinstance(it, Splice)]
-    return spliced(document, splices), tuple(it for it in made if isinstance(it, Finding))
+    findings = tuple(it for it in made if isinstance(it, Finding))
+    named = {below_namespace(it.path, namespace) for it in sections.values()}
+    added = {f"**/{node}": values for node, values in more.items() if node in named}
+    return f"{spliced(document, splices)}{_lines(added)}", findings
 
 
-def _changed(
-    document: YamlText, key: yaml.ScalarNode, namespace: str
-) -> Iterator[Splice | Finding]:
+def _lines(sections: Values) -> str:
+    """Sections at the end of a file; their keys are others than those of the file."""
+    return f"\n{parameters_text(sections)[1:-1]}\n" if sections else ""
+
+
+def _changed(document: YamlText, section: RawSection, namespace: str) -> Iterator[Splice | Finding]:
+    """The new key of a section, which is the first below that key."""
+    key = section.keys[0]
     below = below_namespace(key.value, namespace)
     if PLACEHOLDER.search(key.value):
         return
@@ -76,6 +95,8 @@ def _changed(
         at, column = key.start_mark.index, key.start_mark.column
         new = f"{_WHY}{' ' * column}{_SLAM}: {{}}\n{' ' * column}{quoted(f'**/{_SLAM}')}"
         yield Splice(at, key.end_mark.index, new)
+        if _MAP_NAME.path not in {it.value for it, _ in pairs(section.body)}:
+            yield inserted(document, section.body, [_MAP_NAME])
     else:
         yield replaced(key, below)
 

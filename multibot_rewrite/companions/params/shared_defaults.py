@@ -57,7 +57,7 @@ def default_lines(
         there = here | bare if frames_stay(job, section) else here
         lines = list(missing_defaults(job.context, section.node, there))
         if lines:
-            yield _insert(job.document, section.body, lines)
+            yield inserted(job.document, section.body, lines)
         yield from _inexpressible(job, section, section.node, here)
 
 
@@ -137,7 +137,7 @@ smoother_server:
 )
 
 
-def _insert(
+def inserted(
     document: YamlText, body: yaml.MappingNode, lines: Sequence[DefaultLine]
 ) -> Splice | Finding:
     """The lines before the first parameter, with its indentation."""

@@ -15,6 +15,7 @@ from multibot_rewrite.graph.rules.tf_senders import planned_transforms, senders_
 from multibot_rewrite.graph.rules.tf_trees import TfTree, tree_topic
 from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.graph.wording import shorten
+from multibot_rewrite.remap.records import PUBLISHES
 
 
 @graph_rule(
@@ -98,7 +99,8 @@ def disconnected_tf_tree(view: View) -> Iterator[Finding]:
         # A chain may go through frames that are nobody's, as a relay names them.
         above = {edge.child: edge.parent for edge in tree.edges}
         roots_of: dict[str, set[str]] = defaultdict(set)
-        for edge in tree.edges:
+        # Of a frame with two parents, which is another finding, one counts.
+        for edge in (it for it in tree.edges if above[it.child] == it.parent):
             for robot in _robots_at_home(view, tree, edge):
                 roots_of[robot].add(_root(above, edge.parent))
         for robot, found in roots_of.items():
@@ -165,10 +167,19 @@ def wrong_tf_topic(view: View) -> Iterator[Finding]:
                 misplaced[robot].append(edge)
         for robot, edges in misplaced.items():
             home = tree_topic(view.robots[robot].tf)
-            # A copy that another node makes, for RViz for example: the robot itself is as planned.
+            # A copy that a relay or another node makes, for RViz for example: the robot is as planned.
             copied = all(edge.child in children.get(home, ()) for edge in edges)
-            if not (copied and tree.senders and robot not in tree.senders):
+            if not (copied and tree.senders and _only_planned(view, tree, robot, edges)):
                 yield _wrong_topic(view, tree, view.robots[robot], edges)
+
+
+def _only_planned(view: View, tree: TfTree, robot: str, edges: Iterable[GraphFrame]) -> bool:
+    """Do only those nodes of the robot send on a topic that should by the plan?"""
+    topics = {edge.topic for edge in edges}
+    planned = {
+        node for node, kind, role, name in view.planned if name in topics and role == PUBLISHES
+    }
+    return planned.issuperset(tree.senders.get(robot, ()))
 
 
 def _wrong_topic(

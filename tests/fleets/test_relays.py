@@ -1,0 +1,106 @@
+"""``relayed``: each robot's tf on /tf as well, as nodes of the plan.
+
+Expected are the parameters of topic_tools relay_node.cpp (input_topic, output_topic) and one node of
+each topic for each robot.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from graph_cases import as_planned, sent
+from paths import ROBOTS
+
+from multibot_rewrite import UsageError, load_fleet
+from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.findings.finding import NOTE
+from multibot_rewrite.fleets.fleet import expected
+from multibot_rewrite.fleets.scripts import LoadedFleet
+from multibot_rewrite.graph.check import check
+from multibot_rewrite.graph.expectation import Expectation
+from multibot_rewrite.graph.snapshot import GraphEndpoint, Snapshot
+from multibot_rewrite.remap.bridged_topics import TF_TYPE
+from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, TOPIC
+
+RVIZ = "Visualization Manager:\n  Displays: []\n  Global Options: {Fixed Frame: map}\n"
+
+
+def fleet(folder: Path, layout: str) -> LoadedFleet:
+    (folder / "one.rviz").write_text(RVIZ)
+    text = (
+        f"layout: {layout}\nrelayed: true\nstack: robot_state_publisher\n"
+        "robots:\n"
+        f"  - {{name: robot1, description: {ROBOTS / 'rover.urdf'}}}\n"
+        f"  - {{name: robot2, description: {ROBOTS / 'rover.urdf'}}}\n"
+        "companions: {rviz: one.rviz}\n"
+    )
+    (folder / "fleet.yaml").write_text(text)
+    return load_fleet(folder / "fleet.yaml")
+
+
+def relayed(plan: Expectation) -> Snapshot:
+    """The graph as planned, with what the relays send."""
+    graph = as_planned(plan)
+    copies = (it._replace(topic="/tf_static" if it.static else "/tf") for it in graph.frames)
+    return sent(graph._replace(frames=(*graph.frames, *copies)))
+
+
+@pytest.mark.parametrize(
+    ("layout", "source", "name"),
+    [
+        ("both", "/robot2/tf", "/robot2/tf_relay"),
+        ("postfix", "/tf/robot2", "/tf_relay_robot2"),
+    ],
+)
+def test_a_relay_reads_the_robots_tf_and_writes_tf(
+    tmp_path: Path, layout: str, source: str, name: str
+) -> None:
+    robot = fleet(tmp_path, layout).robot("robot2")
+    assert robot.relays["tf_relay"] == {"input_topic": source, "output_topic": "/tf"}
+    assert robot.relays["tf_static_relay"]["output_topic"] == "/tf_static"
+    assert robot.table.full_name("tf_relay") == name
+    # A rule for the name that it reads would move /tf as well.
+    assert robot.table.for_node("tf_relay") == []
+    plan = expected(robot._fleet.plan.fleet)
+    ends = {(it.role, it.name) for it in plan.endpoints if it.node == name}
+    assert ends == {(SUBSCRIBES, source), (PUBLISHES, "/tf")}
+
+
+@pytest.mark.parametrize("layout", ["both", "postfix"])
+def test_a_relayed_graph_is_as_planned_and_a_leak_is_none(tmp_path: Path, layout: str) -> None:
+    plan = expected(fleet(tmp_path, layout).plan.fleet)
+    graph = relayed(plan)
+    assert [it for it in check(plan, graph) if it.level != NOTE] == []
+    state = next(it for it in plan.robots[0].nodes if "robot_state" in it)
+    leak = GraphEndpoint(TOPIC, PUBLISHES, "/tf", TF_TYPE, "", state, None, "")
+    spoiled = sent(graph._replace(endpoints=(*graph.endpoints, leak)))
+    assert {"MG103", "MG205"} <= {it.code for it in check(plan, spoiled)}
+
+
+def test_the_build_starts_them_and_opens_one_window(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    fleet(tmp_path, "both")
+    out = tmp_path / "out"
+    assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(out), "-q"]) == 0
+    assert "MF203" not in capsys.readouterr().err
+    commands = (out / "commands.md").read_text()
+    own = "-r __ns:=/robot1 -r __node:=tf_static_relay -p input_topic:=/robot1/tf_static"
+    assert f"ros2 run topic_tools relay --ros-args {own} -p output_topic:=/tf_static\n" in commands
+    assert commands.count("rviz2 -d") == 1
+    assert (out / "one.rviz").exists()
+
+
+@pytest.mark.parametrize(
+    ("layout", "said"),
+    [
+        ("frames-per-robot", "has one /tf for all robots; remove relayed"),
+        ("tf-per-robot", "frames of all robots have the same names.*tf_namespace_bridge"),
+    ],
+)
+def test_a_layout_that_has_nothing_to_relay_is_refused(
+    tmp_path: Path, layout: str, said: str
+) -> None:
+    with pytest.raises(UsageError, match=said):
+        fleet(tmp_path, layout)
