@@ -134,6 +134,7 @@ HOMES: tuple[Home, ...] = (
             "fleets.closing_semantics",
             "fleets.srdf_of_another",
             "fleets.devices",
+            "fleets.apart",
             "fleets.closing_topics",
         ),
     ),

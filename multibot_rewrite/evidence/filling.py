@@ -77,7 +77,7 @@ def _endpoint(node: NodeFacts, raw: Endpoint, values: Mapping[str, Given]) -> It
     of_stack = [it for it in node.endpoints if _is_from(it, raw)]
     remapped = next((it.remapped for it in of_stack), "")
     if not _is_decided(raw, [ids[it] for it in wanted], values, of_stack):
-        yield from of_stack
+        yield from (_typed(it, lookup(node, values)) for it in of_stack)
         return
     for binding in _bindings(ids, wanted, values):
         bound = _bound(raw._replace(remapped=remapped), binding)

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.companions.yaml_text import quoted
 from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.fleets.apart import too_near
 from multibot_rewrite.fleets.bridge_outputs import bridge_outputs
 from multibot_rewrite.fleets.closed_plan import bridged_by, demanded, gaps_of, texts_of
 from multibot_rewrite.fleets.commands_file import commands_file
@@ -79,6 +80,7 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
         findings += one_device(plan.robots)
         for found in plan.evidence.values():
             findings += found.findings
+        findings += too_near(plan)
         findings += differences(plan)
         texts = texts_of(files)
         gaps = gaps_of(plan, fleet, texts, findings)

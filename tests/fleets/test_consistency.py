@@ -12,7 +12,7 @@ from paths import CORPUS
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.build import Outputs, make_outputs
 from multibot_rewrite.fleets.consistency import consistency
-from multibot_rewrite.fleets.doubled_names import twice
+from multibot_rewrite.fleets.doubled_names import doubled, twice
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.fleets.output_values import OutputText, line_in_source, values_in
@@ -197,6 +197,20 @@ def test_values_of_each_format() -> None:
 )  # fmt: skip
 def test_twice_in_a_name(token: str, word: str) -> None:
     assert twice(token, ("r1",)) == word
+
+
+@pytest.mark.parametrize(
+    ("token", "word"),
+    [
+        ("robot1_robot1_lamp", "robot1"), ("robot1/robot1_lamp", "robot1"), ("robot1/lamp", ""),
+        ("left/left_scan", ""), ("left_left_scan", ""), ("left/left/scan", "left"),
+        ("left_left_base_link", "left"), ("/left/left_base_link", "left"), ("left/left_wheel", ""),
+    ],
+)  # fmt: skip
+def test_a_name_that_holds_its_robot_once_too_often(token: str, word: str) -> None:
+    words, right, bare = ("robot1", "left"), {"left/left_wheel", "robot1/robot1"}, {"base_link"}
+    assert doubled(token, words, right, {*bare, "wheel"}) == word
+    assert doubled("/robot1/robot1", words, right, bare) == ""
 
 
 def test_a_robot_whose_link_is_called_like_it_is_no_fault(tmp_path: Path) -> None:

@@ -96,6 +96,13 @@ def test_both_are_rewritten_and_the_model_is_spawned(
     assert codes & {"MF711", "MF602", "MF603", "MF604", "MF605", "MB106"} == set()
 
 
+def test_tf_is_that_of_the_description(tmp_path: Path) -> None:
+    """The model has no mast: robot_state_publisher reads the URDF."""
+    plan = plan_fleet(read_fleet(written(tmp_path, "frames-per-robot"), "", {}))
+    sent = plan.fleet.edges["robot2", "robot_state_publisher"]
+    assert ("robot2/base_link", "robot2/lidar_link") in {(it.parent, it.child) for it in sent}
+
+
 @pytest.mark.parametrize(
     ("changed", "said"),
     [

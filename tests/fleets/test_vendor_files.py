@@ -101,3 +101,16 @@ def test_frames_that_a_node_puts_its_own_prefix_before_stay(tmp_path: Path) -> N
 def test_a_node_below_the_robot_may_have_a_section() -> None:
     below, beside = (NodeFacts(it, "acme", ()) for it in ("front/driver", "driver"))
     assert list(companion_nodes([below, beside], [])) == [below]
+
+
+@pytest.mark.parametrize(("stamped", "type_"), [("true", "TwistStamped"), ("false", "Twist")])
+def test_parameters_decide_whether_commands_are_stamped(
+    stamped: str, type_: str, tmp_path: Path
+) -> None:
+    """twist_mux.cpp, use_stamped; the plan and a rehearsal have the one type."""
+    values = f"{{use_stamped: {stamped}, topics.joy.topic: joy/cmd_vel}}"
+    params = f"twist_mux:\n  ros__parameters: {values}\n"
+    made = plan(tmp_path, SENSOR, "stack: twist_mux\n", params)
+    types = {it.endpoint.name: it.endpoint.type for it in made.fleet.table.names}
+    assert types["cmd_vel_out"] == f"geometry_msgs/msg/{type_}"
+    assert types["joy/cmd_vel"] == f"geometry_msgs/msg/{type_}"

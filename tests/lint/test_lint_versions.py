@@ -25,14 +25,14 @@ from urdfdom_cases import (
     visual,
 )
 
-from multibot_rewrite.findings.finding import ERROR, Finding
-from multibot_rewrite.lint.check import lint_data
-from multibot_rewrite.lint.config.settings import Settings
-from multibot_rewrite.lint.convert.rotation import (
+from multibot_rewrite.checks.rotation import (
     matrix_of_quaternion,
     quaternion_of_rpy,
     rpy_of,
 )
+from multibot_rewrite.findings.finding import ERROR, Finding
+from multibot_rewrite.lint.check import lint_data
+from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.fix import fix
 from multibot_rewrite.releases import RELEASES
 

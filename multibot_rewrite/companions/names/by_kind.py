@@ -137,8 +137,8 @@ def before_frames(between: str) -> Speller:
     """What a node puts before frames: where that names the robot's frames, the robot's name."""
 
     def speller(context: Context, value: str) -> str:
-        named = context.names.naming.layout.at_run_time and (value or between)
-        return f"{TAG_SLOT}{between}" if named else value
+        at_run_time = context.names.naming.layout.at_run_time
+        return f"{TAG_SLOT}{between}" if at_run_time else value
 
     return speller
 

@@ -12,9 +12,9 @@ from functools import partial
 from lxml.etree import _Element
 
 from multibot_rewrite.checks.numbers import Vector, number
+from multibot_rewrite.checks.pose import Pose, pose_of
+from multibot_rewrite.checks.rotation import turned
 from multibot_rewrite.lazy import lazy_compile
-from multibot_rewrite.lint.convert.pose import Pose, pose_of
-from multibot_rewrite.lint.convert.rotation import turned
 from multibot_rewrite.lint.convert.spans import Text, end_of, end_tag_of
 from multibot_rewrite.model import Edit
 from multibot_rewrite.steps.document import tag_end

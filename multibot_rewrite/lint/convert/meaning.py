@@ -12,9 +12,9 @@ from typing import NamedTuple
 from lxml.etree import _Element
 
 from multibot_rewrite.checks.numbers import number
+from multibot_rewrite.checks.pose import ROTATIONS, pose_of
+from multibot_rewrite.checks.rotation import NO_ROTATION, SAME, matrix_of_quaternion
 from multibot_rewrite.lint.convert.capsules import capsules, ends_of
-from multibot_rewrite.lint.convert.pose import ROTATIONS, pose_of
-from multibot_rewrite.lint.convert.rotation import NO_ROTATION, SAME, matrix_of_quaternion
 
 _IDENTITY = matrix_of_quaternion(NO_ROTATION)
 _UNREAD = {"origin": ("xyz", *ROTATIONS), "robot": ("version",)}

@@ -6,15 +6,15 @@ from collections.abc import Iterator
 
 from lxml.etree import _Element
 
-from multibot_rewrite.lint.convert.capsules import capsule_edits, capsules, written
-from multibot_rewrite.lint.convert.pose import pose_of, quaternion, rolled
-from multibot_rewrite.lint.convert.rotation import (
+from multibot_rewrite.checks.pose import pose_of, quaternion, rolled
+from multibot_rewrite.checks.rotation import (
     is_same,
     length_of,
     matrix_of_quaternion,
     quaternion_of_rpy,
     rpy_of,
 )
+from multibot_rewrite.lint.convert.capsules import capsule_edits, capsules, written
 from multibot_rewrite.lint.convert.spans import Text, removed, renamed, revalued
 from multibot_rewrite.lint.schema.versions import OLDEST, Version
 from multibot_rewrite.model import Edit

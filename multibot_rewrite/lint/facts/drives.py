@@ -15,11 +15,12 @@ from lxml.etree import _Element
 
 from multibot_rewrite.checks.links_and_joints import Joint, Robot
 from multibot_rewrite.checks.numbers import Vector, number
-from multibot_rewrite.lint.convert.pose import Pose
-from multibot_rewrite.lint.convert.rotation import turned
+from multibot_rewrite.checks.pose import Pose
+from multibot_rewrite.checks.poses import axis_of, dot, minus, origin_of, placed
+from multibot_rewrite.checks.rotation import turned
+from multibot_rewrite.checks.shapes import Extent, around, extent_of, shapes_of
 from multibot_rewrite.lint.facts.memo import memoized
-from multibot_rewrite.lint.facts.poses import axis_of, dot, link_poses, minus, origin_of, placed
-from multibot_rewrite.lint.facts.shapes import Extent, around, extent_of, shapes_of
+from multibot_rewrite.lint.facts.poses import link_poses
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.rewriters.text import text_of
 

@@ -8,9 +8,9 @@ from lxml.etree import _Element
 
 from multibot_rewrite.checks.links_and_joints import Link
 from multibot_rewrite.checks.numbers import number
-from multibot_rewrite.lint.convert.pose import Pose
+from multibot_rewrite.checks.pose import Pose
+from multibot_rewrite.checks.poses import sdf_pose
 from multibot_rewrite.lint.facts.memo import memoized
-from multibot_rewrite.lint.facts.poses import sdf_pose
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.rewriters.text import text_at
 

@@ -8,11 +8,12 @@ from math import hypot
 from lxml.etree import _Element
 
 from multibot_rewrite.checks.numbers import number
-from multibot_rewrite.lint.convert.pose import Pose
-from multibot_rewrite.lint.convert.rotation import turned
+from multibot_rewrite.checks.pose import Pose
+from multibot_rewrite.checks.poses import origin_of, placed, plus, scaled
+from multibot_rewrite.checks.rotation import turned
+from multibot_rewrite.checks.shapes import extent_of, shapes_of
 from multibot_rewrite.lint.facts.drives import drives, radii
-from multibot_rewrite.lint.facts.poses import link_poses, origin_of, placed, plus, scaled
-from multibot_rewrite.lint.facts.shapes import extent_of, shapes_of
+from multibot_rewrite.lint.facts.poses import link_poses
 from multibot_rewrite.lint.records import Subject
 
 Point = tuple[float, float]

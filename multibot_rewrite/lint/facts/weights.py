@@ -6,8 +6,9 @@ from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
 from multibot_rewrite.checks.numbers import Vector
+from multibot_rewrite.checks.poses import origin_of, plus, point_in, scaled
 from multibot_rewrite.lint.facts.memo import memoized
-from multibot_rewrite.lint.facts.poses import link_poses, origin_of, plus, point_in, scaled
+from multibot_rewrite.lint.facts.poses import link_poses
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.rewriters.text import text_at
 

@@ -7,12 +7,12 @@ from functools import partial
 
 from lxml.etree import _Element
 
+from multibot_rewrite.checks.pose import quaternion
 from multibot_rewrite.checks.problem import Problem
+from multibot_rewrite.checks.rotation import length_of
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.convert.capsules import capsule_edits, capsules
-from multibot_rewrite.lint.convert.pose import quaternion
-from multibot_rewrite.lint.convert.rotation import length_of
 from multibot_rewrite.lint.convert.spans import Text, text_of
 from multibot_rewrite.lint.convert.versions import (
     as_rpy,

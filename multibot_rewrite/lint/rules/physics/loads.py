@@ -6,13 +6,14 @@ from collections.abc import Iterator
 
 from multibot_rewrite.checks.links_and_joints import Joint, roots
 from multibot_rewrite.checks.numbers import value_of
+from multibot_rewrite.checks.poses import axis_of, cross, dot, minus
 from multibot_rewrite.checks.problem import Problem
+from multibot_rewrite.checks.rotation import turned
 from multibot_rewrite.findings.finding import NOTE, WARNING
 from multibot_rewrite.findings.rule import rule
-from multibot_rewrite.lint.convert.rotation import turned
 from multibot_rewrite.lint.facts.driven import driven_joints
 from multibot_rewrite.lint.facts.drives import drives
-from multibot_rewrite.lint.facts.poses import axis_of, cross, dot, link_poses, minus
+from multibot_rewrite.lint.facts.poses import link_poses
 from multibot_rewrite.lint.facts.support import beyond, contacts, hull
 from multibot_rewrite.lint.facts.weights import NO_WEIGHT, carried
 from multibot_rewrite.lint.records import Subject

@@ -9,12 +9,12 @@ from lxml.etree import _Element
 
 from multibot_rewrite.checks.links_and_joints import Link
 from multibot_rewrite.checks.numbers import Vector, vector
+from multibot_rewrite.checks.poses import length, minus, origin_of
 from multibot_rewrite.checks.problem import Problem
+from multibot_rewrite.checks.rotation import is_same
+from multibot_rewrite.checks.shapes import Extent, around, extent_of, shapes_of
 from multibot_rewrite.findings.finding import WARNING
 from multibot_rewrite.findings.rule import rule
-from multibot_rewrite.lint.convert.rotation import is_same
-from multibot_rewrite.lint.facts.poses import length, minus, origin_of
-from multibot_rewrite.lint.facts.shapes import Extent, around, extent_of, shapes_of
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.examples import block
 from multibot_rewrite.lint.rules.physics.shared import BOX, INERTIA, inertials, one_link, part_of

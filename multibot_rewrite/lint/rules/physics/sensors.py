@@ -8,15 +8,16 @@ from lxml.etree import _Element
 
 from multibot_rewrite.checks.links_and_joints import Joint
 from multibot_rewrite.checks.numbers import Vector
+from multibot_rewrite.checks.pose import Pose
+from multibot_rewrite.checks.poses import dot, minus, origin_of, placed
 from multibot_rewrite.checks.problem import Problem
+from multibot_rewrite.checks.rotation import inverse, turned
+from multibot_rewrite.checks.shapes import shapes_of, way_out
 from multibot_rewrite.findings.finding import WARNING
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lazy import lazy_compile
-from multibot_rewrite.lint.convert.pose import Pose
-from multibot_rewrite.lint.convert.rotation import inverse, turned
-from multibot_rewrite.lint.facts.poses import dot, link_poses, minus, origin_of, placed
+from multibot_rewrite.lint.facts.poses import link_poses
 from multibot_rewrite.lint.facts.sensors import CAMERAS, LIDARS, Sensor, number_at, sensors
-from multibot_rewrite.lint.facts.shapes import shapes_of, way_out
 from multibot_rewrite.lint.facts.support import ground_of
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.examples import a_joint, a_link, block

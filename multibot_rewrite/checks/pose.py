@@ -7,7 +7,7 @@ from typing import NamedTuple
 from lxml.etree import _Element
 
 from multibot_rewrite.checks.numbers import Vector, numbers, vector
-from multibot_rewrite.lint.convert.rotation import (
+from multibot_rewrite.checks.rotation import (
     Matrix,
     Quaternion,
     matrix_of_quaternion,

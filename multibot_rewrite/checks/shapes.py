@@ -10,8 +10,8 @@ from typing import NamedTuple
 from lxml.etree import _Element
 
 from multibot_rewrite.checks.numbers import Vector, numbers, vector
-from multibot_rewrite.lint.convert.pose import Pose
-from multibot_rewrite.lint.facts.poses import STRAIGHT, dot, minus, plus, scaled
+from multibot_rewrite.checks.pose import Pose
+from multibot_rewrite.checks.poses import STRAIGHT, dot, minus, plus, scaled
 
 
 class Extent(NamedTuple):
