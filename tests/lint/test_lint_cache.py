@@ -218,6 +218,23 @@ def test_a_file_among_others_is_not_that_file_alone(here: Path) -> None:
         assert again(paths=paths)[0] == linted(paths=paths)
 
 
+def test_an_included_file_is_another_one_alone(here: Path) -> None:
+    write(here / "two.xacro", f'<robot name="r" {XACRO}><link name="a"/><link name="b"/></robot>')
+    joint = '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'
+    include = '<xacro:include filename="two.xacro"/>'
+    write(here / "whole.urdf.xacro", f'<robot name="r" {XACRO}>{include}{joint}</robot>')
+    together, alone = ("two.xacro", "whole.urdf.xacro"), ("two.xacro",)
+    assert not {"MB501"} & {it.code for it in again(paths=together)[0]}
+    assert {"MB501"} <= {it.code for it in again(paths=alone)[0]}
+    assert again(paths=together)[0] == linted(paths=together)
+
+
+def test_runs_over_parts_of_a_folder_add_up(here: Path) -> None:
+    again(paths=SOURCES[2:3])
+    again(paths=SOURCES[3:4])
+    assert again(paths=SOURCES[2:3])[1] == again(paths=SOURCES[3:4])[1] == 0
+
+
 @pytest.mark.parametrize(
     "damage",
     [

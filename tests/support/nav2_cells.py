@@ -184,8 +184,6 @@ def cells() -> Iterator[Cell]:
         yield Cell(OWN, "jazzy", layout, composed, slam)
     for layout in ("both", "postfix"):
         yield Cell(OWN, "jazzy", layout, True, False, "relayed: true")
-    yield Cell(OWN, "kilted", "postfix", True, False)
-    yield Cell(OWN, "kilted", "tf-per-robot", False, True)
 
 
 def written(cell: Cell, folder: Path, sources: Path) -> LoadedFleet:

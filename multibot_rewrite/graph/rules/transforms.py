@@ -99,7 +99,8 @@ def disconnected_tf_tree(view: View) -> Iterator[Finding]:
         # A chain may go through frames that are nobody's, as a relay names them.
         above = {edge.child: edge.parent for edge in tree.edges}
         roots_of: dict[str, set[str]] = defaultdict(set)
-        for edge in tree.edges:
+        # Of a frame with two parents, which is another finding, one counts.
+        for edge in (it for it in tree.edges if above[it.child] == it.parent):
             for robot in _robots_at_home(view, tree, edge):
                 roots_of[robot].add(_root(above, edge.parent))
         for robot, found in roots_of.items():
