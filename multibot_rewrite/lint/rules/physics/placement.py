@@ -50,7 +50,8 @@ def collision_away(subject: Subject) -> Iterator[Problem]:
         seen, hard = (list(shapes_of(link.element, it)) for it in ("visual", "collision"))
         if not seen or not hard or _alike(seen[0], hard[0]):
             continue
-        gap = _gap(_around(seen), _around(hard)) or _moved(seen, hard)
+        box = _around(seen)
+        gap = (0.0 if box is None else _gap(box, _around(hard))) or _moved(seen, hard)
         if gap:
             message = f"the collision of link {link.name!r} is {gap:.3g} m away from its visual"
             yield Problem(hard[0][0], message)
@@ -83,9 +84,9 @@ def _around(shapes: _Shapes) -> Extent | None:
     return around(found)
 
 
-def _gap(one: Extent | None, other: Extent | None) -> float:
-    """How far two boxes are apart; 0 where they touch or are not known."""
-    if one is None or other is None:
+def _gap(one: Extent, other: Extent | None) -> float:
+    """How far two boxes are apart; 0 where they touch or the other is not known."""
+    if other is None:
         return 0.0
     if min(max(minus(it.high, it.low)) for it in (one, other)) < MARKER:
         return 0.0
