@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from math import inf
 
 from lxml.etree import _Element
@@ -15,6 +15,7 @@ from multibot_rewrite.checks.rotation import is_same
 from multibot_rewrite.checks.shapes import Extent, around, extent_of, shapes_of
 from multibot_rewrite.findings.finding import WARNING
 from multibot_rewrite.findings.rule import rule
+from multibot_rewrite.lint.facts.memo import memoized
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.examples import block
 from multibot_rewrite.lint.rules.physics.shared import BOX, INERTIA, inertials, one_link, part_of
@@ -47,7 +48,7 @@ def _placed(tag: str, xyz: str, shape: str = BOX) -> str:
 def collision_away(subject: Subject) -> Iterator[Problem]:
     """Links with shapes of known size, and links with one mesh for both."""
     for link in subject.robot.links:
-        seen, hard = (list(shapes_of(link.element, it)) for it in ("visual", "collision"))
+        seen, hard = _shapes(subject)[link.element]
         if not seen or not hard or _alike(seen[0], hard[0]):
             continue
         box = _around(seen)
@@ -58,6 +59,13 @@ def collision_away(subject: Subject) -> Iterator[Problem]:
 
 
 _Shapes = list[tuple[_Element, _Element]]
+
+
+@memoized
+def _shapes(subject: Subject) -> Mapping[_Element, tuple[_Shapes, _Shapes]]:
+    """The shapes of each link: those that are seen, and those that bump."""
+    found = (it.element for it in subject.robot.links)
+    return {it: (list(shapes_of(it, "visual")), list(shapes_of(it, "collision"))) for it in found}
 
 
 def _alike(one: tuple[_Element, _Element], other: tuple[_Element, _Element]) -> bool:
@@ -144,7 +152,8 @@ def centre_of_mass_outside(subject: Subject) -> Iterator[Problem]:
 
 def _outside(subject: Subject, link: Link, centre: Vector) -> float:
     """How far a centre is from the shapes of its link, if that is too far."""
-    shapes = [it for tag in ("visual", "collision") for it in shapes_of(link.element, tag)]
+    seen, hard = _shapes(subject)[link.element]
+    shapes = seen + hard
     box = _around(shapes)
     if box is None:
         return _far_from_mesh(subject, link, shapes, centre)
