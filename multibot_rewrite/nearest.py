@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import lru_cache
 from itertools import islice
 
 # How much alike two words have to be, from 0 to 1 (difflib's ratio): one of a short list that a
@@ -18,6 +19,11 @@ _BEGINNING = 3
 
 def nearest(name: str, known: Iterable[str], alike: float = ALIKE) -> str:
     """The known name most like ``name``, one that differs in case or dashes alone first; else ""."""
+    return _nearest(name, tuple(known), alike)
+
+
+@lru_cache(maxsize=256)  # a mistake comes again, in one file and in others
+def _nearest(name: str, known: tuple[str, ...], alike: float) -> str:
     found = nearest_few(name, known, 1, alike)
     return found[0] if found else ""
 

@@ -35,7 +35,8 @@ def link_poses(robot: Robot) -> Mapping[str, Pose]:
     todo = list(found)
     for name in todo:  # grows
         for joint in robot.below.get(name, ()):
-            own = None if joint.child in found or not joint.child else origin_of(joint.element)
+            is_new = joint.child and joint.child not in found
+            own = pose_in(joint.parts.get("origin")) if is_new else None
             if own is not None:
                 found[joint.child] = placed(found[name], own)
                 todo.append(joint.child)
@@ -44,12 +45,21 @@ def link_poses(robot: Robot) -> Mapping[str, Pose]:
 
 def origin_of(element: _Element) -> Pose | None:
     """The pose that the first ``<origin>`` in an element says."""
-    origin = element.find("origin")
+    return pose_in(next(element.iterchildren("origin"), None))
+
+
+def pose_in(origin: _Element | None) -> Pose | None:
+    """The pose that an ``<origin>`` says."""
     if origin is None:
         return HERE
-    if "quat_xyzw" in origin.attrib:
+    if origin.get("quat_xyzw") is not None:
         return pose_of(origin)
-    at, turn = vector(origin.get("xyz", "0 0 0")), _matrix(origin.get("rpy", "0 0 0"))
+    return _pose(origin.get("xyz", "0 0 0"), origin.get("rpy", "0 0 0"))
+
+
+@lru_cache(maxsize=1024)  # several rules ask for the same ones
+def _pose(xyz: str, rpy: str) -> Pose | None:
+    at, turn = vector(xyz), _matrix(rpy)
     return None if at is None or turn is None else Pose(at, turn)
 
 

@@ -34,8 +34,8 @@ def extent_of(shape: _Element, pose: Pose) -> Extent | None:
     if shape.tag == "sphere" or pose.matrix is STRAIGHT:
         reach = half
     else:
-        rows = [sum(abs(a) * b for a, b in zip(row, half, strict=True)) for row in pose.matrix]
-        reach = (rows[0], rows[1], rows[2])
+        x, y, z = half
+        reach = _three(abs(a) * x + abs(b) * y + abs(c) * z for a, b, c in pose.matrix)
     return Extent(minus(pose.at, reach), plus(pose.at, reach))
 
 

@@ -50,13 +50,7 @@ def _linted(path: str, read: Callable[[], bytes], settings: Settings) -> list[Fi
             sources[path] = data = read()
             if is_beside(path):
                 return sorted(_beside(path, data, settings), key=by_place)
-            for subject in read_subjects(path, data, settings):
-                if isinstance(subject, Failed):
-                    it = failure(path, subject.message, settings)
-                    found.append(it._replace(arguments=subject.arguments))
-                    continue
-                found += lint_subject(subject)
-                sources = {**sources, **subject.sources, path: data}
+            _look(path, data, settings, found, sources)
     except InputError as error:
         found.append(failure(path, str(error), settings))
     except _TooLongError:
@@ -66,6 +60,20 @@ def _linted(path: str, read: Callable[[], bytes], settings: Settings) -> list[Fi
     except Exception as error:  # the other files are still linted
         found.append(breakdown(path, error))
     return sorted(unsuppressed(_merged(found), sources, settings), key=by_place)
+
+
+def _look(
+    path: str, data: bytes, settings: Settings, found: list[Finding], sources: dict[str, bytes]
+) -> None:
+    """Adds findings, and the files that were read; the subjects are let go before the garbage
+    collector is back, which would look through all of them."""
+    for subject in read_subjects(path, data, settings):
+        if isinstance(subject, Failed):
+            it = failure(path, subject.message, settings)
+            found.append(it._replace(arguments=subject.arguments))
+            continue
+        found += lint_subject(subject)
+        sources |= {**subject.sources, path: data}
 
 
 def _beside(path: str, data: bytes, settings: Settings) -> list[Finding]:

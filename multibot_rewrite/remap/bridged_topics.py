@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
-from importlib.resources import files
 from typing import Any, NamedTuple, cast
 
 from lxml import etree
@@ -50,6 +49,8 @@ class UnbridgedTopic(NamedTuple):
 @lru_cache(maxsize=1)
 def bridge_data() -> Mapping[str, Any]:
     """The data of ``bridge.yaml``."""
+    from importlib.resources import files  # slow to load, and the lint asks only for libraries
+
     text = files("multibot_rewrite.remap").joinpath("bridge.yaml").read_text()
     data: Mapping[str, Any] = load_yaml(text)
     return data

@@ -214,7 +214,7 @@ def test_every_known_stack_is_learned_as_it_is_described(
 
 
 # Written without ``~`` below the node's own name, which only who knows the code can tell.
-LITERAL = {"nav2_slam", "slam_toolbox"}
+LITERAL = {"nav2_slam", "nav2_slam_composed", "slam_toolbox"}
 
 
 @pytest.mark.slow

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from multibot_rewrite.checks.numbers import Vector
@@ -38,7 +38,7 @@ def carried(subject: Subject) -> Mapping[str, Weight]:
     for name in reversed([*poses]):  # children come after their parents
         for joint in subject.robot.above.get(name, ())[:1]:
             if joint.parent in found:
-                found[joint.parent] = _together((found[joint.parent], found[name]))
+                found[joint.parent] = _together(found[joint.parent], found[name])
     return found
 
 
@@ -53,13 +53,10 @@ def _without_gravity(subject: Subject) -> set[str]:
     }
 
 
-def _together(weights: Iterable[Weight]) -> Weight:
-    """Several weights as one."""
-    every = list(weights)
-    mass = sum(it.mass for it in every)
-    if not mass:
-        return NO_WEIGHT
-    moment = (0.0, 0.0, 0.0)
-    for it in every:
-        moment = plus(moment, scaled(it.centre, it.mass))
+def _together(one: Weight, other: Weight) -> Weight:
+    """Two weights as one."""
+    if not one.mass or not other.mass:
+        return one if one.mass else other
+    mass = one.mass + other.mass
+    moment = plus(scaled(one.centre, one.mass), scaled(other.centre, other.mass))
     return Weight(mass, scaled(moment, 1 / mass))

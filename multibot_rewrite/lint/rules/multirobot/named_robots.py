@@ -93,7 +93,8 @@ def robots_share_a_name(subject: Subject) -> Iterator[Problem]:
     """What a rewrite for the robots rejects as MB421."""
     naming, names = subject.settings.naming, subject.settings.robots
     pairs = overlap(naming, names) if len(names) > 1 else []
-    return robots.meeting(subject.inventory, rename_map(subject), pairs)
+    if pairs:
+        yield from robots.meeting(subject.inventory, rename_map(subject), pairs)
 
 
 prefix_only = rule(

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from lxml.etree import _Element
 
+from multibot_rewrite.lint.facts.memo import memoized
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.model import Claim, Site
 from multibot_rewrite.naming import NOT_PLAIN, make_naming
@@ -55,15 +56,19 @@ def missed(subject: Subject) -> Iterator[tuple[_Element, Insertion]]:
     yield from ((host, it) for host, it in _insertions(subject) if not it.shared)
 
 
-def _insertions(subject: Subject) -> Iterator[tuple[_Element, Insertion]]:
+@memoized
+def _insertions(subject: Subject) -> list[tuple[_Element, Insertion]]:
+    """What a rewrite would insert, with the plugin it is for."""
     declared, hosts = subject.inventory.declared, subject.inventory.served
     may = [it for it in hosts if any(map(_may_insert, it[1].sites))]
     plugins = {host for host, _ in may}
+    found = []
     for it in insertions(may, declared, APART):
         inside = it.parent
         while inside not in plugins:
             inside = inside.getparent()  # type: ignore[assignment]
-        yield inside, it
+        found.append((inside, it))
+    return found
 
 
 def _may_insert(site: Site) -> bool:

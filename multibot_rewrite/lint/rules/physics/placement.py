@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from math import inf
 
 from lxml.etree import _Element
@@ -15,6 +15,7 @@ from multibot_rewrite.checks.rotation import is_same
 from multibot_rewrite.checks.shapes import Extent, around, extent_of, shapes_of
 from multibot_rewrite.findings.finding import WARNING
 from multibot_rewrite.findings.rule import rule
+from multibot_rewrite.lint.facts.memo import memoized
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.examples import block
 from multibot_rewrite.lint.rules.physics.shared import BOX, INERTIA, inertials, one_link, part_of
@@ -47,16 +48,24 @@ def _placed(tag: str, xyz: str, shape: str = BOX) -> str:
 def collision_away(subject: Subject) -> Iterator[Problem]:
     """Links with shapes of known size, and links with one mesh for both."""
     for link in subject.robot.links:
-        seen, hard = (list(shapes_of(link.element, it)) for it in ("visual", "collision"))
+        seen, hard = _shapes(subject)[link.element]
         if not seen or not hard or _alike(seen[0], hard[0]):
             continue
-        gap = _gap(_around(seen), _around(hard)) or _moved(seen, hard)
+        box = _around(seen)
+        gap = (0.0 if box is None else _gap(box, _around(hard))) or _moved(seen, hard)
         if gap:
             message = f"the collision of link {link.name!r} is {gap:.3g} m away from its visual"
             yield Problem(hard[0][0], message)
 
 
 _Shapes = list[tuple[_Element, _Element]]
+
+
+@memoized
+def _shapes(subject: Subject) -> Mapping[_Element, tuple[_Shapes, _Shapes]]:
+    """The shapes of each link: those that are seen, and those that bump."""
+    found = (it.element for it in subject.robot.links)
+    return {it: (list(shapes_of(it, "visual")), list(shapes_of(it, "collision"))) for it in found}
 
 
 def _alike(one: tuple[_Element, _Element], other: tuple[_Element, _Element]) -> bool:
@@ -83,9 +92,9 @@ def _around(shapes: _Shapes) -> Extent | None:
     return around(found)
 
 
-def _gap(one: Extent | None, other: Extent | None) -> float:
-    """How far two boxes are apart; 0 where they touch or are not known."""
-    if one is None or other is None:
+def _gap(one: Extent, other: Extent | None) -> float:
+    """How far two boxes are apart; 0 where they touch or the other is not known."""
+    if other is None:
         return 0.0
     if min(max(minus(it.high, it.low)) for it in (one, other)) < MARKER:
         return 0.0
@@ -143,7 +152,8 @@ def centre_of_mass_outside(subject: Subject) -> Iterator[Problem]:
 
 def _outside(subject: Subject, link: Link, centre: Vector) -> float:
     """How far a centre is from the shapes of its link, if that is too far."""
-    shapes = [it for tag in ("visual", "collision") for it in shapes_of(link.element, tag)]
+    seen, hard = _shapes(subject)[link.element]
+    shapes = seen + hard
     box = _around(shapes)
     if box is None:
         return _far_from_mesh(subject, link, shapes, centre)

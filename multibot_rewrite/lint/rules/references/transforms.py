@@ -12,7 +12,6 @@ from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.references.shared import FIXED, a_plugin
 from multibot_rewrite.naming import make_naming
-from multibot_rewrite.readback.reading import read
 from multibot_rewrite.rewriters.own_defaults import frame_sites
 from multibot_rewrite.rewriters.text import text_at
 
@@ -66,6 +65,8 @@ def _sent(subject: Subject) -> Iterator[tuple[_Element, str, str]]:
         if len(frames) == 2 and all(frames):
             yield host, frames[0], frames[1]
     if any("/tf" in section.publishes for _, section in subject.inventory.served):
+        from multibot_rewrite.readback.reading import read  # most descriptions need none of it
+
         plugins = [*document.root.iter("plugin")]
         for node in read(document.source, document.file, vocabulary).nodes:
             frames_of = dict(node.frames)
