@@ -73,12 +73,13 @@ PROGRAMS: Mapping[str, Program] = MappingProxyType(
         ),
         "map_saver": Program("nav2_map_server", "map_saver_server"),
         SLAM: Program("slam_toolbox", "sync_slam_toolbox_node"),
+        "relay": Program("topic_tools", "relay"),
+        # Last, so that what it manages is there.
         LIFECYCLE_MANAGER: Program(
             "nav2_lifecycle_manager",
             "lifecycle_manager",
             "nav2_lifecycle_manager::LifecycleManager",
         ),
-        "relay": Program("topic_tools", "relay"),
     }
 )
 # Executables that are not called as the node.
