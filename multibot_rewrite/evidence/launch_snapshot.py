@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import pairwise
 from typing import NamedTuple
 
 from lxml import etree
@@ -17,6 +16,7 @@ from multibot_rewrite.evidence.bridges import bridged_by, is_bridge
 from multibot_rewrite.evidence.launch_records import LaunchGraph, LaunchNote
 from multibot_rewrite.evidence.launched import programs
 from multibot_rewrite.evidence.running import Knowledge, RunningNode, running_nodes
+from multibot_rewrite.evidence.static_transforms import STATIC
 from multibot_rewrite.graph.snapshot import (
     EXPECTED,
     Caveat,
@@ -45,7 +45,6 @@ from multibot_rewrite.rosnames import (
 
 CLOCK, CLOCK_TYPE = "/clock", "rosgraph_msgs/msg/Clock"
 TF, TF_STATIC, TF_TYPE = "/tf", "/tf_static", "tf2_msgs/msg/TFMessage"
-_STATIC = "static_transform_publisher"
 _PREFIX_SWITCH = "tf_frame_prefix_enable"
 _SIM_TIME = "use_sim_time"
 _DESCRIPTION = "robot_description"
@@ -200,8 +199,6 @@ def _edges(it: RunningNode, bound: BoundNode) -> Iterator[tuple[str, Edge]]:
 def _own_edges(it: RunningNode) -> Iterable[Edge]:
     if it.facts is None:
         return ()
-    if it.facts.known == _STATIC:
-        return _static_edge(it)
     if _publishes_a_tree(it):
         return _tree(it) or ()
     prefix = _prefix(it)
@@ -238,19 +235,6 @@ def _tree(it: RunningNode) -> list[Edge] | None:
     return [Edge(prefix + e.parent, prefix + e.child, e.static) for e in edges_in(root)]
 
 
-def _static_edge(it: RunningNode) -> Iterator[Edge]:
-    """Flags, or the last two words (tf2_ros jazzy, static_transform_broadcaster_program.cpp)."""
-    words = list(it.arguments)
-    flags = {flag: word for flag, word in pairwise(words) if flag.startswith("--")}
-    parent, child = flags.get("--frame-id", ""), flags.get("--child-frame-id", "")
-    if not flags and len(words) in (8, 9):
-        parent, child = words[-2:]
-    parent = parent or str(_value(it, "frame_id") or "")
-    child = child or str(_value(it, "child_frame_id") or "")
-    if parent and child:
-        yield Edge(parent.lstrip("/"), child.lstrip("/"), True)
-
-
 def _value(it: RunningNode, name: str) -> object:
     given = it.values.get(name)
     return given.value if given else None
@@ -275,5 +259,5 @@ def _states(nodes: Iterable[RunningNode]) -> Iterator[NodeState]:
     """Simulated time by parameter; the default is false (rclcpp time_source.cpp). What sends transforms
     that hold for ever needs no time."""
     for it in nodes:
-        if it.facts is not None and it.facts.known != _STATIC:
+        if it.facts is not None and it.facts.known != STATIC:
             yield NodeState(it.full_name, sim_time=_value(it, _SIM_TIME) is True)

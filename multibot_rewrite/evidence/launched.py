@@ -25,6 +25,7 @@ from multibot_rewrite.evidence.nodes import MANAGER
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import GivenNode, Place
 from multibot_rewrite.evidence.spawners import Spawned, is_spawner, spawned_in, texts_of
+from multibot_rewrite.evidence.static_transforms import with_static_transform
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.model import InputError
 from multibot_rewrite.remap.records import Endpoint, NodeFacts
@@ -127,12 +128,13 @@ def _under_manager(
 
 
 def as_launched(nodes: Iterable[NodeFacts], launched: Launched) -> Iterator[NodeFacts]:
-    """The nodes under the remap rules of the launch files, without those that only have parameters."""
+    """The nodes under rules and arguments of launch files, without those with parameters alone."""
     origins = {it.name: it.origin for it in launched.nodes}
     for it in nodes:
         if it.name in launched.started:
             node = launched.started[it.name]
-            yield _remapped(it, node.remappings, node.namespace)._replace(origin=origins[it.name])
+            made = with_static_transform(it, node.arguments)._replace(origin=origins[it.name])
+            yield _remapped(made, node.remappings, node.namespace)
         elif it.name in launched.spawned:
             controller = launched.spawned[it.name]
             above = controller.manager.rpartition("/")[0]

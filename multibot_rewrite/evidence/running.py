@@ -19,6 +19,7 @@ from multibot_rewrite.evidence.launched import programs as known_programs
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import Given, GivenNode, Place
 from multibot_rewrite.evidence.spawners import Spawned, spawned_in, texts_of
+from multibot_rewrite.evidence.static_transforms import with_static_transform
 from multibot_rewrite.remap.records import MANAGER, NodeFacts
 from multibot_rewrite.rosnames import expand
 
@@ -99,26 +100,30 @@ def _started(
     for full, own in names.items():
         above, _, last = full.rpartition("/")
         rules = it.remappings if full == name else home
+        arguments = it.arguments if full == name else ()
         yield RunningNode(
             last,
             above or "/",
             rules,
             home,
             (container or it).namespace,
-            _with_values(own, values[full]),
+            _with_values(own, values[full], arguments),
             values[full].values,
             it.container or process,
-            it.arguments if full == name else (),
+            arguments,
             f"{it.package}/{it.executable}",
             it.place,
             tuple(text.text for text in it.parameters if not has_sections(text)),
         )
 
 
-def _with_values(facts: NodeFacts | None, given: GivenNode) -> NodeFacts | None:
+def _with_values(
+    facts: NodeFacts | None, given: GivenNode, words: Sequence[str] = ()
+) -> NodeFacts | None:
     if facts is None:
         return None
-    return filled(facts, given)._replace(known=facts.known or facts.name)
+    made = filled(facts, given)._replace(known=facts.known or facts.name)
+    return with_static_transform(made, words)
 
 
 def _values_by_name(

@@ -17,10 +17,17 @@ from multibot_rewrite.fleets.fleet_file import REAL
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.node_names import NodeNames, names_of
 from multibot_rewrite.fleets.output_file import expanded_name, path_for
+from multibot_rewrite.fleets.relays import Relay, relays
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_nodes import node_sources
 from multibot_rewrite.fleets.rviz_outputs import RvizOutput, window_path
-from multibot_rewrite.remap.programs import MANAGER_KIND, Program, program_of
+from multibot_rewrite.remap.programs import (
+    LIFECYCLE_MANAGER,
+    PROGRAMS,
+    Program,
+    activates_itself,
+    program_of,
+)
 from multibot_rewrite.remap.records import PUBLISHES, EndpointName, NodeFacts
 from multibot_rewrite.remap.started import SPAWN, Started, spawner_arguments
 from multibot_rewrite.remap.ways import COMPONENT, SPAWNER
@@ -73,7 +80,8 @@ class Start(NamedTuple):
 
 class RobotStarts(NamedTuple):
     """What one robot runs; ``files`` are its parameter files, ``spawned`` is what brings it into the
-    simulator, ``left`` are nodes that are not started, each with the reason."""
+    simulator, ``left`` are nodes that are not started, each with the reason; ``commands`` are
+    lines of a shell that run beside."""
 
     name: str
     about: str
@@ -81,6 +89,7 @@ class RobotStarts(NamedTuple):
     starts: tuple[Start, ...]
     spawned: tuple[Start, ...]
     left: tuple[tuple[str, str], ...]
+    commands: tuple[str, ...] = ()
 
 
 def of_robot(one: FleetPlan, files: Collection[str], bridged: Collection[str]) -> RobotStarts:
@@ -101,8 +110,10 @@ def of_robot(one: FleetPlan, files: Collection[str], bridged: Collection[str]) -
     placed = start_poses.start_poses(one).transforms
     about = f"{os.path.basename(robot.spec.description)} in {_where(names)}"
     starts += [_transform(it) for it in placed]
+    starts += [_relay(it) for it in _relays(given)]
+    commands = [_activation(given, it) for it in names.started if it not in left]
     params = tuple(path_for(robot, it) for it in robot.spec.companions.get("params", ()))
-    found = tuple(starts), tuple(spawned), tuple(left.items())
+    found = tuple(starts), tuple(spawned), tuple(left.items()), tuple(filter(None, commands))
     return RobotStarts(robot.spec.name, about, params, *found)
 
 
@@ -114,6 +125,10 @@ class _Given(NamedTuple):
     files: Collection[str]
     bridged: Collection[str]
 
+    @property
+    def release(self) -> str:
+        return self.plan.file.distro
+
 
 def _where(names: NodeNames) -> str:
     spaces = {it.namespace for it in names.nodes.values() if it.namespace != "/"}
@@ -124,9 +139,10 @@ def _left(given: _Given) -> Iterator[tuple[str, str]]:
     """The nodes that are not started, each with the reason; it is empty for those that are started by
     something else."""
     plugins = {it.full_name for it in given.names.nodes.values() if it.home.plugin}
+    relayed = {it.table.node for it in _relays(given)}
     for name in given.names.started:
         it = given.facts.get(name)
-        if name in _BY_HAND:
+        if name in _BY_HAND or name in relayed:
             yield name, ""
         elif given.names.full_name(name) in plugins:
             yield name, "a plugin of the simulator makes it"
@@ -134,7 +150,9 @@ def _left(given: _Given) -> Iterator[tuple[str, str]]:
             yield name, "nothing is known of its program"
         elif it.when and not _is_needed(given, it):
             yield name, it.when
-        elif not given.names.is_controller(name) and program_of(it) is None:
+        elif given.plan.file.params_style and name != STATE:
+            yield name, "parameter files are in the form of nav2_bringup, which starts it"
+        elif not given.names.is_controller(name) and program_of(it, given.release) is None:
             yield name, f"the program of package {it.package} is not known"
 
 
@@ -158,7 +176,7 @@ def _started(given: _Given, name: str) -> Iterator[Start]:
     if it.way == SPAWNER:
         yield _controller(given, it)
     elif it.way != COMPONENT:
-        program = program_of(facts)
+        program = program_of(facts, given.release)
         assert program is not None
         yield Start(
             program.package,
@@ -175,7 +193,7 @@ def _started(given: _Given, name: str) -> Iterator[Start]:
 def _components(given: _Given, container: str) -> Iterator[Component]:
     for name, it in given.names.started.items():
         if it.way == COMPONENT and it.node.home.container == container and name in given.facts:
-            program = program_of(given.facts[name])
+            program = program_of(given.facts[name], given.release)
             if program is not None and program.plugin:
                 yield Component(
                     program.package,
@@ -204,7 +222,7 @@ def _parameters(given: _Given, name: str) -> tuple[File | Mapping[str, Any], ...
         made = File(path_for(robot, moveit_parameters.FILE))
         semantic = made if made.path in given.files else {"robot_description_semantic": srdf}
         found += [{"robot_description": Text(_description(robot))}, semantic]
-    if known == MANAGER_KIND:
+    if known == LIFECYCLE_MANAGER:
         managed = [given.names.name(it) for it in given.names.managed.get(name, ())]
         found.append({"autostart": True, "node_names": managed})
     return tuple(found)
@@ -256,6 +274,24 @@ def _transform(it: start_poses.StaticTransform) -> Start:
     return Start("tf2_ros", "static_transform_publisher", arguments=tuple(words))
 
 
+def _relays(given: _Given) -> list[Relay]:
+    """What brings its tf to ``/tf``, if the fleet file says so."""
+    robot = given.robot.spec.namespace
+    return list(relays(robot, given.plan.fleet.naming)) if given.plan.file.relayed else []
+
+
+def _relay(it: Relay) -> Start:
+    return Start(*PROGRAMS["relay"][:2], it.table.namespace, it.table.name, (dict(it.parameters),))
+
+
+def _activation(given: _Given, name: str) -> str:
+    """The line that brings up a node with a life cycle that nobody manages; empty for other nodes."""
+    if name not in given.facts or activates_itself(given.facts[name], given.release):
+        return ""
+    change = f"ros2 lifecycle set {given.names.full_name(name)}"
+    return f"until {change} configure; do sleep 1; done; {change} activate"
+
+
 def is_classic(robot: RewrittenRobot) -> bool:
     """Is its simulator Gazebo Classic?"""
     return spawn.CLASSIC_PLUGIN.encode() in (robot.simulated or robot.description)
@@ -279,14 +315,20 @@ def of_all(plan: FleetPlan, files: Collection[str]) -> tuple[Start, ...]:
 
 def _shared(plan: FleetPlan, names: NodeNames, known: Mapping[str, NodeFacts]) -> Iterator[Start]:
     """The shared nodes have their sections in the files of every robot, and they are alike."""
-    first = plan.robots[0]
+    first, started = plan.robots[0], []
     for name, it in names.started.items():
         facts = known.get(name)
-        program = program_of(facts) if facts and name not in _BY_HAND else None
+        program = program_of(facts, plan.file.distro) if facts and name not in _BY_HAND else None
         if program is None or name == "ros_gz_bridge":
             continue
         files = [File(path_for(first, one)) for one in first.spec.companions.get("params", ())]
+        if program in PROGRAMS.values():
+            started.append(it.node.name)
         yield Start(*program[:2], it.node.namespace, it.node.name, tuple(files), it.rules)
+    if started:
+        manager = PROGRAMS[LIFECYCLE_MANAGER]
+        values = {"autostart": True, "node_names": started}
+        yield Start(*manager[:2], "", f"{LIFECYCLE_MANAGER}_shared", (values,))
 
 
 def windows(configs: Sequence[RvizOutput], files: Collection[str]) -> tuple[Start, ...]:

@@ -92,9 +92,11 @@ def _head(it: FleetStarts) -> Iterator[str]:
 def _imports(it: FleetStarts) -> list[str]:
     components = any(start.components for robot in it.robots for start in robot.starts)
     actions = ["DeclareLaunchArgument", "GroupAction", "OpaqueFunction"]
+    if any(robot.commands for robot in it.robots):
+        actions.insert(1, "ExecuteProcess")
     substitutions = ["LaunchConfiguration"]
     if it.simulators:
-        actions.insert(2, "IncludeLaunchDescription")
+        actions.insert(-1, "IncludeLaunchDescription")
         substitutions += ["PathJoinSubstitution", "PythonExpression"]
     ros = ["ComposableNodeContainer", "Node"] if components else ["Node"]
     more = "from launch_ros.descriptions import ComposableNode\n" if components else ""
@@ -121,6 +123,8 @@ def _robot(it: RobotStarts, simulated: bool) -> Iterator[str]:
     yield "    return ["
     for start in it.starts:
         yield from _process(start, 8, own)
+    for command in it.commands:
+        yield f"        ExecuteProcess(cmd=[{_quoted('sh')}, {_quoted('-c')}, {_quoted(command)}]),"
     if it.spawned:
         yield "        GroupAction("
         yield "            ["

@@ -54,6 +54,8 @@ def _lines(it: FleetStarts) -> Iterator[str]:
         yield f"  <!-- {robot.about} -->"
         yield f"  {_tag('group', '>', **{'if': _CHOSEN.format(robot.name)})}"
         yield from _group(robot.starts, 4)
+        for command in robot.commands:
+            yield f"    {_tag('executable', cmd=shlex.join(['sh', '-c', command]))}"
         if robot.spawned:
             yield f"    {_tag('group', '>', **{'if': '$(var simulator)'})}"
             yield from _group(robot.spawned, 6)

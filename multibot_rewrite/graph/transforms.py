@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import NamedTuple
 
@@ -10,7 +10,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.naming import Naming, spelled
 from multibot_rewrite.remap.conditions import holds
-from multibot_rewrite.remap.records import NodeFacts
+from multibot_rewrite.remap.records import PUBLISHES, NodeFacts
 from multibot_rewrite.steps.collect import Inventory
 
 STATE_PUBLISHER = "robot_state_publisher"
@@ -48,14 +48,30 @@ def edges_of(
     root = next((link for link in links if link not in children), "")
     by_naming = partial(spelled, naming, word or robot, "frame")
     result = {(robot, node.name): [*sent_by(node, "")] for node in plugins}
-    for node in facts:
+    nodes = tuple(facts)
+    described = state_publisher_of(nodes)
+    for node in nodes:
+        named = _once(by_naming) if _is_static(node) else by_naming
         frames = [
-            frame._replace(default=plain.get(("link", frame.default)) or by_naming(frame.default))
+            frame._replace(default=plain.get(("link", frame.default)) or named(frame.default))
             for frame in node.frames
         ]
         own = [*sent_by(node._replace(frames=tuple(frames)), root)]
-        result[robot, node.name] = tree if node.package == STATE_PUBLISHER else own
+        result[robot, node.name] = tree if node.name == described else own
     return result
+
+
+def state_publisher_of(nodes: Sequence[NodeFacts]) -> str:
+    """The node that sends the robot's description: another state publisher sends that of a dock or the
+    like, under another name. Empty for none."""
+    found = [node.name for node in nodes if node.package == STATE_PUBLISHER]
+    return STATE_PUBLISHER if STATE_PUBLISHER in found else next(iter(found), "")
+
+
+def _once(by_naming: Callable[[str], str]) -> Callable[[str], str]:
+    """The naming for arguments, which may have the robot's name in front of a frame already."""
+    own = by_naming("x").removesuffix("x")
+    return lambda frame: frame if own and frame.startswith(own) else by_naming(frame)
 
 
 def tree_of(inventory: Inventory, naming: Naming, robot: str) -> Iterator[Edge]:
@@ -104,12 +120,19 @@ def sent_by(node: NodeFacts, root: str) -> Iterator[Edge]:
     """
     values = {frame.parameter: frame.default for frame in node.frames}
     given = {frame.parameter for frame in node.frames if frame.given}
+    static = _is_static(node)
     for parent, child, _ in (it for it in node.sends if holds(it.condition, values.get)):
         base = root and "odom" not in child and child not in given
-        edge = Edge(values[parent], root if base else values[child], False)
-        # A frame that only a file sets.
-        if edge.parent and "<" not in edge.child:
+        edge = Edge(values[parent], root if base else values[child], static)
+        # A frame that only a file sets; a frame below itself, which tf2 refuses (buffer_core.cpp).
+        if edge.parent not in ("", edge.child) and "<" not in edge.child:
             yield edge
+
+
+def _is_static(node: NodeFacts) -> bool:
+    """Does it only send transforms that hold for ever?"""
+    sent = {it.name.strip("/") for it in node.endpoints if it.role == PUBLISHES}
+    return "tf_static" in sent and "tf" not in sent
 
 
 def with_odometry(edges: Edges, robot: str, naming: Naming) -> tuple[Edges, str]:

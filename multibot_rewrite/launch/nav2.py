@@ -99,7 +99,7 @@ def _started(robot: LoadedRobot, context: Context) -> list[Action]:
 
 def _alone(robot: LoadedRobot, name: str, context: Context) -> list[Action]:
     """A node in a process of its own; slam_toolbox is brought up here, as by its own launch file."""
-    program, managed = programs.PROGRAMS[programs.kind_of(name)], _is_managed(robot, name)
+    program, managed = programs.program(name), _is_managed(robot, name)
     made = (lifecycle_node if managed else node)(
         name,
         files=robot.params_files,
@@ -154,7 +154,7 @@ def _container(robot: LoadedRobot, hosted: list[str], context: Context) -> Actio
 
 
 def _component(robot: LoadedRobot, name: str, context: Context) -> Any:
-    program = programs.PROGRAMS[programs.kind_of(name)]
+    program = programs.program(name)
     return composable_node(
         name,
         files=robot.params_files,
@@ -195,7 +195,7 @@ def _shared(context: Context) -> list[Action]:
         return []
     made = [_shared_node(fleet, it, context) for it in found]
     values = {"autostart": _is_on(context, "autostart"), "node_names": found}
-    manager = programs.PROGRAMS[programs.MANAGER]
+    manager = programs.program(programs.MANAGER)
     return [*made, _plain(programs.SHARED_MANAGER, manager, context, [values])]
 
 
@@ -205,7 +205,7 @@ def _shared_node(fleet: LoadedFleet, name: str, context: Context) -> Action:
     files = [
         written(context, None, f"nodes/{it}", robot.node_text(it)) for it in robot.params_files
     ]
-    program = programs.PROGRAMS[programs.kind_of(name)]
+    program = programs.program(name)
     return _plain(name, program, context, [*files, *_own(names, name, context)])
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import json
+import re
 import subprocess
 import sys
 from collections.abc import Iterator, Sequence
@@ -152,7 +153,9 @@ def differences(before: dict[str, Any], after: dict[str, Any]) -> Iterator[str]:
 
 def is_same(key: str, old: Any, new: Any) -> Any:
     if isinstance(old, str) and isinstance(new, str):
-        return is_respelled(old, new)
+        # nav2_common's ReplaceString puts the robot's namespace in its place.
+        bare = re.sub(r"^/?<robot_namespace>/?", "", old)
+        return any(is_respelled(it, new) for it in (old, bare, f"/{bare}"))
     if isinstance(old, list) and isinstance(new, list) and len(old) == len(new):
         return all(is_same(key, *pair) for pair in zip(old, new, strict=True))
     return (

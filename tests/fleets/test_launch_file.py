@@ -182,6 +182,61 @@ def test_a_real_robot_needs_no_simulator(tmp_path: Path) -> None:
     assert 'executable="joint_state_publisher"' in text, "nothing else sends its joint states"
 
 
+def of_nav2(folder: Path, **keys: str) -> tuple[str, str]:
+    """Both files for two robots with Nav2's parameters and these keys."""
+    for name in ("hexbase.urdf.xacro", "nav2_params.yaml"):
+        shutil.copy(ROOT / "examples" / "namespace_and_prefix" / name, folder)
+    more = "".join(f"{key}: {value}\n" for key, value in keys.items())
+    (folder / "fleet.yaml").write_text(
+        f"distro: jazzy\ndescription: hexbase.urdf.xacro\n{more}"
+        f"companions: {{params: nav2_params.yaml}}\n{TWO}"
+    )
+    out = folder / "out"
+    assert main(["build", str(folder / "fleet.yaml"), "-o", str(out), "-q"]) == 0
+    return (out / "fleet.launch.py").read_text(), (out / "fleet.launch.xml").read_text()
+
+
+def test_slam_toolbox_is_brought_up(tmp_path: Path) -> None:
+    """It has a life cycle from Jazzy on, and no manager of Nav2 knows it."""
+    python, xml = of_nav2(tmp_path, layout="tf-per-robot", stack="nav2_slam")
+    line = "ros2 lifecycle set /robot1/slam_toolbox activate"
+    assert line in python and line in xml
+    assert 'executable="sync_slam_toolbox_node"' in python
+
+
+def test_a_container_has_its_components(tmp_path: Path) -> None:
+    python, xml = of_nav2(tmp_path, layout="both", stack="nav2_composed")
+    assert 'plugin="nav2_controller::ControllerServer"' in python
+    assert 'executable="component_container_isolated"' in python
+    root = ElementTree.fromstring(xml)
+    found = [len(it.findall("composable_node")) for it in root.iter("node_container")]
+    assert len(found) == 2 and min(found) > 10
+
+
+def test_a_shared_map_server_has_a_manager(tmp_path: Path) -> None:
+    topics = "[/map, /clock, /rosout, /parameter_events, /diagnostics]"
+    python, _ = of_nav2(
+        tmp_path, layout="both", stack="nav2", shared_nodes="[map_server]", shared_topics=topics
+    )
+    assert '{"autostart": True, "node_names": ["map_server"]}' in python
+    assert python.count('executable="map_server"') == 1
+
+
+def test_relays_of_tf_are_started(tmp_path: Path) -> None:
+    python, _ = of_nav2(tmp_path, layout="both", affix="prefix", stack="nav2", relayed="true")
+    told = '{"input_topic": "/robot1/tf", "output_topic": "/tf"}'
+    assert told in python
+    assert python.count('package="topic_tools"') == 4
+
+
+def test_nodes_of_bringup_are_left_to_it(tmp_path: Path) -> None:
+    """Its parameter files have no namespaces, so a node in one would get nothing of them."""
+    python, _ = of_nav2(tmp_path, layout="tf-per-robot", stack="nav2", params_style="bringup")
+    assert "# Not started: amcl (parameter files are in the form of nav2_bringup" in python
+    assert 'package="nav2_amcl"' not in python
+    assert 'package="robot_state_publisher"' in python
+
+
 REAL = pytest.mark.skipif(
     bool(launch.missing()),
     reason=f"not tried in the real launch, which is not here: {launch.missing()}",

@@ -105,3 +105,43 @@ def test_the_command_takes_a_launch_file_beside_robots(
     assert "MF821 ekf_filter_node" in err
     assert main(["plan", str(tmp_path / "fleet.yaml"), "--launch", model]) == 2
     assert "leave out --launch" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("layout", "moved", "other"),
+    [
+        ("tf-per-robot", "odom -> dock", "robot1/base_link -> laser"),
+        ("frames-per-robot", "robot1/odom -> robot1/dock", "robot1/base_link -> robot1/laser"),
+    ],
+)
+def test_the_plan_has_what_a_static_transform_publisher_sends(
+    tmp_path: Path, layout: str, moved: str, other: str
+) -> None:
+    """A frame with the robot's name in its launch file has it once."""
+    text = FLEET.replace("tf-per-robot", f"{layout}\naffix: prefix")
+    file = written(tmp_path, text)
+    zeros = "0, 0, 0, 0, 0, 0"
+    model = MODEL + "".join(
+        f"    /x/{name}: {{pkg: tf2_ros, exec: static_transform_publisher, node_name: {name}, "
+        f"args: [{zeros}, {words}]}}\n"
+        for name, words in (("dock", "odom, dock"), ("laser", "robot1/base_link, laser"))
+    )
+    (tmp_path / "system_model.yaml").write_text(model)
+    sends = dict(expected(plan_fleet(read_fleet(file, "", {})).fleet).sends)
+    where = [
+        next(sends[it] for it in sends if "robot1" in it and w in it) for w in ("dock", "laser")
+    ]
+    assert where == [moved, other]
+
+
+def test_the_state_publisher_of_a_dock_does_not_send_the_robot(tmp_path: Path) -> None:
+    file = written(tmp_path)
+    publisher = "pkg: robot_state_publisher, exec: robot_state_publisher"
+    more = "".join(
+        f"    /x/{it}: {{{publisher}, node_name: {it}}}\n"
+        for it in ("dock_publisher", "robot_state_publisher")
+    )
+    (tmp_path / "system_model.yaml").write_text(MODEL + more)
+    edges = plan_fleet(read_fleet(file, "", {})).fleet.edges
+    assert edges["robot1", "robot_state_publisher"]
+    assert edges["robot1", "dock_publisher"] == []
