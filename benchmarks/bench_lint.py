@@ -47,17 +47,18 @@ LINT = os.path.join(os.path.dirname(sys.executable), "urdf-lint")
 _TRANSMISSION = re.compile(rb"  <transmission.*?</transmission>\n", re.DOTALL)
 VERSION = "import sys; from importlib.metadata import version; print(version(sys.argv[1]))"
 NOTES = """\
-In one process a tenth of the time is libxml2 and the
-offsets of the tags, a third is the schema, the claims and the tree of links, and half is some 160
-rules; a quarter of those is one, the search for names that nothing claims (MB901). Walks over
-libxml2's tree cost the most, because its nodes lie scattered in memory. What helped: one walk, and
-elements handed out by tag; the schema compared by columns of values instead of element by element
-(less than half the time); blanks between elements that are not kept (parsing a third faster); numbers
-read once for all rules; one look at all values that tells that none holds a name; no passes of the
-garbage collector within a file. What did not: XPath that picks the values worth a look (three to five
-times slower than all of them). The next step would be rules that read records instead of elements.
+In one process a tenth of the time is libxml2 and the offsets of the tags, a third is the schema, the
+claims and the tree of links, and more than half is some 230 rules; a tenth of those is one, the
+search for names that nothing claims (MB901), another the torques of gravity (MB633), and most of the
+others are a hundredth or less each. Walks over libxml2's tree cost the most, because its nodes lie
+scattered in memory. What helped: one walk, and elements handed out by tag; the schema compared by
+columns of values instead of element by element (less than half the time); blanks between elements
+that are not kept (parsing a third faster); numbers and poses read once for all rules; a similar name
+looked for once; one look at all values that tells that none holds a name; no passes of the garbage
+collector within a file. What did not: XPath that picks the values worth a look (three to five times
+slower than all of them). The next step would be rules that read records instead of elements.
 
-The command spends more on starting than on linting: some 220 modules of this package, most of them
+The command spends more on starting than on linting: some 230 modules of this package, most of them
 rules, a fifth of whose time makes their records (NamedTuple), and the index of the vocabulary. It
 leaves without taking Python down. Tried and left out: all modules in one file (6 ms of 98), which is
 one more thing that can be out of date. What did not change loads neither lxml nor a rule.
