@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import partial
 
-from multibot_rewrite.checks import meeting
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import ERROR, WARNING
 from multibot_rewrite.findings.rule import rule
@@ -13,8 +12,6 @@ from multibot_rewrite.lint.facts.memo import memoized
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.multirobot.shared import APART, AS_WRITTEN, TWO
 from multibot_rewrite.naming import SHARED_TOPICS, make_naming
-from multibot_rewrite.steps.apply import cut
-from multibot_rewrite.steps.plan import make_plan
 
 ODOMETRY_APART = make_naming("tf-per-robot", shared_topics=[*SHARED_TOPICS, "tf_static"])
 
@@ -24,12 +21,17 @@ def _shared(subject: Subject) -> tuple[Problem, ...]:
     """What a rewrite for the named robots would report; nothing where it would be refused."""
     if not subject.settings.robots:
         return ()
+    # Without robots a lint loads none of it.
+    from multibot_rewrite.checks.meeting import shared_by_all
+    from multibot_rewrite.steps.apply import cut
+    from multibot_rewrite.steps.plan import make_plan
+
     naming, document = subject.settings.naming, subject.document
     plan = make_plan(subject.inventory, naming)
     if any(it.level == ERROR for it in plan.findings):
         return ()
     pieces = cut(document.source, plan.edits)
-    return tuple(meeting.shared_by_all(document, pieces, naming, subject.tree.vocabulary))
+    return tuple(shared_by_all(document, pieces, naming, subject.tree.vocabulary))
 
 
 def _of_code(code: str, subject: Subject) -> Iterator[Problem]:
@@ -37,7 +39,7 @@ def _of_code(code: str, subject: Subject) -> Iterator[Problem]:
 
 
 sensor_names_collide = rule(
-    meeting.SHARED_LOOKUP,
+    "MB425",
     "lookup-in-the-world",
     WARNING,
     what="A plugin looks a sensor, link or light up by its bare name in the whole world, and all "
@@ -54,10 +56,10 @@ sensor_names_collide = rule(
     good='<link name="a"/><gazebo reference="a"><sensor name="imu" type="imu"/></gazebo>',
     line=3,
     options={"robots": TWO, "naming": AS_WRITTEN},
-)(partial(_of_code, meeting.SHARED_LOOKUP))
+)(partial(_of_code, "MB425"))
 
 shared_topic = rule(
-    meeting.SHARED_TOPIC,
+    "MB430",
     "shared-topic",
     WARNING,
     what="After a rewrite all robots would still have the same topic or service.",
@@ -80,10 +82,10 @@ shared_topic = rule(
     "</gazebo>\n",
     line=3,
     options={"robots": TWO, "naming": APART},
-)(partial(_of_code, meeting.SHARED_TOPIC))
+)(partial(_of_code, "MB430"))
 
 controllers_apart = rule(
-    meeting.CONTROLLERS,
+    "MB435",
     "controllers-without-rules",
     WARNING,
     what="All robots would have a topic of their controllers. From ros2_control 6.5 on (Lyrical) "
@@ -110,10 +112,10 @@ controllers_apart = rule(
     "</gazebo>\n",
     line=3,
     options={"robots": TWO, "naming": ODOMETRY_APART},
-)(partial(_of_code, meeting.CONTROLLERS))
+)(partial(_of_code, "MB435"))
 
 shared_node = rule(
-    meeting.SHARED_NODE,
+    "MB431",
     "shared-node",
     WARNING,
     what="After a rewrite the node of a plugin would have the same full name for all robots.",
@@ -132,10 +134,10 @@ shared_node = rule(
     "</gazebo>\n",
     line=2,
     options={"robots": TWO, "naming": APART},
-)(partial(_of_code, meeting.SHARED_NODE))
+)(partial(_of_code, "MB431"))
 
 shared_frame = rule(
-    meeting.SHARED_FRAME,
+    "MB432",
     "shared-frame",
     WARNING,
     what="After a rewrite all robots would still have the same frame, in a layout that gives each "
@@ -157,4 +159,4 @@ shared_frame = rule(
     "</gazebo>\n",
     line=3,
     options={"robots": TWO, "naming": APART},
-)(partial(_of_code, meeting.SHARED_FRAME))
+)(partial(_of_code, "MB432"))
