@@ -530,3 +530,15 @@ def test_a_second_look_has_the_time_that_is_left(
     seen = child.observe(Request(15.0), {})
     assert asked == looks
     assert [it.code for it in incomplete(seen)] == ["no-second-look"] * (len(looks) == 1)
+
+
+@pytest.mark.parametrize(("first", "looks"), [((), 2), ((GraphNode("/a", "p"),), 1)])
+def test_an_empty_view_is_looked_at_again(
+    first: tuple[GraphNode, ...], looks: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    around = AROUND._replace(seconds=3.0, caveats=())
+    full = SNAPSHOT._replace(nodes=(GraphNode("/a", "p"),), endpoints=(), environment=around)
+    views = [full, full._replace(nodes=first)]
+    monkeypatch.setattr(child, "_observe_once", lambda *_: views.pop())
+    assert child.observe(Request(15.0), {}).nodes == full.nodes
+    assert len(views) == 2 - looks

@@ -76,13 +76,15 @@ def observe(request: Request, environ: Mapping[str, str]) -> Snapshot:
     """
     began = time.monotonic()
     seen = _observe_once(request, environ)
-    if not _may_contain_dead_nodes(seen):
+    doubtful = _may_contain_dead_nodes(seen)
+    # On a busy machine the first messages of the discovery may be lost: an empty view is doubted, too.
+    if seen.nodes and not doubtful:
         return seen
     # A node that was killed meanwhile stays visible for 20 s, but not for a new participant.
     left = request.timeout - (time.monotonic() - began)
-    if left < seen.environment.seconds:
-        return _with_caveat(seen, Caveat("no-second-look", True, NO_SECOND_LOOK))
-    return _observe_once(request._replace(timeout=left), environ)
+    if left >= seen.environment.seconds:
+        return _observe_once(request._replace(timeout=left), environ)
+    return _with_caveat(seen, Caveat("no-second-look", True, NO_SECOND_LOOK)) if doubtful else seen
 
 
 def _with_caveat(seen: Snapshot, caveat: Caveat) -> Snapshot:
