@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.companions.params.known_nodes import load_known_nodes
@@ -96,10 +96,11 @@ def make_fleet(
     ``trust`` lets a xacro file do anything; ``launch`` are the launch files that start each robot's
     nodes. Raises as ``rewrite_all``, and UsageError for an unknown stack.
     """
-    facts = facts_of(stacks, nodes, release, nodl)
     known = known_nodes(nodes, release, nodl).library.nodes
-    parameters = load_known_nodes("", release)
-    launched = launched_robot(facts, launch, known, robots[:1], parameters, release)
+    facts = facts_of(stacks, nodes, release, nodl)
+    launched = launched_robot(
+        facts, launch, known, robots[:1], load_known_nodes("", release), release
+    )
     runs = nodes_with(launched, facts, given_with(launched, ()), known)
     found = rewrite_all(
         source,
@@ -114,8 +115,15 @@ def make_fleet(
     read = members[0].source
     every = with_hardware(runs.nodes, read.root, read.file, known)
     fleet = assemble(members, every, make_naming(**policy), release)
+    return _with_bridge_and_findings(fleet, members, runs.findings)
+
+
+def _with_bridge_and_findings(
+    fleet: Fleet, members: Sequence[Member], findings: Iterable[Finding]
+) -> Fleet:
+    """The fleet with where its robots meet, findings about their nodes, and what has to be bridged."""
     table = with_meetings(fleet.table, members, fleet.naming)
-    table = table._replace(problems=(*table.problems, *runs.findings))
+    table = table._replace(problems=(*table.problems, *findings))
     topics, _ = bridged_topics(fleet.inventories, fleet.naming)
     own = topics if any(it.robot for it in topics) else ()
     return fleet._replace(table=table, bridged=bridged_as(own))

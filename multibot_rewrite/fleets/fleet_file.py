@@ -130,30 +130,34 @@ def read_fleet(
     release = chosen_release(distro or data.get("distro", ""), environment)
     policy = cast(Policy, {key: _policy(key, data[key]) for key in POLICY if key in data})
     naming = _naming(read, policy)
-    nodl = tuple(listed(data.get("nodl", [])))
-    described = nodl_files(nodl, read.places)
     robots = tuple(_robot(read, naming, at, release) for at in range(len(data["robots"])))
     _check_robots_differ(robots)
     _check_world(read, naming)
-    nodes, parameters = data.get("nodes", ""), data.get("parameters", "")
-    vocabulary = tuple(listed(data.get("vocabulary", [])))
     return FleetFile(
         path,
         policy,
         data.get("world", ""),
         release,
         data.get("installed", ""),
-        nodes,
-        nodl,
-        parameters,
-        vocabulary,
+        data.get("nodes", ""),
+        tuple(listed(data.get("nodl", []))),
+        data.get("parameters", ""),
+        tuple(listed(data.get("vocabulary", []))),
         robots,
-        tuple(filter(None, (*read.files, nodes, *described, parameters, *vocabulary))),
+        tuple(_files(read)),
         tuple(it.strip("/") for it in listed(data.get("shared_nodes", []))),
         data.get("sros2", False),
         data.get("params_style", ""),
         data.get("relayed", False),
     )
+
+
+def _files(read: FleetData) -> Iterator[str]:
+    """The files of a fleet that are no robot's own."""
+    data = read.data
+    described = nodl_files(tuple(listed(data.get("nodl", []))), read.places)
+    given = (data.get("nodes", ""), *described, data.get("parameters", ""))
+    yield from filter(None, (*read.files, *given, *listed(data.get("vocabulary", []))))
 
 
 def input_files(fleet: FleetFile) -> Iterator[str]:

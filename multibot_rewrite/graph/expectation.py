@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence, Set
 from typing import TYPE_CHECKING, NamedTuple
 
 from multibot_rewrite.findings.finding import Finding
@@ -161,38 +161,61 @@ def expect(
     ``facts`` describe the nodes that every robot runs. ``words`` has the name of a robot in its
     frames, where that is another one than its name; plugins of ``maybe_real`` robots may be missing.
     """
-    nodes = _nodes(table)
     plugins = {node.node for node in table.nodes if node.home.written and node.robot in maybe_real}
-    conditional = {node.name for node in facts if node.when}
-    private = _private_nodes(table.names)
-    always = _private_nodes(it for it in table.names if not it.endpoint.when)
     usual = dict.fromkeys((*_defaults(facts), *USUAL_FRAMES))
+    may_run = _MayRun(
+        _nodes(table),
+        _private_nodes(table.names),
+        _private_nodes(it for it in table.names if not it.endpoint.when),
+        {node.name for node in facts if node.when},
+    )
     robots = []
-    for name in dict.fromkeys((*frames, *filter(None, nodes))):
-        own, word = tuple(frames.get(name, ())), words.get(name, name)
+    for name in dict.fromkeys((*frames, *filter(None, may_run.nodes))):
+        word = words.get(name, name)
         others = (*named.get(name, ()), *(spelled(naming, word, "frame", frame) for frame in usual))
-        of_stack, made = nodes.get(name, ()), private.get(name, ())
-        optional = conditional | plugins if name in maybe_real else conditional
-        robots.append(
-            PlannedRobot(
-                name,
-                tuple(dict.fromkeys((*(full for _, full in of_stack), *made))),
-                own,
-                tf_topic(name, naming),
-                _further(others, own, naming),
-                _may_miss(of_stack, optional, made, always.get(name, ())),
-                word if word != name else "",
-            )
-        )
+        optional = plugins if name in maybe_real else frozenset[str]()
+        robot = _robot(name, may_run, optional, tuple(frames.get(name, ())), others, naming)
+        robots.append(robot._replace(frame_tag=word if word != name else ""))
     return Expectation(
         table.layout,
         tuple(robots),
-        tuple(full for _, full in nodes.get("", ())),
+        tuple(full for _, full in may_run.nodes.get("", ())),
         tuple(sorted(f"/{topic}" for topic in naming.shared_topics)),
         tuple(sorted(naming.shared_frames)),
         tuple(dict.fromkeys(_planned(table.names))),
         sources=tuple(sources.items()),
         ways=tuple(_ways(table)),
+    )
+
+
+class _MayRun(NamedTuple):
+    """The nodes of each robot (name in the stack, full name), those that its nodes make, those of them
+    that are always there, and the nodes that run under a condition."""
+
+    nodes: Mapping[str, Sequence[tuple[str, str]]]
+    made: Mapping[str, Sequence[str]]
+    always: Mapping[str, Sequence[str]]
+    conditional: Set[str]
+
+
+def _robot(
+    name: str,
+    may_run: _MayRun,
+    optional: Set[str],
+    own: tuple[str, ...],
+    others: Iterable[str],
+    naming: Naming,
+) -> PlannedRobot:
+    """One robot; ``own`` are its frames, ``others`` may come besides, ``optional`` nodes may be missing
+    besides those under a condition."""
+    of_stack, made = may_run.nodes.get(name, ()), may_run.made.get(name, ())
+    return PlannedRobot(
+        name,
+        tuple(dict.fromkeys((*(full for _, full in of_stack), *made))),
+        own,
+        tf_topic(name, naming),
+        _further(others, own, naming),
+        _may_miss(of_stack, may_run.conditional | optional, made, may_run.always.get(name, ())),
     )
 
 
