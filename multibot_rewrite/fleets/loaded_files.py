@@ -12,7 +12,6 @@ from collections.abc import Iterator
 from multibot_rewrite.findings.finding import NOTE, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.controller_files import IN_PACKAGE, is_same, loaded_files, named_alike
-from multibot_rewrite.fleets.fleet_file import REAL
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.sources.packages import package_folder
 
@@ -54,8 +53,6 @@ def with_loaded_files(robot: RewrittenRobot) -> RewrittenRobot:
     loads none.
     """
     spec = robot.spec
-    if spec.simulator == REAL:
-        return robot
     file, params = spec.simulated or spec.description, spec.companions.get(PARAMS, ())
     more: list[str] = []
     findings: list[Finding] = []

@@ -159,12 +159,15 @@ def test_the_nodes_of_nav2_with_their_lifecycle_and_windows(
     assert of_xml(out) == of_python(out, monkeypatch)
 
 
-def test_a_plugin_of_the_simulator_is_not_started_again(tmp_path: Path) -> None:
+@pytest.mark.parametrize("layout", ["frames-per-robot", "postfix"])
+def test_a_plugin_of_the_simulator_is_not_started_again(layout: str, tmp_path: Path) -> None:
     """gz_ros2_control makes the controller manager; controllers that files declare are spawned."""
-    out = built(tmp_path, "gz", "frames-per-robot")
-    found = {(it[1], it[2]) for it in of_xml(out)}
-    assert ("ros2_control_node", "/robot1") not in found
-    assert ("spawner", "/robot1") in found
+    out = built(tmp_path, "gz", layout)
+    found = [it[1] for it in of_xml(out)]
+    assert "ros2_control_node" not in found
+    assert "spawner" in found
+    if layout == "postfix":
+        return
     text = (out / "fleet.launch.py").read_text()
     assert 'arguments=["wheels"' in text
 

@@ -33,6 +33,14 @@ ARM = """\
 </robot>
 """
 TOOL = '<robot name="tool" xmlns:xacro="http://www.ros.org/wiki/xacro"/>'
+# Two metres wide and long: its corners are 1.41 m from its base.
+WIDE = """\
+<robot name="wide">
+  <link name="base"><collision><geometry><box size="2 2 1"/></geometry></collision></link>
+  <link name="top"/>
+  <joint name="j" type="fixed"><parent link="base"/><child link="top"/></joint>
+</robot>
+"""
 
 
 def init(*words: object) -> int:
@@ -67,6 +75,38 @@ def test_so_many_robots_apart_from_each_other(tmp_path: Path) -> None:
     places = [it["pose"]["y"] for it in fleet["robots"]]
     assert len(places) == 4
     assert all(b - a >= 0.5 for a, b in pairwise(places))
+
+
+def test_wide_robots_are_further_apart(tmp_path: Path) -> None:
+    (tmp_path / "wide.urdf").write_text(WIDE)
+    fleet = made(tmp_path, tmp_path / "wide.urdf", "-n", 3)
+    # 2 * 1.41 m and half a metre, in steps of half a metre.
+    assert [it["pose"]["y"] for it in fleet["robots"]] == [0, 3.5, 7]
+
+
+def test_what_another_file_includes_is_no_description(tmp_path: Path) -> None:
+    """The part would be taken for the robot: it has more links and a shorter path."""
+    part = TOOL.replace("/>", '><link name="x"/><link name="y"/><link name="z"/></robot>')
+    (tmp_path / "a.xacro").write_text(part)
+    (tmp_path / "robot.urdf.xacro").write_text(
+        TOOL.replace("/>", '><xacro:include filename="a.xacro"/><link name="x0"/></robot>')
+    )
+    assert init(tmp_path, "-o", tmp_path / "fleet.yaml") in (0, 1)
+    fleet = yaml.safe_load((tmp_path / "fleet.yaml").read_text())
+    assert fleet["description"] == "robot.urdf.xacro"
+
+
+def test_one_rviz_config_is_taken(tmp_path: Path) -> None:
+    shutil.copy(ROBOTS / "rover.urdf", tmp_path)
+    for name in ("rover.rviz", "zoo.rviz"):
+        shutil.copy(
+            ROOT / "examples" / "multibot_example" / "config" / "rover.rviz", tmp_path / name
+        )
+    assert made(tmp_path, tmp_path)["companions"] == {"rviz": "rover.rviz"}
+    assert (
+        "#   zoo.rviz: rover.rviz of another folder was taken"
+        in (tmp_path / "fleet.yaml").read_text()
+    )
 
 
 def test_a_prefix_argument_of_a_xacro_is_used_and_no_other(tmp_path: Path) -> None:

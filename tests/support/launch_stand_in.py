@@ -19,7 +19,7 @@ import pytest
 
 class Substitution:
     def perform(self, context: LaunchContext) -> str:
-        raise NotImplementedError
+        raise NotImplementedError  # as launch's own: each kind of substitution has its perform
 
 
 class TextSubstitution(Substitution):
