@@ -138,14 +138,11 @@ def _where(names: NodeNames) -> str:
 def _left(given: _Given) -> Iterator[tuple[str, str]]:
     """The nodes that are not started, each with the reason; it is empty for those that are started by
     something else."""
-    plugins = {it.full_name for it in given.names.nodes.values() if it.home.plugin}
     relayed = {it.table.node for it in _relays(given)}
     for name in given.names.started:
         it = given.facts.get(name)
         if name in _BY_HAND or name in relayed:
             yield name, ""
-        elif given.names.full_name(name) in plugins:
-            yield name, "a plugin of the simulator makes it"
         elif it is None:
             yield name, "nothing is known of its program"
         elif it.when and not _is_needed(given, it):
