@@ -130,6 +130,7 @@ def read_fleet(
     release = chosen_release(distro or data.get("distro", ""), environment)
     policy = cast(Policy, {key: _policy(key, data[key]) for key in POLICY if key in data})
     naming = _naming(read, policy)
+    files = tuple(_files(read))
     robots = tuple(_robot(read, naming, at, release) for at in range(len(data["robots"])))
     _check_robots_differ(robots)
     _check_world(read, naming)
@@ -144,7 +145,7 @@ def read_fleet(
         data.get("parameters", ""),
         tuple(listed(data.get("vocabulary", []))),
         robots,
-        tuple(_files(read)),
+        files,
         tuple(it.strip("/") for it in listed(data.get("shared_nodes", []))),
         data.get("sros2", False),
         data.get("params_style", ""),
