@@ -209,10 +209,10 @@ def negative_limit(subject: Subject) -> Iterator[Problem]:
 def zero_limit(subject: Subject) -> Iterator[Problem]:
     """One finding per joint; joints that mimic another one or cannot move need no effort."""
     for joint, limit in joints_with(subject.robot, "limit"):
-        if joint.type not in ONE_AXIS or "mimic" in joint.parts or _cannot_move(joint, limit):
+        if joint.type not in ONE_AXIS or "mimic" in joint.parts:
             continue
         zero = [it for it in ("effort", "velocity") if value_of(limit, it) == 0]
-        if zero:
+        if zero and not _cannot_move(joint, limit):
             verb = "are" if zero[1:] else "is"
             message = f"joint {joint.name!r}: {' and '.join(zero)} {verb} 0"
             yield Problem(limit, message, zero[0])
