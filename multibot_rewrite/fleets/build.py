@@ -145,7 +145,7 @@ def _tables(plan: FleetPlan, fleet: Fleet) -> Iterator[OutputFile]:
 
 
 def _from(folder: str, text: str) -> str:
-    """A place (``file:line``) as seen from a folder; other texts, and files without one, as they are."""
+    """A place (``file:line``) as seen from a folder; other texts and bare file names as they are."""
     return os.path.relpath(text, folder) if ":" in text and os.path.dirname(text) else text
 
 
