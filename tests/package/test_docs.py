@@ -20,7 +20,9 @@ REWRITE = (ROOT / "docs" / "rewrite.md").read_text()
 REMAP = (ROOT / "docs" / "remap.md").read_text()
 PROGRAMS = ("urdf-lint", "urdf-postfix", "multibot")
 COMMANDS = re.findall(
-    r"^    (urdf-postfix (?:fixtures|--why).*|urdf-lint .*|multibot .*)$", README + REWRITE, re.MULTILINE
+    r"^    (urdf-postfix (?:fixtures|--why).*|urdf-lint .*|multibot .*)$",
+    README + REWRITE,
+    re.MULTILINE,
 )
 # Writes the fleet file that the next commands read.
 FIRST = "multibot init fixtures/robots/rover_gz.urdf -n 2 -o rovers.yaml"
