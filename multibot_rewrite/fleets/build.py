@@ -150,8 +150,8 @@ def _tables(plan: FleetPlan, fleet: Fleet) -> Iterator[OutputFile]:
 
 
 def _from(folder: str, text: str) -> str:
-    """A place (``file:line``) as seen from a folder; other texts as they are."""
-    return os.path.relpath(text, folder) if ":" in text else text
+    """A place (``file:line``) as seen from a folder; other texts and bare file names as they are."""
+    return os.path.relpath(text, folder) if ":" in text and os.path.dirname(text) else text
 
 
 def _portable(plan: FleetPlan, folder: str, gap: Finding) -> Finding:

@@ -60,6 +60,10 @@ def camera(inside: str) -> str:
 
 DRIVE = ("diff-drive", "DiffDrive")
 MOTOR = ("multicopter-motor-model", "MulticopterMotorModel")
+CONTROL = (
+    '<plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" filename="gz_ros2_control-system">'
+    "<parameters>a.yaml</parameters>"
+)
 PLANTED = {
     "type of a sensor": (sensor("camra"), "MB152"),
     "type in capitals": (sensor("Camera"), "MB152"),
@@ -141,6 +145,32 @@ PLANTED = {
         hardware("kortex_driver/KortexMultiInterfaceHardware", '<param name="robot_ipp">1</param>'),
         "MB162",
     ),
+    "a parameter of a block": (
+        system("wheel-slip", "WheelSlip", '<wheel link_name="a"><wheel_radus>1</wheel_radus></wheel>'),
+        "MB162",
+    ),
+    "a block of a block": (
+        classic("gazebo_ros_p3d", "<body_name>a</body_name><ros><namespac>a</namespac></ros>"),
+        "MB162",
+    ),
+    "a remapping beside its block": (
+        f"<gazebo>{CONTROL}<ros><namespace>a</namespace></ros>"
+        "<remapping>a:=b</remapping></plugin></gazebo>",
+        "MB174",
+    ),
+    "a namespace beside its block": (
+        classic("gazebo_ros_p3d", "<ros/><body_name>a</body_name><namespace>a</namespace>"),
+        "MB174",
+    ),
+    "a name of a block that nobody reads": (
+        f"<gazebo>{CONTROL}<ros><controlPeriod>1</controlPeriod></ros></plugin></gazebo>",
+        "MB164",
+    ),
+    "a radius of a block in words": (
+        system("wheel-slip", "WheelSlip",
+               '<wheel link_name="a"><wheel_radius>ten</wheel_radius></wheel>'),
+        "MB166",
+    ),
     "Classic's parameter in gz": (system(*DRIVE, "<wheel_diameter>1</wheel_diameter>"), "MB163"),
     "gz's parameter in Classic": (
         classic("gazebo_ros_diff_drive", "<ros/><wheel_radius>1</wheel_radius>"),
@@ -220,6 +250,21 @@ HEALTHY = {
     "a negative limit": system(*DRIVE, "<min_velocity>-1</min_velocity>"),
     "a plugin of ROS 1": classic(
         "gazebo_ros_diff_drive", "<robotNamespace>/a</robotNamespace><legacyMode>false</legacyMode>"
+    ),
+    "a namespace and no block": classic(
+        "gazebo_ros_p3d", "<body_name>a</body_name><namespace>a</namespace>"
+    ),
+    "a block of gazebo_ros": classic(
+        "gazebo_ros_p3d",
+        "<body_name>a</body_name><ros><namespace>a</namespace><remapping>a:=b</remapping>"
+        "<argument>--ros-args</argument><parameter name='p' type='int'>1</parameter><qos>"
+        "<topic name='t'><publisher><reliability>reliable</reliability></publisher></topic></qos>"
+        "</ros>",
+    ),
+    "a block of a block as the plugin has it": system(
+        "wind-effects", "WindEffects",
+        "<horizontal><magnitude><time_for_rise>1</time_for_rise><noise type='gaussian'><mean>0</mean>"
+        "<stddev>1</stddev></noise></magnitude></horizontal>",
     ),
     "hardware of our own": hardware("our_driver/System", '<param name="robot_ipp">1</param>'),
     "a parameter of a base class": hardware(

@@ -48,12 +48,19 @@ def plugin_faults(element: _Element, release: str) -> Iterator[Fault]:
     section = section_of_plugin(element)
     if section is None:
         return
-    given: dict[str, _Element] = {}
+    yield from _children(element, "", section, release)
+    yield from _missing(element, section, {str(it.tag) for it in element}, release)
+
+
+def _children(element: _Element, above: str, section: Described, release: str) -> Iterator[Fault]:
+    """The faults of what is in a plugin, or in the parameter ``above`` of it."""
     for child in element.iterchildren("*"):
-        if is_own(child.tag):
-            given.setdefault(str(child.tag), child)
-            yield from _parameter(child, str(child.tag), text_of(child), section, release)
-    yield from _missing(element, section, given, release)
+        if not is_own(child.tag):
+            continue
+        path = f"{above}{child.tag}"
+        yield from _parameter(child, path, text_of(child), section, release)
+        if path in section.blocks:
+            yield from _children(child, f"{path}/", section, release)
 
 
 def hardware_faults(hardware: _Element, release: str) -> Iterator[Fault]:
@@ -73,9 +80,10 @@ def _parameter(
     child: _Element, name: str, text: str, section: Described, release: str
 ) -> Iterator[Fault]:
     rows = section.rows.get(name)
+    above, _, own = name.rpartition("/")
     if rows is None:
-        if "open" not in section.about:
-            yield from _unknown(child, name, section)
+        if "open" not in section.about and f"{above}/*" not in section.rows:
+            yield from _unread(child, above, own, section)
         return
     row = rows[0]
     if not has_release(row.releases, release):
@@ -117,12 +125,28 @@ def _measure(child: _Element, unit: Row, text: str, where: str) -> Iterator[Faul
         yield Fault("degrees", child, "", f"{where} is more than a turn: it is in radians", hint)
 
 
-def _unknown(child: _Element, name: str, section: Described) -> Iterator[Fault]:
-    message = f"{title(section)} does not read {name!r}"
-    parent, near = child.getparent(), slip_of(name, section.rows)
+def _unread(child: _Element, above: str, name: str, section: Described) -> Iterator[Fault]:
+    """What is not read where it is. Code may ask for it through a function that is given an element,
+    so what is read anywhere counts as read, unless the block that it belongs to is there."""
+    blocks = section.blocks_of.get(name)
+    if blocks is None:
+        yield from _unknown(child, above, name, section)
+        return
+    parent = child.getparent()
+    there = (it for it in blocks if it and parent is not None and parent.find(it) is not None)
+    beside = next(there, "")
+    if beside:
+        message = f"{title(section)} reads {name!r} in <{beside}>, not beside it"
+        yield Fault("outside", child, None, message, f"move it into <{beside}>")
+
+
+def _unknown(child: _Element, above: str, name: str, section: Described) -> Iterator[Fault]:
+    inside = f" in <{above}>" if above else ""
+    message = f"{title(section)} does not read {name!r}{inside}"
+    parent, near = child.getparent(), slip_of(name, section.blocks[above])
     if parent is not None and near and parent.find(near) is not None:
         near = ""  # that one is there already
-    other = _of_another(name, section.names[0])
+    other = "" if above else _of_another(name, section.names[0])
     if other:
         hint = f"{other} does; did you mean {near!r}?" if near else f"{other} does"
         yield Fault("simulator", child, None, message, hint)
