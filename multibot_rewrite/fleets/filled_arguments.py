@@ -44,7 +44,7 @@ description: rover.urdf.xacro
   - {{name: robot1}}
 """
 OWN_ARGUMENT = declare(
-    "MF836",
+    "MF840",
     "own-argument",
     NOTE,
     what="A xacro has an argument for a robot's names, such as `namespace` or `tf_prefix`, and the "

@@ -70,7 +70,7 @@ def names(outputs: Outputs, robot: str, tag: str) -> list[str]:
 
 
 def said(outputs: Outputs) -> list[str]:
-    return [it.message for it in outputs.findings if it.code == "MF836"]
+    return [it.message for it in outputs.findings if it.code == "MF840"]
 
 
 def nobodys(outputs: Outputs, robot: str) -> str:
