@@ -17,6 +17,7 @@ from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.build import make_outputs
 from multibot_rewrite.fleets.fleet_file import input_files, read_fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleets.launch_file import PYTHON as LAUNCH
 from multibot_rewrite.fleets.manifest import (
     MANIFEST,
     NOTE,
@@ -145,6 +146,7 @@ def _written(
         detail(options, f"wrote {os.path.join(options.output, path)}")
     robots = plural(len({it.path.partition("/")[0] for it in files if "/" in it.path}), "robot")
     note(options, f"{robots}, {plural(len(files), 'file')}, {len(found.write)} written{end}")
+    note(options, f"next: ros2 launch {os.path.join(options.output, LAUNCH)}")
     return DONE
 
 
