@@ -135,6 +135,8 @@ HOMES: tuple[Home, ...] = (
             "fleets.srdf_of_another",
             "fleets.devices",
             "fleets.apart",
+            "fleets.cell_outputs",
+            "fleets.moveit_frames",
             "fleets.closing_topics",
         ),
     ),

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple, cast
 
 from multibot_rewrite.companions.rviz.colours import read_colour
 from multibot_rewrite.evidence.launch_records import LaunchOrder, launch_order
+from multibot_rewrite.fleets.cell_file import Cell, cell_of, with_cell
 from multibot_rewrite.fleets.checked_yaml import Path
 from multibot_rewrite.fleets.fleet import facts_of
 from multibot_rewrite.fleets.fleet_data import FleetData, read_data
@@ -91,7 +92,7 @@ class FleetFile(NamedTuple):
     ``files`` all files of the fleet except the robots' own: the fleet file, what it includes, nodes,
     parameters, vocabulary. ``shared_nodes`` are nodes of the stacks that run once for all robots.
     ``sros2`` asks for a policy, ``params_style`` says how parameter files are written,
-    ``relayed`` asks for each robot's tf on /tf as well.
+    ``relayed`` asks for each robot's tf on /tf as well, ``cell`` for one move_group for all robots.
     ``installed`` is where the results are when they are used, empty for where
     they are written."""
 
@@ -110,6 +111,7 @@ class FleetFile(NamedTuple):
     sros2: bool = False
     params_style: str = ""
     relayed: bool = False
+    cell: Cell | None = None
 
 
 def read_fleet(
@@ -124,7 +126,7 @@ def read_fleet(
     The release is ``distro``, else that of the file, else as ``chosen_release`` says. ``choice`` says
     which robots there are, where that is decided later than the file.
     """
-    read = with_robots(read_data(source), choice)
+    read = with_cell(with_robots(read_data(source), choice))
     path = read.file
     data = read.data
     release = chosen_release(distro or data.get("distro", ""), environment)
@@ -150,6 +152,7 @@ def read_fleet(
         data.get("sros2", False),
         data.get("params_style", ""),
         data.get("relayed", False),
+        cell_of(read, naming),
     )
 
 

@@ -58,9 +58,9 @@ def plan_fleet(
         robots = [with_loaded_files(it) for it in rewrite_robots(file.robots, read)]
         file = file._replace(robots=tuple(it.spec for it in robots))
         specs = {node_sources(it): it for it in reversed(file.robots)}
-        sources = {node_sources(it.spec): it.member.source for it in robots}
+        members = {node_sources(it.spec): it.member for it in robots}
         evidence = {
-            key: robot_nodes(spec, file, notes[spec.name], sources[key])
+            key: robot_nodes(spec, file, notes[spec.name], members[key])
             for key, spec in specs.items()
         }
         check_shared(file, {node.name: node for it in evidence.values() for node in it.nodes})

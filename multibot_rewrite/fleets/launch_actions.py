@@ -13,6 +13,8 @@ from typing import Any, NamedTuple
 
 from multibot_rewrite.evidence.parameter_files import OWN_TYPE
 from multibot_rewrite.fleets import moveit_parameters, spawn, start_poses
+from multibot_rewrite.fleets.cell_file import MOVE_GROUP
+from multibot_rewrite.fleets.cell_outputs import parameters_path
 from multibot_rewrite.fleets.fleet_file import REAL
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.node_names import NodeNames, names_of
@@ -329,6 +331,8 @@ def _shared(plan: FleetPlan, names: NodeNames, known: Mapping[str, NodeFacts]) -
         files = [File(path_for(first, one)) for one in first.spec.companions.get("params", ())]
         if program in PROGRAMS.values():
             started.append(it.node.name)
+        if plan.file.cell and name == MOVE_GROUP:
+            files = [File(parameters_path(plan.file.cell))]
         yield Start(*program[:2], it.node.namespace, it.node.name, tuple(files), it.rules)
     if started:
         manager = PROGRAMS[LIFECYCLE_MANAGER]
