@@ -125,6 +125,7 @@ HOMES: tuple[Home, ...] = (
             "evidence.launch_findings",
             "fleets.launched_files",
             "fleets.loaded_files",
+            "fleets.filled_arguments",
             "fleets.simulators",
             "fleets.shared_nodes",
             "fleets.params_style",

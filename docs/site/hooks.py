@@ -63,5 +63,5 @@ def target(path: str, page: Page, config: MkDocsConfig, files: Files) -> str:
         return posixpath.relpath(uri, posixpath.dirname(page.file.src_uri) or ".")
     if (ROOT / path).exists():
         kind = "tree" if (ROOT / path).is_dir() else "blob"
-        return f"{config.repo_url}/{kind}/HEAD/{path}"
+        return f"{config.extra['repository']}/{kind}/HEAD/{path}"
     return f"missing/{path}"

@@ -11,7 +11,7 @@ from lxml import etree
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import InputError
 from multibot_rewrite.proposal.needed_values import NeededValues
-from multibot_rewrite.reports.xacro_arguments import find_arguments
+from multibot_rewrite.reports.xacro_arguments import find_arguments, names_robots
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.sources.access import Reach
 from multibot_rewrite.sources.expand import expand
@@ -22,8 +22,6 @@ from multibot_rewrite.steps.document import read_document
 GZ, CLASSIC, NO_SIMULATOR = "gz", "classic", "none"
 # How the file names of plugins for Gazebo Classic begin.
 _CLASSIC = ("libgazebo_", "libhector_gazebo")
-# What arguments for a robot's own names are called.
-_NAMING = lazy_compile(r"prefix|namespace|^ns$|(robot|arm|model)_?(name|id|ns)$")
 # What descriptions of a part alone are called.
 _PART = lazy_compile(
     r"gripper|hand|finger|camera|sensor|lidar|tool|effector|mount|wheel|dock|geometr"
@@ -90,12 +88,9 @@ def with_own_arguments(it: Looked, tree: Tree, reach: Reach) -> Looked:
     if not it.path.endswith(".xacro"):
         return it
     given = dict(it.arguments)
-    found = find_arguments(it.path, filled(given, _ANY), tree, reach=reach)
-    own = {
-        one.name: one.value
-        for one in found.arguments
-        if one.value and one.name not in given and _NAMING.search(one.name)
-    }
+    filled_in = filled(given, _ANY)
+    found = find_arguments(it.path, filled_in, tree, reach=reach, wanted=names_robots)
+    own = {it.name: it.value for it in found.arguments if it.value and it.name not in given}
     known = {one.name for one in found.arguments} | set(found.untried)
     kept = {name: value for name, value in given.items() if name in known}
     return it._replace(arguments=tuple({**kept, **own}.items()))

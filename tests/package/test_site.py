@@ -149,6 +149,8 @@ def test_links_lead_somewhere_on_the_site(read: dict[Path, Html], site: Path) ->
 @pytest.mark.slow
 def test_the_site_fetches_nothing_from_elsewhere(read: dict[Path, Html]) -> None:
     assert [it for html in read.values() for it in html.loads if STARTS.match(it)] == []
+    # The theme's component that asks GitHub for the stars of ``repo_url``.
+    assert not any('data-md-component="source"' in page.read_text() for page in read)
 
 
 @pytest.mark.slow
