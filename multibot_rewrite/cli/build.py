@@ -17,6 +17,7 @@ from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.build import make_outputs
 from multibot_rewrite.fleets.fleet_file import input_files, read_fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleets.launch_file import PYTHON as LAUNCH
 from multibot_rewrite.fleets.manifest import (
     MANIFEST,
     NOTE,
@@ -56,7 +57,9 @@ def run(options: argparse.Namespace) -> int:
             return _stale(options, found)
         why = not_proved({*made.findings, *plan.fleet.table.problems})
         end = f"; not proved: {', '.join(why)}" if why else ""
-        return _written(options, files, found, f"{end}{facts_of_release(plan.file.distro)}")
+        robots = plural(len(plan.robots), "robot")
+        end = f"{end}{facts_of_release(plan.file.distro)}"
+        return _written(options, files, found, robots, end)
 
 
 def _reported(options: argparse.Namespace, plan: FleetPlan, found: Iterable[Finding]) -> bool:
@@ -125,9 +128,10 @@ def _written(
     options: argparse.Namespace,
     files: Sequence[OutputFile],
     found: OutputChanges,
+    robots: str,
     end: str,
 ) -> int:
-    """Write what changed, and sum up; ``end`` is the end of that line."""
+    """Write what changed, and sum up; ``robots`` and ``end`` are the begin and the end of that line."""
     if not options.force:
         _refuse(options.output, found.foreign, "no build made it")
         _refuse(options.output, found.edited, "it was edited since it was built")
@@ -143,8 +147,8 @@ def _written(
         )
     for path in found.write:
         detail(options, f"wrote {os.path.join(options.output, path)}")
-    robots = plural(len({it.path.partition("/")[0] for it in files if "/" in it.path}), "robot")
     note(options, f"{robots}, {plural(len(files), 'file')}, {len(found.write)} written{end}")
+    note(options, f"next: ros2 launch {os.path.join(options.output, LAUNCH)}")
     return DONE
 
 

@@ -51,7 +51,7 @@ def find_command(word: str) -> Command:
 
 def overview(colour: str) -> str:
     """The help of ``multibot`` itself."""
-    rows = [f"  {it.name:<12}{it.about}" for it in COMMANDS.values()]
+    rows = [f"  {it.name:<14}{it.about}" for it in COMMANDS.values()]
     text = "\n".join(
         (
             "usage: multibot COMMAND [options]",

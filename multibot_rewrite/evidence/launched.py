@@ -24,6 +24,8 @@ from multibot_rewrite.evidence.launch_records import LaunchedNode, LaunchGraph, 
 from multibot_rewrite.evidence.nodes import MANAGER
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import GivenNode, Place
+from multibot_rewrite.evidence.remapped import remapped
+from multibot_rewrite.evidence.spawner_managers import under_managers
 from multibot_rewrite.evidence.spawners import Spawned, is_spawner, spawned_in, texts_of
 from multibot_rewrite.evidence.static_transforms import with_static_transform
 from multibot_rewrite.findings.finding import Finding
@@ -31,7 +33,6 @@ from multibot_rewrite.model import InputError
 from multibot_rewrite.remap.records import Endpoint, NodeFacts
 from multibot_rewrite.rosnames import expand
 
-_TF = ("/tf", "/tf_static")
 _CAMEL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
 # The name of a file for what a launch file gives itself.
 _OWN = "parameters of a launch file"
@@ -91,6 +92,7 @@ def with_launched(
     spawned, notes = spawned_in(graph.nodes)
     graph = graph._replace(notes=(*graph.notes, *notes))
     pairs = [_pair(it, stack, known, words) for it in graph.nodes if not passes(it)]
+    spawned, lost = under_managers(spawned, _managers(pairs) if graph.whole else ())
     nodes = {it.facts.name: it.facts for it in pairs}
     left = [it for it in stack if _is_left(it, nodes)] if graph.whole else []
     gone = {it.name for it in left}
@@ -110,9 +112,14 @@ def with_launched(
         {it.facts.name: it.node for it in pairs},
         dict(_under_manager(spawned, pairs, words, release)),
         graph.whole,
-        tuple(launch_findings(graph, unknown, left)),
+        (*launch_findings(graph, unknown, left), *lost),
         any(it.package in programs().simulators for it in graph.nodes),
     )
+
+
+def _managers(pairs: Iterable[_Pair]) -> dict[str, None]:
+    """The full names of the controller managers."""
+    return {_full_name(it.node, it.facts): None for it in pairs if it.facts.known == MANAGER}
 
 
 def _under_manager(
@@ -134,11 +141,11 @@ def as_launched(nodes: Iterable[NodeFacts], launched: Launched) -> Iterator[Node
         if it.name in launched.started:
             node = launched.started[it.name]
             made = with_static_transform(it, node.arguments)._replace(origin=origins[it.name])
-            yield _remapped(made, node.remappings, node.namespace)
+            yield remapped(made, node.remappings, node.namespace)
         elif it.name in launched.spawned:
             controller = launched.spawned[it.name]
             above = controller.manager.rpartition("/")[0]
-            yield _remapped(it, controller.rules, above)
+            yield remapped(it, controller.rules, above)
         elif it.host in launched.started:
             yield _in_process(it, launched.started[it.host])._replace(
                 origin=origins.get(it.name, it.origin)
@@ -314,36 +321,10 @@ def document_of(file: str, text: str) -> YamlText:
     return read_yaml(text.encode(), file or _OWN)
 
 
-def _remapped(node: NodeFacts, rules: Iterable[tuple[str, str]], namespace: str) -> NodeFacts:
-    """The node with the remap rules of its launch file; those of tf belong to the layout."""
-    above = namespace.rstrip("/")
-    below, _, name = node.name.rpartition("/")
-    home = above.removesuffix(f"/{below}") if below else above
-    targets = {
-        expand(old, above, name): _target(new, above, home)
-        for old, new in reversed([it for it in rules if it[0] not in _TF])
-    }
-    ends = []
-    for it in node.endpoints:
-        target = targets.get(expand(it.name, above, name), it.name)
-        ends.append(it._replace(remapped=target) if target != it.name else it)
-    return node._replace(endpoints=tuple(ends))
-
-
 def _in_process(node: NodeFacts, host: LaunchedNode) -> NodeFacts:
     """The rules of a launch file are for all nodes of a process; controllers have their own."""
     if node.host == MANAGER:
         return node
     below = node.name.rpartition("/")[0]
     above = f"{host.namespace.rstrip('/')}/{below}".rstrip("/")
-    return _remapped(node, host.remappings, above)
-
-
-def _target(new: str, above: str, home: str) -> str:
-    """The target of a rule as its robot has it, of a node in the namespace ``above`` whose robot is in
-    ``home``."""
-    inner = above != home and not new.startswith(("/", "~"))
-    full = f"{above}/{new}" if inner else new
-    mine = full.removeprefix(f"{home}/") if home else full
-    # From a namespace in that of the robot, only this leads to the robot's.
-    return f"/{mine}" if above != home and mine[0] not in "/~" else mine
+    return remapped(node, host.remappings, above)

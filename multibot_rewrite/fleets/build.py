@@ -12,6 +12,7 @@ from multibot_rewrite.companions.yaml_text import quoted
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.apart import too_near
 from multibot_rewrite.fleets.bridge_outputs import bridge_outputs
+from multibot_rewrite.fleets.cell_outputs import cell_outputs
 from multibot_rewrite.fleets.closed_plan import bridged_by, demanded, gaps_of, texts_of
 from multibot_rewrite.fleets.commands_file import commands_file
 from multibot_rewrite.fleets.companion_files import companion_files
@@ -23,6 +24,7 @@ from multibot_rewrite.fleets.fleet_file import input_files
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.launch_file import launch_files
 from multibot_rewrite.fleets.meeting import without_started
+from multibot_rewrite.fleets.moveit_frames import moveit_frames
 from multibot_rewrite.fleets.moveit_parameters import moveit_parameters
 from multibot_rewrite.fleets.output_file import (
     FilesAndFindings,
@@ -71,7 +73,7 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
             *companion_files(plan),
             *rviz_files(configs),
             *bridge_outputs(plan),
-            *commands_file(each, rviz_commands(plan, configs), plan.file.distro),
+            *commands_file(plan, each, rviz_commands(plan, configs)),
         ]
         files = sorted(it for it in made if isinstance(it, OutputFile))
         findings = [it for it in made if isinstance(it, Finding)]
@@ -80,7 +82,7 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
         findings += one_device(plan.robots)
         for found in plan.evidence.values():
             findings += found.findings
-        findings += too_near(plan)
+        findings += (*too_near(plan), *moveit_frames(plan))
         findings += differences(plan)
         texts = texts_of(files)
         gaps = gaps_of(plan, fleet, texts, findings)
@@ -89,7 +91,10 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
         styled = list(in_style(plan, files))
         findings += [it for it in styled if isinstance(it, Finding)]
         kept = (it for it in styled if isinstance(it, OutputFile))
-        files = sorted((*kept, *_tables(plan, fleet), *moveit_parameters(plan, files)))
+        joined = list(cell_outputs(plan, files))
+        findings += [it for it in joined if isinstance(it, Finding)]
+        cell = (it for it in joined if isinstance(it, OutputFile))
+        files = sorted((*kept, *cell, *_tables(plan, fleet), *moveit_parameters(plan, files)))
         brought = {it.name for it in fleet.bridged if PUBLISHES in it.bridge}
         files = sorted((*files, *launch_files(plan, each, configs, files, brought)))
         _check_paths_differ(files)
@@ -145,8 +150,8 @@ def _tables(plan: FleetPlan, fleet: Fleet) -> Iterator[OutputFile]:
 
 
 def _from(folder: str, text: str) -> str:
-    """A place (``file:line``) as seen from a folder; other texts as they are."""
-    return os.path.relpath(text, folder) if ":" in text else text
+    """A place (``file:line``) as seen from a folder; other texts and bare file names as they are."""
+    return os.path.relpath(text, folder) if ":" in text and os.path.dirname(text) else text
 
 
 def _portable(plan: FleetPlan, folder: str, gap: Finding) -> Finding:

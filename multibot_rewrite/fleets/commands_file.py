@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator
 
 from multibot_rewrite.evidence.parameter_files import OWN_TYPE
 from multibot_rewrite.fleets import spawn, teleop
+from multibot_rewrite.fleets.cell_outputs import cell_commands
 from multibot_rewrite.fleets.fleet_file import BRINGUP
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.moveit_parameters import moveit_commands
@@ -25,15 +26,14 @@ COMMANDS, START = "commands.md", "start_pose.yaml"
 
 
 def commands_file(
-    each: Iterable[FleetPlan], windows: Iterable[str], release: str
+    plan: FleetPlan, each: Iterable[FleetPlan], windows: Iterable[str]
 ) -> FilesAndFindings:
     """The commands robot by robot, and the parameters of those that amcl has to place.
 
-    ``each`` is every robot as a fleet of its own, ``windows`` the lines that open RViz, ``release``
-    that whose facts they rest on.
+    ``each`` is every robot as a fleet of its own, ``windows`` the lines that open RViz.
     """
     clocks: set[bool | None] = set()
-    rows = [f"# Commands of this fleet{facts_of_release(release)}\n"]
+    rows = [f"# Commands of this fleet{facts_of_release(plan.file.distro)}\n"]
     for one in each:
         (robot,) = one.robots
         poses = start_poses(one)
@@ -53,6 +53,7 @@ def commands_file(
             path = path_for(robot, START)
             rows.append(f"\nStart its {pose.node} with `--params-file {path}` as well.\n")
             yield OutputFile(path, _start_parameters(one, pose))
+    rows += cell_commands(plan)
     both = clocks.pop() if len(clocks) == 1 else None
     if lines := [f"{with_clock(it, both)}\n" for it in windows]:
         rows += ["\n## RViz\n\n```sh\n", *lines, "```\n"]

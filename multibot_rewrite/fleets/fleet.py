@@ -11,7 +11,12 @@ from multibot_rewrite.evidence.hardware import with_hardware
 from multibot_rewrite.evidence.launch_records import LaunchOrder
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.bridged import bridged_as
-from multibot_rewrite.fleets.launched_robot import given_with, launched_robot, nodes_with
+from multibot_rewrite.fleets.launched_robot import (
+    given_with,
+    launched_robot,
+    nodes_with,
+    under_plugins,
+)
 from multibot_rewrite.fleets.meeting import with_meetings
 from multibot_rewrite.fleets.member import Member, line_of, member
 from multibot_rewrite.graph.expectation import (
@@ -113,7 +118,8 @@ def make_fleet(
     )
     members = [member(it, it.data, it.robot) for it in found]
     read = members[0].source
-    every = with_hardware(runs.nodes, read.root, read.file, known)
+    wired = under_plugins(runs.nodes, launched, members[0].handed_on, release)
+    every = with_hardware(wired, read.root, read.file, known)
     fleet = assemble(members, every, make_naming(**policy), release)
     return _with_bridge_and_findings(fleet, members, runs.findings)
 

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple, cast
 
 from multibot_rewrite.companions.rviz.colours import read_colour
 from multibot_rewrite.evidence.launch_records import LaunchOrder, launch_order
+from multibot_rewrite.fleets.cell_file import Cell, cell_of, with_cell
 from multibot_rewrite.fleets.checked_yaml import Path
 from multibot_rewrite.fleets.fleet import facts_of
 from multibot_rewrite.fleets.fleet_data import FleetData, read_data
@@ -51,7 +52,9 @@ class RobotSpec(NamedTuple):
     something, by path. ``simulator`` is ``REAL``, or what the robot runs in; empty if nothing says so.
     ``use_sim_time`` is what all its nodes have, None if the file does not say. ``simulated`` is the
     model that the simulator gets, empty where that is the description. ``bridge_namespace`` is the one
-    below its own that its bridge files are for.
+    below its own that its bridge files are for, ``bridges_below`` what launch files say of single
+    ones. ``fills`` says that arguments of its xacro which name
+    robots are filled where ``arguments`` has no value for them.
     """
 
     name: str
@@ -73,11 +76,17 @@ class RobotSpec(NamedTuple):
     use_sim_time: bool | None = None
     simulated: str = ""
     bridge_namespace: str = ""
+    bridges_below: tuple[tuple[str, str], ...] = ()
+    fills: bool = True
 
     @property
     def words(self) -> tuple[str, str, str]:
         """What stands for it in names; the first one is ``{robot}`` in its arguments."""
         return self.name, self.namespace, self.tag
+
+    def bridge_namespace_of(self, path: str) -> str:
+        """The namespace below its own that one of its bridge files is for."""
+        return dict(self.bridges_below).get(path, self.bridge_namespace)
 
     @property
     def sources(self) -> Sources:
@@ -91,7 +100,7 @@ class FleetFile(NamedTuple):
     ``files`` all files of the fleet except the robots' own: the fleet file, what it includes, nodes,
     parameters, vocabulary. ``shared_nodes`` are nodes of the stacks that run once for all robots.
     ``sros2`` asks for a policy, ``params_style`` says how parameter files are written,
-    ``relayed`` asks for each robot's tf on /tf as well.
+    ``relayed`` asks for each robot's tf on /tf as well, ``cell`` for one move_group for all robots.
     ``installed`` is where the results are when they are used, empty for where
     they are written."""
 
@@ -110,6 +119,7 @@ class FleetFile(NamedTuple):
     sros2: bool = False
     params_style: str = ""
     relayed: bool = False
+    cell: Cell | None = None
 
 
 def read_fleet(
@@ -124,7 +134,7 @@ def read_fleet(
     The release is ``distro``, else that of the file, else as ``chosen_release`` says. ``choice`` says
     which robots there are, where that is decided later than the file.
     """
-    read = with_robots(read_data(source), choice)
+    read = with_cell(with_robots(read_data(source), choice))
     path = read.file
     data = read.data
     release = chosen_release(distro or data.get("distro", ""), environment)
@@ -150,6 +160,7 @@ def read_fleet(
         data.get("sros2", False),
         data.get("params_style", ""),
         data.get("relayed", False),
+        cell_of(read, naming),
     )
 
 
@@ -221,6 +232,7 @@ def _robot(read: FleetData, naming: Naming, at: int, release: str) -> RobotSpec:
         use_sim_time=own.get("use_sim_time", data.get("use_sim_time")),
         simulated=_simulated(data, own),
         bridge_namespace=own.get("bridge_namespace", data.get("bridge_namespace", "")).strip("/"),
+        fills=own.get("fill_arguments", data.get("fill_arguments", True)),
     )
 
 

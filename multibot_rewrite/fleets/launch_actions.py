@@ -13,6 +13,8 @@ from typing import Any, NamedTuple
 
 from multibot_rewrite.evidence.parameter_files import OWN_TYPE
 from multibot_rewrite.fleets import moveit_parameters, spawn, start_poses
+from multibot_rewrite.fleets.cell_file import MOVE_GROUP
+from multibot_rewrite.fleets.cell_outputs import parameters_path
 from multibot_rewrite.fleets.fleet_file import REAL
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.node_names import NodeNames, names_of
@@ -220,9 +222,17 @@ def _parameters(given: _Given, name: str) -> tuple[File | Mapping[str, Any], ...
         semantic = made if made.path in given.files else {"robot_description_semantic": srdf}
         found += [{"robot_description": Text(_description(robot))}, semantic]
     if known == LIFECYCLE_MANAGER:
-        managed = [given.names.name(it) for it in given.names.managed.get(name, ())]
-        found.append({"autostart": True, "node_names": managed})
+        managed = (_called(given, it) for it in given.names.managed.get(name, ()))
+        found.append({"autostart": True, "node_names": list(filter(None, managed))})
     return tuple(found)
+
+
+def _called(given: _Given, node: str) -> str:
+    """What a node of a stack is called: its robot's parameter file may have it under an older name."""
+    if node in given.names.nodes:
+        return given.names.name(node)
+    alike = (name for name, it in given.facts.items() if it.known == node)
+    return next((given.names.name(it) for it in alike if it in given.names.nodes), "")
 
 
 def _description(robot: RewrittenRobot) -> str:
@@ -321,6 +331,8 @@ def _shared(plan: FleetPlan, names: NodeNames, known: Mapping[str, NodeFacts]) -
         files = [File(path_for(first, one)) for one in first.spec.companions.get("params", ())]
         if program in PROGRAMS.values():
             started.append(it.node.name)
+        if plan.file.cell and name == MOVE_GROUP:
+            files = [File(parameters_path(plan.file.cell))]
         yield Start(*program[:2], it.node.namespace, it.node.name, tuple(files), it.rules)
     if started:
         manager = PROGRAMS[LIFECYCLE_MANAGER]

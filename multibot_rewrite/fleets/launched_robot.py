@@ -10,7 +10,9 @@ from multibot_rewrite.evidence.launch_records import LaunchGraph, LaunchOrder
 from multibot_rewrite.evidence.launched import Launched, as_launched, with_launched
 from multibot_rewrite.evidence.nodes import RobotNodes, nodes_of
 from multibot_rewrite.evidence.records import GivenNode
-from multibot_rewrite.remap.records import NodeFacts
+from multibot_rewrite.evidence.remapped import under_plugin
+from multibot_rewrite.remap.records import MANAGER, NodeFacts
+from multibot_rewrite.rosnames import RemapRule
 from multibot_rewrite.sources.own_names import filled
 
 NOT_SPAWNED = "no spawner of the launch files loads it"
@@ -61,6 +63,16 @@ def nodes_with(
         return nodes_of(stack, given, known)
     nodes, findings = nodes_of(launched.nodes, given, known, _spawned(launched, given))
     return RobotNodes(tuple(as_launched(nodes, launched)), (*launched.findings, *findings))
+
+
+def under_plugins(
+    nodes: Sequence[NodeFacts], launched: Launched | None, rules: Sequence[RemapRule], release: str
+) -> tuple[NodeFacts, ...]:
+    """The nodes, with the controllers under the rules of the plugin in the description that loads them,
+    unless a launch file starts their controller manager."""
+    if launched and MANAGER in launched.started:
+        return tuple(nodes)
+    return tuple(under_plugin(it, rules, release) for it in nodes)
 
 
 def _spawned(launched: Launched, given: Sequence[GivenNode]) -> dict[str, str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from itertools import islice
 from typing import NamedTuple
 
@@ -12,10 +13,11 @@ from multibot_rewrite.checks.meeting import SHARED_CODES
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.library import Rewrite
 from multibot_rewrite.model import InputError, UsageError
+from multibot_rewrite.readback.nodes import rules_of
 from multibot_rewrite.readback.reading import Reading, read
 from multibot_rewrite.readback.xml import read_xml
 from multibot_rewrite.rewriters.vocabulary import Vocabulary
-from multibot_rewrite.rosnames import bind, resolve_bound
+from multibot_rewrite.rosnames import RemapRule, bind, resolve_bound
 from multibot_rewrite.sources.own_names import NameTexts
 from multibot_rewrite.steps.collect import Inventory, collect
 from multibot_rewrite.steps.document import Document, read_document
@@ -28,7 +30,8 @@ class Member(NamedTuple):
     plugins,
     ``shared`` are findings about names that any two robots of it would have, ``unread`` about arguments
     that its xacro does not know; ``read`` are the files that were read for it, ``plain`` the names that
-    arguments of its xacro make, by what they are without.
+    arguments of its xacro make, by what they are without. ``handed_on`` are the remap rules of a
+    plugin with a controller manager, as they are in ``source``.
     """
 
     robot: str
@@ -42,6 +45,7 @@ class Member(NamedTuple):
     unread: tuple[Finding, ...]
     read: tuple[str, ...]
     plain: NameTexts
+    handed_on: tuple[RemapRule, ...] = ()
 
 
 def member(
@@ -64,10 +68,17 @@ def member(
     shared = tuple(it for it in source.findings if it.code in SHARED_CODES)
     unread = tuple(it for it in source.findings if it.code == UNREAD)
     job = source.prepared.job
-    words = (shared, unread, job.read.files, job.own.plain)
+    handed_on = () if real else tuple(_handed_on(source.template.inventory))
+    words = (shared, unread, job.read.files, job.own.plain, handed_on)
     return Member(
         source.robot, tag, described or written, written, reading, document, tree.vocabulary, *words
     )
+
+
+def _handed_on(inventory: Inventory) -> Iterator[RemapRule]:
+    for element, section in inventory.served:
+        if section.process_wide:
+            yield from rules_of(element)
 
 
 def without_simulator(data: bytes, file: str) -> bytes:

@@ -30,13 +30,14 @@ PROGRAMS = {
     _MOVE_GROUP: ("moveit_ros_move_group", "move_group"),
     "servo_node": ("moveit_servo", "servo_node"),
 }
-_SIMPLE = "moveit_simple_controller_manager"
-_MANAGER = f"{_SIMPLE}/MoveItSimpleControllerManager"
+SIMPLE = "moveit_simple_controller_manager"
+_MANAGER = f"{SIMPLE}/MoveItSimpleControllerManager"
+SEMANTIC, SERVO_PARAMETERS = "robot_description_semantic", "moveit_servo"
 # Below which parameter the content of a file is; that of others is at the top.
 _ABOVE = {
     "kinematics": "robot_description_kinematics",
     "joint_limits": "robot_description_planning",
-    _SERVO: "moveit_servo",
+    _SERVO: SERVO_PARAMETERS,
 }
 _OMPL = "ompl"
 _REQUEST, _RESPONSE = "default_planning_request_adapters", "default_planning_response_adapters"
@@ -88,20 +89,31 @@ def moveit_parameters(plan: FleetPlan, files: Iterable[OutputFile]) -> Iterator[
     """The file of each robot that has an SRDF and MoveIt files, of ``files`` that were made."""
     made = {it.path: it.data for it in files}
     for robot in filter(has_moveit, plan.robots):
-        paths = robot.spec.companions["moveit"]
-        texts = {it: made[path_for(robot, it)].decode() for it in paths}
-        srdf = made[path_for(robot, expanded_name(robot.spec.srdf))].decode()
-        values = _parameters(srdf, texts, plan.file.distro)
-        data = {"/**": {"ros__parameters": values}}
-        dumper = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
-        text = str(yaml.dump(data, None, dumper, sort_keys=False, width=100))
-        sources = (robot.spec.srdf, *paths)
-        yield OutputFile(path_for(robot, FILE), text.encode(), sources)
+        values = parameters_of(robot, made, plan.file.distro)
+        sources = (robot.spec.srdf, *robot.spec.companions["moveit"])
+        yield OutputFile(path_for(robot, FILE), parameter_file(values), sources)
+
+
+def parameters_of(
+    robot: RewrittenRobot, made: Mapping[str, bytes], release: str
+) -> Mapping[str, Any]:
+    """The parameters of a robot's MoveIt, by its files that were ``made``, by path."""
+    paths = robot.spec.companions.get("moveit", ())
+    texts = {it: made[path_for(robot, it)].decode() for it in paths}
+    srdf = made[path_for(robot, expanded_name(robot.spec.srdf))].decode()
+    return _parameters(srdf, texts, release)
+
+
+def parameter_file(values: Mapping[str, Any]) -> bytes:
+    """A file that any node takes."""
+    data = {"/**": {"ros__parameters": values}}
+    dumper = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
+    return str(yaml.dump(data, None, dumper, sort_keys=False, width=100)).encode()
 
 
 def _parameters(srdf: str, texts: Mapping[str, str], release: str) -> Mapping[str, Any]:
     found: dict[str, Any] = {
-        "robot_description_semantic": srdf,
+        SEMANTIC: srdf,
         "publish_robot_description_semantic": True,
     }
     pipelines: list[str] = []
@@ -111,7 +123,7 @@ def _parameters(srdf: str, texts: Mapping[str, str], release: str) -> Mapping[st
             pipelines.append(name)
             found.setdefault(name, {}).update(_with_plugins(name, data, release))
         elif kind == "controllers" and "controller_names" in data:
-            found |= {"moveit_controller_manager": _MANAGER, _SIMPLE: data}
+            found |= {"moveit_controller_manager": _MANAGER, SIMPLE: data}
         elif above := _ABOVE.get(kind, ""):
             found.setdefault(above, {}).update(data.get(above, data))
         elif kind != "initial_positions":

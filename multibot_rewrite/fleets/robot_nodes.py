@@ -18,12 +18,17 @@ from multibot_rewrite.evidence.spawners import Spawned
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.fleet import facts_of, known_nodes
 from multibot_rewrite.fleets.fleet_file import FleetFile, RobotSpec, Sources
-from multibot_rewrite.fleets.launched_robot import given_with, launched_robot, nodes_with
+from multibot_rewrite.fleets.launched_robot import (
+    given_with,
+    launched_robot,
+    nodes_with,
+    under_plugins,
+)
+from multibot_rewrite.fleets.member import Member
 from multibot_rewrite.fleets.output_file import params_of
 from multibot_rewrite.fleets.shared_nodes import apart
 from multibot_rewrite.remap.nodl.facts import declared
 from multibot_rewrite.remap.records import MANAGER, NodeFacts
-from multibot_rewrite.steps.document import Document
 
 MOVE_GROUP, WORLD = "move_group", "world"
 # What decides the nodes of a robot.
@@ -51,7 +56,7 @@ class RobotEvidence(NamedTuple):
 
 
 def robot_nodes(
-    spec: RobotSpec, file: FleetFile, notes: Sequence[Finding], source: Document
+    spec: RobotSpec, file: FleetFile, notes: Sequence[Finding], member: Member
 ) -> RobotEvidence:
     """The nodes of a robot with this description; ``notes`` are findings about its files.
 
@@ -65,8 +70,10 @@ def robot_nodes(
     given = given_with(launched, own)
     spawned = launched.spawned if launched else {}
     without, findings = nodes_with(launched, stack, given, known)
+    source = member.source
     standing = _standing(without, given) if _is_mounted(source.root) else without
-    nodes = with_hardware(standing, source.root, source.file, known)
+    wired = under_plugins(standing, launched, member.handed_on, file.distro)
+    nodes = with_hardware(wired, source.root, source.file, known)
     whole = launched is not None and launched.whole
     nodes = nodes if whole else (*nodes, *_of_srdf(spec, nodes, known))
     marked, shared = apart(nodes, file)

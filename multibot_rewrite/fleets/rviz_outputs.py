@@ -16,6 +16,8 @@ from multibot_rewrite.companions.rviz.rewrite import (
 )
 from multibot_rewrite.companions.rviz.window_checks import ONE_TF_TOPIC
 from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.fleets.cell_outputs import parameters_path
+from multibot_rewrite.fleets.cell_window import cell_window
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.moveit_parameters import FILE, has_moveit
 from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, path_for, yaml_of
@@ -49,6 +51,9 @@ def rviz_outputs(plan: FleetPlan, each: Iterable[FleetPlan]) -> Iterator[RvizOut
         shown = [_as_rviz_robot(own[robot.spec.name]) for robot in robots]
         relayed = plan.file.relayed
         texts, found = rewrite_rviz(yaml_of(path), shown, world=world, relayed=relayed)
+        if plan.file.cell:
+            made = cell_window(yaml_of(path), plan.file.cell, robots[0], world)
+            texts = (*(it for it in texts if not (it.robot and made)), *filter(None, [made]))
         done = ONE_TF_TOPIC.code if relayed else ""
         yield RvizOutput(path, texts, tuple(it for it in found if it.code != done))
 
@@ -97,6 +102,8 @@ def rviz_files(configs: Iterable[RvizOutput]) -> FilesAndFindings:
 def rviz_commands(plan: FleetPlan, configs: Iterable[RvizOutput]) -> list[str]:
     """The line that opens each window; MoveIt's displays read the parameters of their process."""
     given = {it.spec.name: path_for(it, FILE) for it in plan.robots if has_moveit(it)}
+    if cell := plan.file.cell:
+        given[cell.name] = parameters_path(cell)
     return [
         shlex.join([*start_command(window, window_path(window, it.source)), *_given(window, given)])
         for it in configs

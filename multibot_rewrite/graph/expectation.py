@@ -183,6 +183,8 @@ def expect(
         tuple(sorted(f"/{topic}" for topic in naming.shared_topics)),
         tuple(sorted(naming.shared_frames)),
         tuple(dict.fromkeys(_planned(table.names))),
+        # What nodes for all robots make for themselves.
+        ignored_nodes=tuple(may_run.made.get("", ())),
         sources=tuple(sources.items()),
         ways=tuple(_ways(table)),
     )

@@ -2,7 +2,9 @@
 
 ``_sdf->Get<double>("wheel_radius", 0.2)`` says a name, a type and a default; ``HasElement``,
 ``FindElement`` and helpers that take an element say a name. A parameter whose absence ends the
-loading is required.
+loading is required. What is read of an element that is a parameter itself is below it:
+``joint/p_gain``; ``joint/*`` is below it where the code goes through its children or gives it to a
+library.
 """
 
 from __future__ import annotations
@@ -21,6 +23,10 @@ READS = (
     *("Get", "HasElement", "GetElement", "FindElement", "GetElementImpl", "GetNextElement"),
     *("HasAttribute", "GetAttribute"),
 )
+# Helpers of gazebo_ros in ROS 1: the name is behind what they fill in.
+FILLS = {"getParameter": "", "getParameterBoolean": "bool", "getJoint": "std::string"}
+# The same, which know the name themselves.
+NAMED = {"GetRobotNamespace": "robotNamespace"}
 TYPES = {
     "double": "number",
     "float": "number",
@@ -52,6 +58,11 @@ _GOES_THROUGH = re.compile(
     r"\b_sdf\w*->GetFirstElement\(\)|GetElementTypeNames\("
     r"|\b(?:Harness|Elevator|WheelSlip)Plugin::Load\("
 )
+# Each of these makes something of an element, whatever is in it.
+_CHILDREN = ("GetFirstElement", "GetAnyElement")
+# What a variable holds then is a value, no element.
+_GETS = re.compile(r"(?:->|\.)(?:template )?Get<")
+_NEXT, _ALL = "GetNextElement", "/*"
 _ELEMENT = re.compile(r"_?\w*[sS]df\w*|\w*[eE]lem\w*|params?")
 _CALLED = re.compile(r"(?:template )?(\w+)(?:<(.*)>)?")
 _MISSING = re.compile(
@@ -94,9 +105,11 @@ def reads_any(text: str) -> bool:
 def parameters_of(files: Iterable[tuple[str, str]]) -> tuple[Parameter, ...]:
     """The parameters that files read, each given as its path and text; by name."""
     found: dict[str, Parameter] = {}
-    for path, text in files:
+    texts = tuple(files)
+    own = frozenset(it for _, text in texts for it in _functions(text))
+    for path, text in texts:
         needed = set(_required(text))
-        reads, variables = _reads(text)
+        reads, variables = _reads(text, own)
         words = _words(text, variables)
         for it in reads:
             new = Parameter(
@@ -104,7 +117,20 @@ def parameters_of(files: Iterable[tuple[str, str]]) -> tuple[Parameter, ...]:
                 words.get(it.name, ()),
             )
             found[it.name] = _merged(found.get(it.name), new)
-    return tuple(found[name] for name in sorted(found))
+    below = {name.rpartition("/")[0] for name in found if not name.endswith(_ALL)}
+    return tuple(
+        found[name]
+        for name in sorted(found)
+        if not name.endswith(_ALL) or name.removesuffix(_ALL) in below
+    )
+
+
+def _functions(text: str) -> Iterator[str]:
+    """The functions that a file defines."""
+    for it in nodes_of(text, ("function_definition",)):
+        declared = it.child_by_field_name("declarator")
+        if declared is not None:
+            yield re.split(r"::|[\s*&]+", text_of(declared).partition("(")[0])[-1]
 
 
 def _merged(old: Parameter | None, new: Parameter) -> Parameter:
@@ -121,20 +147,51 @@ def _merged(old: Parameter | None, new: Parameter) -> Parameter:
     )
 
 
-def _reads(text: str) -> tuple[list[_Read], dict[str, str]]:
+def _reads(text: str, own: frozenset[str]) -> tuple[list[_Read], dict[str, str]]:
     """What is read, in order, and the parameter that each variable holds."""
     found: list[_Read] = []
-    variables: dict[str, str] = {}
+    scopes: dict[int, dict[str, str]] = {}
+    values: set[str] = set()
+    everywhere: dict[str, str] = {}
     constants = dict(_CONSTANT.findall(text))
     for call in nodes_of(text, ("call_expression",)):
+        variables = scopes.setdefault(_function_of(call), {})
+        elements = {key: name for key, name in variables.items() if key not in values}
+        found += _given_away(call, elements, own)
         it = _read(call, variables, constants)
         if it is None:
             continue
         found.append(it)
         variable = _assigned(call)
         if variable:
-            variables[variable] = it.name
-    return found, variables
+            variables[variable] = everywhere[variable] = it.name
+            (values.add if _GETS.search(text_of(call)) else values.discard)(variable)
+    return found, everywhere
+
+
+def _function_of(node: Node) -> int:
+    """Where the function that a node is in begins: its variables are its own."""
+    above: Node | None = node
+    while above is not None and above.type != "function_definition":
+        above = above.parent
+    return above.start_byte if above else -1
+
+
+def _given_away(call: Node, elements: dict[str, str], own: frozenset[str]) -> Iterator[_Read]:
+    """Parameters whose children are read by nobody knows what: ``noise.Load(noiseElement)``."""
+    function, arguments = (call.child_by_field_name(it) for it in ("function", "arguments"))
+    if function is None or arguments is None:
+        return
+    called, line = re.split(r"->|\.|::", text_of(function))[-1], call.start_point[0] + 1
+    if called in own:  # what it reads is known
+        return
+    owners = arguments.named_children
+    if called in _CHILDREN:
+        owners = [it for it in (function.child_by_field_name("argument"),) if it is not None]
+    for it in owners:
+        name = elements.get(text_of(it), "")
+        if name:
+            yield _Read(name + _ALL, ANY, line, "")
 
 
 def _read(call: Node, variables: dict[str, str], constants: dict[str, str]) -> _Read | None:
@@ -143,29 +200,47 @@ def _read(call: Node, variables: dict[str, str], constants: dict[str, str]) -> _
         return None
     given = [it for it in arguments.named_children if it.type != "comment"]
     literals = [_literal(it, constants) for it in given]
-    names = [it for it in literals if it]
-    line = call.start_point[0] + 1
-    if function.type != "field_expression":
-        return _by_helper(given, names, line)
     called = _CALLED.fullmatch(text_of(function.child_by_field_name("field")))
     if called is None or called[1] not in READS:
-        return _by_helper(given, names, line)
+        return _by_helper(function, given, literals, variables)
     type_ = _type(called[2] or "") if called[1] == "Get" else ANY
-    if names and literals[0]:
-        if not _NAME.fullmatch(names[0]):
-            return None
-        default = text_of(given[1]) if len(given) > 1 else ""
-        line = given[0].start_point[0] + 1
-        return _Read(names[0], type_, line, default if _LITERAL.fullmatch(default) else "")
     owner = _owner(function.child_by_field_name("argument"), variables, constants)
-    return _Read(owner, type_, line, "") if owner and called[1] == "Get" else None
+    if not literals or not literals[0]:
+        line = call.start_point[0] + 1
+        return _Read(owner, type_, line, "") if owner and called[1] == "Get" else None
+    if not _NAME.fullmatch(literals[0]):
+        return None
+    above = owner.rpartition("/")[0] if called[1] == _NEXT else owner
+    line = given[0].start_point[0] + 1
+    return _Read(_below(above, literals[0]), type_, line, _default(given[1:]))
 
 
-def _by_helper(given: list[Node], names: list[str], line: int) -> _Read | None:
-    """A function that is given an element and a name."""
-    takes = any(_ELEMENT.fullmatch(text_of(it)) for it in given if it.type == "identifier")
-    known = [it for it in names if _NAME.fullmatch(it)]
-    return _Read(known[0], ANY, line, "") if takes and known else None
+def _default(behind: list[Node]) -> str:
+    """The default that is behind a name, if it is a literal."""
+    default = text_of(behind[0]) if behind else ""
+    return default if _LITERAL.fullmatch(default) else ""
+
+
+def _below(above: str, name: str) -> str:
+    return f"{above}/{name}" if above else name
+
+
+def _by_helper(
+    function: Node, given: list[Node], literals: list[str], variables: dict[str, str]
+) -> _Read | None:
+    """A function that is given an element and a name, or one of gazebo_ros of ROS 1."""
+    line = function.end_point[0] + 1
+    called = _CALLED.fullmatch(re.split(r"->|\.|::", text_of(function), maxsplit=1)[-1])
+    names = [it for it in literals if _NAME.fullmatch(it)]
+    if called and called[1] in NAMED:
+        return _Read(NAMED[called[1]], "text", line, "")
+    if called and called[1] in FILLS and names:
+        behind = given[literals.index(names[0]) + 1 :]
+        return _Read(names[0], _type(called[2] or FILLS[called[1]]), line, _default(behind))
+    owners = [text_of(it) for it in given if it.type == "identifier"]
+    takes = next((it for it in owners if _ELEMENT.fullmatch(it)), "")
+    above = variables.get(takes, "")
+    return _Read(_below(above, names[0]), ANY, line, "") if takes and names else None
 
 
 def _type(type_: str) -> str:

@@ -120,6 +120,11 @@ def _node_name(plugin: _Element, section: VocabularySection) -> str:
     return next(named, "") or section.names[0].replace("-", "_")
 
 
+def rules_of(plugin: _Element) -> Iterator[RemapRule]:
+    """The remap rules in the ``<ros>`` of a plugin."""
+    yield from (it.rule for home in plugin.iterchildren("ros") for it in _rules(home))
+
+
 def _rules(home: _Element) -> Iterator[ReadRule]:
     """The rules in <argument>, which come first, and those in <remapping>."""
     texts = [*_remap_arguments(home), *home.iterfind("remapping")]

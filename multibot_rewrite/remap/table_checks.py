@@ -298,11 +298,11 @@ def useless_rules(pairs: Pairs, release: str, controllers: Pairs | None = ()) ->
 
 @cache
 def _of_managers(release: str) -> frozenset[str]:
-    """The names in the code of controller managers, and in any release of controllers that get their
-    rules: one description may be for several."""
-    handed_on = RELEASES if controller_way(release).of_manager else ()
-    nodes = [load_nodes(release)[MANAGER]]
-    nodes += [it for known in handed_on for it in load_nodes(known).values() if it.host == MANAGER]
+    """The names in the code of controller managers and of controllers that get their rules, in any
+    release: one description may be for several."""
+    handed_on = controller_way(release).of_manager
+    every = [it for known in RELEASES for it in load_nodes(known).values()]
+    nodes = [it for it in every if it.name == MANAGER or (handed_on and it.host == MANAGER)]
     return frozenset(end.name for node in nodes for end in node.endpoints)
 
 

@@ -7,7 +7,11 @@ arguments, or the vendor's xacro for two arms; what differs from it is listed he
 
 from __future__ import annotations
 
+import json
+import os
 import re
+import subprocess
+import sys
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -22,6 +26,7 @@ from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.build import make_outputs
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import plan_fleet
+from multibot_rewrite.launch import missing as without_launch
 from multibot_rewrite.sources.read import read_whole
 
 UR = "Universal_Robots_ROS2_Driver"
@@ -308,6 +313,92 @@ def test_both_descriptions_of_xarm_are_its_own_for_two_arms(build: Build, source
     assert len(names) == len(set(names)) == 2
 
 
+VENDORS_CELL = """\
+import json
+from uf_ros_lib.moveit_configs_builder import DualMoveItConfigsBuilder
+
+words = dict(dof="6", robot_type="xarm", prefix_1="left_", prefix_2="right_")
+made = DualMoveItConfigsBuilder(controllers_name="controllers", **words)
+print(json.dumps(made.to_moveit_configs().to_dict()))
+"""
+
+
+@pytest.mark.slow
+def test_a_cell_of_xarms_is_the_vendors_own_for_two_arms(sources: Path, tmp_path: Path) -> None:
+    """Its DualMoveItConfigsBuilder makes the parameters of its one move_group."""
+    lacking = without_launch()
+    if lacking:
+        pytest.skip(lacking)
+    fleet = yaml.safe_load(_fleet_of("xarm").replace("src/", f"{sources}/"))
+    fleet |= {"cell": {}, "layout": "frames-per-robot", "shared_frames": ["world"]}
+    fleet["arguments"] |= {"prefix": "{robot}_"}
+    for robot in fleet["robots"]:
+        del robot["pose"]
+    fleet["robots"][1]["arguments"] |= {"attach_xyz": "0 1 0"}
+    (tmp_path / "fleet.yaml").write_text(yaml.safe_dump(fleet))
+    made = make_outputs(plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {})))
+    assert {it.code for it in made.findings} <= {"MF214"}
+    (file,) = (it.data for it in made.files if it.path == "cell/moveit_parameters.yaml")
+    ours = yaml.safe_load(file)["/**"]["ros__parameters"]
+    vendor = _of_the_vendors_builder(sources)
+    for key in ("robot_description_kinematics", "robot_description_planning"):
+        assert ours[key] == vendor[key]
+    simple = "moveit_simple_controller_manager"
+    # Here each arm has a controller manager, in its namespace.
+    spelled = re.sub(r"(left|right)_(xarm6_traj_controller)", r"\1/\2", json.dumps(vendor[simple]))
+    assert ours[simple] == json.loads(spelled)
+    for key in ("robot_description", "robot_description_semantic"):
+        one, other = (etree.fromstring(it[key].encode()) for it in (ours, vendor))
+        for it in (*one.findall("ros2_control"), *other.findall("ros2_control")):
+            # The vendor's two have one name, and no address is given above.
+            it.attrib.pop("name")
+            for address in it.findall("hardware/param[@name='robot_ip']"):
+                address.text = ""
+        assert set(_texts(one)) == set(_texts(other))
+
+
+def _of_the_vendors_builder(sources: Path) -> Any:
+    folders = ("xarm_ros2/uf_ros_lib", "launch_param_builder", "moveit2/moveit_configs_utils")
+    paths = [*(str(sources / it) for it in folders), os.environ.get("PYTHONPATH", "")]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
+    command = [sys.executable, "-c", VENDORS_CELL]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    return json.loads(done.stdout.splitlines()[-1])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", ["ur", "franka", "xarm", "kinova"])
+def test_a_cell_of_a_pages_arms_is_one_robot_for_referees(
+    page: str, sources: Path, tmp_path: Path
+) -> None:
+    pinocchio = pytest.importorskip("pinocchio")
+    fleet = yaml.safe_load(_fleet_of(page).replace("src/", f"{sources}/"))
+    fleet |= {"cell": {}, "layout": "frames-per-robot"}
+    (tmp_path / "fleet.yaml").write_text(yaml.safe_dump(fleet))
+    made = make_outputs(plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {})))
+    assert not [it for it in made.findings if it.level == "error"]
+    files = {it.path: it.data for it in made.files}
+    cell = pinocchio.buildModelFromXML(files["cell/cell.urdf"].decode())
+    texts = [ours(files, it, fleet["description"]) for it in ("left", "right")]
+    arms = [pinocchio.buildModelFromXML(etree.tostring(it).decode()) for it in texts]
+    # universe is the root of each.
+    assert set(cell.names) == {name for it in arms for name in it.names}
+    assert cell.nq == sum(it.nq for it in arms)
+    srdf = etree.fromstring(files["cell/cell.srdf"])
+    links = {it.get("name") for it in etree.fromstring(files["cell/cell.urdf"]).iter("link")}
+    pairs = srdf.findall("disable_collisions")
+    assert {it.get(end) for it in pairs for end in ("link1", "link2")} <= links
+    each = [
+        ours(files, it, fleet["srdf"]).findall("disable_collisions") for it in ("left", "right")
+    ]
+    assert len(pairs) == sum(map(len, each)) > 0
+
+
+def _fleet_of(page: str) -> str:
+    text = (ROOT / "docs" / "robots" / f"{page}.md").read_text()
+    return re.findall(r"```yaml\n(.*?)```", text, re.DOTALL)[0]
+
+
 def _texts(elements: Any) -> list[str]:
     """Elements as text without white space between tags, sorted."""
     parts = (it for it in elements if isinstance(it.tag, str))
@@ -342,7 +433,7 @@ def test_another_layout_and_three_robots_have_no_false_findings(
 @pytest.mark.parametrize("page", ["ur", "franka", "xarm", "kinova"])
 def test_the_fleet_of_a_page_is_built(page: str, sources: Path, tmp_path: Path) -> None:
     text = (ROOT / "docs" / "robots" / f"{page}.md").read_text()
-    (fleet,) = re.findall(r"```yaml\n(.*?)```", text, re.DOTALL)
+    fleet = _fleet_of(page)
     path = tmp_path / "fleet.yaml"
     path.write_text(re.sub(r"\bsrc/", f"{sources}/", fleet))
     made = make_outputs(plan_fleet(read_fleet(str(path), "", {})))

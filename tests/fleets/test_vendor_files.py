@@ -114,3 +114,66 @@ def test_parameters_decide_whether_commands_are_stamped(
     types = {it.endpoint.name: it.endpoint.type for it in made.fleet.table.names}
     assert types["cmd_vel_out"] == f"geometry_msgs/msg/{type_}"
     assert types["joy/cmd_vel"] == f"geometry_msgs/msg/{type_}"
+
+
+# As TurtleBot 4's: the rules stand for all controllers that the plugin loads.
+DRIVE = """\
+<robot name="r">
+  <link name="base_link"/>
+  <gazebo><plugin name="ign_ros2_control::IgnitionROS2ControlPlugin"
+   filename="libign_ros2_control-system.so"><ros>
+    <remapping>~/odom:=odom</remapping>
+    <remapping>broad:~/odom:=nowhere</remapping>
+    <remapping>/diagnostics:=diagnostics</remapping>
+  </ros></plugin></gazebo>
+</robot>
+"""
+LOADED = """\
+controller_manager:
+  ros__parameters: {base: {type: diff_drive_controller/DiffDriveController}}
+base:
+  ros__parameters: {odom_frame_id: odom, base_frame_id: base_link}
+"""
+OWN_MANAGER = """\
+structure:
+  nodes:
+    /robot1/controller_manager:
+      {pkg: controller_manager, exec: ros2_control_node, node_name: controller_manager}
+"""
+
+
+@pytest.mark.parametrize(
+    ("release", "started", "topic"),
+    [
+        ("humble", False, "/robot1/odom"),
+        ("jazzy", False, "/robot1/odom"),
+        ("lyrical", False, "/robot1/base/odom"),
+        ("humble", True, "/robot1/base/odom"),
+    ],
+)
+def test_rules_of_a_plugin_reach_its_controllers(
+    release: str, started: bool, topic: str, tmp_path: Path
+) -> None:
+    (tmp_path / "system_model.yaml").write_text(OWN_MANAGER)
+    more = "launch: system_model.yaml\n" if started else ""
+    plan(tmp_path, DRIVE, f"distro: {release}\nstack: gz_ros2_control\n{more}", LOADED)
+    made = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {}))
+    names = {it.endpoint.name: it.name for it in made.fleet.table.names if it.robot == "robot1"}
+    assert names["~/odom"] == topic
+    # No controller is called broad; another release's manager has /diagnostics.
+    said = {it.message.partition(":=")[0] for it in made.fleet.table.problems if it.code == "MR103"}
+    assert said - ({"~/odom"} if release == "lyrical" else set()) == {"broad:~/odom"}
+
+
+def test_a_launch_file_is_named_alike_from_every_working_directory(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "system_model.yaml").write_text(OWN_MANAGER)
+    (tmp_path / "elsewhere").mkdir()
+    made = plan(tmp_path, DRIVE, "launch: system_model.yaml\n")
+    plans = []
+    for folder in (tmp_path, tmp_path / "elsewhere"):
+        monkeypatch.chdir(folder)
+        plans += [it.data for it in make_outputs(made).files if it.path == "plan.yaml"]
+    assert plans[0] == plans[1]
+    assert b"/controller_manager: system_model.yaml:" in plans[0]

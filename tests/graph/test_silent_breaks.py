@@ -269,6 +269,25 @@ def test_two_parents_name_the_robots_own_nodes_first(layout: str) -> None:
     assert "robot1" not in ", ".join(publishers.split(", ")[:2])
 
 
+def test_two_parents_name_senders_of_this_topic_alone() -> None:
+    """Frames without the robot are alike in all robots; each has a topic of its own."""
+    plan = read_plan("tf-per-robot")
+    added = [(f"/{robot}/base_again", "base -> base_footprint") for robot in ("robot1", "robot2")]
+    plan = plan._replace(sends=(*plan.sends, *added))
+    own, node = plan.robots[1].tf, named("tf-per-robot", "diff_drive")
+    both = (node, "/robot2/base_again")
+
+    graph = healthy("tf-per-robot")
+    frames = [it._replace(publishers=both) if it.topic == own else it for it in graph.frames]
+    again = GraphFrame("base_footprint", "base", own, False, both)
+    graph = graph._replace(frames=(*frames, again))
+    (finding,) = (it for it in check(plan, graph) if it.code == "MG201")
+    said = finding.hint.partition("publishers")[0]
+    assert "/robot1/" not in said
+    assert f"{node} sends odom -> base_footprint" in said
+    assert "/robot2/base_again sends base -> base_footprint" in said
+
+
 # robot_state_publisher.cpp: frame_prefix is put in front of both ends, as it is written.
 @pytest.mark.parametrize("layout", LAYOUTS)
 @pytest.mark.parametrize("prefix", ["robot2/", "foo/", "foo", "my_"])

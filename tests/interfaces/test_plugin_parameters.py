@@ -30,6 +30,9 @@ def read(line: str, before: str = "") -> list[Parameter]:
         ('for (auto e = _sdf->GetElement("d"); e; ) { v[0] = e->Get<double>(); }', "d", "number", ""),
         ('o = _sdf->Get<math::Vector3d>("offset");', "offset", "vector", ""),
         ('o = _sdf->Get<ignition::math::Vector3d>("offset");', "offset", "vector", ""),
+        ('ros->getParameter<double>(r, "radius", 0.15);', "radius", "number", "0.15"),
+        ('ros->getParameterBoolean(on, "on", true);', "on", "boolean", "true"),
+        ('ns = GetRobotNamespace(_parent, _sdf, "Laser");', "robotNamespace", "text", ""),
         ('readLimit(_sdf, "limit", limit);', "limit", "any", ""),
         ("t = _sdf->Get<double>(temperature);", "temperature", "number", ""),
     ],
@@ -38,6 +41,60 @@ def test_a_parameter_of_a_plugin(line: str, name: str, type_: str, default: str)
     (found,) = read(line, 'const std::string temperature = "temperature";\n')
     assert (found.name, found.type, found.default) == (name, type_, default)
     assert (found.path, found.line) == ("Drive.cc", 3)
+
+
+LOOP = 'for (auto e = _sdf->GetElement("w"); e; e = e->GetNextElement("w")) { %s }'
+
+
+@pytest.mark.parametrize(
+    ("line", "names"),
+    [
+        ('auto j = _sdf->GetElement("a"); x = j->Get<int>("b");', ["a", "a/b"]),
+        ('x = _sdf->GetElement("a")->GetElement("b")->Get<int>("c");', ["a", "a/b", "a/b/c"]),
+        (LOOP % 'x = e->Get<int>("b");', ["w", "w/b"]),
+        (LOOP.replace(" e", " elem") % 'readLimit(elem, "b", x);', ["w", "w/*", "w/b"]),
+        (LOOP % 'x = e->Get<int>("b"); noise.Load(e);', ["w", "w/*", "w/b"]),
+        (LOOP % 'x = e->Get<int>("b"); c = e->GetFirstElement();', ["w", "w/*", "w/b"]),
+        (LOOP % 'x = e->Get<int>("b"); this->Own(e);', ["w", "w/b"]),
+        ('auto x = _sdf->Get<int>("a"); use(x);', ["a"]),
+        (LOOP % "noise.Load(e);", ["w"]),
+    ],
+)
+def test_what_is_read_of_a_block_is_below_it(line: str, names: list[str]) -> None:
+    own = "void Drive::Own(Element e) {}\n"
+    assert [it.name for it in read(line, own)] == names
+
+
+def test_variables_are_those_of_their_function() -> None:
+    before = 'void f(E _sdf) { auto e = _sdf->GetElement("a"); }\n'
+    assert [it.name for it in read('e->Get<int>("b");', before)] == ["a", "b"]
+
+
+def test_what_plugins_share_is_a_section_that_they_name(tmp_path: Path) -> None:
+    folder = checkout(tmp_path, "ros2", 'gazebo_ros::Node::Get(_sdf); _sdf->Get<int>("x");')
+    home = folder / "gazebo_ros/src"
+    home.mkdir(parents=True)
+    (home / "node.cpp").write_text(
+        'N Node::Get(E sdf) { sdf = sdf->GetElement("ros"); sdf->HasElement("namespace"); }\n'
+    )
+    (home / "qos.cpp").write_text("")
+    made = plugin_files.to_schema([folder])
+    assert "[gazebo_ros::Node] acme/gz ros2 gazebo_ros/src\nros any node.cpp:1\n" in made
+    assert "src/systems/drive +gazebo_ros::Node\nx integer Drive.cc:2\n" in made
+
+
+def test_a_library_of_a_catkin_package_is_of_ros_1(tmp_path: Path) -> None:
+    folder = tmp_path / "acme+gazebo@noetic"
+    folder.mkdir()
+    (folder / "CMakeLists.txt").write_text("catkin_package()\nadd_library(drive drive.cpp)\n")
+    (folder / "drive.cpp").write_text(
+        'void Drive::Load ( physics::ModelPtr m, sdf::ElementPtr _sdf ) { _sdf->Get<int>("x"); }'
+    )
+    assert (
+        plugin_files.to_schema([folder])
+        .rstrip()
+        .endswith("[ros1 drive] acme/gazebo noetic .\nx integer drive.cpp:1")
+    )
 
 
 @pytest.mark.parametrize(

@@ -60,6 +60,14 @@ def camera(inside: str) -> str:
 
 DRIVE = ("diff-drive", "DiffDrive")
 MOTOR = ("multicopter-motor-model", "MulticopterMotorModel")
+OF_ROS_1 = (
+    "<robotNamespace>a</robotNamespace><bodyName>a</bodyName><topicName>a</topicName>"
+    "<frameName>a</frameName>"
+)
+CONTROL = (
+    '<plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" filename="gz_ros2_control-system">'
+    "<parameters>a.yaml</parameters>"
+)
 PLANTED = {
     "type of a sensor": (sensor("camra"), "MB152"),
     "type in capitals": (sensor("Camera"), "MB152"),
@@ -130,8 +138,32 @@ PLANTED = {
     "hardware with another case": (hardware("gz_ros2_control/GazeboSimsystem"), "MB171"),
     "a parameter": (system(*DRIVE, "<wheel_seperation>1</wheel_seperation>"), "MB162"),
     "a parameter in camel case": (
-        classic("gazebo_ros_diff_drive", "<ros/><robotBaseFrame>a</robotBaseFrame>"),
+        system("thruster", "Thruster", "<joint_name>j</joint_name><fluidDensity>1</fluidDensity>"),
         "MB162",
+    ),
+    "a parameter of ROS 1": (
+        classic("gazebo_ros_diff_drive", "<ros/><robotBaseFrame>a</robotBaseFrame>"),
+        "MB163",
+    ),
+    "a parameter of ROS 2 in ROS 1": (
+        classic("gazebo_ros_p3d", f"{OF_ROS_1}<update_rate>9</update_rate>"),
+        "MB163",
+    ),
+    "a parameter of a plugin of ROS 1": (
+        classic("gazebo_ros_p3d", f"{OF_ROS_1}<xyzOffsets>0 0 0</xyzOffsets>"),
+        "MB162",
+    ),
+    "a parameter nobody reads in ROS 1": (
+        classic("gazebo_ros_p3d", f"{OF_ROS_1}<alwaysOn>true</alwaysOn>"),
+        "MB164",
+    ),
+    "no topic of p3d in ROS 1": (
+        classic("gazebo_ros_p3d", "<robotNamespace>a</robotNamespace><bodyName>a</bodyName>"),
+        "MB165",
+    ),
+    "a rate in words in ROS 1": (
+        classic("gazebo_ros_p3d", f"{OF_ROS_1}<updateRate>fast</updateRate>"),
+        "MB166",
     ),
     "a parameter of a sensor's plugin": (
         sensor("ray", classic("gazebo_ros_ray_sensor", "<ros/><output_typ>a</output_typ>")[8:-9]),
@@ -140,6 +172,32 @@ PLANTED = {
     "a parameter of hardware": (
         hardware("kortex_driver/KortexMultiInterfaceHardware", '<param name="robot_ipp">1</param>'),
         "MB162",
+    ),
+    "a parameter of a block": (
+        system("wheel-slip", "WheelSlip", '<wheel link_name="a"><wheel_radus>1</wheel_radus></wheel>'),
+        "MB162",
+    ),
+    "a block of a block": (
+        classic("gazebo_ros_p3d", "<body_name>a</body_name><ros><namespac>a</namespac></ros>"),
+        "MB162",
+    ),
+    "a remapping beside its block": (
+        f"<gazebo>{CONTROL}<ros><namespace>a</namespace></ros>"
+        "<remapping>a:=b</remapping></plugin></gazebo>",
+        "MB174",
+    ),
+    "a namespace beside its block": (
+        classic("gazebo_ros_p3d", "<ros/><body_name>a</body_name><namespace>a</namespace>"),
+        "MB174",
+    ),
+    "a name of a block that nobody reads": (
+        f"<gazebo>{CONTROL}<ros><controlPeriod>1</controlPeriod></ros></plugin></gazebo>",
+        "MB164",
+    ),
+    "a radius of a block in words": (
+        system("wheel-slip", "WheelSlip",
+               '<wheel link_name="a"><wheel_radius>ten</wheel_radius></wheel>'),
+        "MB166",
     ),
     "Classic's parameter in gz": (system(*DRIVE, "<wheel_diameter>1</wheel_diameter>"), "MB163"),
     "gz's parameter in Classic": (
@@ -219,7 +277,30 @@ HEALTHY = {
     "joints named twice": system(*DRIVE, "<left_joint>j</left_joint><left_joint>k</left_joint>"),
     "a negative limit": system(*DRIVE, "<min_velocity>-1</min_velocity>"),
     "a plugin of ROS 1": classic(
-        "gazebo_ros_diff_drive", "<robotNamespace>/a</robotNamespace><legacyMode>false</legacyMode>"
+        "gazebo_ros_diff_drive", "<robotNamespace>/a</robotNamespace><publishTf>1</publishTf>"
+    ),
+    "a namespace and no block": classic(
+        "gazebo_ros_p3d", "<body_name>a</body_name><namespace>a</namespace>"
+    ),
+    "a block of gazebo_ros": classic(
+        "gazebo_ros_p3d",
+        "<body_name>a</body_name><ros><namespace>a</namespace><remapping>a:=b</remapping>"
+        "<argument>--ros-args</argument><parameter name='p' type='int'>1</parameter><qos>"
+        "<topic name='t'><publisher><reliability>reliable</reliability></publisher></topic></qos>"
+        "</ros>",
+    ),
+    "a block of a block as the plugin has it": system(
+        "wind-effects", "WindEffects",
+        "<horizontal><magnitude><time_for_rise>1</time_for_rise><noise type='gaussian'><mean>0</mean>"
+        "<stddev>1</stddev></noise></magnitude></horizontal>",
+    ),
+    "a camera of ROS 1": sensor(
+        "camera",
+        classic(
+            "gazebo_ros_camera",
+            "<robotNamespace>a</robotNamespace><imageTopicName>a</imageTopicName>"
+            "<hackBaseline>0</hackBaseline><cameraName>a</cameraName>",
+        )[8:-9],
     ),
     "hardware of our own": hardware("our_driver/System", '<param name="robot_ipp">1</param>'),
     "a parameter of a base class": hardware(

@@ -11,17 +11,22 @@ import pytest
 from paths import ROOT
 
 from multibot_rewrite.catalogue import findings_page
+from multibot_rewrite.cli.__main__ import commands_page
 from multibot_rewrite.lint.__main__ import rules_page
 from multibot_rewrite.rewriters.vocabulary.__main__ import page
 
 README = (ROOT / "README.md").read_text()
+REWRITE = (ROOT / "docs" / "rewrite.md").read_text()
+REMAP = (ROOT / "docs" / "remap.md").read_text()
 PROGRAMS = ("urdf-lint", "urdf-postfix", "multibot")
 COMMANDS = re.findall(
-    r"^    (urdf-postfix fixtures.*|urdf-lint .*|multibot .*)$", README, re.MULTILINE
+    r"^    (urdf-postfix (?:fixtures|--why).*|urdf-lint .*|multibot .*)$",
+    README + REWRITE,
+    re.MULTILINE,
 )
 # Writes the fleet file that the next commands read.
 FIRST = "multibot init fixtures/robots/rover_gz.urdf -n 2 -o rovers.yaml"
-TRANSCRIPTS = page_commands.sections(README)
+TRANSCRIPTS = page_commands.sections(README + REMAP)
 
 
 def test_the_page_of_plugins_is_current() -> None:
@@ -33,9 +38,7 @@ def test_the_page_of_rules_is_current() -> None:
 
 
 def readers_folder(folder: Path, **more: str) -> page_commands.Reader:
-    """A clone in which the README's fleet file has been saved."""
-    (fleet,) = re.findall(r"```yaml\n(.*?)```", README, re.DOTALL)
-    (folder / "fleet.yaml").write_text(fleet)
+    """A clone of the repository."""
     return page_commands.reader(folder, live_commands.domain(90), **more)
 
 
@@ -54,7 +57,7 @@ def test_a_command_of_the_readme_runs(line: str, tmp_path: Path) -> None:
 
 def test_every_command_with_a_prompt_is_a_transcript() -> None:
     found = [it.command for commands in TRANSCRIPTS.values() for it in commands]
-    assert found == re.findall(r"^\$ (.*)$", README, re.MULTILINE)
+    assert found == re.findall(r"^\$ (.*)$", README + REMAP, re.MULTILINE)
     assert {it.split()[0] for it in found} == {"urdf-lint", "multibot"}
 
 
@@ -90,14 +93,8 @@ def test_the_readme_diff_is_what_the_command_prints(tmp_path: Path) -> None:
     assert missing == []
 
 
-def test_links_of_the_readme_lead_somewhere() -> None:
-    targets = re.findall(r"\]\(([^)#]+)", README)
-    assert [it for it in targets if not (ROOT / it).exists()] == []
-
-
-def test_the_readme_names_every_page() -> None:
-    pages = {f"docs/{it.name}" for it in (ROOT / "docs").glob("*.md")}
-    assert pages - set(re.findall(r"\]\(([^)#]+)", README)) == set()
+def test_the_page_of_commands_is_current() -> None:
+    assert (ROOT / "docs" / "commands.md").read_text() == commands_page()
 
 
 def test_the_readme_python_example_runs(monkeypatch: pytest.MonkeyPatch) -> None:

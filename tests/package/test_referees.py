@@ -39,6 +39,12 @@ needs_check = pytest.mark.skipif(
 )
 
 
+@pytest.fixture(autouse=True)
+def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """MuJoCo writes its warnings into a file of the working folder."""
+    monkeypatch.chdir(tmp_path)
+
+
 class Key(NamedTuple):
     """A name with its kind: ``link``, ``joint``, or anything else for what is never renamed."""
 

@@ -160,7 +160,7 @@ def _for_one(config: RvizConfig, robot: RvizRobot, colour: Colour | None) -> Rvi
             splices.append(Splice(tool.block.start, tool.block.end, remark(document, tool)))
         else:
             splices += tool_edits(document, tool, robot)
-    for node in (fixed_frame(config), *_targets(config)):
+    for node in (fixed_frame(config), *targets(config)):
         splices += _frame_splice(node, robot)
     namespace = f"/{robot.topics.robot}" if robot.names.naming.layout.namespaced else ""
     tf = _tf_topics(robot)
@@ -192,7 +192,8 @@ def _views_of(config: RvizConfig) -> tuple[yaml.Node | None, yaml.Node | None]:
     return value(views, "Current"), value(views, "Saved")
 
 
-def _targets(config: RvizConfig) -> Iterator[yaml.Node]:
+def targets(config: RvizConfig) -> Iterator[yaml.Node]:
+    """The frames that views follow."""
     current, saved = _views_of(config)
     listed = saved.value if isinstance(saved, yaml.SequenceNode) else []
     for view in (current, *listed):

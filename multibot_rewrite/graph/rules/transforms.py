@@ -56,9 +56,11 @@ def _why_two_parents(view: View, tree: TfTree, robot: str, child: str) -> str:
     """By the plan one of the two is right; the robot's own nodes are the first that may be wrong."""
     planned = [it for it in planned_transforms(view.plan) if it.child == child]
     found = senders_there(tree, robot, dict.fromkeys(it.node for it in planned))
-    cause = "two nodes send it, or two robots share its name; "
-    if planned:
-        cause += f"by the plan {planned[0].node} sends {planned[0]}; "
+    # Names of frames may be alike in all robots: the sender is one that is on this topic.
+    there = [it for it in planned if it.node in found] or planned[:1]
+    sent = {str(it): f"{it.node} sends {it}" for it in reversed(there)}
+    by_plan = f"by the plan {' and '.join(reversed(sent.values()))}; " if sent else ""
+    cause = f"two nodes send it, or two robots share its name; {by_plan}"
     return f"{cause}publishers of the topic: {shorten(found) or 'none any more'}"
 
 

@@ -12,6 +12,9 @@ _found = partial(partial, of_kind, parameter_faults)
 _drive = partial(a_system, "diff-drive", "DiffDrive")
 _motor = partial(a_system, "multicopter-motor-model", "MulticopterMotorModel")
 
+_slip = partial(a_system, "wheel-slip", "WheelSlip")
+_LATERAL = "<slip_compliance_lateral>0.1</slip_compliance_lateral>"
+
 misspelt_parameter = rule(
     "MB162",
     "misspelt-parameter",
@@ -30,10 +33,10 @@ parameter_of_other_simulator = rule(
     "parameter-of-other-simulator",
     WARNING,
     what="A plugin of Gazebo has a parameter that only the plugin of Gazebo Classic with the same task "
-    "reads, or the reverse.",
+    "reads, or the reverse; or one of ROS 2 has a parameter of ROS 1's, or the reverse.",
     why="It has no effect: what a file was migrated for is at its default. Classic's wheel_diameter "
-    "is no wheel_radius.",
-    fix="Use the parameter of this simulator, if it has one.",
+    "is no wheel_radius; commandTopic of ROS 1 leaves the robot of ROS 2 at cmd_vel.",
+    fix="Use the parameter of this simulator and ROS, if it has one.",
     bad=_drive("<wheel_diameter>0.2</wheel_diameter>"),
     good=_drive("<wheel_radius>0.1</wheel_radius>"),
     line=3,
@@ -50,6 +53,20 @@ unread_parameter = rule(
     good=_drive("<topic>cmd_vel</topic>"),
     line=3,
 )(_found("unread"))
+
+parameter_outside = rule(
+    "MB174",
+    "parameter-outside-its-block",
+    WARNING,
+    what="A plugin reads a parameter in a block of its own that is there, and the parameter is beside "
+    "that block.",
+    why="It has no effect: a <remapping> or <namespace> beside <ros> remaps nothing, and all robots "
+    "share the topic.",
+    fix="Move it into the block.",
+    bad=_slip('<wheel link_name="wheel"/>', _LATERAL),
+    good=_slip(f'<wheel link_name="wheel">{_LATERAL}</wheel>'),
+    line=4,
+)(_found("outside"))
 
 missing_parameter = rule(
     "MB165",

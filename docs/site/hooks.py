@@ -1,0 +1,67 @@
+"""Pages of the repository that are not in docs/, and links that lead out of it.
+
+On GitHub all links are to files of the repository. On the site a page that is linked is a page, too;
+any other file is shown by the repository's host.
+"""
+
+from __future__ import annotations
+
+import posixpath
+import re
+from pathlib import Path
+
+from mkdocs.config.defaults import MkDocsConfig
+from mkdocs.structure.files import File, Files
+from mkdocs.structure.pages import Page
+
+ROOT = Path(__file__).parents[2]
+# Where they are in the repository, and in the site's folder of pages.
+OUTSIDE = ("CONTRIBUTING.md", "SECURITY.md", "examples/*/README.md")
+LINK = re.compile(r"(\]\()([^)\s:#]+)((?:#[^)\s]*)?\))")
+FENCED = re.compile(r"(^```.*?^```$)", re.MULTILINE | re.DOTALL)
+
+
+def on_files(files: Files, config: MkDocsConfig) -> Files:
+    """Add the pages that are outside docs/."""
+    for pattern in OUTSIDE:
+        for path in sorted(ROOT.glob(pattern)):
+            name = path.relative_to(ROOT).as_posix()
+            files.append(File.generated(config, name, abs_src_path=str(path)))
+    changes = (ROOT / "CHANGELOG.rst").read_text()
+    files.append(File.generated(config, "CHANGELOG.md", content=as_markdown(changes)))
+    return files
+
+
+def as_markdown(text: str) -> str:
+    """The change log, which catkin's tools want in reStructuredText."""
+    text = re.sub(r"^\^+\n(.*)\n\^+$", r"# \1", text, flags=re.MULTILINE)
+    text = re.sub(r"^(.+)\n-+$", r"## \1", text, flags=re.MULTILINE)
+    return text.replace("``", "`")
+
+
+def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Files) -> str:
+    """Links as they lead from where the page is on the site."""
+    there = place(page.file.src_uri)
+
+    def lead(found: re.Match[str]) -> str:
+        path = posixpath.normpath(posixpath.join(posixpath.dirname(there), found[2]))
+        return f"{found[1]}{target(path, page, config, files)}{found[3]}"
+
+    parts = FENCED.split(markdown)
+    return "".join(it if it.startswith("```") else LINK.sub(lead, it) for it in parts)
+
+
+def place(uri: str) -> str:
+    """The path in the repository of a page of the site."""
+    return uri if (ROOT / uri).exists() else f"docs/{uri}"
+
+
+def target(path: str, page: Page, config: MkDocsConfig, files: Files) -> str:
+    """What leads from a page to a file of the repository."""
+    uri = "index.md" if path == "README.md" else path.removeprefix("docs/")
+    if files.get_file_from_path(uri):
+        return posixpath.relpath(uri, posixpath.dirname(page.file.src_uri) or ".")
+    if (ROOT / path).exists():
+        kind = "tree" if (ROOT / path).is_dir() else "blob"
+        return f"{config.extra['repository']}/{kind}/HEAD/{path}"
+    return f"missing/{path}"

@@ -1,0 +1,169 @@
+"""The documentation: every link leads somewhere, on GitHub and on the site; the site is whole."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from functools import cache
+from html.parser import HTMLParser
+from pathlib import Path
+from urllib.parse import unquote, urlsplit
+
+import pytest
+from paths import ROOT
+
+import multibot_rewrite
+
+SITE = ROOT / "docs" / "site"
+FENCED = re.compile(r"^( *)(`{3,}).*?^\1\2`*$", re.MULTILINE | re.DOTALL)
+CODE = re.compile(r"(`+)(?!`).*?(?<!`)\1(?!`)", re.DOTALL)
+LINK = re.compile(r"\]\(([^)\s]+)\)")
+HEADING = re.compile(r"^#{1,6} (.+?)#*$", re.MULTILINE)
+STARTS = re.compile(r"^(https?|mailto):")
+
+
+def listed() -> list[Path]:
+    """The pages that a clone has."""
+    command = ["git", "ls-files", "--cached", "--others", "--exclude-standard", "*.md"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    names = done.stdout.split() or ["README.md"]
+    return [ROOT / it for it in names if (ROOT / it).exists() and not it.startswith("fixtures/")]
+
+
+PAGES = listed()
+
+
+@cache
+def anchors(page: Path) -> frozenset[str]:
+    """The anchors that GitHub makes of headings: lower case, no punctuation, a dash for a space.
+
+    The algorithm is that of github-slugger; a second heading of the same words ends with -1.
+    """
+    made: list[str] = []
+    for heading in HEADING.findall(FENCED.sub("", page.read_text())):
+        words = re.sub(r"\]\([^)]*\)", "", heading).strip().lower()
+        slug = re.sub(r"[^\w\- ]", "", words).replace(" ", "-")
+        made.append(f"{slug}-{made.count(slug)}" if slug in made else slug)
+    return frozenset(made)
+
+
+def links(page: Path) -> list[str]:
+    text = CODE.sub("", FENCED.sub("", page.read_text()))
+    return [it for it in LINK.findall(text) if not STARTS.match(it)]
+
+
+def leads(page: Path, link: str) -> bool:
+    path, _, anchor = unquote(link).partition("#")
+    target = (page.parent / path).resolve() if path else page
+    inside = target.is_relative_to(ROOT) and target.exists()
+    return inside and (not anchor or target.suffix != ".md" or anchor in anchors(target))
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda it: str(it.relative_to(ROOT)))
+def test_links_lead_somewhere_on_github(page: Path) -> None:
+    assert [it for it in links(page) if not leads(page, it)] == []
+
+
+def test_there_are_pages_with_links() -> None:
+    assert len(PAGES) > 60
+    assert sum(len(links(it)) for it in PAGES) > 200
+
+
+@pytest.mark.parametrize("link", ["nowhere.md", "plan.md#nowhere", "../../outside", "#nowhere"])
+def test_a_link_to_nowhere_is_seen(link: str) -> None:
+    assert leads(ROOT / "docs" / "index.md", "plan.md#states")
+    assert not leads(ROOT / "docs" / "index.md", link)
+
+
+def test_pictures_are_what_a_build_writes(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(SITE))
+    from layout_pictures import FOLDER, pictures
+
+    made = pictures()
+    assert {it.name for it in FOLDER.glob("layout-*.svg")} == made.keys()
+    stale = [name for name, text in made.items() if (FOLDER / name).read_text() != text]
+    assert stale == [], "run python docs/site/layout_pictures.py"
+    # What collides is red: everything before a rewrite, nothing after one.
+    assert [name for name, text in made.items() if "#c4261d" in text] == ["layout-before.svg"]
+
+
+class Html(HTMLParser):
+    """Where a page leads to, what it loads, and its anchors."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.leads: list[str] = []
+        self.loads: list[str] = []
+        self.ids: set[str] = set()
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        given = {key: value or "" for key, value in attrs}
+        self.ids.add(given.get("id", ""))
+        if tag == "a" and "href" in given:
+            self.leads.append(given["href"])
+        if tag in ("script", "img", "iframe") and "src" in given:
+            self.loads.append(given["src"])
+        if tag == "link" and given.get("rel") in ("stylesheet", "icon", "preconnect"):
+            self.loads.append(given["href"])
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The site, made as for readers; a warning is an error."""
+    pytest.importorskip("mkdocstrings", reason="no mkdocs: pip install '.[docs]'")
+    folder = tmp_path_factory.mktemp("site")
+    words = ["build", "--strict", "-q", "-f", str(SITE / "mkdocs.yml"), "-d", str(folder)]
+    command = [sys.executable, "-m", "mkdocs", *words]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return folder
+
+
+@pytest.fixture(scope="module")
+def read(site: Path) -> dict[Path, Html]:
+    return {it: Html(it.read_text()) for it in site.rglob("*.html") if it.name != "404.html"}
+
+
+def lost(read: dict[Path, Html], site: Path) -> Iterator[str]:
+    for page, html in read.items():
+        for link in (*html.leads, *html.loads):
+            parts = urlsplit(link)
+            if parts.scheme or parts.netloc:
+                continue
+            target = (page.parent / unquote(parts.path)).resolve() if parts.path else page
+            file = target / "index.html" if target.is_dir() else target
+            anchor = unquote(parts.fragment)
+            if not file.exists() or (anchor and file in read and anchor not in read[file].ids):
+                yield f"{page.relative_to(site)}: {link}"
+
+
+@pytest.mark.slow
+def test_links_lead_somewhere_on_the_site(read: dict[Path, Html], site: Path) -> None:
+    assert len(read) > 60
+    assert list(lost(read, site)) == []
+
+
+@pytest.mark.slow
+def test_the_site_fetches_nothing_from_elsewhere(read: dict[Path, Html]) -> None:
+    assert [it for html in read.values() for it in html.loads if STARTS.match(it)] == []
+    # The theme's component that asks GitHub for the stars of ``repo_url``.
+    assert not any('data-md-component="source"' in page.read_text() for page in read)
+
+
+@pytest.mark.slow
+def test_files_of_the_repository_are_at_its_host(read: dict[Path, Html], site: Path) -> None:
+    found = [it for html in read.values() for it in html.leads if "/blob/" in it or "/tree/" in it]
+    ours = [it.partition("/HEAD/")[2] for it in found if "/multibot_rewrite/" in it]
+    assert "examples/launch_tutorial" in ours
+    assert [it for it in ours if not (ROOT / it.partition("#")[0]).exists()] == []
+
+
+@pytest.mark.slow
+def test_every_public_call_is_explained(read: dict[Path, Html], site: Path) -> None:
+    ids = read[site / "api" / "index.html"].ids
+    assert {f"multibot_rewrite.{it}" for it in multibot_rewrite.__all__} <= ids
+    assert "multibot_rewrite.Rewrite.not_proved" in ids
+    assert "Raises InputError" in (site / "api" / "index.html").read_text()
