@@ -9,7 +9,7 @@ import sys
 import pytest
 from paths import ROOT
 
-# Waiting for a process; when to kill one; a clock that a test puts in place of the real one; the seconds
+# Waiting for a process; when to kill one; a clock that a test puts in place of the real one; seconds
 # that a page shows.
 CLOCKS = {"support/waiting.py", "fleets/test_build.py", "graph/test_snapshot.py", "support/walk.py"}
 
