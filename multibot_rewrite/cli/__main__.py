@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 
-from multibot_rewrite.cli.declared import COMMANDS, PROGRAMS
+from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
 from multibot_rewrite.cli.options import Command, Option
 
 HEAD = """\

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from paths import FIXTURES, ROOT
 
-from multibot_rewrite.cli.declared import COMMANDS
+from multibot_rewrite.cli.declared.commands import COMMANDS
 from multibot_rewrite.cli.multibot import main
 
 if sys.version_info >= (3, 11):
