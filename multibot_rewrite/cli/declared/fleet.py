@@ -237,6 +237,7 @@ VIEW = Command(
                     "input", "INPUT", "the robot's description before any rewrite, or a fleet file"
                 ),
                 argument("words", "ROBOT", "names of robots; NAME:=VALUE is for xacro", "*"),
+                ROBOTS,
                 SAVED,
                 DISTRO,
                 TRUST,
