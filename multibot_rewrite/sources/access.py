@@ -10,9 +10,9 @@ from typing import NamedTuple
 
 from multibot_rewrite.bounded import MAX_BYTES
 from multibot_rewrite.model import InputError, MultibotError
-from multibot_rewrite.outside import outside, real_path, variable
+from multibot_rewrite.outside import is_there, outside, real_path, variable
 from multibot_rewrite.sources.child.frames import FENCES
-from multibot_rewrite.sources.packages import package_folder
+from multibot_rewrite.sources.packages import package_folder, source_of
 
 # The folder of a package for $(find PACKAGE), empty where it is not known.
 Find = Callable[[str], str]
@@ -54,6 +54,7 @@ class Access:
         self.path, self.reach, self.find = path, reach, find
         self.beside = {os.path.dirname(it) for it in _real(path)}
         self.roots = [real_path(it) for it in (*_homes(path), *reach.roots)]
+        self.packages: list[str] = []
         self.sourced = [os.path.abspath(it) for it in (*_prefixes(), *_listed("ROS_PACKAGE_PATH"))]
 
     def readable(self, name: str) -> str:
@@ -82,6 +83,7 @@ class Access:
             why = "" if _prefixes() or self.find else ": AMENT_PREFIX_PATH is not set"
             raise LookupError(f"package {name!r} is not found{why}")
         self.roots.append(real_path(folder))
+        self.packages.append(os.path.join(folder, ""))
         return folder
 
     def _beside(self, name: str) -> str:
@@ -118,9 +120,16 @@ class Access:
             found = beside
         return sorted(it for it in found if self.readable(it) and _is_there(it))
 
+    def _source(self, name: str) -> str:
+        """The same file, or what will be installed there: $(find NAME) is the sources of a package."""
+        home = next((it for it in self.packages if name.startswith(it)), "")
+        if not home or is_there(name):
+            return name
+        return source_of(home, os.path.relpath(name, home)) or name
+
     def read(self, name: str) -> bytes:
         """The bytes of a file, one more than may be if it has more; raises NotAllowedError, OSError."""
-        data = _content(self.readable(name), self.reach.trust)
+        data = _content(self.readable(self._source(name)), self.reach.trust)
         if data is None:
             raise NotAllowedError(f"{name} is no regular file, and xacro may not read it")
         return data

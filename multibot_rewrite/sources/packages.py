@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections import deque
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
@@ -14,6 +15,7 @@ DEEPEST = 4
 MOST_FOLDERS = 20_000
 # Ancestors of a description in which its own package is looked for.
 HIGHEST = 6
+MOST_OF_CMAKE = 2**18
 _MANIFEST = "package.xml"
 _NAME = lazy_compile(rb"<name>\s*([^<\s]+)\s*</name>")
 # Build results, libraries and similar folders: there are no sources of meshes below them.
@@ -137,6 +139,31 @@ def _package_name(folder: str) -> str:
 def _by_lower_case(folder: str) -> Mapping[str, str]:
     """The names in a folder, the first of those that differ in upper and lower case alone."""
     return {it.lower(): it for it in sorted(entries(folder), reverse=True)}
+
+
+@outside
+def source_of(folder: str, path: str) -> str:
+    """The file of a package that CMake installs at ``path``; empty where it says of none.
+
+    ``install(DIRECTORY description/urdf DESTINATION share/NAME)`` leaves out the folder above.
+    """
+    first, cmake = re.escape(path.partition("/")[0]), _cmake(folder)
+    for it in sorted(entries(folder) - _SKIPPED) if cmake else ():
+        file = os.path.join(folder, it, path)
+        named = rf"[\s\"(]{re.escape(it)}/({first}/?)?[\s\")]"
+        if os.path.isfile(file) and re.search(named, cmake):
+            return file
+    return ""
+
+
+def _cmake(folder: str) -> str:
+    try:
+        with open(
+            os.path.join(folder, "CMakeLists.txt"), encoding="utf-8", errors="replace"
+        ) as file:
+            return file.read(MOST_OF_CMAKE)
+    except OSError:
+        return ""
 
 
 @outside

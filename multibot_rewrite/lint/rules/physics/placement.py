@@ -9,15 +9,17 @@ from lxml.etree import _Element
 
 from multibot_rewrite.checks.links_and_joints import Link
 from multibot_rewrite.checks.numbers import Vector, vector
+from multibot_rewrite.checks.pose import Pose
 from multibot_rewrite.checks.poses import length, minus, origin_of
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.checks.rotation import is_same
-from multibot_rewrite.checks.shapes import Extent, around, extent_of, shapes_of
+from multibot_rewrite.checks.shapes import Extent, around, extent_of, placed_box, shapes_of
 from multibot_rewrite.findings.finding import WARNING
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.memo import memoized
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.examples import block
+from multibot_rewrite.lint.rules.meshes.boxes import box_of
 from multibot_rewrite.lint.rules.physics.shared import BOX, INERTIA, inertials, one_link, part_of
 
 # Metres between shapes that should be in one place, and between two places of one mesh; smaller shapes
@@ -51,8 +53,8 @@ def collision_away(subject: Subject) -> Iterator[Problem]:
         seen, hard = _shapes(subject)[link.element]
         if not seen or not hard or _alike(seen[0], hard[0]):
             continue
-        box = _around(seen)
-        gap = (0.0 if box is None else _gap(box, _around(hard))) or _moved(seen, hard)
+        box = _around(subject, seen)
+        gap = (0.0 if box is None else _gap(box, _around(subject, hard))) or _moved(seen, hard)
         if gap:
             message = f"the collision of link {link.name!r} is {gap:.3g} m away from its visual"
             yield Problem(hard[0][0], message)
@@ -78,18 +80,23 @@ def _alike(one: tuple[_Element, _Element], other: tuple[_Element, _Element]) -> 
     return written[0] == written[1]
 
 
-def _around(shapes: _Shapes) -> Extent | None:
+def _around(subject: Subject, shapes: _Shapes) -> Extent | None:
     """The box around some shapes; None if one of them has no known size."""
-    if any(shape.tag == "mesh" for _, shape in shapes):
-        return None
     found = []
     for element, shape in shapes:
         own = origin_of(element)
-        extent = None if own is None else extent_of(shape, own)
+        extent = None if own is None else _extent(subject, shape, own)
         if extent is None:
             return None
         found.append(extent)
     return around(found)
+
+
+def _extent(subject: Subject, shape: _Element, pose: Pose) -> Extent | None:
+    if shape.tag != "mesh":
+        return extent_of(shape, pose)
+    box = box_of(subject, shape)
+    return placed_box(box, pose) if box else None
 
 
 def _gap(one: Extent, other: Extent | None) -> float:
@@ -154,7 +161,8 @@ def _outside(subject: Subject, link: Link, centre: Vector) -> float:
     """How far a centre is from the shapes of its link, if that is too far."""
     seen, hard = _shapes(subject)[link.element]
     shapes = seen + hard
-    box = _around(shapes)
+    # A mesh may show less than what weighs: the shafts of an arm's wrist are within the link before.
+    box = None if any(it.tag == "mesh" for _, it in shapes) else _around(subject, shapes)
     if box is None:
         return _far_from_mesh(subject, link, shapes, centre)
     size = max(minus(box.high, box.low))
