@@ -52,7 +52,9 @@ class RobotSpec(NamedTuple):
     something, by path. ``simulator`` is ``REAL``, or what the robot runs in; empty if nothing says so.
     ``use_sim_time`` is what all its nodes have, None if the file does not say. ``simulated`` is the
     model that the simulator gets, empty where that is the description. ``bridge_namespace`` is the one
-    below its own that its bridge files are for.
+    below its own that its bridge files are for, ``bridges_below`` what launch files say of single
+    ones. ``fills`` says that arguments of its xacro which name
+    robots are filled where ``arguments`` has no value for them.
     """
 
     name: str
@@ -74,11 +76,17 @@ class RobotSpec(NamedTuple):
     use_sim_time: bool | None = None
     simulated: str = ""
     bridge_namespace: str = ""
+    bridges_below: tuple[tuple[str, str], ...] = ()
+    fills: bool = True
 
     @property
     def words(self) -> tuple[str, str, str]:
         """What stands for it in names; the first one is ``{robot}`` in its arguments."""
         return self.name, self.namespace, self.tag
+
+    def bridge_namespace_of(self, path: str) -> str:
+        """The namespace below its own that one of its bridge files is for."""
+        return dict(self.bridges_below).get(path, self.bridge_namespace)
 
     @property
     def sources(self) -> Sources:
@@ -224,6 +232,7 @@ def _robot(read: FleetData, naming: Naming, at: int, release: str) -> RobotSpec:
         use_sim_time=own.get("use_sim_time", data.get("use_sim_time")),
         simulated=_simulated(data, own),
         bridge_namespace=own.get("bridge_namespace", data.get("bridge_namespace", "")).strip("/"),
+        fills=own.get("fill_arguments", data.get("fill_arguments", True)),
     )
 
 

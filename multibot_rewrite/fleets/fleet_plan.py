@@ -6,8 +6,10 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.fleets.filled_arguments import with_own_arguments
 from multibot_rewrite.fleets.fleet import Fleet, assemble, merge
 from multibot_rewrite.fleets.fleet_file import FleetFile, Sources
+from multibot_rewrite.fleets.launched_bridges import with_bridge_namespaces
 from multibot_rewrite.fleets.launched_files import with_launched_files
 from multibot_rewrite.fleets.loaded_files import with_loaded_files
 from multibot_rewrite.fleets.meeting import with_meetings
@@ -52,10 +54,17 @@ def plan_fleet(
     anything, and launch files run. Raises as ``rewrite_all``, and UsageError for an unknown stack.
     """
     file, notes = with_launched_files(_trusted(file) if trust else file)
+    file = with_bridge_namespaces(file)
     with gc_paused():
         naming = make_naming(**file.policy)
+        said: Mapping[str, Sequence[Finding]] = {}
+        if jobs is None:
+            file, said = with_own_arguments(file, naming, trust)
         read = jobs or read_jobs(file.robots, naming, file.vocabulary, trust, file.distro)
-        robots = [with_loaded_files(it) for it in rewrite_robots(file.robots, read)]
+        robots = [
+            with_loaded_files(it._replace(findings=(*it.findings, *said.get(it.spec.name, ()))))
+            for it in rewrite_robots(file.robots, read)
+        ]
         file = file._replace(robots=tuple(it.spec for it in robots))
         specs = {node_sources(it): it for it in reversed(file.robots)}
         members = {node_sources(it.spec): it.member for it in robots}

@@ -49,6 +49,15 @@ def manifest(
     return OutputFile(MANIFEST, json.dumps(data, indent=1).encode() + b"\n")
 
 
+def inputs_of(data: bytes, folder: str) -> Mapping[str, str]:
+    """The hashes of what a build into ``folder`` read, by path; none in what is not a manifest."""
+    try:
+        found = load_json(data)["inputs"].items()
+        return {os.path.normpath(os.path.join(folder, path)): str(it) for path, it in found}
+    except (ValueError, KeyError, TypeError, AttributeError):
+        return {}
+
+
 def read_manifest(data: bytes, file: str) -> Mapping[str, str]:
     """The hashes of what a build wrote, by path; InputError for a file that is not a manifest."""
     try:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import os
-import re
 from collections import deque
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
+from itertools import islice
 
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.outside import outside
@@ -15,7 +15,6 @@ DEEPEST = 4
 MOST_FOLDERS = 20_000
 # Ancestors of a description in which its own package is looked for.
 HIGHEST = 6
-MOST_OF_CMAKE = 2**18
 _MANIFEST = "package.xml"
 _NAME = lazy_compile(rb"<name>\s*([^<\s]+)\s*</name>")
 # Build results, libraries and similar folders: there are no sources of meshes below them.
@@ -142,31 +141,6 @@ def _by_lower_case(folder: str) -> Mapping[str, str]:
 
 
 @outside
-def source_of(folder: str, path: str) -> str:
-    """The file of a package that CMake installs at ``path``; empty where it says of none.
-
-    ``install(DIRECTORY description/urdf DESTINATION share/NAME)`` leaves out the folder above.
-    """
-    first, cmake = re.escape(path.partition("/")[0]), _cmake(folder)
-    for it in sorted(entries(folder) - _SKIPPED) if cmake else ():
-        file = os.path.join(folder, it, path)
-        named = rf"[\s\"(]{re.escape(it)}/({first}/?)?[\s\")]"
-        if os.path.isfile(file) and re.search(named, cmake):
-            return file
-    return ""
-
-
-def _cmake(folder: str) -> str:
-    try:
-        with open(
-            os.path.join(folder, "CMakeLists.txt"), encoding="utf-8", errors="replace"
-        ) as file:
-            return file.read(MOST_OF_CMAKE)
-    except OSError:
-        return ""
-
-
-@outside
 def find_in(folder: str, path: str) -> str:
     """The path below a folder as it is written on the disk, whatever the case; empty if absent."""
     found: list[str] = []
@@ -181,3 +155,32 @@ def find_in(folder: str, path: str) -> str:
             return ""
         found.append(near)
     return os.path.join(*found)
+
+
+@outside
+def in_sources(path: str) -> str:
+    """The file that a build installs as ``path`` from a package's sources; empty if none is certain.
+
+    The only file of the package that ends so, as ``description/urdf/arm.xacro`` for ``urdf/arm.xacro``.
+    """
+    folder = os.path.dirname(os.path.abspath(path))
+    while not os.path.isdir(folder):
+        folder = os.path.dirname(folder)
+    package = _own_package(folder)
+    if package is None:
+        return ""
+    end = os.sep + os.path.relpath(os.path.abspath(path), package[1])
+    found = [it for it in _every_file(package[1]) if it.endswith(end)]
+    return found[0] if len(found) == 1 else ""
+
+
+@lru_cache(maxsize=64)
+def _every_file(folder: str) -> tuple[str, ...]:
+    """The files of a package, as many as are looked at."""
+    every = (
+        os.path.join(above, name)
+        for above, _, names in os.walk(folder)
+        if os.path.basename(above) not in _SKIPPED
+        for name in names
+    )
+    return tuple(islice(every, MOST_FOLDERS))

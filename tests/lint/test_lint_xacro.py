@@ -323,31 +323,6 @@ def test_a_package_that_a_macro_or_an_included_file_asks_for_is_a_note_too(
         assert [it.code for it in linted(tmp_path, name)] == ["MB119"]
 
 
-@pytest.mark.parametrize(
-    ("cmake", "expected"),
-    [
-        ("install(DIRECTORY description/launch description/urdf DESTINATION share/robot)", "MB202"),
-        ("install(\n  DIRECTORY description/\n  DESTINATION share/${PROJECT_NAME})", "MB202"),
-        ("install(DIRECTORY description DESTINATION share/robot)", "MB102"),
-        ("install(DIRECTORY other/urdf DESTINATION share/robot)", "MB102"),
-    ],
-)
-def test_a_file_is_found_where_cmake_installs_it(tmp_path: Path, cmake: str, expected: str) -> None:
-    write(
-        tmp_path,
-        {
-            "robot/package.xml": MANIFEST % "robot",
-            "robot/CMakeLists.txt": cmake,
-            "robot/description/urdf/part.xacro": xacro(f'<link name="a"/>{LOST}'),
-            "robot/description/urdf/r.xacro": xacro(
-                '<xacro:include filename="$(find robot)/urdf/part.xacro"/>'
-            ),
-        },
-    )
-    found = linted(tmp_path, "robot/description/urdf/r.xacro", select=("MB202", "MB102"))
-    assert [it.code for it in found] == [expected]
-
-
 def test_a_part_whose_name_is_filled_in_is_judged_where_it_is_included(tmp_path: Path) -> None:
     include = '<xacro:include filename="parts/rover_$(arg kind)_parts.xacro"/>'
     write(tmp_path, {"r.xacro": xacro(include)})
