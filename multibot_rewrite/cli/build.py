@@ -38,7 +38,9 @@ def run(options: argparse.Namespace) -> int:
     _check_folder(options.output)
     check_report(options, printed=False)
     fleet = read_fleet(options.fleet, options.distro or "", os.environ)
-    fleet = fleet._replace(params_style=options.params_style or fleet.params_style)
+    fleet = fleet._replace(
+        params_style=options.params_style or fleet.params_style, shape=options.shape or fleet.shape
+    )
     plan = plan_fleet(fleet, trust=options.trust)
     note_interfaces(options, plan.fleet.facts)
     made = make_outputs(plan, os.path.abspath(options.output))

@@ -27,14 +27,15 @@ FilesAndFindings: TypeAlias = Iterator[OutputFile | Finding]
 def path_for(robot: RewrittenRobot, source: str) -> str:
     """Where the robot's version of a source file goes: ``robot1/params.yaml``.
 
-    Of two files with one name each is in a folder called as its own: ``robot1/base/params.yaml``.
+    Of two files with one name each is in a folder called as its own: ``robot1/base/params.yaml``. A
+    vendor's launch files may want it in a place of their own.
     """
     name = os.path.basename(source)
     every = (it for its in robot.spec.companions.values() for it in its)
     alike = {it for it in every if os.path.basename(it) == name}
     if len(alike) > 1 and source in alike:
         name = f"{os.path.basename(os.path.dirname(os.path.abspath(source)))}/{name}"
-    return f"{robot.spec.name}/{name}"
+    return f"{robot.spec.name}/{dict(robot.spec.places).get(name, name)}"
 
 
 def expanded_name(path: str) -> str:
