@@ -123,6 +123,7 @@ HOMES: tuple[Home, ...] = (
         (
             "evidence.nodes",
             "evidence.launch_findings",
+            "evidence.spawner_managers",
             "fleets.launched_files",
             "fleets.loaded_files",
             "fleets.filled_arguments",

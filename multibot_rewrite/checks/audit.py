@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from itertools import chain, islice
+from typing import TYPE_CHECKING
 
 from lxml.etree import _Element
 
@@ -28,7 +29,9 @@ from multibot_rewrite.rewriters.vocabulary import VocabularySection
 from multibot_rewrite.rewriters.vocabulary.grammar import split_path
 from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.document import Document, without_comments
-from multibot_rewrite.steps.renames import RenameMap
+
+if TYPE_CHECKING:
+    from multibot_rewrite.steps.renames import RenameMap
 
 __all__ = [
     "audit",

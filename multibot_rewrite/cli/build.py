@@ -17,6 +17,7 @@ from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.build import make_outputs
 from multibot_rewrite.fleets.fleet_file import input_files, read_fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleets.launch_file import PYTHON as LAUNCH
 from multibot_rewrite.fleets.manifest import (
     MANIFEST,
     NOTE,
@@ -149,6 +150,7 @@ def _written(
     for path in found.write:
         detail(options, f"wrote {os.path.join(options.output, path)}")
     note(options, f"{robots}, {plural(len(files), 'file')}, {len(found.write)} written{end}")
+    note(options, f"next: ros2 launch {os.path.join(options.output, LAUNCH)}")
     return DONE
 
 

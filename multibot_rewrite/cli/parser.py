@@ -97,7 +97,8 @@ def _head(command: Command) -> Iterable[str]:
     yield command.about
     yield "examples:\n" + "\n".join(_example(it) for it in command.examples)
     if command.more:
-        yield wrapped(command.more)
+        parts = command.more.split("\n\n")
+        yield "\n\n".join(it if it.startswith("  ") else wrapped(it) for it in parts)
 
 
 def _example(example: Example) -> str:

@@ -222,9 +222,17 @@ def _parameters(given: _Given, name: str) -> tuple[File | Mapping[str, Any], ...
         semantic = made if made.path in given.files else {"robot_description_semantic": srdf}
         found += [{"robot_description": Text(_description(robot))}, semantic]
     if known == LIFECYCLE_MANAGER:
-        managed = [given.names.name(it) for it in given.names.managed.get(name, ())]
-        found.append({"autostart": True, "node_names": managed})
+        managed = (_called(given, it) for it in given.names.managed.get(name, ()))
+        found.append({"autostart": True, "node_names": list(filter(None, managed))})
     return tuple(found)
+
+
+def _called(given: _Given, node: str) -> str:
+    """What a node of a stack is called: its robot's parameter file may have it under an older name."""
+    if node in given.names.nodes:
+        return given.names.name(node)
+    alike = (name for name, it in given.facts.items() if it.known == node)
+    return next((given.names.name(it) for it in alike if it in given.names.nodes), "")
 
 
 def _description(robot: RewrittenRobot) -> str:

@@ -11,7 +11,6 @@ from multibot_rewrite.findings.selection import level_of
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.records import Subject
-from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.outside import unrepeatable
 
 _PLACE = lazy_compile(r"(?P<file>.*?)(?::(?P<line>\d+):(?P<column>\d+))?: (?P<text>.*)", re.DOTALL)
@@ -28,6 +27,8 @@ _CODES = (
 
 def failure(path: str, message: str, settings: Settings) -> Finding:
     """The finding for a file that cannot be read; ``message`` is that of its InputError."""
+    from multibot_rewrite.lint.registry import RULES  # all rules: a file that is read needs few
+
     code = next((code for part, code in _CODES if part in message), "MB101")
     level = level_of(settings, code, RULES[code].level)
     it = _PLACE.fullmatch(message)

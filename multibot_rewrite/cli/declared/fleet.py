@@ -72,6 +72,18 @@ _DESCRIPTION = OptionGroup(
     ),
 )
 _FLEET_FILE = "A fleet file (*.yaml) has its own robots, stacks and layout."
+_FLEET_TEXT = """\
+A fleet file, as multibot init writes it; only robots is required (docs/fleet-file.md):
+
+  layout: frames-per-robot
+  description: rover.urdf
+  companions: {params: params.yaml, rviz: one_robot.rviz}
+  robots:
+    - {name: robot1, pose: {x: 0.0, y: 0.0}}
+    - {name: robot2, pose: {x: 0.0, y: 2.0}}
+
+Then ros2 launch out/fleet.launch.py starts the robots, and multibot check out/plan.yaml tells\
+ whether they run as planned."""
 _TABLE_CODES = "0 done; 1 findings at the level of --fail-on; 2 wrong use or unreadable input"
 _BESIDE = (
     " Findings go to standard error; with a --format other than text they go to standard output, and"
@@ -109,9 +121,10 @@ INIT = Command(
                     "-n",
                     "--count",
                     metavar="COUNT",
-                    about="robots of each description; default: 2",
+                    about="robots of each description, if not --robots; default: 2",
                     type=values.count,
                 ),
+                ROBOTS,
                 choice("--layout", "NAME", LAYOUT_NAMES, "default: what the files are made for"),
                 choice(
                     "--simulator", "NAME", ("none", "gazebo"), "default: what the plugins are for"
@@ -165,6 +178,7 @@ BUILD = Command(
     ),
     "0 done; 1 findings at the level of --fail-on, nothing was written, or with --check something is"
     " stale; 2 wrong use or unreadable input",
+    more=_FLEET_TEXT,
     fail_on=ERROR,
 )
 PLAN = Command(
@@ -232,6 +246,7 @@ VIEW = Command(
                     "input", "INPUT", "the robot's description before any rewrite, or a fleet file"
                 ),
                 argument("words", "ROBOT", "names of robots; NAME:=VALUE is for xacro", "*"),
+                ROBOTS,
                 SAVED,
                 DISTRO,
                 TRUST,

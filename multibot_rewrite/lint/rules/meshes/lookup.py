@@ -33,32 +33,45 @@ def _lookups(subject: Subject) -> tuple[Lookup, ...]:
     file, roots = subject.document.file.removesuffix(EXPANDED), subject.settings.roots
     first = {it.name: it for it in reversed(used_files(subject)) if it.scheme in ("package", "")}
     asked = (it for it in reversed(first.values()) if "$" not in it.name and "\\" not in it.name)
-    folders_of = cache(lambda name: package_folders(name, file, roots))
+    folders_of = cache(lambda name, first: _packages(name, first, file, roots))
     return tuple(_looked_up(it, *_where(it, file, folders_of)) for it in asked)
 
 
 def _looked_up(it: Used, folders: tuple[str, ...], path: str) -> Lookup:
+    if not folders:
+        return Lookup(it, folders, path, "")
     found = [find_in(folder, path) for folder in folders]
     exact = os.path.normpath(path)
     return Lookup(it, folders, path, exact if exact in found else next(filter(None, found), ""))
 
 
 def _where(
-    it: Used, file: str, folders_of: Callable[[str], tuple[str, ...]]
+    it: Used, file: str, folders_of: Callable[[str, str], tuple[str, ...]]
 ) -> tuple[tuple[str, ...], str]:
     """The folders in which a file may be, and its path below them."""
     if it.scheme == "":
         here = os.path.dirname(os.path.abspath(file))
         return (here, os.path.dirname(here)), it.path
-    from urllib.parse import unquote  # slow to import, and many robots have no meshes
-
-    package, _, path = unquote(it.path).partition("/")
+    package, _, path = _unquoted(it.path).partition("/")
     if not package or not path:
         return (), ""
     path = path.lstrip("/")
-    first = path.partition("/")[0].lower()
-    # A folder without a manifest must at least have the first folder of the path.
-    return tuple(it for it in folders_of(package) if _may_be_the_package(entries(it), first)), path
+    return folders_of(package, path.partition("/")[0].lower()), path
+
+
+def _unquoted(path: str) -> str:
+    if "%" not in path:
+        return path
+    from urllib.parse import unquote  # slow to import, and few names need it
+
+    return unquote(path)
+
+
+def _packages(name: str, first: str, file: str, roots: tuple[str, ...]) -> tuple[str, ...]:
+    """The folders that may be a package; ``first`` is the first folder of a path below it."""
+    # A folder without a manifest must at least have that.
+    found = package_folders(name, file, roots)
+    return tuple(it for it in found if _may_be_the_package(entries(it), first))
 
 
 def _may_be_the_package(names: frozenset[str], first: str) -> bool:
