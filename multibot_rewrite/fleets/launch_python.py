@@ -13,7 +13,8 @@ _Files = tuple[File, ...]
 
 class FleetStarts(NamedTuple):
     """All that the launch file of a fleet starts: the simulators, what is for all robots, the robots,
-    the windows. ``head`` is its title, ``use_sim_time`` the default, ``driving`` are lines to type."""
+    the windows. ``head`` is its title, ``use_sim_time`` the default, ``driving`` are lines to type;
+    ``world`` is the simulator's by default."""
 
     head: str
     simulators: Sequence[str]
@@ -22,6 +23,7 @@ class FleetStarts(NamedTuple):
     windows: Sequence[Start]
     use_sim_time: bool
     driving: Sequence[str]
+    world: File | str = ""
 
 
 _BODY = '''\
@@ -218,7 +220,7 @@ def _description(it: FleetStarts) -> Iterator[str]:
     yield "    return LaunchDescription("
     yield "        ["
     for name, default, about in launch_arguments(it):
-        yield f'            DeclareLaunchArgument("{name}", default_value="{default}",'
+        yield f'            DeclareLaunchArgument("{name}", default_value={_value(default)},'
         yield f'                                  description="{about}"),'
     for simulator in it.simulators:
         yield from (f"            {line}" for line in _SIMULATORS[simulator])
@@ -237,7 +239,7 @@ def _description(it: FleetStarts) -> Iterator[str]:
     yield "    )"
 
 
-def launch_arguments(it: FleetStarts) -> Iterator[tuple[str, str, str]]:
+def launch_arguments(it: FleetStarts) -> Iterator[tuple[str, str | File, str]]:
     """The launch arguments: name, default, what it is."""
     yield "robots", "", "only these: robot1,robot2"
     yield "use_sim_time", str(it.use_sim_time).lower(), "whether all nodes use /clock"
@@ -246,7 +248,7 @@ def launch_arguments(it: FleetStarts) -> Iterator[tuple[str, str, str]]:
     if it.simulators:
         yield "simulator", "true", "whether to start the simulator and to spawn the robots in it"
         yield "headless", "false", "whether the simulator has no window"
-        yield "world", "empty.sdf" if GZ in it.simulators else "", "the world of the simulator"
+        yield "world", it.world, "the world of the simulator"
 
 
 _SIMULATORS: Mapping[str, tuple[str, ...]] = {
@@ -256,7 +258,8 @@ _SIMULATORS: Mapping[str, tuple[str, ...]] = {
         "    launch_arguments=[",
         '        ("gz_args", ["-r ", PythonExpression(["\'-s \' if \'", '
         'LaunchConfiguration("headless"),',
-        "                     \"'.lower() == 'true' else ''\"]), LaunchConfiguration(\"world\")]),",
+        "                     \"'.lower() == 'true' else ''\"]), "
+        "'\"', LaunchConfiguration(\"world\"), '\"']),",
         "    ],",
         '    condition=IfCondition(LaunchConfiguration("simulator")),',
         "),",

@@ -17,7 +17,7 @@ _HEADLESS = "$(eval '\\'%s\\' if \\'$(var headless)\\'.lower() == \\'true\\' els
 _SIMULATORS: Mapping[str, tuple[str, tuple[tuple[str, str], ...]]] = {
     GZ: (
         "$(find-pkg-share ros_gz_sim)/launch/gz_sim.launch.py",
-        (("gz_args", f"-r {_HEADLESS % ('-s', '')} $(var world)"),),
+        (("gz_args", f'-r {_HEADLESS % ("-s", "")} "$(var world)"'),),
     ),
     CLASSIC: (
         "$(find-pkg-share gazebo_ros)/launch/gazebo.launch.py",
@@ -40,7 +40,8 @@ def _lines(it: FleetStarts) -> Iterator[str]:
     yield f"<!-- {it.head.replace('--', '- -')} -->"
     yield "<launch>"
     for name, default, about in launch_arguments(it):
-        yield f"  {_tag('arg', name=name, default=default, description=about)}"
+        told = f"$(dirname)/{default.path}" if isinstance(default, File) else default
+        yield f"  {_tag('arg', name=name, default=told, description=about)}"
     # Behind an include $(dirname) may be the folder of the included file.
     yield f"  {_tag('let', name='folder', value='$(dirname)')}"
     for simulator in it.simulators:
