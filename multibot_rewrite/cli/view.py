@@ -13,7 +13,7 @@ from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.fleets.fleet_file import input_files, read_fleet
 from multibot_rewrite.fleets.fleet_or_plan import is_fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
-from multibot_rewrite.fleets.manifest import MANIFEST, hash_of, inputs_of
+from multibot_rewrite.fleets.manifest import hash_of, inputs_of
 from multibot_rewrite.graph.pictures.page import Framed
 from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.snapshot_file import read_snapshots
@@ -74,10 +74,7 @@ def _fleet_file(path: str) -> str:
     """This file, or the fleet file that was built into its folder and is the same since."""
     if is_fleet(read_file(path)):
         return path
-    folder = os.path.dirname(path)
-    beside = os.path.join(folder, MANIFEST)
-    read = inputs_of(read_file(beside), folder) if os.path.isfile(beside) else {}
-    for name, hash_ in read.items():
+    for name, hash_ in inputs_of(os.path.dirname(path)).items():
         if name.endswith((".yaml", ".yml")) and os.path.isfile(name):
             data = read_file(name)
             if hash_of(data) == hash_ and is_fleet(data):
