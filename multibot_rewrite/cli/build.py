@@ -39,7 +39,9 @@ def run(options: argparse.Namespace) -> int:
     _check_folder(options.output)
     check_report(options, printed=False)
     fleet = read_fleet(options.fleet, options.distro or "", os.environ)
-    fleet = fleet._replace(params_style=options.params_style or fleet.params_style)
+    fleet = fleet._replace(
+        params_style=options.params_style or fleet.params_style, shape=options.shape or fleet.shape
+    )
     plan = plan_fleet(fleet, trust=options.trust)
     note_interfaces(options, plan.fleet.facts)
     made = make_outputs(plan, os.path.abspath(options.output))
@@ -47,7 +49,7 @@ def run(options: argparse.Namespace) -> int:
         say("nothing was written", PROGRAM)
         return STOPPED
     read = _read(plan, made.files)
-    files = [*made.files, manifest(made.files, read, options.output, plan.file.distro)]
+    files = [*made.files, manifest(made.files, read, options.output, plan)]
     _check_inputs(options.output, files, {*read, *input_files(plan.file), *plan.fleet.read})
     with locked(options.output):
         known = _known(options.output)
