@@ -40,7 +40,7 @@ def doctor(graph: Snapshot, folder: Path, capsys: pytest.CaptureFixture[str]) ->
 def test_why_does_cmd_vel_never_come(
     built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The teleop that runs as its manual says drives nobody; the doctor names what the line of the build has."""
+    """The teleop of the manual drives nobody; the doctor names what the line of the build has."""
     graph = running(built)
     assert doctor(graph, tmp_path, capsys) == []
     bare = with_node(graph, "/teleop_twist_keyboard", (PUBLISHES, "/cmd_vel", TWIST))
