@@ -51,7 +51,7 @@ def run(options: argparse.Namespace) -> int:
         say("nothing was written", PROGRAM)
         return STOPPED
     read = _read(plan, made.files)
-    files = [*made.files, manifest(made.files, read, options.output, plan.file.distro)]
+    files = [*made.files, manifest(made.files, read, options.output, plan)]
     _check_inputs(options.output, files, {*read, *input_files(plan.file), *plan.fleet.read})
     with locked(options.output):
         known = _known(options.output)

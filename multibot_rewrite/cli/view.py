@@ -13,6 +13,7 @@ from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.fleets.fleet_file import input_files, read_fleet
 from multibot_rewrite.fleets.fleet_or_plan import is_fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleets.manifest import hash_of, inputs_of
 from multibot_rewrite.graph.pictures.page import Framed
 from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.snapshot_file import read_snapshots
@@ -58,19 +59,27 @@ def framed(options: argparse.Namespace, graph: Snapshot) -> Framed | None:
     """
     given = vars(options)
     try:
-        if options.view:
-            plan = _fleet(options, options.view)
-        elif given.get("input"):
-            plan = _plan(options)
-        elif given.get("plan") and is_fleet(read_file(options.plan)):
-            plan = _fleet(options, options.plan)
-        else:
+        file = options.view or (_fleet_file(options.plan) if given.get("plan") else "")
+        if not (file or given.get("input")):
             return None
+        plan = _fleet(options, file) if file else _plan(options)
         scene = scene_of(plan, graph)
         return to_frame(scene, title_of(scene, plan.fleet.naming.layout.name))
     except MultibotError as error:
         note(options, f"note: the report does not show the robots in 3D: {error}")
         return None
+
+
+def _fleet_file(path: str) -> str:
+    """This file, or the fleet file that was built into its folder and is the same since."""
+    if is_fleet(read_file(path)):
+        return path
+    for name, hash_ in inputs_of(os.path.dirname(path)).items():
+        if name.endswith((".yaml", ".yml")) and os.path.isfile(name):
+            data = read_file(name)
+            if hash_of(data) == hash_ and is_fleet(data):
+                return name
+    return ""
 
 
 def _plan(options: argparse.Namespace) -> FleetPlan:

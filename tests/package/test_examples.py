@@ -18,11 +18,13 @@ pytestmark = pytest.mark.slow
 OURS = ("two_robots_postfix", "namespace_and_prefix")
 # Each a fleet file, with files of others or few of its own.
 SMALL = ("two_robots_nav2", "two_arms_moveit", "mixed_fleet")
-FOLDERS = [ROOT / "examples" / name for name in (*OURS, *SMALL)]
+# The pages about launch files and the tests with colcon try the rest of these.
+LAUNCHED = ("launch_tutorial", "multibot_example")
+FOLDERS = [ROOT / "examples" / name for name in (*OURS, *SMALL, *LAUNCHED)]
 FLEETS = [
     path
     for folder in FOLDERS
-    for path in sorted(folder.glob("*.yaml"))
+    for path in sorted(folder.rglob("*.yaml"))
     if re.search(r"^(robots|include):", path.read_text(), re.MULTILINE)
 ]
 PAGES = {
@@ -30,8 +32,9 @@ PAGES = {
     for folder in FOLDERS
     for heading, commands in page_commands.sections((folder / "README.md").read_text()).items()
 }
-# The nodes of both are those of the mixed fleet.
-DEEP = [it for it in PAGES if it.startswith(SMALL[:2]) and page_commands.is_live(PAGES[it])]
+# Their nodes are those of the mixed fleet, or few.
+MORE = (*SMALL[:2], *LAUNCHED)
+DEEP = [it for it in PAGES if it.startswith(MORE) and page_commands.is_live(PAGES[it])]
 USUAL = [it for it in PAGES if it not in DEEP]
 
 
@@ -70,7 +73,7 @@ def test_every_fleet_is_shown_and_rehearsed() -> None:
     found = {
         file: lines for commands in PAGES.values() for file, lines in rehearsed(commands).items()
     }
-    assert len(FLEETS) == 7
+    assert len(FLEETS) == 10
     assert {str(it.relative_to(ROOT)) for it in FLEETS} <= found.keys()
     assert all(": as planned" in lines[-1] for lines in found.values())
     assert any(line.startswith("multibot: 5 robots") for it in found.values() for line in it)
@@ -91,10 +94,8 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
 
 
 def test_every_folder_is_known_and_says_what_it_is() -> None:
-    """The other two are those of the launch page; colcon and the launch tests try them."""
-    others = {"launch_tutorial", "multibot_example"}
     found = {it.name for it in (ROOT / "examples").iterdir()}
-    assert found == {*OURS, *SMALL, *others}
+    assert found == {*OURS, *SMALL, *LAUNCHED}
     assert all((ROOT / "examples" / it / "README.md").is_file() for it in found)
     readme = (ROOT / "README.md").read_text()
     assert [it for it in sorted(found) if f"examples/{it}/README.md" not in readme] == []

@@ -112,10 +112,10 @@ class Html(HTMLParser):
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The site, made as for readers; a warning is an error."""
+    """The site, made as for readers; a warning is an error, but for one that ``-q`` would hide."""
     pytest.importorskip("mkdocstrings", reason="no mkdocs: pip install '.[docs]'")
     folder = tmp_path_factory.mktemp("site")
-    words = ["build", "--strict", "-q", "-f", str(SITE / "mkdocs.yml"), "-d", str(folder)]
+    words = ["build", "--strict", "-f", str(SITE / "mkdocs.yml"), "-d", str(folder)]
     command = [sys.executable, "-m", "mkdocs", *words]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr

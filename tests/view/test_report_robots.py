@@ -63,6 +63,16 @@ def test_a_plan_has_robots_in_3d_where_its_fleet_file_is_named(files: dict[str, 
     assert set(robots_in(report(files, "plan", "--view", files["fleet"]))) == {"robot1", "robot2"}
 
 
+def test_what_was_built_knows_its_fleet_file(files: dict[str, str], tmp_path: Path) -> None:
+    """Until that is changed: then it says something else than the plan."""
+    out = tmp_path / "out"
+    assert main(["build", files["fleet"], "-o", str(out), "-q"]) == 0
+    built = {**files, "plan": str(out / "plan.yaml")}
+    assert set(robots_in(report(built, "plan"))) == {"robot1", "robot2"}
+    Path(files["fleet"]).write_text(Path(files["fleet"]).read_text().replace("robot2", "robot3"))
+    assert "<iframe" not in report(built, "plan")
+
+
 def test_a_report_is_written_where_robots_cannot_be_shown(
     files: dict[str, str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

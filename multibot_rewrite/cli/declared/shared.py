@@ -212,7 +212,7 @@ PICTURES = OptionGroup(
         value("--dot", metavar="FILE", about="write a graph for Graphviz", type=values.path),
         value(
             "--view", metavar="FLEET", type=values.path,
-            about="with --report: show the robots of this fleet file in 3D; default: of the input",
+            about="with --report: show the robots of this fleet file in 3D; default: that of the input",
         ),
     ),
 )  # fmt: skip
