@@ -41,6 +41,8 @@ from multibot_rewrite.findings.finding import ERROR
 REMAP_FORMS = ("table", "ros-args", "launch", "yaml", "json", "gazebo", "markdown", "bridge")
 # Those of the fleet file's ``params_style``.
 PARAMS_STYLES = ("full", "bringup")
+# Those of ``fleets/shapes.yaml``.
+SHAPES = ("clearpath", "husarion", "nav2", "turtlebot4")
 # Those of ``remap.ways``.
 WAYS = ("process", "host", "component", "spawner", "plugin")
 
@@ -172,6 +174,13 @@ BUILD = Command(
                 PARAMS_STYLES,
                 "how parameter files are written: full (with the full names of nodes) or bringup (for"
                 " the launch files of nav2_bringup, docs/nav2.md); default: that of the fleet file",
+            ),
+            choice(
+                "--shape",
+                "VENDOR",
+                SHAPES,
+                "write files as the launch files of a vendor take them, and the commands that start"
+                " these (docs/fleet-file.md); default: that of the fleet file",
             ),
         ),
         FINDINGS,
