@@ -26,6 +26,7 @@ from multibot_rewrite.fleets.robot_nodes import (
     node_sources,
     robot_nodes,
 )
+from multibot_rewrite.fleets.shape import placed, with_shape
 from multibot_rewrite.fleets.shared_nodes import check_shared
 from multibot_rewrite.fleets.simulators import may_be_real, note
 from multibot_rewrite.gc_pause import gc_paused
@@ -53,7 +54,7 @@ def plan_fleet(
     ``jobs`` are the descriptions if they have been read already; ``trust`` lets xacro files do
     anything, and launch files run. Raises as ``rewrite_all``, and UsageError for an unknown stack.
     """
-    file, notes = with_launched_files(_trusted(file) if trust else file)
+    file, notes = with_launched_files(_trusted(with_shape(file)) if trust else with_shape(file))
     file = with_bridge_namespaces(file)
     with gc_paused():
         naming = make_naming(**file.policy)
@@ -65,6 +66,7 @@ def plan_fleet(
             with_loaded_files(it._replace(findings=(*it.findings, *said.get(it.spec.name, ()))))
             for it in rewrite_robots(file.robots, read)
         ]
+        robots = [placed(it, file.shape) for it in robots]
         file = file._replace(robots=tuple(it.spec for it in robots))
         specs = {node_sources(it): it for it in reversed(file.robots)}
         members = {node_sources(it.spec): it.member for it in robots}

@@ -15,7 +15,7 @@ from multibot_rewrite.evidence.parameter_files import OWN_TYPE
 from multibot_rewrite.fleets import moveit_parameters, spawn, start_poses
 from multibot_rewrite.fleets.cell_file import MOVE_GROUP
 from multibot_rewrite.fleets.cell_outputs import parameters_path
-from multibot_rewrite.fleets.fleet_file import REAL
+from multibot_rewrite.fleets.fleet_file import BRINGUP, REAL
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.node_names import NodeNames, names_of
 from multibot_rewrite.fleets.output_file import expanded_name, path_for
@@ -149,7 +149,7 @@ def _left(given: _Given) -> Iterator[tuple[str, str]]:
             yield name, "nothing is known of its program"
         elif it.when and not _is_needed(given, it):
             yield name, it.when
-        elif given.plan.file.params_style and name != STATE:
+        elif given.plan.file.params_style == BRINGUP and name != STATE:
             yield name, "parameter files are in the form of nav2_bringup, which starts it"
         elif not given.names.is_controller(name) and program_of(it, given.release) is None:
             yield name, f"the program of package {it.package} is not known"

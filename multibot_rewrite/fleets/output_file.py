@@ -28,14 +28,14 @@ def path_for(robot: RewrittenRobot, source: str) -> str:
     """Where the robot's version of a source file goes: ``robot1/params.yaml``.
 
     Files with one name are in folders called as their own, as many as it takes to tell them apart:
-    ``robot1/base/params.yaml``.
+    ``robot1/base/params.yaml``. A vendor's launch files may want one in a place of their own.
     """
     name = os.path.basename(source)
     every = (it for its in robot.spec.companions.values() for it in its)
     alike = {os.path.abspath(it) for it in every if os.path.basename(it) == name}
     if len(alike) > 1 and os.path.abspath(source) in alike:
         name = _told_apart(os.path.abspath(source), alike)
-    return f"{robot.spec.name}/{name}"
+    return f"{robot.spec.name}/{dict(robot.spec.places).get(name, name)}"
 
 
 def _told_apart(path: str, alike: Collection[str]) -> str:
