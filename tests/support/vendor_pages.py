@@ -32,9 +32,10 @@ HEAD = f"""\
 {MADE} Each robot is built from its vendor's own files, in the vendor's
 layout and one other, with two robots and with three. Its first two are compared with what the vendor's
 own launch files and generators make of two robots: descriptions, parameters, names of nodes, where
-topics, services and actions lead, bridges, RViz and static transforms. *Better* is a difference that
-the page of the robot gives a reason for, *wrong* any other. *False* are warnings and errors of the
-build that are not true of the vendor's files. Which nodes are known is in [vendors](../vendors.md).
+topics, services and actions lead, bridges, static transforms, and RViz by displays and tools, with
+topics as they are called in the graph. *Better* is a difference that the page of the robot gives a
+reason for, *wrong* any other. *False* are warnings and errors of the build that are not true of the
+vendor's files. Which nodes are known is in [vendors](../vendors.md).
 
 *Before* is what was false in the vendor's layout before the package knew these robots.
 
