@@ -8,6 +8,7 @@ MULTIBOT_SOURCES as in ``vendor_systems.py``. Needs launch and launch_ros.
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -19,6 +20,8 @@ from vendor_systems import read_vendors
 
 PAGES = Path(__file__).parent.parent.parent / "docs" / "robots"
 _WIDE = 60
+# Where packages are for a comparison.
+_INSTALLED = re.compile(r"/tmp/\w+/prefix")
 MADE = "Made by `MULTIBOT_SOURCES=FOLDER python tests/support/vendor_pages.py --write`."
 COMMANDS = """\
 In a workspace that has the vendor's packages:
@@ -83,7 +86,7 @@ def _reasons(found: Outcome) -> Iterator[str]:
 
 
 def _short(text: str) -> str:
-    text = text.replace("|", "/")
+    text = _INSTALLED.sub("/ws/install", text.replace("|", "/"))
     return text if len(text) <= _WIDE else f"{text[: _WIDE // 2]}...{text[-_WIDE // 2 :]}"
 
 
