@@ -14,6 +14,7 @@ import os
 import re
 import subprocess
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -86,8 +87,10 @@ def main(words: list[str]) -> int:
         if words[0] == "notes":
             print(notes(words[1], ROOT))
             return 0
+        if not find_spec("shtab"):
+            raise ValueError("manual pages are made by shtab: pip install -e '.[test]'")
         prepare(words[1], ROOT, datetime.date.today().isoformat())
-    except ValueError as error:
+    except (ValueError, OSError) as error:
         print(f"release.py: {error}", file=sys.stderr)
         return 1
     # The sources that were changed, not an installed package.

@@ -123,8 +123,11 @@ HOMES: tuple[Home, ...] = (
         (
             "evidence.nodes",
             "evidence.launch_findings",
+            "evidence.spawner_managers",
             "fleets.launched_files",
             "fleets.loaded_files",
+            "fleets.launched_prefix",
+            "fleets.filled_arguments",
             "fleets.simulators",
             "fleets.shared_nodes",
             "fleets.params_style",

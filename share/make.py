@@ -14,7 +14,7 @@ from pathlib import Path
 import shtab
 from argparse_manpage.manpage import Manpage
 
-from multibot_rewrite.cli.declared import COMMANDS, PROGRAMS
+from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
 from multibot_rewrite.cli.parser import Parser, declare, make_parser
 from multibot_rewrite.version import __version__
 

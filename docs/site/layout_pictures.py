@@ -141,7 +141,7 @@ def _column(name: str, robot: Robot, left: int, other: Robot) -> Column:
         *((it, 0, "clash" if it in other.topics else "own") for it in robot.topics),
     ]
     heads = sum(kind == "head" for _, _, kind in rows)
-    height = len(rows) * ROW + heads * 5 + ROW // 2
+    height = len(rows) * ROW + heads * 5 + ROW
     return Column("\n".join(_rows(rows, name, left, height)), height)
 
 

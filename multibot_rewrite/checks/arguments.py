@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from lxml.etree import _Element
 
@@ -13,7 +14,9 @@ from multibot_rewrite.model import Claim
 from multibot_rewrite.naming import FRAME_KINDS
 from multibot_rewrite.nearest import did_you_mean_one_of
 from multibot_rewrite.steps.collect import Inventory
-from multibot_rewrite.steps.renames import RenameMap
+
+if TYPE_CHECKING:
+    from multibot_rewrite.steps.renames import RenameMap
 
 SEPARATORS = "/_-."
 UNREAD = "MB144"

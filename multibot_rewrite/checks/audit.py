@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator
 from itertools import chain, islice
+from typing import TYPE_CHECKING
 
 from lxml.etree import _Element
 
@@ -19,6 +19,7 @@ from multibot_rewrite.checks.references import (
     undeclared_names,
 )
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING, Finding
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.nearest import Guesses
 from multibot_rewrite.releases import releases_with
@@ -28,7 +29,9 @@ from multibot_rewrite.rewriters.vocabulary import VocabularySection
 from multibot_rewrite.rewriters.vocabulary.grammar import split_path
 from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.document import Document, without_comments
-from multibot_rewrite.steps.renames import RenameMap
+
+if TYPE_CHECKING:
+    from multibot_rewrite.steps.renames import RenameMap
 
 __all__ = [
     "audit",
@@ -42,7 +45,7 @@ ANOTHER_RELEASE = (
     "name the release that the description is for with --distro, or distro: in a fleet file"
 )
 # A step of a path that asks for an attribute.
-_STEP = re.compile(r"\[@(\w+)=(.*)\]")
+_STEP = lazy_compile(r"\[@(\w+)=(.*)\]")
 
 
 def audit(inventory: Inventory, renames: RenameMap, tree: Tree) -> list[Finding]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator
 from functools import partial
+from typing import TYPE_CHECKING
 
 from multibot_rewrite.checks.problem import Problem, about
 from multibot_rewrite.naming import (
@@ -19,7 +20,9 @@ from multibot_rewrite.rewriters.forms import IN_FRONT
 from multibot_rewrite.rewriters.vocabulary import VocabularySection
 from multibot_rewrite.rosnames import split_remap
 from multibot_rewrite.steps.collect import SRDF, Host, Inventory
-from multibot_rewrite.steps.renames import RenameMap
+
+if TYPE_CHECKING:
+    from multibot_rewrite.steps.renames import RenameMap
 
 
 def hazards(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:

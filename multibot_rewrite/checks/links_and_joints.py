@@ -163,6 +163,12 @@ def reached(robot: Robot, starts: Iterable[str], seen: set[str]) -> list[str]:
     return found
 
 
+def is_tree(robot: Robot) -> bool:
+    """Is everything below a root, and below one joint? Then there is no loop."""
+    single = all(len(joints) == 1 for joints in robot.above.values())
+    return single and robot.above.keys() <= robot.body.keys()
+
+
 def loops(robot: Robot) -> list[list[Joint]]:
     """Loops of joints; a joint from a link to itself is not one.
 

@@ -6,7 +6,6 @@ import re
 from collections import Counter
 from collections.abc import Collection, Iterator
 from functools import lru_cache
-from string import whitespace
 from typing import NamedTuple
 
 from lxml import etree
@@ -64,7 +63,7 @@ _FILES = (
         ".mcap",
     ),
 )
-_NUMERIC = "-+0123456789.eE" + whitespace
+_NUMERIC = "-+0123456789.eE \t\n\r\v\f"
 
 
 # What was found out for elements: a root may have thousands of children.

@@ -54,8 +54,9 @@ def already_rewritten(
     those that get this word of the robot.
     """
     marked = {mark.robot for mark in markers(inventory.document)}
-    text = "\n".join({name.text for names in inventory.names for name in names})
-    for robot in robots:
+    asked = list(robots)
+    text = "\n".join({name.text for names in inventory.names for name in names}) if asked else ""
+    for robot in asked:
         # Most robots are in no name at all. With ``again`` names alone do not matter.
         looked = robot in text and (not again or robot in marked)
         found = carrying(_names(inventory, kinds), robot, own) if looked else []

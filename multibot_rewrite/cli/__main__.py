@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 
-from multibot_rewrite.cli.declared import COMMANDS, PROGRAMS
+from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
 from multibot_rewrite.cli.options import Command, Option
 
 HEAD = """\
@@ -27,12 +27,21 @@ def commands_page() -> str:
     return "\n".join((HEAD, *(line for it in named for line in _command(*it))))
 
 
+def _paragraphs(text: str) -> Iterator[str]:
+    """Paragraphs; one that is indented is code."""
+    for it in text.split("\n\n"):
+        code = it.startswith("  ")
+        lines = it.splitlines() if code else [" ".join(it.translate(ESCAPED).split())]
+        yield from (f"  {line}" if code else line for line in lines)
+        yield ""
+
+
 def _command(name: str, command: Command) -> Iterator[str]:
     yield from (f"## {name}", "", command.about, "")
     yield from ("```text", command.usage.replace("%(prog)s", name), "```", "")
     yield from ("```sh", *_examples(command), "```", "")
     if command.more:
-        yield from (" ".join(command.more.translate(ESCAPED).split()), "")
+        yield from _paragraphs(command.more)
     yield from ("| option | meaning |", "|---|---|")
     for group in command.groups:
         yield f"| **{group.title}** | |"

@@ -17,6 +17,7 @@ from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.build import make_outputs
 from multibot_rewrite.fleets.fleet_file import input_files, read_fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleets.launch_file import PYTHON as LAUNCH
 from multibot_rewrite.fleets.manifest import (
     MANIFEST,
     NOTE,
@@ -27,6 +28,7 @@ from multibot_rewrite.fleets.manifest import (
     read_manifest,
 )
 from multibot_rewrite.fleets.output_file import OutputFile
+from multibot_rewrite.fleets.robot_choice import Choice
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
 from multibot_rewrite.releases import facts_of_release
@@ -37,8 +39,13 @@ def run(options: argparse.Namespace) -> int:
     """Build or check; returns the exit code."""
     _check_folder(options.output)
     check_report(options, printed=False)
-    fleet = read_fleet(options.fleet, options.distro or "", os.environ)
-    fleet = fleet._replace(params_style=options.params_style or fleet.params_style)
+    if options.count == 0:
+        raise UsageError("--count 0: a fleet has at least one robot")
+    choice = Choice(number=options.count or 0)
+    fleet = read_fleet(options.fleet, options.distro or "", os.environ, choice)
+    fleet = fleet._replace(
+        params_style=options.params_style or fleet.params_style, shape=options.shape or fleet.shape
+    )
     plan = plan_fleet(fleet, trust=options.trust)
     note_interfaces(options, plan.fleet.facts)
     made = make_outputs(plan, os.path.abspath(options.output))
@@ -46,7 +53,7 @@ def run(options: argparse.Namespace) -> int:
         say("nothing was written", PROGRAM)
         return STOPPED
     read = _read(plan, made.files)
-    files = [*made.files, manifest(made.files, read, options.output, plan.file.distro)]
+    files = [*made.files, manifest(made.files, read, options.output, plan)]
     _check_inputs(options.output, files, {*read, *input_files(plan.file), *plan.fleet.read})
     with locked(options.output):
         known = _known(options.output)
@@ -147,6 +154,7 @@ def _written(
     for path in found.write:
         detail(options, f"wrote {os.path.join(options.output, path)}")
     note(options, f"{robots}, {plural(len(files), 'file')}, {len(found.write)} written{end}")
+    note(options, f"next: ros2 launch {os.path.join(options.output, LAUNCH)}")
     return DONE
 
 

@@ -5,23 +5,19 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-from collections.abc import Sequence
 
 from multibot_rewrite.cli.output import STANDARD, deliver, goes_to_file, note, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
+from multibot_rewrite.cli.questions import MEANT, ask_for_fleet
 from multibot_rewrite.cli.usage import plain_words, xacro_args
 from multibot_rewrite.model import UsageError
-from multibot_rewrite.naming import LAYOUTS, find_layout
+from multibot_rewrite.naming import find_layout
 from multibot_rewrite.plural import plural
 from multibot_rewrite.proposal.choosing import Choice
 from multibot_rewrite.proposal.fleet_text import Proposal, text_of
-from multibot_rewrite.proposal.looking import Looked
-from multibot_rewrite.proposal.propose import Wanted, propose
-from multibot_rewrite.proposal.trying import in_a_layout_that_builds, in_layout
-from multibot_rewrite.releases import release_here
-
-_MEANT = "as it was asked for"
-_SIMULATORS = ("gazebo", "none")
+from multibot_rewrite.proposal.propose import Wanted, see
+from multibot_rewrite.proposal.trying import first_that_builds, that_builds
+from multibot_rewrite.releases import VARIABLE, release_here
 
 
 def run(options: argparse.Namespace) -> int:
@@ -29,19 +25,33 @@ def run(options: argparse.Namespace) -> int:
     if options.count == 0:
         raise UsageError("--count 0: a fleet has at least one robot")
     _check_output(options)
-    asks = not options.yes and sys.stdin.isatty() and sys.stderr.isatty()
-    wanted = Wanted(
+    wanted = _wanted(options)
+    seen = see(wanted)
+    if wanted.names and seen.named and len(seen.robots) > 1:
+        raise UsageError("--robots is for one description; give --count for several")
+    if not options.yes and sys.stdin.isatty() and sys.stderr.isatty():
+        made = ask_for_fleet(seen, wanted, options.simulator)
+    else:
+        build = that_builds if seen.named else first_that_builds
+        made = build(seen.robots, seen.found, wanted._replace(each=wanted.each or 2))
+    if options.simulator:
+        simulator = Choice(options.simulator, MEANT)
+        made = made._replace(keys={**made.keys, "simulator": simulator})
+    return _deliver(options, made)
+
+
+def _wanted(options: argparse.Namespace) -> Wanted:
+    """What the options say."""
+    return Wanted(
         tuple(plain_words(options)) or (os.curdir,),
-        options.count or (_count() if asks else 2),
+        len(options.robots) or options.count or 0,
         xacro_args(options),
         release_here(options.distro),
+        bool(options.distro or os.environ.get(VARIABLE)),
         find_layout(options.layout).name if options.layout else "",
         options.trust,
+        tuple(options.robots),
     )
-    made = propose(wanted, _choose if asks else lambda found: found[:1])
-    made = _answered(options, made, asks)
-    tried = in_a_layout_that_builds(made, wanted.release, wanted.trust)
-    return _deliver(options, tried)
 
 
 def _check_output(options: argparse.Namespace) -> None:
@@ -50,52 +60,6 @@ def _check_output(options: argparse.Namespace) -> None:
         raise UsageError(
             f"{path} is there already; name another with -o, or --force writes over it"
         )
-
-
-def _answered(options: argparse.Namespace, made: Proposal, asks: bool) -> Proposal:
-    """The proposal with what the user says of layout and simulator."""
-    layout, simulator = made.keys["layout"], made.keys["simulator"]
-    if asks and not options.layout:
-        names = [it.name for it in LAYOUTS]
-        for it in LAYOUTS:
-            say(f"  {it.name}: {it.about}", PROGRAM)
-        layout = _chosen(f"Layout ({layout.why})", names, layout)
-    if options.simulator:
-        simulator = Choice(options.simulator, _MEANT)
-    elif asks:
-        simulator = _chosen(f"Simulator ({simulator.why})", _SIMULATORS, simulator)
-    made = made._replace(keys={**made.keys, "simulator": simulator})
-    return made if layout == made.keys["layout"] else in_layout(made, layout)
-
-
-def _chosen(question: str, words: Sequence[str], default: Choice) -> Choice:
-    word = _ask(question, words, default.value)
-    return default if word == default.value else Choice(word, _MEANT)
-
-
-def _ask(question: str, words: Sequence[str], default: str) -> str:
-    from rich.console import Console  # only a question needs it
-    from rich.prompt import Prompt
-
-    console = Console(stderr=True)
-    return str(Prompt.ask(question, choices=list(words), default=default, console=console))
-
-
-def _count() -> int:
-    from rich.console import Console
-    from rich.prompt import IntPrompt
-
-    return IntPrompt.ask("Robots of each description", default=2, console=Console(stderr=True))
-
-
-def _choose(found: Sequence[Looked]) -> Sequence[Looked]:
-    """The one that the user takes of several; numbers are easier to type than paths."""
-    if len(found) == 1:
-        return found
-    for at, it in enumerate(found, 1):
-        say(f"  {at}: {it.path} ({plural(it.links, 'link')})", PROGRAM)
-    numbers = [str(at) for at in range(1, len(found) + 1)]
-    return [found[int(_ask("Description", numbers, "1")) - 1]]
 
 
 def _deliver(options: argparse.Namespace, made: Proposal) -> int:

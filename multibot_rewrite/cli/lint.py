@@ -7,7 +7,6 @@ from collections import Counter
 from collections.abc import Sequence
 from functools import partial
 
-from multibot_rewrite.cli.diffs import diff
 from multibot_rewrite.cli.lint_use import cached, check_use, given
 from multibot_rewrite.cli.output import (
     note,
@@ -116,6 +115,7 @@ def _lint(options: argparse.Namespace, settings: Settings, paths: Sequence[str])
 
 def _fixed(options: argparse.Namespace, settings: Settings, findings: list[Finding]) -> list[str]:
     """The files that are fixed. With --diff none is, and the changes are printed."""
+    from multibot_rewrite.cli.diffs import diff
     from multibot_rewrite.lint.fix import fix
     from multibot_rewrite.sources.read import read_file
 

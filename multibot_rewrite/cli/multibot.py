@@ -6,7 +6,7 @@ import sys
 from collections.abc import Sequence
 from functools import partial
 
-from multibot_rewrite.cli.declared import COMMANDS
+from multibot_rewrite.cli.declared.commands import COMMANDS
 from multibot_rewrite.cli.options import Command
 from multibot_rewrite.cli.output import print_bytes
 from multibot_rewrite.cli.parser import painted

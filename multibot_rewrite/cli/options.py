@@ -39,6 +39,7 @@ class Example(NamedTuple):
 class Command(NamedTuple):
     """A command line: how it is called, what it does, its options, what its exit codes mean.
 
+    ``more`` are paragraphs; one that is indented is shown as it is.
     ``module`` is the one of this folder whose ``run(options)`` does it. ``fail_on`` is the default
     of ``--fail-on``, empty where there are no findings or a configuration decides; with
     ``findings_first`` they are the command's result, which ``-o`` writes.

@@ -9,7 +9,6 @@ import sys
 from collections.abc import Iterable, Iterator
 from typing import TextIO, TypeVar
 
-from multibot_rewrite.cli.files import write_all
 from multibot_rewrite.cli.terminal import is_coloured
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.model import UsageError
@@ -49,6 +48,8 @@ def write_files(options: argparse.Namespace, items: Iterable[tuple[str, bytes]])
         for path, data in items:
             written.append(path)
             yield path, data
+
+    from multibot_rewrite.cli.files import write_all  # most commands of a lint write none
 
     write_all(noted())
     for path in written:

@@ -97,7 +97,8 @@ def _head(command: Command) -> Iterable[str]:
     yield command.about
     yield "examples:\n" + "\n".join(_example(it) for it in command.examples)
     if command.more:
-        yield wrapped(command.more)
+        parts = command.more.split("\n\n")
+        yield "\n\n".join(it if it.startswith("  ") else wrapped(it) for it in parts)
 
 
 def _example(example: Example) -> str:
@@ -152,5 +153,7 @@ def _unknown_option(words: Sequence[str], known: Sequence[str]) -> str:
     before_end = takewhile(lambda word: word != "--", words)
     names = (word.partition("=")[0] for word in before_end if word.startswith("--"))
     wrong = next((name for name in names if name not in known), "")
+    if not wrong:
+        return ""
     near = did_you_mean_one_of(wrong, known)
-    return f"unknown option {wrong}{'; ' * bool(near)}{near}" if wrong else ""
+    return f"unknown option {wrong}{'; ' * bool(near)}{near}"

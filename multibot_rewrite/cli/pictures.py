@@ -6,6 +6,7 @@ import argparse
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
+from typing import TYPE_CHECKING
 
 from multibot_rewrite.cli.output import STANDARD, write_files
 from multibot_rewrite.cli.walk import check_folder, check_target
@@ -15,6 +16,9 @@ from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.watching import Outcome
 from multibot_rewrite.model import MultibotError, UsageError
 from multibot_rewrite.sources.read import read_file
+
+if TYPE_CHECKING:
+    from multibot_rewrite.graph.pictures.page import Framed
 
 NAMES = ("report", "mermaid", "dot")
 # What a command may have read.
@@ -47,10 +51,22 @@ def deliver(
     from multibot_rewrite.graph.pictures.scene import Scene, make_scene
 
     scene = make_scene(plan, graph, found, outcome)
-    page = partial(to_html, rules=rules(), snippets=snippets(row.place for row in scene.rows))
+    page = partial(
+        to_html, rules=rules(), snippets=snippets(row.place for row in scene.rows),
+        robots=_robots(options, graph),
+    )  # fmt: skip
     draw: tuple[Callable[[Scene], bytes], ...] = (page, to_mermaid, to_dot)
     drawn = dict(zip(NAMES, draw, strict=True))
     write_files(options, [(target, drawn[name](scene)) for name, target in wanted])
+
+
+def _robots(options: argparse.Namespace, graph: Snapshot) -> Framed | None:
+    """Only a page of HTML has them."""
+    if not options.report:
+        return None
+    from multibot_rewrite.cli.view import framed
+
+    return framed(options, graph)
 
 
 def snippets(places: Iterable[str]) -> dict[str, list[str]]:

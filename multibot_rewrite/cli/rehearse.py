@@ -44,13 +44,18 @@ def run(options: argparse.Namespace) -> int:
     made = fleet.build(options)
     # Nodes that stand in for others have none of their parameters.
     plan, table = expected(made)._replace(states=()), fleet.findings(options, made)
+    edges, added = _edges(made)
     nodes = [
-        *stub_nodes(made.table, _edges(options, made), _left_out(options)),
+        *stub_nodes(made.table, edges, _left_out(options)),
         *bridge_stub(plan.topics),
     ]
     environ = stage(options.domain)
     try:
         with _running(split_over_processes(nodes), environ) as replaced:
+            for it in added:
+                note(
+                    options, f"note: {it} comes from a driver or simulator; the rehearsal sends it"
+                )
             note(options, f"{plural(len(nodes), 'node')} in domain {environ['ROS_DOMAIN_ID']}")
             plan = with_substitutes(plan, replaced)
             request = Request(options.timeout or live.LOOK_SECONDS, substitutes=True)
@@ -85,14 +90,14 @@ def _look(request: Request, environ: dict[str, str], plan: Expectation) -> Snaps
     return observe(request, environ) if codes and codes <= _ABSENT else graph
 
 
-def _edges(options: argparse.Namespace, made: Fleet) -> Edges:
-    """What is sent, with the odometry of a driver that no stack names."""
-    edges = made.edges
+def _edges(made: Fleet) -> tuple[Edges, list[str]]:
+    """What is sent, and which of it no node of the stacks sends: the odometry of a driver."""
+    edges, names = made.edges, []
     for robot in made.inventories:
         edges, added = with_odometry(edges, robot, made.naming)
         if added:
-            note(options, f"note: no known node of {robot} sends {added}; it is sent in its place")
-    return edges
+            names.append(f"{added} of {robot}")
+    return edges, names
 
 
 def stage(domain: int | None) -> dict[str, str]:

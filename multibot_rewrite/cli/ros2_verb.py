@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import argparse
 
-from multibot_rewrite.cli.declared import COMMANDS
+from multibot_rewrite.cli.declared.commands import COMMANDS
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.version import __version__
 

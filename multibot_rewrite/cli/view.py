@@ -4,18 +4,24 @@ from __future__ import annotations
 
 import argparse
 import os
+from typing import Any
 
 from multibot_rewrite.cli.output import deliver, note, say
 from multibot_rewrite.cli.process import DONE, PROGRAM
-from multibot_rewrite.cli.usage import check_xacro, plain_words, policy, xacro_args
+from multibot_rewrite.cli.usage import check_xacro, policy, robots, xacro_args
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.fleets.fleet_file import input_files, read_fleet
+from multibot_rewrite.fleets.fleet_or_plan import is_fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleets.manifest import hash_of, inputs_of
+from multibot_rewrite.graph.pictures.page import Framed
+from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.snapshot_file import read_snapshots
-from multibot_rewrite.model import UsageError
+from multibot_rewrite.model import MultibotError, UsageError
 from multibot_rewrite.plural import plural
+from multibot_rewrite.sources.read import read_file
 from multibot_rewrite.view.models import ViewUnusable
-from multibot_rewrite.view.page import title_of, to_html
+from multibot_rewrite.view.page import title_of, to_frame, to_html
 from multibot_rewrite.view.scene import scene_of
 
 NO_VIEW = 4
@@ -27,13 +33,13 @@ def run(options: argparse.Namespace) -> int:
     check_target(options.output, [*input_files(plan.file), *options.snapshot])
     graph = read_snapshots(options.snapshot) if options.snapshot else None
     try:
-        robots = scene_of(plan, graph)
-        page = to_html(robots, title_of(robots, plan.fleet.naming.layout.name))
+        scene = scene_of(plan, graph)
+        page = to_html(scene, title_of(scene, plan.fleet.naming.layout.name))
     except ViewUnusable as error:
         say(str(error), PROGRAM)
         return NO_VIEW
     missing = {
-        it.missing for one in robots for its in one.model.links.values() for it in its if it.missing
+        it.missing for one in scene for its in one.model.links.values() for it in its if it.missing
     }
     for it in sorted(missing):
         note(options, f"note: {it}, it is shown as a box")
@@ -41,25 +47,61 @@ def run(options: argparse.Namespace) -> int:
     size = f"{len(page) / 1e6:.1f} MB"
     note(
         options,
-        f"wrote {options.output}: {plural(len(robots), 'robot')}, {size}; open it in a browser",
+        f"wrote {options.output}: {plural(len(scene), 'robot')}, {size}; open it in a browser",
     )
     return DONE
 
 
+def framed(options: argparse.Namespace, graph: Snapshot) -> Framed | None:
+    """The robots for the head of a report, their frames as the graph has them.
+
+    None, with a note, where they cannot be shown, and where the command knows no description.
+    """
+    given = vars(options)
+    try:
+        file = options.view or (_fleet_file(options.plan) if given.get("plan") else "")
+        if not (file or given.get("input")):
+            return None
+        plan = _fleet(options, file) if file else _plan(options)
+        scene = scene_of(plan, graph)
+        return to_frame(scene, title_of(scene, plan.fleet.naming.layout.name))
+    except MultibotError as error:
+        note(options, f"note: the report does not show the robots in 3D: {error}")
+        return None
+
+
+def _fleet_file(path: str) -> str:
+    """This file, or the fleet file that was built into its folder and is the same since."""
+    if is_fleet(read_file(path)):
+        return path
+    for name, hash_ in inputs_of(os.path.dirname(path)).items():
+        if name.endswith((".yaml", ".yml")) and os.path.isfile(name):
+            data = read_file(name)
+            if hash_of(data) == hash_ and is_fleet(data):
+                return name
+    return ""
+
+
 def _plan(options: argparse.Namespace) -> FleetPlan:
     """The fleet of a fleet file, or of a description and names of robots."""
-    first, *_ = words = [options.input, *plain_words(options)]
+    first: str = options.input
+    given, arguments = robots(options), xacro_args(options)
     if first.endswith((".yaml", ".yml")):
-        if words[1:] or xacro_args(options):
-            raise UsageError(f"{first}: a fleet file has its own robots, leave out {words[-1]}")
-        return plan_fleet(read_fleet(first, options.distro or "", os.environ), trust=options.trust)
+        if given or arguments:
+            word = [*given, *arguments][-1]
+            raise UsageError(f"{first}: a fleet file has its own robots, leave out {word}")
+        return _fleet(options, first)
     check_xacro(options, [first])
-    names = words[1:] or ["robot1"]
+    names = given or ["robot1"]
     data = {
         **policy(options),
         "description": first,
-        "arguments": xacro_args(options),
+        "arguments": arguments,
         "robots": [{"name": name, "pose": {"y": 1.5 * at}} for at, name in enumerate(names)],
     }
-    given = {key: value for key, value in data.items() if value}
-    return plan_fleet(read_fleet(given, options.distro or "", os.environ), trust=options.trust)
+    return _fleet(options, {key: value for key, value in data.items() if value})
+
+
+def _fleet(options: argparse.Namespace, source: str | dict[str, Any]) -> FleetPlan:
+    file = read_fleet(source, options.distro or "", os.environ)
+    return plan_fleet(file, trust=options.trust)

@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import NoReturn
 
 from multibot_rewrite.bounded import MAX_BYTES
-from multibot_rewrite.cli.files import existing_folder
 from multibot_rewrite.model import InputError, UsageError
 
 
@@ -90,6 +89,8 @@ def is_same_file(path: str, other: str) -> bool:
 
 def check_folder(target: str) -> None:
     """Raise UsageError where the folder of ``target`` cannot be made, before the work."""
+    from multibot_rewrite.cli.files import existing_folder
+
     above = existing_folder(target)
     if not os.path.isdir(above):
         raise UsageError(f"{target}: cannot be written: {above} is a file, not a folder")

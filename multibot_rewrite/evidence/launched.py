@@ -25,6 +25,7 @@ from multibot_rewrite.evidence.nodes import MANAGER
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import GivenNode, Place
 from multibot_rewrite.evidence.remapped import remapped
+from multibot_rewrite.evidence.spawner_managers import under_managers
 from multibot_rewrite.evidence.spawners import Spawned, is_spawner, spawned_in, texts_of
 from multibot_rewrite.evidence.static_transforms import with_static_transform
 from multibot_rewrite.findings.finding import Finding
@@ -91,6 +92,7 @@ def with_launched(
     spawned, notes = spawned_in(graph.nodes)
     graph = graph._replace(notes=(*graph.notes, *notes))
     pairs = [_pair(it, stack, known, words) for it in graph.nodes if not passes(it)]
+    spawned, lost = under_managers(spawned, _managers(pairs) if graph.whole else ())
     nodes = {it.facts.name: it.facts for it in pairs}
     left = [it for it in stack if _is_left(it, nodes)] if graph.whole else []
     gone = {it.name for it in left}
@@ -110,9 +112,14 @@ def with_launched(
         {it.facts.name: it.node for it in pairs},
         dict(_under_manager(spawned, pairs, words, release)),
         graph.whole,
-        tuple(launch_findings(graph, unknown, left)),
+        (*launch_findings(graph, unknown, left), *lost),
         any(it.package in programs().simulators for it in graph.nodes),
     )
+
+
+def _managers(pairs: Iterable[_Pair]) -> dict[str, None]:
+    """The full names of the controller managers."""
+    return {_full_name(it.node, it.facts): None for it in pairs if it.facts.known == MANAGER}
 
 
 def _under_manager(

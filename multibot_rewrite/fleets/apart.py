@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import combinations, pairwise
-from math import dist
+from math import ceil, dist
 
 from multibot_rewrite.checks.footprint import reach_of
-from multibot_rewrite.findings.finding import ERROR, Finding
+from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.fleet_file import Pose, RobotSpec
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot, at_robot
+from multibot_rewrite.fleets.robot_nodes import node_sources
 from multibot_rewrite.fleets.spawn import is_simulated
 
 _CART = """\
@@ -46,6 +47,24 @@ TOO_NEAR = declare(
     formats=("fleet",),
     beside={"cart.urdf": _CART},
 )
+NO_POSE = declare(
+    "MF839",
+    "robots-without-start-pose",
+    WARNING,
+    what="Robots run in a simulator, no launch file of theirs spawns them, and none has a start pose: "
+    "all are spawned at the origin.",
+    why="They stand in each other: the simulator pushes them apart, and they fly away or tip over.",
+    fix="Give each robot a `pose`, or all of them a `step`. Robots that are not simulated have "
+    "`simulator: none`.",
+    bad=_FLEET.replace(", pose: {x: 1.0}", "")
+    .replace(", pose: {x: PLACE}", "")
+    .replace("robots:", "simulator: gazebo\nrobots:"),
+    good=_FLEET.replace("PLACE", "2.2").replace("robots:", "simulator: gazebo\nrobots:"),
+    line=6,
+    formats=("fleet",),
+    beside={"cart.urdf": _CART},
+)
+_BRIDGE = "ros_gz_bridge"
 # Robots of which each pair is looked at; of more the nearest neighbours in a list are.
 MOST = 400
 
@@ -54,10 +73,12 @@ def too_near(plan: FleetPlan) -> Iterator[Finding]:
     """The robots in a simulator that start in another one.
 
     A robot turns in its place, so half of what the larger one reaches is let pass: what is found
-    overlaps however they are turned. A fleet without any pose is placed by somebody else.
+    overlaps however they are turned. A fleet without any pose is placed by somebody else, unless its
+    files say that it is simulated, and no launch file spawns it.
     """
     robots = [it for it in plan.robots if is_simulated(it)]
     if all(it.spec.pose is None for it in robots):
+        yield from _without_poses(plan, [it for it in robots if _is_spawned_here(plan, it)])
         return
     reach = {it.spec.sources: _within(it) for it in {it.spec.sources: it for it in robots}.values()}
     for one, other in _pairs(robots):
@@ -65,6 +86,23 @@ def too_near(plan: FleetPlan) -> Iterator[Finding]:
         needed = reach[one.spec.sources] + reach[other.spec.sources]
         if gap < needed:
             yield _finding(other, one.spec.name, gap, needed)
+
+
+def _is_spawned_here(plan: FleetPlan, robot: RewrittenRobot) -> bool:
+    """Does its file say that it runs in a simulator, and start nothing that may spawn it?"""
+    spec = robot.spec
+    nodes = plan.evidence[node_sources(spec)].nodes
+    bridged = "bridge" in spec.companions or any(it.package == _BRIDGE for it in nodes)
+    return not spec.launch and bool(spec.simulator or spec.simulated or bridged)
+
+
+def _without_poses(plan: FleetPlan, robots: Sequence[RewrittenRobot]) -> Iterator[Finding]:
+    reach = max(map(_within, robots), default=0)
+    if len(robots) > 1 and reach:
+        room = ceil(4 * reach)
+        message = f"no robot has a start pose: all {len(robots)} are spawned in each other"
+        hint = f"write pose: {{x: {room}}} for {robots[1].spec.name}, and so on"
+        yield at_robot(NO_POSE, robots[1], message, hint)
 
 
 def _within(it: RewrittenRobot) -> float:

@@ -54,8 +54,8 @@ def bridge_outputs(plan: FleetPlan) -> FilesAndFindings:
 
 def _read(group: RobotGroup) -> GroupBridges:
     paths = group.companions.get("bridge", ())
-    above = group.robots[0].spec.bridge_namespace
-    made = {it: rewrite_bridge(yaml_of(it), group.context, above=above) for it in paths}
+    above = group.robots[0].spec.bridge_namespace_of
+    made = {it: rewrite_bridge(yaml_of(it), group.context, above=above(it)) for it in paths}
     return GroupBridges(group, made)
 
 

@@ -23,6 +23,7 @@ from multibot_rewrite.fleets.fleet import Fleet, expected, possible
 from multibot_rewrite.fleets.fleet_file import input_files
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.launch_file import launch_files
+from multibot_rewrite.fleets.launched_prefix import launched_prefixes
 from multibot_rewrite.fleets.meeting import without_started
 from multibot_rewrite.fleets.moveit_frames import moveit_frames
 from multibot_rewrite.fleets.moveit_parameters import moveit_parameters
@@ -35,8 +36,10 @@ from multibot_rewrite.fleets.output_file import (
 from multibot_rewrite.fleets.params_style import check_style, in_style
 from multibot_rewrite.fleets.robot_groups import said_once
 from multibot_rewrite.fleets.rviz_outputs import rviz_commands, rviz_files, rviz_outputs
+from multibot_rewrite.fleets.shape_outputs import copied
 from multibot_rewrite.fleets.two_descriptions import differences
 from multibot_rewrite.fleets.with_start_pose_nodes import split_per_robot, with_start_pose_nodes
+from multibot_rewrite.fleets.world_file import world_file
 from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.graph.enclaves import to_policy
 from multibot_rewrite.graph.plan_file import to_yaml
@@ -82,7 +85,7 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
         findings += one_device(plan.robots)
         for found in plan.evidence.values():
             findings += found.findings
-        findings += (*too_near(plan), *moveit_frames(plan))
+        findings += (*too_near(plan), *launched_prefixes(plan), *moveit_frames(plan))
         findings += differences(plan)
         texts = texts_of(files)
         gaps = gaps_of(plan, fleet, texts, findings)
@@ -94,7 +97,8 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
         joined = list(cell_outputs(plan, files))
         findings += [it for it in joined if isinstance(it, Finding)]
         cell = (it for it in joined if isinstance(it, OutputFile))
-        files = sorted((*kept, *cell, *_tables(plan, fleet), *moveit_parameters(plan, files)))
+        more = (*_tables(plan, fleet), *moveit_parameters(plan, files), *world_file(plan))
+        files = sorted((*kept, *cell, *more, *copied(plan)))
         brought = {it.name for it in fleet.bridged if PUBLISHES in it.bridge}
         files = sorted((*files, *launch_files(plan, each, configs, files, brought)))
         _check_paths_differ(files)

@@ -9,6 +9,7 @@ from multibot_rewrite.companions.params.sections import PARAMETERS
 from multibot_rewrite.companions.yaml_text import YamlText, pairs, read_yaml
 from multibot_rewrite.evidence.parameter_files import named_values
 from multibot_rewrite.evidence.records import Given
+from multibot_rewrite.fleets.manifest import folders_of
 from multibot_rewrite.fleets.params_style import ZONES
 from multibot_rewrite.graph.expectation import (
     Expectation,
@@ -28,9 +29,11 @@ def with_built(plan: Expectation, folder: str) -> Expectation:
 
     What the plan itself says of a node comes first. Raises InputError for a file that rcl rejects.
     """
+    folders = folders_of(folder)
     found = (
-        it for robot in plan.robots for it in _of_robot(robot, os.path.join(folder, robot.name))
-    )
+        it for robot in plan.robots
+        for it in _of_robot(robot, os.path.join(folder, folders.get(robot.name, robot.name)))
+    )  # fmt: skip
     built: dict[str, dict[str, PlannedParameter]] = {}
     for node, parameters in found:
         known = built.setdefault(node, {})

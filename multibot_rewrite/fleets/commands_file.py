@@ -16,6 +16,7 @@ from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, pa
 from multibot_rewrite.fleets.relays import EXECUTABLE, PACKAGE, relays
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_nodes import node_sources
+from multibot_rewrite.fleets.shape_outputs import vendor_commands
 from multibot_rewrite.fleets.start_poses import InitialPose, command, start_poses
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER
 from multibot_rewrite.releases import facts_of_release
@@ -23,6 +24,7 @@ from multibot_rewrite.remap.started import SPAWN, arguments, ros_arguments, star
 from multibot_rewrite.remap.ways import SPAWNER
 
 COMMANDS, START = "commands.md", "start_pose.yaml"
+TAKING = "\nThe vendor's launch files take its files, in the folder of this file:\n\n```sh\n"
 
 
 def commands_file(
@@ -48,6 +50,8 @@ def commands_file(
         rows += [f"{with_clock(it, clock)}\n" for it in (*_relays(one), *moveit_commands(one))]
         driven = (with_clock(teleop.command(it), clock) for it in teleop.teleops(one))
         rows += [*(f"{it}\n" for it in driven), "```\n", *_prefixed(robot)]
+        if taking := list(vendor_commands(one)):
+            rows += [TAKING, *(f"{it}\n" for it in taking), "```\n"]
         # nav2_bringup takes one file, which has them.
         for pose in poses.initial if one.file.params_style != BRINGUP else ():
             path = path_for(robot, START)

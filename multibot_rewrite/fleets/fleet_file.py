@@ -14,12 +14,12 @@ from multibot_rewrite.fleets.checked_yaml import Path
 from multibot_rewrite.fleets.fleet import facts_of
 from multibot_rewrite.fleets.fleet_data import FleetData, read_data
 from multibot_rewrite.fleets.fleet_paths import listed, nodl_files
+from multibot_rewrite.fleets.given_arguments import given_arguments
 from multibot_rewrite.fleets.robot_choice import ALL, Choice, with_robots
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.naming import NAMESPACE, Naming, Policy, make_naming
 from multibot_rewrite.releases import chosen_release
 from multibot_rewrite.sources.own_names import filled, name_robot
-from multibot_rewrite.sources.read import is_xacro
 
 KINDS = ("params", "rviz", "moveit", "bridge", "behavior_trees", "lua")
 LISTS = ("include", "stack", "nodl", "vocabulary", "shared_frames", "shared_topics")
@@ -52,7 +52,10 @@ class RobotSpec(NamedTuple):
     something, by path. ``simulator`` is ``REAL``, or what the robot runs in; empty if nothing says so.
     ``use_sim_time`` is what all its nodes have, None if the file does not say. ``simulated`` is the
     model that the simulator gets, empty where that is the description. ``bridge_namespace`` is the one
-    below its own that its bridge files are for.
+    below its own that its bridge files are for, ``bridges_below`` what launch files say of single
+    ones. ``fills`` says that arguments of its xacro which name
+    robots are filled where ``arguments`` has no value for them. ``places`` are those of outputs below
+    the robot's folder, by the names that they have else.
     """
 
     name: str
@@ -74,11 +77,18 @@ class RobotSpec(NamedTuple):
     use_sim_time: bool | None = None
     simulated: str = ""
     bridge_namespace: str = ""
+    bridges_below: tuple[tuple[str, str], ...] = ()
+    fills: bool = True
+    places: tuple[tuple[str, str], ...] = ()
 
     @property
     def words(self) -> tuple[str, str, str]:
         """What stands for it in names; the first one is ``{robot}`` in its arguments."""
         return self.name, self.namespace, self.tag
+
+    def bridge_namespace_of(self, path: str) -> str:
+        """The namespace below its own that one of its bridge files is for."""
+        return dict(self.bridges_below).get(path, self.bridge_namespace)
 
     @property
     def sources(self) -> Sources:
@@ -92,7 +102,8 @@ class FleetFile(NamedTuple):
     ``files`` all files of the fleet except the robots' own: the fleet file, what it includes, nodes,
     parameters, vocabulary. ``shared_nodes`` are nodes of the stacks that run once for all robots.
     ``sros2`` asks for a policy, ``params_style`` says how parameter files are written,
-    ``relayed`` asks for each robot's tf on /tf as well, ``cell`` for one move_group for all robots.
+    ``relayed`` asks for each robot's tf on /tf as well, ``cell`` for one move_group for all robots,
+    ``shape`` for outputs as the launch files of a vendor take them.
     ``installed`` is where the results are when they are used, empty for where
     they are written."""
 
@@ -112,6 +123,7 @@ class FleetFile(NamedTuple):
     params_style: str = ""
     relayed: bool = False
     cell: Cell | None = None
+    shape: str = ""
 
 
 def read_fleet(
@@ -130,7 +142,14 @@ def read_fleet(
     path = read.file
     data = read.data
     release = chosen_release(distro or data.get("distro", ""), environment)
-    policy = cast(Policy, {key: _policy(key, data[key]) for key in POLICY if key in data})
+    policy = cast(
+        Policy,
+        {
+            key: tuple(listed(data[key])) if key in LISTS else data[key]
+            for key in POLICY
+            if key in data
+        },
+    )
     naming = _naming(read, policy)
     files = tuple(_files(read))
     robots = tuple(_robot(read, naming, at, release) for at in range(len(data["robots"])))
@@ -153,6 +172,7 @@ def read_fleet(
         data.get("params_style", ""),
         data.get("relayed", False),
         cell_of(read, naming),
+        data.get("shape", ""),
     )
 
 
@@ -209,7 +229,7 @@ def _robot(read: FleetData, naming: Naming, at: int, release: str) -> RobotSpec:
         name,
         description,
         own.get("srdf", data.get("srdf", "")),
-        _arguments(data, own, description, place),
+        given_arguments(data, own, description, place),
         _namespace(own, naming, place),
         _tag(own, naming.affix, place),
         own.get("model", name),
@@ -224,6 +244,7 @@ def _robot(read: FleetData, naming: Naming, at: int, release: str) -> RobotSpec:
         use_sim_time=own.get("use_sim_time", data.get("use_sim_time")),
         simulated=_simulated(data, own),
         bridge_namespace=own.get("bridge_namespace", data.get("bridge_namespace", "")).strip("/"),
+        fills=own.get("fill_arguments", data.get("fill_arguments", True)),
     )
 
 
@@ -260,25 +281,6 @@ def _check_stacks(read: FleetData, at: int, stacks: tuple[str, ...], release: st
         raise InputError(f"{file}:{line}: {error}") from None
 
 
-def _arguments(
-    data: Mapping[str, Any], own: Mapping[str, Any], description: str, place: str
-) -> dict[str, str]:
-    """The xacro arguments of a robot, over those of the fleet; only for xacro files."""
-    files = (description, *(own.get(it, data.get(it, "")) for it in ("srdf", "simulated")))
-    if not any(is_xacro(it) for it in files):
-        if own.get("arguments"):
-            hint = "remove them, or give a xacro"
-            raise InputError(f"{place}: {own['name']!r} has arguments but no xacro file; {hint}")
-        return {}
-    arguments = {**data.get("arguments", {}), **own.get("arguments", {})}
-    texts = {key: _argument(value) for key, value in arguments.items()}
-    try:
-        filled(texts, own["name"])
-    except UsageError as error:
-        raise InputError(f"{place}: {own['name']!r}: {error}") from None
-    return texts
-
-
 def _pose(own: Mapping[str, Any], place: str) -> Pose | None:
     if "pose" not in own:
         return None
@@ -297,11 +299,6 @@ def _colour(own: Mapping[str, Any], place: str) -> str | tuple[int, ...]:
     except InputError as error:
         raise InputError(f"{place}: {own['name']!r}: {error}") from None
     return colour
-
-
-def _argument(value: object) -> str:
-    """The text for xacro: YAML's true is xacro's true."""
-    return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 def _namespace(own: Mapping[str, Any], naming: Naming, place: str) -> str:

@@ -6,8 +6,10 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.fleets.filled_arguments import with_own_arguments
 from multibot_rewrite.fleets.fleet import Fleet, assemble, merge
 from multibot_rewrite.fleets.fleet_file import FleetFile, Sources
+from multibot_rewrite.fleets.launched_bridges import with_bridge_namespaces
 from multibot_rewrite.fleets.launched_files import with_launched_files
 from multibot_rewrite.fleets.loaded_files import with_loaded_files
 from multibot_rewrite.fleets.meeting import with_meetings
@@ -24,6 +26,7 @@ from multibot_rewrite.fleets.robot_nodes import (
     node_sources,
     robot_nodes,
 )
+from multibot_rewrite.fleets.shape import placed, with_shape
 from multibot_rewrite.fleets.shared_nodes import check_shared
 from multibot_rewrite.fleets.simulators import may_be_real, note
 from multibot_rewrite.gc_pause import gc_paused
@@ -51,11 +54,19 @@ def plan_fleet(
     ``jobs`` are the descriptions if they have been read already; ``trust`` lets xacro files do
     anything, and launch files run. Raises as ``rewrite_all``, and UsageError for an unknown stack.
     """
-    file, notes = with_launched_files(_trusted(file) if trust else file)
+    file, notes = with_launched_files(_trusted(with_shape(file)) if trust else with_shape(file))
+    file = with_bridge_namespaces(file)
     with gc_paused():
         naming = make_naming(**file.policy)
+        said: Mapping[str, Sequence[Finding]] = {}
+        if jobs is None:
+            file, said = with_own_arguments(file, naming, trust)
         read = jobs or read_jobs(file.robots, naming, file.vocabulary, trust, file.distro)
-        robots = [with_loaded_files(it) for it in rewrite_robots(file.robots, read)]
+        robots = [
+            with_loaded_files(it._replace(findings=(*it.findings, *said.get(it.spec.name, ()))))
+            for it in rewrite_robots(file.robots, read)
+        ]
+        robots = [placed(it, file.shape) for it in robots]
         file = file._replace(robots=tuple(it.spec for it in robots))
         specs = {node_sources(it): it for it in reversed(file.robots)}
         members = {node_sources(it.spec): it.member for it in robots}

@@ -15,7 +15,7 @@ from multibot_rewrite.evidence.parameter_files import OWN_TYPE
 from multibot_rewrite.fleets import moveit_parameters, spawn, start_poses
 from multibot_rewrite.fleets.cell_file import MOVE_GROUP
 from multibot_rewrite.fleets.cell_outputs import parameters_path
-from multibot_rewrite.fleets.fleet_file import REAL
+from multibot_rewrite.fleets.fleet_file import BRINGUP, REAL
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.node_names import NodeNames, names_of
 from multibot_rewrite.fleets.output_file import expanded_name, path_for
@@ -149,7 +149,7 @@ def _left(given: _Given) -> Iterator[tuple[str, str]]:
             yield name, "nothing is known of its program"
         elif it.when and not _is_needed(given, it):
             yield name, it.when
-        elif given.plan.file.params_style and name != STATE:
+        elif given.plan.file.params_style == BRINGUP and name != STATE:
             yield name, "parameter files are in the form of nav2_bringup, which starts it"
         elif not given.names.is_controller(name) and program_of(it, given.release) is None:
             yield name, f"the program of package {it.package} is not known"
@@ -222,9 +222,17 @@ def _parameters(given: _Given, name: str) -> tuple[File | Mapping[str, Any], ...
         semantic = made if made.path in given.files else {"robot_description_semantic": srdf}
         found += [{"robot_description": Text(_description(robot))}, semantic]
     if known == LIFECYCLE_MANAGER:
-        managed = [given.names.name(it) for it in given.names.managed.get(name, ())]
-        found.append({"autostart": True, "node_names": managed})
+        managed = (_called(given, it) for it in given.names.managed.get(name, ()))
+        found.append({"autostart": True, "node_names": list(filter(None, managed))})
     return tuple(found)
+
+
+def _called(given: _Given, node: str) -> str:
+    """What a node of a stack is called: its robot's parameter file may have it under an older name."""
+    if node in given.names.nodes:
+        return given.names.name(node)
+    alike = (name for name, it in given.facts.items() if it.known == node)
+    return next((given.names.name(it) for it in alike if it in given.names.nodes), "")
 
 
 def _description(robot: RewrittenRobot) -> str:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import os
 from collections.abc import Collection, Iterator, Sequence
 
-from multibot_rewrite.fleets import launch_actions, teleop
+from multibot_rewrite.fleets import launch_actions, teleop, world_file
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
-from multibot_rewrite.fleets.launch_actions import RobotStarts
-from multibot_rewrite.fleets.launch_python import FleetStarts, to_python
+from multibot_rewrite.fleets.launch_actions import File, RobotStarts
+from multibot_rewrite.fleets.launch_python import GZ, FleetStarts, to_python
 from multibot_rewrite.fleets.launch_xml import to_xml
 from multibot_rewrite.fleets.output_file import OutputFile
 from multibot_rewrite.fleets.rviz_outputs import RvizOutput
@@ -54,4 +54,12 @@ def _starts(
         launch_actions.windows(configs, paths),
         bool(simulators) if clock is None else clock,
         [teleop.command(it) for one in each for it in teleop.teleops(one)],
+        _world(simulators, paths),
     )
+
+
+def _world(simulators: Collection[str], paths: Collection[str]) -> File | str:
+    """The world of the build, else that of Gazebo."""
+    if GZ not in simulators:
+        return ""
+    return File(world_file.FILE) if world_file.FILE in paths else "empty.sdf"

@@ -13,7 +13,8 @@ _Files = tuple[File, ...]
 
 class FleetStarts(NamedTuple):
     """All that the launch file of a fleet starts: the simulators, what is for all robots, the robots,
-    the windows. ``head`` is its title, ``use_sim_time`` the default, ``driving`` are lines to type."""
+    the windows. ``head`` is its title, ``use_sim_time`` the default, ``driving`` are lines to type;
+    ``world`` is the simulator's by default."""
 
     head: str
     simulators: Sequence[str]
@@ -22,6 +23,7 @@ class FleetStarts(NamedTuple):
     windows: Sequence[Start]
     use_sim_time: bool
     driving: Sequence[str]
+    world: File | str = ""
 
 
 _BODY = '''\
@@ -48,9 +50,19 @@ def text(name):
     return ParameterValue((FOLDER / name).read_text(), value_type=str)
 '''
 _CHOSEN = '''\
+def first(count):
+    """The names of so many robots."""
+    if not 0 < count <= len(ROBOTS):
+        more = f"multibot build FLEET -o {FOLDER} --count {count}"
+        raise RuntimeError(f"robots:={count}: {len(ROBOTS)} robots were built; for more: {more}")
+    return list(ROBOTS)[:count]
+
+
 def chosen(context):
-    """What the robots run that robots:= names; all of them by default."""
+    """What the robots run that robots:= names, or so many of them; all of them by default."""
     words = LaunchConfiguration("robots").perform(context).replace(",", " ").split()
+    if len(words) == 1 and words[0].isdigit():
+        words = first(int(words[0]))
     unknown = [it for it in words if it not in ROBOTS]
     if unknown:
         raise RuntimeError(f"robots:={unknown[0]} is not in this fleet; it has {', '.join(ROBOTS)}")
@@ -218,7 +230,7 @@ def _description(it: FleetStarts) -> Iterator[str]:
     yield "    return LaunchDescription("
     yield "        ["
     for name, default, about in launch_arguments(it):
-        yield f'            DeclareLaunchArgument("{name}", default_value="{default}",'
+        yield f'            DeclareLaunchArgument("{name}", default_value={_value(default)},'
         yield f'                                  description="{about}"),'
     for simulator in it.simulators:
         yield from (f"            {line}" for line in _SIMULATORS[simulator])
@@ -237,16 +249,16 @@ def _description(it: FleetStarts) -> Iterator[str]:
     yield "    )"
 
 
-def launch_arguments(it: FleetStarts) -> Iterator[tuple[str, str, str]]:
+def launch_arguments(it: FleetStarts) -> Iterator[tuple[str, str | File, str]]:
     """The launch arguments: name, default, what it is."""
-    yield "robots", "", "only these: robot1,robot2"
+    yield "robots", "", "only these: robot1,robot2, or so many: 2"
     yield "use_sim_time", str(it.use_sim_time).lower(), "whether all nodes use /clock"
     if it.windows:
         yield "rviz", "true", "whether to open RViz"
     if it.simulators:
         yield "simulator", "true", "whether to start the simulator and to spawn the robots in it"
         yield "headless", "false", "whether the simulator has no window"
-        yield "world", "empty.sdf" if GZ in it.simulators else "", "the world of the simulator"
+        yield "world", it.world, "the world of the simulator"
 
 
 _SIMULATORS: Mapping[str, tuple[str, ...]] = {
@@ -256,7 +268,8 @@ _SIMULATORS: Mapping[str, tuple[str, ...]] = {
         "    launch_arguments=[",
         '        ("gz_args", ["-r ", PythonExpression(["\'-s \' if \'", '
         'LaunchConfiguration("headless"),',
-        "                     \"'.lower() == 'true' else ''\"]), LaunchConfiguration(\"world\")]),",
+        "                     \"'.lower() == 'true' else ''\"]), "
+        "'\"', LaunchConfiguration(\"world\"), '\"']),",
         "    ],",
         '    condition=IfCondition(LaunchConfiguration("simulator")),',
         "),",

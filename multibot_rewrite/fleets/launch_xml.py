@@ -17,7 +17,7 @@ _HEADLESS = "$(eval '\\'%s\\' if \\'$(var headless)\\'.lower() == \\'true\\' els
 _SIMULATORS: Mapping[str, tuple[str, tuple[tuple[str, str], ...]]] = {
     GZ: (
         "$(find-pkg-share ros_gz_sim)/launch/gz_sim.launch.py",
-        (("gz_args", f"-r {_HEADLESS % ('-s', '')} $(var world)"),),
+        (("gz_args", f'-r {_HEADLESS % ("-s", "")} "$(var world)"'),),
     ),
     CLASSIC: (
         "$(find-pkg-share gazebo_ros)/launch/gazebo.launch.py",
@@ -26,7 +26,8 @@ _SIMULATORS: Mapping[str, tuple[str, tuple[tuple[str, str], ...]]] = {
 }
 _CHOSEN = (
     "$(eval '\\'{0}\\' in \\'$(var robots)\\'.replace(\\',\\', \\' \\').split()"
-    " or not \\'$(var robots)\\'')"
+    " or not \\'$(var robots)\\'"
+    " or (\\'$(var robots)\\'.isdigit() and {1} < int(\\'$(var robots)\\'))')"
 )
 
 
@@ -40,7 +41,8 @@ def _lines(it: FleetStarts) -> Iterator[str]:
     yield f"<!-- {it.head.replace('--', '- -')} -->"
     yield "<launch>"
     for name, default, about in launch_arguments(it):
-        yield f"  {_tag('arg', name=name, default=default, description=about)}"
+        told = f"$(dirname)/{default.path}" if isinstance(default, File) else default
+        yield f"  {_tag('arg', name=name, default=told, description=about)}"
     # Behind an include $(dirname) may be the folder of the included file.
     yield f"  {_tag('let', name='folder', value='$(dirname)')}"
     for simulator in it.simulators:
@@ -50,9 +52,9 @@ def _lines(it: FleetStarts) -> Iterator[str]:
         yield "  </include>"
     for start in it.shared:
         yield from _process(start, 2)
-    for robot in it.robots:
+    for at, robot in enumerate(it.robots):
         yield f"  <!-- {robot.about} -->"
-        yield f"  {_tag('group', '>', **{'if': _CHOSEN.format(robot.name)})}"
+        yield f"  {_tag('group', '>', **{'if': _CHOSEN.format(robot.name, at)})}"
         yield from _group(robot.starts, 4)
         for command in robot.commands:
             yield f"    {_tag('executable', cmd=shlex.join(['sh', '-c', command]))}"

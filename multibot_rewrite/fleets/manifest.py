@@ -9,8 +9,10 @@ from hashlib import sha256
 from typing import NamedTuple
 
 from multibot_rewrite.bounded import load_json
+from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.output_file import OutputFile
 from multibot_rewrite.model import InputError
+from multibot_rewrite.sources.read import read_file
 
 MANIFEST = "manifest.json"
 # The manifest of a build in progress that replaces files one by one.
@@ -36,17 +38,37 @@ def hash_of(data: bytes) -> str:
 
 
 def manifest(
-    files: Iterable[OutputFile], inputs: Mapping[str, bytes], folder: str, release: str
+    files: Iterable[OutputFile], inputs: Mapping[str, bytes], folder: str, plan: FleetPlan
 ) -> OutputFile:
-    """The manifest of a build into ``folder``; ``inputs`` are the files that were read, by path, and
-    ``release`` is that whose facts it rests on."""
+    """The manifest of a build into ``folder``; ``inputs`` are the files that were read, by path."""
     data = {
         "format": FORMAT,
-        "distro": release,
+        "distro": plan.file.distro,
+        "robots": {it.spec.namespace: it.spec.name for it in plan.robots},
         "inputs": {os.path.relpath(path, folder): hash_of(inputs[path]) for path in sorted(inputs)},
         "outputs": {it.path: hash_of(it.data) for it in files},
     }
     return OutputFile(MANIFEST, json.dumps(data, indent=1).encode() + b"\n")
+
+
+def inputs_of(folder: str) -> Mapping[str, str]:
+    """The hashes of what a build into ``folder`` read, by path; none without its manifest."""
+    found = _section(folder, "inputs").items()
+    return {os.path.normpath(os.path.join(folder, path)): hash_ for path, hash_ in found}
+
+
+def folders_of(folder: str) -> Mapping[str, str]:
+    """The folder that a build wrote for each robot, by the robot's name in its plan."""
+    return _section(folder, "robots")
+
+
+def _section(folder: str, name: str) -> Mapping[str, str]:
+    path = os.path.join(folder, MANIFEST)
+    try:
+        found = load_json(read_file(path))[name] if os.path.isfile(path) else {}
+        return {str(key): str(value) for key, value in found.items()}
+    except (ValueError, KeyError, TypeError, AttributeError):
+        return {}
 
 
 def read_manifest(data: bytes, file: str) -> Mapping[str, str]:

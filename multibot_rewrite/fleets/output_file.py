@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from typing import NamedTuple, TypeAlias
 
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
@@ -27,14 +27,25 @@ FilesAndFindings: TypeAlias = Iterator[OutputFile | Finding]
 def path_for(robot: RewrittenRobot, source: str) -> str:
     """Where the robot's version of a source file goes: ``robot1/params.yaml``.
 
-    Of two files with one name each is in a folder called as its own: ``robot1/base/params.yaml``.
+    Files with one name are in folders called as their own, as many as it takes to tell them apart:
+    ``robot1/base/params.yaml``. A vendor's launch files may want one in a place of their own.
     """
     name = os.path.basename(source)
     every = (it for its in robot.spec.companions.values() for it in its)
-    alike = {it for it in every if os.path.basename(it) == name}
-    if len(alike) > 1 and source in alike:
-        name = f"{os.path.basename(os.path.dirname(os.path.abspath(source)))}/{name}"
-    return f"{robot.spec.name}/{name}"
+    alike = {os.path.abspath(it) for it in every if os.path.basename(it) == name}
+    if len(alike) > 1 and os.path.abspath(source) in alike:
+        name = _told_apart(os.path.abspath(source), alike)
+    return f"{robot.spec.name}/{dict(robot.spec.places).get(name, name)}"
+
+
+def _told_apart(path: str, alike: Collection[str]) -> str:
+    """The shortest end of a path, in whole steps, that no other one ends with."""
+    steps = path.split(os.sep)
+    for at in range(len(steps) - 2, 0, -1):
+        end = os.sep.join(steps[at:])
+        if sum(it.endswith(f"/{end}") for it in alike) == 1:
+            return end
+    return path.lstrip(os.sep)
 
 
 def expanded_name(path: str) -> str:

@@ -19,6 +19,7 @@ from multibot_rewrite.fleets.fleet_file import BRINGUP, FleetFile, RobotSpec
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, path_for
 from multibot_rewrite.fleets.robot_nodes import stack_nodes
+from multibot_rewrite.fleets.shape_outputs import taken_as_they_are
 from multibot_rewrite.fleets.start_poses import start_poses
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS, make_naming
@@ -92,10 +93,11 @@ def in_style(plan: FleetPlan, files: Sequence[OutputFile]) -> FilesAndFindings:
     }
     bringup = plan.file.params_style == BRINGUP
     poses = start_poses(plan).initial if bringup else ()
+    as_they_are = taken_as_they_are(plan)
     for it in files:
         if it.path not in robots:
             yield it
-        elif bringup:
+        elif bringup and it.path not in as_they_are:
             document = read_yaml(it.data, it.path)._replace(file=it.sources[0])
             own = robots[it.path].namespace
             more = {pose.node: dict(pose.values) for pose in poses if pose.robot == own}

@@ -33,7 +33,7 @@ def group_robots(plan: FleetPlan) -> Iterator[RobotGroup]:
     for robot in plan.robots:
         spec = robot.spec
         files = tuple(spec.companions.items())
-        said = spec.use_sim_time, spec.bridge_namespace
+        said = spec.use_sim_time, spec.bridge_namespace, spec.bridges_below
         key = spec.sources, spec.stacks, spec.launch, spec.simulator, files, said
         groups.setdefault(key, []).append(robot)
     for robots in groups.values():

@@ -62,7 +62,11 @@ def system_before(robot: RewrittenRobot, evidence: RobotEvidence) -> System:
     ends = [
         *(end for node in nodes if not node.shared for end in _ends_of(node, given)),
         *(end for node in reading.nodes for end in _plugin_ends(node)),
-        *(end for it in bridges for end in bridge_ends(it, robot.spec.bridge_namespace)),
+        *(
+            end
+            for it in bridges
+            for end in bridge_ends(it, robot.spec.bridge_namespace_of(it.file))
+        ),
     ]
     sent = {child for node in nodes for child in children_of(node)}
     sent |= {it.name for it in reading.names if it.kind == FRAME and it.tag == "plugin"}

@@ -101,7 +101,7 @@ def _bridged(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, str]
             ros = text_of(entry, BOTH) or text_of(entry, ROS) or text_of(entry, GZ)
             if text_of(entry, "direction") == TO_GZ and ros:
                 yield (
-                    robot_topic(robot.topics, below(ros, robot.spec.bridge_namespace)),
+                    robot_topic(robot.topics, below(ros, robot.spec.bridge_namespace_of(path))),
                     text_of(entry, "ros_type_name"),
                 )
     own = {robot.spec.namespace: plan.fleet.inventories[robot.spec.namespace]}

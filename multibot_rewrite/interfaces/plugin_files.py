@@ -22,9 +22,9 @@ HEAD = """\
 # multibot_rewrite/lint/schema/plugins.schema
 #
 #   [NAME...] REPOSITORY TAG FOLDER [open] [+SECTION] [releases=WORDS]
-#                                               a plugin by its library and classes, or
-#                                               "hardware CLASS"; open: it takes any other parameter
-#                                               too; +: all of that section as well
+#                                               a plugin by its library and classes,
+#                                               "ros1 LIBRARY" or "hardware CLASS"; open: it takes any
+#                                               other parameter too; +: all of that section as well
 #   NAME TYPE FILE:LINE [TAG] [releases=WORDS] [required] [one:A|B] [=DEFAULT]
 #                                               TAG where it is another one than the section's; a/b: in
 #                                               <a>; a/*: whatever <a> has
@@ -39,15 +39,22 @@ OF_RELEASES = (
 # What else a plugin reads, by what its code mentions: a file of the checkout, or a name.
 ALSO_FILES = {"ICommsModel": "src/comms/ICommsModel.cc"}
 ALSO_NAMES = {"gazebo_ros::SensorFrameID(": "frame_name"}
+_CAMERA = "gazebo_ros_camera_utils.cpp"
+_HELPERS = "include/gazebo_plugins/gazebo_ros_utils.h"
 # What plugins of several packages call, a section of its own: name, what calls it, its files.
 SHARED = (
     ("gazebo_ros::Node", "gazebo_ros::Node::Get(", "gazebo_ros/src", ("node.cpp", "qos.cpp")),
+    ("GazeboRos", "GazeboRosPtr", "gazebo_plugins", ("src/gazebo_ros_utils.cpp", _HELPERS)),
+    ("Camera", "GazeboRosCameraUtils", "gazebo_plugins/src", (_CAMERA,)),
 )
+# A package of ROS 1.
+_CATKIN = "catkin_package("
 _SYSTEM = re.compile(r"(?:gz|ign)_add_system\(\s*([\w-]+)([^)]*)\)")
-_LIBRARY = re.compile(r"add_library\(\s*([\w${}-]+)\s+(?:SHARED|MODULE)([^)]*)\)")
+_LIBRARY = re.compile(r"add_library\(\s*([\w${}-]+)\s+(?:SHARED |MODULE )?([^)]*)\)")
 _PROJECT = re.compile(r"^\s*project\(\s*([\w-]+)", re.MULTILINE)
 _ALIAS = re.compile(r'ADD_PLUGIN_ALIAS\(\s*[\w:]+\s*,((?:\s*"[^"]+"\s*,?)+)\)')
 _REGISTERED = re.compile(r"ADD_PLUGIN\(\s*([\w:]+::[\w:]+)")
+_IS_PLUGIN = re.compile(r"Load\s*\(|ADD_PLUGIN")
 _CODE = (".cc", ".cpp", ".hh", ".hpp", ".h")
 
 
@@ -83,8 +90,9 @@ def read_plugins(folder: Path) -> Iterator[Plugin]:
     for cmake in sorted(folder.rglob("CMakeLists.txt")):
         if "test" in cmake.relative_to(folder).parts:
             continue
+        of_ros_1 = "ros1 " * (_CATKIN in cmake.read_text(encoding="utf-8", errors="replace"))
         for library, files in _libraries(cmake):
-            plugin = _plugin(library, files, folder)
+            plugin = _plugin(of_ros_1 + library, files, folder)
             if plugin:
                 yield plugin._replace(repository=repository, tag=tag, releases=releases)
     for it in _shared(folder):
@@ -122,7 +130,7 @@ def _plugin(library: str, files: list[Path], folder: Path) -> Plugin | None:
         if it.exists() and "test" not in it.name.lower()
     }
     whole = "\n".join(texts.values())
-    if "Load(" not in whole and "ADD_PLUGIN" not in whole:
+    if not _IS_PLUGIN.search(whole) or any(it.endswith(_CAMERA) for it in texts):
         return None
     for word, path in ALSO_FILES.items():
         if word in whole and (folder / path).exists():

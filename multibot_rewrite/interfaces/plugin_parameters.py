@@ -23,6 +23,10 @@ READS = (
     *("Get", "HasElement", "GetElement", "FindElement", "GetElementImpl", "GetNextElement"),
     *("HasAttribute", "GetAttribute"),
 )
+# Helpers of gazebo_ros in ROS 1: the name is behind what they fill in.
+FILLS = {"getParameter": "", "getParameterBoolean": "bool", "getJoint": "std::string"}
+# The same, which know the name themselves.
+NAMED = {"GetRobotNamespace": "robotNamespace"}
 TYPES = {
     "double": "number",
     "float": "number",
@@ -196,25 +200,25 @@ def _read(call: Node, variables: dict[str, str], constants: dict[str, str]) -> _
         return None
     given = [it for it in arguments.named_children if it.type != "comment"]
     literals = [_literal(it, constants) for it in given]
-    names = [it for it in literals if it]
-    line = call.start_point[0] + 1
-    if function.type != "field_expression":
-        return _by_helper(given, names, line, variables)
     called = _CALLED.fullmatch(text_of(function.child_by_field_name("field")))
     if called is None or called[1] not in READS:
-        return _by_helper(given, names, line, variables)
+        return _by_helper(function, given, literals, variables)
     type_ = _type(called[2] or "") if called[1] == "Get" else ANY
     owner = _owner(function.child_by_field_name("argument"), variables, constants)
-    if names and literals[0]:
-        if not _NAME.fullmatch(names[0]):
-            return None
-        default = text_of(given[1]) if len(given) > 1 else ""
-        line = given[0].start_point[0] + 1
-        above = owner.rpartition("/")[0] if called[1] == _NEXT else owner
-        return _Read(
-            *(_below(above, names[0]), type_, line), default if _LITERAL.fullmatch(default) else ""
-        )
-    return _Read(owner, type_, line, "") if owner and called[1] == "Get" else None
+    if not literals or not literals[0]:
+        line = call.start_point[0] + 1
+        return _Read(owner, type_, line, "") if owner and called[1] == "Get" else None
+    if not _NAME.fullmatch(literals[0]):
+        return None
+    above = owner.rpartition("/")[0] if called[1] == _NEXT else owner
+    line = given[0].start_point[0] + 1
+    return _Read(_below(above, literals[0]), type_, line, _default(given[1:]))
+
+
+def _default(behind: list[Node]) -> str:
+    """The default that is behind a name, if it is a literal."""
+    default = text_of(behind[0]) if behind else ""
+    return default if _LITERAL.fullmatch(default) else ""
 
 
 def _below(above: str, name: str) -> str:
@@ -222,14 +226,21 @@ def _below(above: str, name: str) -> str:
 
 
 def _by_helper(
-    given: list[Node], names: list[str], line: int, variables: dict[str, str]
+    function: Node, given: list[Node], literals: list[str], variables: dict[str, str]
 ) -> _Read | None:
-    """A function that is given an element and a name."""
+    """A function that is given an element and a name, or one of gazebo_ros of ROS 1."""
+    line = function.end_point[0] + 1
+    called = _CALLED.fullmatch(re.split(r"->|\.|::", text_of(function), maxsplit=1)[-1])
+    names = [it for it in literals if _NAME.fullmatch(it)]
+    if called and called[1] in NAMED:
+        return _Read(NAMED[called[1]], "text", line, "")
+    if called and called[1] in FILLS and names:
+        behind = given[literals.index(names[0]) + 1 :]
+        return _Read(names[0], _type(called[2] or FILLS[called[1]]), line, _default(behind))
     owners = [text_of(it) for it in given if it.type == "identifier"]
     takes = next((it for it in owners if _ELEMENT.fullmatch(it)), "")
-    known = [it for it in names if _NAME.fullmatch(it)]
     above = variables.get(takes, "")
-    return _Read(_below(above, known[0]), ANY, line, "") if takes and known else None
+    return _Read(_below(above, names[0]), ANY, line, "") if takes and names else None
 
 
 def _type(type_: str) -> str:

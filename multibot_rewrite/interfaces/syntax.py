@@ -15,10 +15,12 @@ __all__ = ["Node", "nodes_of"]
 
 
 def nodes_of(text: str, kinds: tuple[str, ...]) -> list[Node]:
-    """The nodes of these kinds, in the order of the text; raises UsageError without tree-sitter."""
+    """The nodes of these kinds, in the order of the text, an inner one before the one around it that
+    begins with it; raises UsageError without tree-sitter."""
     parser, query = _tools(kinds)
     tree = parser.parse(text.encode())
-    return sorted(query.captures(tree.root_node).get("found", ()), key=lambda it: it.start_byte)
+    found = query.captures(tree.root_node).get("found", ())
+    return sorted(found, key=lambda it: (it.start_byte, it.end_byte))
 
 
 @cache

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
 
+from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.findings.rule_docs import Group, page
-from multibot_rewrite.lint.registry import GROUPS, RULES
+from multibot_rewrite.lint.groups import GROUPS
+from multibot_rewrite.lint.registry import RULES
 
 HEAD = """\
 # Rules of urdf-lint
@@ -19,11 +22,12 @@ fragment belongs inside `<robot name="r">`.
 
 def rules_page() -> str:
     """The page, Markdown."""
-    groups = (
-        Group(start, title, tuple(it for code, it in RULES.items() if code.startswith(start)))
-        for start, title, _ in GROUPS
-    )
+    groups = (Group(it.start, it.title, tuple(_rules(it.start))) for it in GROUPS)
     return page(HEAD, groups)
+
+
+def _rules(start: str) -> Iterator[Rule]:
+    return (it for code, it in RULES.items() if code.startswith(start))
 
 
 if __name__ == "__main__":

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import signal
-import threading
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import partial
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import Finding, by_place
@@ -19,9 +18,9 @@ from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.config.suppress import unsuppressed
 from multibot_rewrite.lint.failures import breakdown, crash, failure, too_long
 from multibot_rewrite.lint.files.subjects import Failed, read_subjects
+from multibot_rewrite.lint.groups import active_rules
 from multibot_rewrite.lint.places import numbered, placed
 from multibot_rewrite.lint.records import Subject
-from multibot_rewrite.lint.registry import active_rules
 from multibot_rewrite.model import InputError, VocabularyError
 from multibot_rewrite.sources.read import read_file
 
@@ -113,10 +112,12 @@ def _merged(found: Iterable[Finding]) -> list[Finding]:
 @contextmanager
 def _limited(seconds: float) -> Iterator[None]:
     """Raise _TooLongError after that time; only a process's main thread can be stopped like that."""
-    if threading.current_thread() is not threading.main_thread():
+    before: Any = None
+    with suppress(ValueError):  # raised in other threads; to ask threading is slow to import
+        before = signal.signal(signal.SIGALRM, _stop)
+    if before is None:
         yield
         return
-    before = signal.signal(signal.SIGALRM, _stop)
     # Repeated: an exception that is raised in a destructor or callback is lost.
     signal.setitimer(signal.ITIMER_REAL, seconds, AGAIN)
     try:

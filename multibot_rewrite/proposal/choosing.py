@@ -33,6 +33,8 @@ class Choice(NamedTuple):
 
 def layout_of(members: Sequence[Member]) -> Choice:
     """The layout that the files of these robots are made for."""
+    if any(it.looked.own_tf for it in members):
+        return Choice(PER_ROBOT, "plugins of the description send tf on each robot's own topic")
     stacks = {name for it in members for name in it.companions.stacks}
     if any(it.looked.arguments for it in members) or "moveit" in stacks:
         return Choice(
@@ -75,14 +77,14 @@ def worlds_of(members: Sequence[Member]) -> dict[str, Choice]:
     return {"shared_frames": Choice(["map"], why)}
 
 
-def poses_of(members: Sequence[Member]) -> Mapping[str, Mapping[str, float]]:
-    """A place for each robot, in a row along y, as far from each other as they are wide."""
+def poses_of(members: Sequence[Member], apart: float) -> Mapping[str, Mapping[str, float]]:
+    """A place for each robot, in a row along y, so many metres ``apart``; with 0 as they are wide."""
     found: dict[str, dict[str, float]] = {}
     y = before = 0.0
     for member in members:
         for name in member.names:
             if found:
-                y += ceil((before + member.radius + _GAP) / _STEP) * _STEP
+                y += apart or ceil((before + member.radius + _GAP) / _STEP) * _STEP
             before = member.radius
             found[name] = {"x": 0.0, "y": y}
     return found

@@ -14,7 +14,7 @@ from multibot_rewrite.companions.params.known_nodes import load_known_nodes
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.model import InputError
-from multibot_rewrite.proposal.looking import NO_SIMULATOR, Looked
+from multibot_rewrite.proposal.looking import CLASSIC, GZ, NO_SIMULATOR, Looked
 from multibot_rewrite.proposal.searching import Found
 from multibot_rewrite.sources.packages import package_of
 from multibot_rewrite.sources.read import read_file
@@ -34,6 +34,11 @@ _STACKS = (
     ("teleop", ("teleop_twist_joy_node",), ()),
 )
 _MANAGER = "controller_manager"
+_CONTROL = {
+    NO_SIMULATOR: "ros2_control",
+    GZ: "gz_ros2_control",
+    CLASSIC: "gazebo_ros2_control",
+}
 _WORD = re.compile(r"[a-z0-9]+")
 
 
@@ -47,6 +52,12 @@ class Companions(NamedTuple):
     srdf: str
     stacks: Mapping[str, str]
     left: Mapping[str, str]
+
+    @property
+    def paths(self) -> Iterator[str]:
+        """All files; raises nothing."""
+        yield from (path for its in self.files.values() for path in its)
+        yield from filter(None, (self.srdf,))
 
 
 def companions_of(robot: Looked, found: Found, release: str) -> Companions:
@@ -116,7 +127,7 @@ def _stacks(robot: Looked, nodes: Mapping[str, str], srdf: str) -> Iterator[tupl
             first = with_[0]
             yield stack, f"{os.path.basename(bare[first])} has parameters of {' and '.join(with_)}"
     if robot.control:
-        stack = "ros2_control" if robot.simulator == NO_SIMULATOR else "gz_ros2_control"
+        stack = _CONTROL[robot.simulator]
         where = bare.get(_MANAGER)
         why = f" and {os.path.basename(where)} has controllers" if where else ""
         yield stack, f"the description has <ros2_control>{why}"

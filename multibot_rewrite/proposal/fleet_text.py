@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 from multibot_rewrite.naming import LAYOUTS
 from multibot_rewrite.printable import one_line
 from multibot_rewrite.proposal.choosing import Choice, Member
+from multibot_rewrite.proposal.looking import Looked
 
 # Files not taken that are named.
 MOST = 10
@@ -16,13 +17,15 @@ MOST = 10
 
 class Proposal(NamedTuple):
     """A fleet: its keys with their reasons, in the order in which they are written; its robots with
-    their poses. ``notes`` are said at the head of the file, ``others`` are descriptions not taken."""
+    their poses. ``notes`` are said at the head of the file, ``others`` are descriptions not taken,
+    ``refused`` files that do not go with the robots, and why."""
 
     keys: Mapping[str, Choice]
     members: Sequence[Member]
     poses: Mapping[str, Mapping[str, float]]
     notes: tuple[str, ...] = ()
     others: tuple[str, ...] = ()
+    refused: Mapping[str, str] = {}
 
 
 def data_of(it: Proposal, folder: str) -> dict[str, Any]:
@@ -56,10 +59,11 @@ def _lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
         yield from (f"# {line}" for line in whys)
         yield from _block(key, value)
     left = dict(_left(it, folder))
+    refused = {os.path.relpath(path, folder) for path in it.refused}
     if left:
         yield ""
         yield "# Found beside them and not taken:"
-        rows = sorted(left.items())
+        rows = sorted(left.items(), key=lambda row: (row[0] not in refused, row))
         yield from (f"#   {path}: {' '.join(why.split())}" for path, why in rows[:MOST])
         if rows[MOST:]:
             yield f"#   and {len(rows) - MOST} more"
@@ -70,6 +74,7 @@ def _lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
 
 
 def _left(it: Proposal, folder: str) -> Iterator[tuple[str, str]]:
+    yield from ((os.path.relpath(path, folder), why) for path, why in it.refused.items())
     for path in it.others:
         yield os.path.relpath(path, folder), "another description"
     for member in it.members:
@@ -113,7 +118,7 @@ def _of_member(member: Member, folder: str) -> Iterator[tuple[str, tuple[Any, tu
     yield "description", (here(looked.path), (f"It has {looked.links} links",))
     if looked.arguments:
         why = "Arguments of the xacro: {robot} stands for the robot's name"
-        yield "arguments", (dict(looked.arguments), (why,))
+        yield "arguments", (dict(looked.arguments), (why, *_needed(looked)))
     if beside.srdf:
         yield "srdf", (here(beside.srdf), ("The planning groups of MoveIt",))
     if beside.stacks:
@@ -123,6 +128,14 @@ def _of_member(member: Member, folder: str) -> Iterator[tuple[str, tuple[Any, tu
         files = {kind: [here(path) for path in its] for kind, its in beside.files.items()}
         one = {kind: its[0] if kind == "rviz" else its for kind, its in files.items()}
         yield "companions", (one, ("Files written for one robot; each robot gets its own of them",))
+
+
+def _needed(it: Looked) -> Iterator[str]:
+    """What nobody gave and the xacro cannot do without."""
+    arguments = dict(it.arguments)
+    found = [name for name in it.needed if name in arguments]
+    if found:
+        yield f"It needs {', '.join(found)}, which nobody gave: is that right?"
 
 
 def _robots(it: Proposal, folder: str) -> Iterator[dict[str, Any]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
@@ -9,7 +10,8 @@ from lxml import etree
 
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import InputError
-from multibot_rewrite.reports.xacro_arguments import find_arguments
+from multibot_rewrite.proposal.needed_values import NeededValues
+from multibot_rewrite.reports.xacro_arguments import find_arguments, names_robots
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.sources.access import Reach
 from multibot_rewrite.sources.expand import expand
@@ -20,8 +22,15 @@ from multibot_rewrite.steps.document import read_document
 GZ, CLASSIC, NO_SIMULATOR = "gz", "classic", "none"
 # How the file names of plugins for Gazebo Classic begin.
 _CLASSIC = ("libgazebo_", "libhector_gazebo")
-# What arguments for a robot's own names are called.
-_NAMING = lazy_compile(r"prefix|namespace|^ns$|(robot|arm|model)_?(name|id|ns)$")
+# What descriptions of a part alone are called.
+_PART = lazy_compile(
+    r"gripper|hand|finger|camera|sensor|lidar|tool|effector|mount|wheel|dock|geometr"
+)
+# The end of the message about an argument that a xacro needs.
+_NEEDED = lazy_compile(r"give it as (\w+):=VALUE$")
+MOST_ARGUMENTS = 20
+# A robot to expand a xacro for.
+_ANY = "robot1"
 # A link of this name is where sdformat and MoveIt hold a robot.
 WORLD = "world"
 
@@ -30,8 +39,9 @@ class Looked(NamedTuple):
     """A description: the name in it, its root's tag, how many links it has, its simulator, whether it
     has ``<ros2_control>``.
 
-    ``arguments`` give each robot its own names (``{robot}`` is its name) or are needed to expand it.
-    ``fault`` is why it cannot be read; the rest is empty then.
+    ``arguments`` give each robot its own names (``{robot}`` is its name) or are needed to expand it;
+    ``needed`` are those of them that were not given. ``own_tf`` is whether its plugins send tf
+    on a topic of each robot. ``fault`` is why it cannot be read; the rest is empty then.
     """
 
     path: str
@@ -41,15 +51,32 @@ class Looked(NamedTuple):
     simulator: str = NO_SIMULATOR
     control: bool = False
     arguments: tuple[tuple[str, str], ...] = ()
+    needed: tuple[str, ...] = ()
+    own_tf: bool = False
     root: etree._Element | None = None
     fault: str = ""
 
 
-def look(path: str, given: Mapping[str, str], reach: Reach) -> Looked:
-    """What a description is; ``given`` are values for arguments of xacros."""
+def look(path: str, given: Mapping[str, str], reach: Reach, values: NeededValues) -> Looked:
+    """What a description is; ``given`` are values for arguments of xacros, others that it needs have
+    those of ``values``."""
+    known = dict(given)
+    for _ in range(MOST_ARGUMENTS):
+        found = _look(path, known, reach)
+        if not found.fault:
+            break
+        needed = _NEEDED.search(found.fault)
+        more = {needed[1]: values.of(needed[1])} if needed else values.of_mandatory(path)
+        if "" in more.values() or more.keys() <= known.keys():
+            break
+        known = {**more, **known}
+    return found._replace(needed=tuple(it for it in known if it not in given))
+
+
+def _look(path: str, given: Mapping[str, str], reach: Reach) -> Looked:
     try:
         xacro = path.endswith(".xacro")
-        text = expand(path, filled(given), None, reach) if xacro else read_file(path)
+        text = expand(path, filled(given, _ANY), None, reach) if xacro else read_file(path)
         return _looked(path, text, tuple(given.items()) if xacro else ())
     except InputError as error:
         return Looked(path, fault=str(error))
@@ -61,12 +88,9 @@ def with_own_arguments(it: Looked, tree: Tree, reach: Reach) -> Looked:
     if not it.path.endswith(".xacro"):
         return it
     given = dict(it.arguments)
-    found = find_arguments(it.path, given, tree, reach=reach)
-    own = {
-        one.name: one.value
-        for one in found.arguments
-        if one.value and one.name not in given and _NAMING.search(one.name)
-    }
+    filled_in = filled(given, _ANY)
+    found = find_arguments(it.path, filled_in, tree, reach=reach, wanted=names_robots)
+    own = {it.name: it.value for it in found.arguments if it.value and it.name not in given}
     known = {one.name for one in found.arguments} | set(found.untried)
     kept = {name: value for name, value in given.items() if name in known}
     return it._replace(arguments=tuple({**kept, **own}.items()))
@@ -83,8 +107,14 @@ def _looked(path: str, text: bytes, arguments: tuple[tuple[str, str], ...]) -> L
         _simulator(root),
         next(root.iter("ros2_control"), None) is not None,
         arguments,
+        (),
+        any(_moves_tf(it) for it in root.iter("remapping", "argument")),
         root,
     )
+
+
+def _moves_tf(rule: etree._Element) -> bool:
+    return (rule.text or "").strip() == "/tf:=tf"
 
 
 def _simulator(root: etree._Element) -> str:
@@ -104,11 +134,12 @@ def holds_the_world(it: Looked) -> bool:
 
 
 def ranked(found: Sequence[Looked]) -> list[Looked]:
-    """Those first that have several links, something for a simulator, ``<ros2_control>``, the shortest
-    path."""
+    """Those first that have several links, are no part by their name, have something for a simulator,
+    ``<ros2_control>``, the shortest path."""
 
-    def rank(it: Looked) -> tuple[bool, bool, bool, int, str]:
+    def rank(it: Looked) -> tuple[bool, bool, bool, bool, int, str]:
+        part = _PART.search(os.path.basename(it.path).lower()) is not None
         without = it.simulator == NO_SIMULATOR, not it.control
-        return it.links < 2, *without, len(it.path), it.path
+        return it.links < 2, part, *without, len(it.path), it.path
 
     return sorted(found, key=rank)

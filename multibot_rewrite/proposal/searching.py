@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Container, Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.bounded import read_bytes
@@ -69,6 +69,12 @@ def search(paths: Sequence[str]) -> Found:
         kinds["descriptions"] = files
     named = {kind: tuple(its) for kind, its in kinds.items() if kind}
     return Found(**named, folders=tuple(homes))
+
+
+def without(found: Found, paths: Container[str]) -> Found:
+    """The same without some files, of whatever kind."""
+    kept = (tuple(it for it in its if it not in paths) for its in found)
+    return Found(*kept)
 
 
 def _home(file: str) -> str:

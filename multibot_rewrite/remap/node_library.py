@@ -51,7 +51,7 @@ CLAIM_KINDS = ("command", "state")
 CLAIM_KEYS = (*CLAIM_KINDS, "if", "releases")
 NODE_KEYS = (*NODE_WORDS, *FACT_KEYS, *ROLES)
 STACK_KEYS = ("about", "include", "container", "nodes", "releases")
-ENTRY_KEYS = ("node", "as", "shared", "when", "with", "names", "remaps", "releases")
+ENTRY_KEYS = ("node", "as", "plugin", "shared", "when", "with", "names", "remaps", "releases")
 FILE_KEYS = ("parts", "nodes", "stacks")
 NOTHING: Mapping[str, str] = {}
 Known = TypeVar("Known")
@@ -278,6 +278,7 @@ def _placed(item: YamlItem, library: NodeLibrary) -> NodeFacts:
     return node._replace(
         name=name,
         known=node.name,
+        plugin=word_of(keys, "plugin", node.plugin),
         shared=flag_of(keys, "shared", node.shared),
         when=word_of(keys, "when", node.when),
         releases=releases_of(keys) or node.releases,

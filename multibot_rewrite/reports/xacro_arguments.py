@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import InputError
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.sources.access import BOUNDED, Reach
@@ -19,6 +20,10 @@ from multibot_rewrite.steps.document import read_document, slot_values
 # More arguments, or longer, and the rest is not tried.
 MOST, SECONDS = 100, 60.0
 PREFIX, POSTFIX, WHOLE, INSIDE = "prefix", "postfix", "whole", "inside"
+# Values of an argument that names nobody yet; Husarion's ROSbot has the second one.
+_NOTHING = ("", "None")
+# What arguments for a robot's own names are called.
+_NAMING = lazy_compile(r"prefix|namespace|^ns$|(robot|arm|model)_?(name|id|ns)$")
 _MARK = MARKS[0]
 _SEPARATORS = "/_-."
 _ARGUMENT = "{*}arg"
@@ -60,7 +65,7 @@ class Argument(NamedTuple):
         """
         ends = {use.how: use.separator for use in self.uses if use.how in (PREFIX, POSTFIX)}
         spaces = any((use.kind, use.how) == ("namespace", WHOLE) for use in self.uses)
-        if self.default.strip(_SEPARATORS) or not (ends or spaces):
+        if self.default.strip(_SEPARATORS) not in _NOTHING or not (ends or spaces):
             return ""
         before = "_" if ends.get(POSTFIX) == "" else ""
         after = "_" if ends.get(PREFIX) == "" else ""
@@ -68,8 +73,8 @@ class Argument(NamedTuple):
 
 
 class XacroArguments(NamedTuple):
-    """The arguments of a file, in the order in which they are declared; ``untried`` were too many,
-    ``read`` are the files that were read."""
+    """The arguments of a file, in the order in which they are declared; ``untried`` were too many or
+    not wanted, ``read`` are the files that were read."""
 
     file: str
     arguments: tuple[Argument, ...]
@@ -82,24 +87,31 @@ class XacroArguments(NamedTuple):
         return tuple(f"{it.name}:={it.value}" for it in self.arguments if it.value)
 
 
+def names_robots(name: str) -> bool:
+    """Is an argument of this name for a robot's own names, as vendors have it?"""
+    return _NAMING.search(name) is not None
+
+
 def find_arguments(
     path: str,
     given: Mapping[str, str],
     tree: Tree,
     clock: Callable[[], float] = time.monotonic,
     reach: Reach = BOUNDED,
+    wanted: Callable[[str], bool] = bool,
 ) -> XacroArguments:
-    """The arguments of a xacro file; ``given`` are values for some. Raises InputError where the file
-    does not expand with these."""
+    """The arguments of a xacro file; ``given`` are values for some, and only those of ``wanted`` names
+    are tried. Raises InputError where the file does not expand with these."""
     end = clock() + SECONDS
     read = expand_traced(path, read_file(path), given, None, reach)
     declared = {**_declared(read.sources), **given}
-    found = []
-    for name, default in list(declared.items())[:MOST]:
+    found: dict[str, Argument] = {}
+    for name, default in [it for it in declared.items() if wanted(it[0])][:MOST]:
         if clock() > end:
             break
-        found.append(_argument(path, given, name, default, tree, reach))
-    return XacroArguments(path, tuple(found), tuple(declared)[len(found) :], read.read)
+        found[name] = _argument(path, given, name, default, tree, reach)
+    untried = tuple(it for it in declared if it not in found)
+    return XacroArguments(path, tuple(found.values()), untried, read.read)
 
 
 def _declared(sources: Mapping[str, bytes]) -> dict[str, str]:

@@ -6,22 +6,21 @@ and remap rules need no writer of their own.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import Claim
-from multibot_rewrite.rewriters.patterns import Pattern, PatternError, pieces_of
 from multibot_rewrite.rosnames import split_remap
 
 Declared = Mapping[str, Mapping[str, Claim]]
 Kinds = tuple[str, ...]
-_WORD = re.compile(r"[^\s(),;\"]+")
+_WORD = lazy_compile(r"[^\s(),;\"]+")
 # Of a path through nested models, or a pattern; looking for names in it costs its length squared.
 LONGEST = 4096
-_OWNED = re.compile(r"::|/")
+_OWNED = lazy_compile(r"::|/")
 # Not a letter of it means more than itself.
-_LITERAL = re.compile(r"[\w /:-]*")
+_LITERAL = lazy_compile(r"[\w /:-]*")
 
 
 class NamePart(NamedTuple):
@@ -176,6 +175,8 @@ def _alternatives(value: str) -> Iterator[tuple[int, str]]:
     """The pieces between top-level bars, anchors and white space aside, and where they start."""
     depth, begin = 0, 0
     bars = []
+    from multibot_rewrite.rewriters.patterns import pieces_of  # few values are patterns
+
     for piece in pieces_of(value):
         depth += piece[0].startswith("(") - (piece[0] == ")")
         if piece[0] == "|" and depth == 0:
@@ -191,6 +192,8 @@ def _matched(pattern: str, kinds: Kinds, declared: Declared) -> tuple[str, ...]:
     """The kinds of which the pattern matches a name: none for one that cannot be understood."""
     if _LITERAL.fullmatch(pattern):
         return tuple(kind for kind in kinds if pattern in declared.get(kind, ()))
+    from multibot_rewrite.rewriters.patterns import Pattern, PatternError
+
     try:
         matches = Pattern(pattern).matches
     except PatternError:

@@ -12,7 +12,7 @@ from multibot_rewrite.bounded import MAX_BYTES
 from multibot_rewrite.model import InputError, MultibotError
 from multibot_rewrite.outside import outside, real_path, variable
 from multibot_rewrite.sources.child.frames import FENCES
-from multibot_rewrite.sources.packages import package_folder
+from multibot_rewrite.sources.packages import in_sources, package_folder
 
 # The folder of a package for $(find PACKAGE), empty where it is not known.
 Find = Callable[[str], str]
@@ -87,8 +87,12 @@ class Access:
     def _beside(self, name: str) -> str:
         """A package of the same repository, or beside the file's own: no ROS has to be sourced."""
         repository = _marked(os.path.dirname(_real(self.path)[0]), ".git")
+        # A workspace has its repositories side by side in src.
+        above = os.path.dirname(repository)
+        workspace = above if os.path.basename(above) == "src" else ""
         home = os.path.realpath(os.path.expanduser("~"))
-        roots = (repository,) if repository and not _below(home, repository) else ()
+        both = (it for it in (repository, workspace) if it)
+        roots = tuple(it for it in both if not _below(home, it))
         folder = package_folder(name, _real(self.path)[0], roots)
         return folder if os.path.isfile(os.path.join(folder, "package.xml")) else ""
 
@@ -119,8 +123,14 @@ class Access:
         return sorted(it for it in found if self.readable(it) and _is_there(it))
 
     def read(self, name: str) -> bytes:
-        """The bytes of a file, one more than may be if it has more; raises NotAllowedError, OSError."""
-        data = _content(self.readable(name), self.reach.trust)
+        """The bytes of a file, one more than may be if it has more; raises NotAllowedError, OSError.
+
+        Of a package that is not built its sources count: a build may install files elsewhere.
+        """
+        path = self.readable(name)
+        if not _is_there(path):
+            path = self.readable(in_sources(path) or path)
+        data = _content(path, self.reach.trust)
         if data is None:
             raise NotAllowedError(f"{name} is no regular file, and xacro may not read it")
         return data

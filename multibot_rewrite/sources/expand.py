@@ -28,7 +28,10 @@ _HINTS = (
     ("open files", "a xacro file may compute, no more; give --trust if you trust it"),
     ("MemoryError", "does a macro call itself? it has 2 GiB, --trust lifts the limit"),
     ("Undefined substitution argument", "give it as {}:=VALUE"),
-    ("AMENT_PREFIX_PATH", "$(find PACKAGE) needs a sourced ROS 2"),
+    (
+        "AMENT_PREFIX_PATH",
+        "$(find PACKAGE) needs a sourced ROS 2, or its repository beside this one in src/",
+    ),
     ("No such file", "check the path"),
     ("Is a directory", "check the path"),
     (

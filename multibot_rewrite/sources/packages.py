@@ -6,6 +6,7 @@ import os
 from collections import deque
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
+from itertools import islice
 
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.outside import outside
@@ -154,3 +155,32 @@ def find_in(folder: str, path: str) -> str:
             return ""
         found.append(near)
     return os.path.join(*found)
+
+
+@outside
+def in_sources(path: str) -> str:
+    """The file that a build installs as ``path`` from a package's sources; empty if none is certain.
+
+    The only file of the package that ends so, as ``description/urdf/arm.xacro`` for ``urdf/arm.xacro``.
+    """
+    folder = os.path.dirname(os.path.abspath(path))
+    while not os.path.isdir(folder):
+        folder = os.path.dirname(folder)
+    package = _own_package(folder)
+    if package is None:
+        return ""
+    end = os.sep + os.path.relpath(os.path.abspath(path), package[1])
+    found = [it for it in _every_file(package[1]) if it.endswith(end)]
+    return found[0] if len(found) == 1 else ""
+
+
+@lru_cache(maxsize=64)
+def _every_file(folder: str) -> tuple[str, ...]:
+    """The files of a package, as many as are looked at."""
+    every = (
+        os.path.join(above, name)
+        for above, _, names in os.walk(folder)
+        if os.path.basename(above) not in _SKIPPED
+        for name in names
+    )
+    return tuple(islice(every, MOST_FOLDERS))

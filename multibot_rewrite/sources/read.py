@@ -6,18 +6,20 @@ import os
 import re
 from collections.abc import Mapping
 from contextlib import suppress
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from multibot_rewrite.bounded import MAX_BYTES, read_bytes
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import InputError, UsageError
-from multibot_rewrite.sources.known_arguments import KnownArguments, known_arguments
+
+if TYPE_CHECKING:
+    from multibot_rewrite.sources.known_arguments import KnownArguments
 
 Source = str | bytes | os.PathLike[str]
-NO_ARGUMENTS = KnownArguments()
 XACRO = ".xacro"
 _MAYBE_XACRO = (".urdf", ".srdf", ".sdf", ".xml")
-_COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
-_SPACE = re.compile(rb"""xmlns:([\w.-]+)\s*=\s*["'][^"'<>]*/xacro/?["']""")
+_COMMENT = lazy_compile(rb"<!--.*?-->", re.DOTALL)
+_SPACE = lazy_compile(rb"""xmlns:([\w.-]+)\s*=\s*["'][^"'<>]*/xacro/?["']""")
 
 
 class SourceText(NamedTuple):
@@ -77,9 +79,10 @@ def read_whole(source: Source, xacro_args: Mapping[str, str], trust: bool = Fals
     if is_xacro(path):
         from multibot_rewrite.sources.access import BOUNDED, TRUSTED
         from multibot_rewrite.sources.expand import expand_whole
+        from multibot_rewrite.sources.known_arguments import KnownArguments, known_arguments
 
         data, texts = expand_whole(path, xacro_args, reach=TRUSTED if trust else BOUNDED)
-        known = known_arguments(texts.values()) if xacro_args else NO_ARGUMENTS
+        known = known_arguments(texts.values()) if xacro_args else KnownArguments()
         return SourceText(data, f"{path} (expanded)", tuple(texts), known)
     if xacro_args:
         raise UsageError(f"{path}: xacro arguments given, but the file is no xacro")

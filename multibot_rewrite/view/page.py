@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import base64
-import hashlib
 import json
 from collections.abc import Iterable, Sequence
 from html import escape
 from importlib.resources import files
 from typing import Any
 
+from multibot_rewrite.graph.pictures.page import Framed, source_hash
 from multibot_rewrite.plural import plural
 from multibot_rewrite.printable import one_line
 from multibot_rewrite.view.models import Mesh, Shape, load_mesh, three
@@ -18,15 +18,21 @@ from multibot_rewrite.view.scene import ViewedRobot
 
 def to_html(robots: Sequence[ViewedRobot], title: str) -> bytes:
     """The page; raises ViewUnusable without trimesh."""
+    return to_frame(robots, title).html.encode()
+
+
+def to_frame(robots: Sequence[ViewedRobot], title: str) -> Framed:
+    """The page, to be put into another; raises ViewUnusable without trimesh."""
     library, own = three(), _asset("viewer.js")
     style = _asset("viewer.css")
+    scripts = f"{source_hash(library)} {source_hash(own)}"
     policy = (
-        f"default-src 'none'; style-src '{_hash(style)}'; img-src data: blob:;"
-        f" script-src '{_hash(library)}' '{_hash(own)}'; base-uri 'none'; form-action 'none'"
+        f"default-src 'none'; style-src {source_hash(style)}; img-src data: blob:;"
+        f" script-src {scripts}; base-uri 'none'; form-action 'none'"
     )
     head = escape(one_line(title))
     data = json.dumps(_data(robots), separators=(",", ":")).replace("<", "\\u003c")
-    return (
+    page = (
         '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f'<meta http-equiv="Content-Security-Policy" content="{policy}">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
@@ -36,7 +42,8 @@ def to_html(robots: Sequence[ViewedRobot], title: str) -> bytes:
         '<main><nav id="tree"></nav><div id="stage"></div><aside id="about"></aside></main>\n'
         f'<script type="application/json" id="data">{data}</script>\n'
         f"<script>{library}</script>\n<script>{own}</script>\n</body>\n</html>\n"
-    ).encode()
+    )
+    return Framed(page, source_hash(style), scripts)
 
 
 _BAR = (
@@ -55,10 +62,6 @@ def title_of(robots: Sequence[ViewedRobot], layout: str) -> str:
 
 def _asset(name: str) -> str:
     return files(__package__).joinpath(name).read_text("utf-8")
-
-
-def _hash(text: str) -> str:
-    return f"sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}"
 
 
 def _data(robots: Sequence[ViewedRobot]) -> dict[str, Any]:

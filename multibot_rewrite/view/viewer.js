@@ -185,7 +185,7 @@ function fit() {
   const middle = box.getCenter(new THREE.Vector3());
   const reach = Math.max(0.3, box.getSize(new THREE.Vector3()).length() / 2) / Math.min(1, camera.aspect);
   controls.target.copy(middle);
-  camera.position.copy(middle).add(new THREE.Vector3(1, -1.2, 0.8).normalize().multiplyScalar(reach * 2.0));
+  camera.position.copy(middle).add(new THREE.Vector3(1, -1.2, 0.8).normalize().multiplyScalar(reach * 2.6));
   camera.lookAt(middle);
   controls.update();
   draw();

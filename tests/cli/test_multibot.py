@@ -15,7 +15,7 @@ import pytest
 from paths import CORPUS, ROBOTS, ROOT
 
 import multibot_rewrite
-from multibot_rewrite.cli.declared import COMMANDS
+from multibot_rewrite.cli.declared.commands import COMMANDS
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.cli.tables import Grid, render
 from multibot_rewrite.library import rewrite

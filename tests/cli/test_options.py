@@ -15,7 +15,7 @@ from paths import FIXTURES
 
 from multibot_rewrite.catalogue import rules
 from multibot_rewrite.cli import multibot, urdf_lint, urdf_postfix
-from multibot_rewrite.cli.declared import COMMANDS, PROGRAMS
+from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
 from multibot_rewrite.cli.declared.fleet import REMAP_FORMS
 from multibot_rewrite.cli.declared.knowledge import SECTION_TYPES
 from multibot_rewrite.cli.options import Command

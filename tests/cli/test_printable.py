@@ -13,7 +13,7 @@ from fleet_folder import SMALL, fleet_folder
 from graph_cases import healthy, read_plan
 
 from multibot_rewrite.cli import multibot, urdf_lint, urdf_postfix
-from multibot_rewrite.cli.declared import COMMANDS
+from multibot_rewrite.cli.declared.commands import COMMANDS
 from multibot_rewrite.cli.output import print_bytes
 from multibot_rewrite.findings.formats import FORMATS
 from multibot_rewrite.graph.plan_file import to_yaml

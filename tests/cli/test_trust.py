@@ -11,7 +11,7 @@ from paths import FIXTURES
 
 from multibot_rewrite import InputError, explain, load_fleet, rewrite, rewrite_all
 from multibot_rewrite.cli import multibot, urdf_lint, urdf_postfix
-from multibot_rewrite.cli.declared import COMMANDS, PROGRAMS
+from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
 
 HOSTILE = (FIXTURES / "hostile" / "lambda_system.xacro").read_text()
 # As a description that can be rewritten once its command has run.

@@ -88,3 +88,31 @@ def test_a_model_is_no_odd_path(model: str, tmp_path: Path) -> None:
         text = (tmp_path / "fleet.yaml").read_text().replace("robot2/robot", model)
         (tmp_path / "fleet.yaml").write_text(text)
         read_fleet(str(tmp_path / "fleet.yaml"), "", {})
+
+
+SYSTEM = """\
+structure:
+  nodes:
+    /robot1/{namespace}imu_bridge:
+      pkg: ros_gz_bridge
+      exec: parameter_bridge
+      params: {{config_file: /etc/vendor/{file}}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("namespace", "file", "more", "topic"),
+    [
+        ("sensors/", "b.yaml", "", "/robot2/sensors/imu_0/data"),
+        ("", "b.yaml", "", "/robot2/imu_0/data"),
+        ("sensors/", "other.yaml", "", "/robot2/imu_0/data"),
+        ("sensors/", "b.yaml", "bridge_namespace: mine\n", "/robot2/mine/imu_0/data"),
+    ],
+)
+def test_a_launch_file_says_where_its_bridge_runs(
+    namespace: str, file: str, more: str, topic: str, tmp_path: Path
+) -> None:
+    system = SYSTEM.format(namespace=namespace, file=file)
+    (tmp_path / "system_model.yaml").write_text(system)
+    row = first_row(made(tmp_path, "imu_0/data", f"launch: system_model.yaml\n{more}"))
+    assert row["ros_topic_name"] == topic

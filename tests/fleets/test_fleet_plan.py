@@ -19,7 +19,6 @@ from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import plan_fleet
 from multibot_rewrite.fleets.with_start_pose_nodes import split_per_robot, with_start_pose_nodes
 from multibot_rewrite.graph.plan_file import from_yaml
-from multibot_rewrite.model import MultibotError
 
 LAYOUTS = [("L1", "prefix"), ("L2", "prefix"), ("L3", "postfix"), ("L4", "postfix")]
 
@@ -258,15 +257,12 @@ def test_companions_of_one_name_are_in_folders_of_their_own(tmp_path: Path) -> N
     assert "robot1/more/params.yaml" in files["fleet.launch.py"]
 
 
-def test_companions_that_no_folder_tells_apart_are_refused(tmp_path: Path) -> None:
+def test_folders_of_one_name_are_in_those_above_them(tmp_path: Path) -> None:
     for folder in ("a/more", "b/more"):
         (tmp_path / folder).mkdir(parents=True)
         (tmp_path / folder / "params.yaml").write_text("x:\n  ros__parameters: {a: 1}\n")
     text = SMALL.replace("[params.yaml]", "[a/more/params.yaml, b/more/params.yaml]")
-    with pytest.raises(
-        MultibotError, match=r"robot1/more/params\.yaml: two files would be written"
-    ):
-        made(tmp_path, text)
+    assert {"robot1/a/more/params.yaml", "robot1/b/more/params.yaml"} <= made(tmp_path, text).keys()
 
 
 # ---------------------------------------------------------------- the fleet as one, and alone

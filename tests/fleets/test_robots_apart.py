@@ -35,12 +35,12 @@ def test_how_far_a_robot_reaches() -> None:
     assert reach_of(etree.fromstring('<robot name="r"><link name="a"/></robot>')) == 0
 
 
-def found(folder: Path, robots: str, more: str = "") -> list[str]:
+def found(folder: Path, robots: str, more: str = "", code: str = "MF835") -> list[str]:
     (folder / "cart.urdf").write_text(CART)
     file = folder / "fleet.yaml"
     file.write_text(f"layout: both\ndescription: cart.urdf\n{more}robots:\n{robots}")
     made = make_outputs(plan_fleet(read_fleet(str(file), "", {})))
-    return [it.message for it in made.findings if it.code == "MF835"]
+    return [it.message for it in made.findings if it.code == code]
 
 
 @pytest.mark.parametrize(("place", "near"), [("0.3", True), ("0.5", True), ("0.7", False)])
@@ -68,3 +68,33 @@ def test_a_robot_without_a_pose_is_at_the_origin(tmp_path: Path) -> None:
 def test_neighbours_of_a_large_fleet(tmp_path: Path) -> None:
     robots = "  - {name: r, count: 450, pose: {x: 0}, step: {y: 0.4}}\n"
     assert len(found(tmp_path, robots)) > 0
+
+
+ROWS = """\
+- {ros_topic_name: scan, gz_topic_name: scan, ros_type_name: sensor_msgs/msg/LaserScan,
+   gz_type_name: gz.msgs.LaserScan}
+"""
+
+
+@pytest.mark.parametrize(
+    ("more", "told"),
+    [
+        ("simulator: gazebo\n", True),
+        ("stack: bridge_per_robot\n", True),
+        ("companions: {bridge: rows.yaml}\n", True),
+        ("", False),
+        ("simulator: none\n", False),
+        # What launch files start may spawn them anywhere.
+        ("simulator: gazebo\nlaunch: system_model.yaml\n", False),
+    ],
+)
+def test_robots_in_a_simulator_without_any_pose(more: str, told: bool, tmp_path: Path) -> None:
+    (tmp_path / "rows.yaml").write_text(ROWS)
+    (tmp_path / "system_model.yaml").write_text(
+        "structure: {nodes: {/amcl: {pkg: nav2_amcl, exec: amcl}}}\n"
+    )
+    said = found(tmp_path, "  - {name: a}\n  - {name: b}\n", more, "MF839")
+    assert said == (["no robot has a start pose: all 2 are spawned in each other"] if told else [])
+    posed = "  - {name: a}\n  - {name: b, pose: {y: 2}}\n"
+    assert found(tmp_path, posed, more, "MF839") == []
+    assert found(tmp_path, "  - {name: a}\n", more, "MF839") == []

@@ -22,9 +22,7 @@ from multibot_rewrite.graph.snapshot import Snapshot, from_json
 
 pytestmark = pytest.mark.live
 
-pytest.importorskip(
-    "rclpy", reason="no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)", exc_type=ImportError
-)
+pytest.importorskip("rclpy", reason="no rclpy: pip install '.[ros]'", exc_type=ImportError)
 COMMAND = [sys.executable, "-m", "multibot_rewrite.cli.multibot", "rehearse"]
 ROVER = str(ROBOTS / "rover.urdf")
 PAIR = (ROVER, "robot1", "robot2")
@@ -173,3 +171,17 @@ def test_no_node_is_left(number: signal.Signals) -> None:
     finally:
         play.kill()
         play.wait()
+
+
+@pytest.mark.deep
+def test_no_fixed_transform_of_a_large_fleet_is_lost(tmp_path: Path) -> None:
+    """Without tf2_msgs each is a message of its own, and all robots share /tf_static."""
+    links = "".join(
+        f'<link name="l{at}"/><joint name="j{at}" type="fixed">'
+        f'<parent link="l{at - 1}"/><child link="l{at}"/></joint>'
+        for at in range(1, 120)
+    )
+    robot = tmp_path / "long.urdf"
+    robot.write_text(f'<robot name="long"><link name="l0"/>{links}</robot>')
+    done = rehearse(7, str(robot), "robot1", "robot2", "--layout", "L2", "--distro", "jazzy")
+    assert done.returncode == 0, done.stdout + done.stderr

@@ -30,6 +30,9 @@ def read(line: str, before: str = "") -> list[Parameter]:
         ('for (auto e = _sdf->GetElement("d"); e; ) { v[0] = e->Get<double>(); }', "d", "number", ""),
         ('o = _sdf->Get<math::Vector3d>("offset");', "offset", "vector", ""),
         ('o = _sdf->Get<ignition::math::Vector3d>("offset");', "offset", "vector", ""),
+        ('ros->getParameter<double>(r, "radius", 0.15);', "radius", "number", "0.15"),
+        ('ros->getParameterBoolean(on, "on", true);', "on", "boolean", "true"),
+        ('ns = GetRobotNamespace(_parent, _sdf, "Laser");', "robotNamespace", "text", ""),
         ('readLimit(_sdf, "limit", limit);', "limit", "any", ""),
         ("t = _sdf->Get<double>(temperature);", "temperature", "number", ""),
     ],
@@ -78,6 +81,20 @@ def test_what_plugins_share_is_a_section_that_they_name(tmp_path: Path) -> None:
     made = plugin_files.to_schema([folder])
     assert "[gazebo_ros::Node] acme/gz ros2 gazebo_ros/src\nros any node.cpp:1\n" in made
     assert "src/systems/drive +gazebo_ros::Node\nx integer Drive.cc:2\n" in made
+
+
+def test_a_library_of_a_catkin_package_is_of_ros_1(tmp_path: Path) -> None:
+    folder = tmp_path / "acme+gazebo@noetic"
+    folder.mkdir()
+    (folder / "CMakeLists.txt").write_text("catkin_package()\nadd_library(drive drive.cpp)\n")
+    (folder / "drive.cpp").write_text(
+        'void Drive::Load ( physics::ModelPtr m, sdf::ElementPtr _sdf ) { _sdf->Get<int>("x"); }'
+    )
+    assert (
+        plugin_files.to_schema([folder])
+        .rstrip()
+        .endswith("[ros1 drive] acme/gazebo noetic .\nx integer drive.cpp:1")
+    )
 
 
 @pytest.mark.parametrize(

@@ -480,7 +480,7 @@ def test_an_unchanged_lint_loads_no_rule(here: Path) -> None:
     program = (
         "import sys; from multibot_rewrite.cli.urdf_lint import main; "
         "main(['arm_description', '--roots', '.']); "
-        "print([it for it in ('lxml.etree', 'multibot_rewrite.lint.registry') if it in sys.modules])"
+        "print([it for it in ('lxml.etree', 'multibot_rewrite.lint.groups') if it in sys.modules])"
     )
     ran = [
         subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)

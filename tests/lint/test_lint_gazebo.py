@@ -60,6 +60,10 @@ def camera(inside: str) -> str:
 
 DRIVE = ("diff-drive", "DiffDrive")
 MOTOR = ("multicopter-motor-model", "MulticopterMotorModel")
+OF_ROS_1 = (
+    "<robotNamespace>a</robotNamespace><bodyName>a</bodyName><topicName>a</topicName>"
+    "<frameName>a</frameName>"
+)
 CONTROL = (
     '<plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" filename="gz_ros2_control-system">'
     "<parameters>a.yaml</parameters>"
@@ -134,8 +138,32 @@ PLANTED = {
     "hardware with another case": (hardware("gz_ros2_control/GazeboSimsystem"), "MB171"),
     "a parameter": (system(*DRIVE, "<wheel_seperation>1</wheel_seperation>"), "MB162"),
     "a parameter in camel case": (
-        classic("gazebo_ros_diff_drive", "<ros/><robotBaseFrame>a</robotBaseFrame>"),
+        system("thruster", "Thruster", "<joint_name>j</joint_name><fluidDensity>1</fluidDensity>"),
         "MB162",
+    ),
+    "a parameter of ROS 1": (
+        classic("gazebo_ros_diff_drive", "<ros/><robotBaseFrame>a</robotBaseFrame>"),
+        "MB163",
+    ),
+    "a parameter of ROS 2 in ROS 1": (
+        classic("gazebo_ros_p3d", f"{OF_ROS_1}<update_rate>9</update_rate>"),
+        "MB163",
+    ),
+    "a parameter of a plugin of ROS 1": (
+        classic("gazebo_ros_p3d", f"{OF_ROS_1}<xyzOffsets>0 0 0</xyzOffsets>"),
+        "MB162",
+    ),
+    "a parameter nobody reads in ROS 1": (
+        classic("gazebo_ros_p3d", f"{OF_ROS_1}<alwaysOn>true</alwaysOn>"),
+        "MB164",
+    ),
+    "no topic of p3d in ROS 1": (
+        classic("gazebo_ros_p3d", "<robotNamespace>a</robotNamespace><bodyName>a</bodyName>"),
+        "MB165",
+    ),
+    "a rate in words in ROS 1": (
+        classic("gazebo_ros_p3d", f"{OF_ROS_1}<updateRate>fast</updateRate>"),
+        "MB166",
     ),
     "a parameter of a sensor's plugin": (
         sensor("ray", classic("gazebo_ros_ray_sensor", "<ros/><output_typ>a</output_typ>")[8:-9]),
@@ -249,7 +277,7 @@ HEALTHY = {
     "joints named twice": system(*DRIVE, "<left_joint>j</left_joint><left_joint>k</left_joint>"),
     "a negative limit": system(*DRIVE, "<min_velocity>-1</min_velocity>"),
     "a plugin of ROS 1": classic(
-        "gazebo_ros_diff_drive", "<robotNamespace>/a</robotNamespace><legacyMode>false</legacyMode>"
+        "gazebo_ros_diff_drive", "<robotNamespace>/a</robotNamespace><publishTf>1</publishTf>"
     ),
     "a namespace and no block": classic(
         "gazebo_ros_p3d", "<body_name>a</body_name><namespace>a</namespace>"
@@ -265,6 +293,14 @@ HEALTHY = {
         "wind-effects", "WindEffects",
         "<horizontal><magnitude><time_for_rise>1</time_for_rise><noise type='gaussian'><mean>0</mean>"
         "<stddev>1</stddev></noise></magnitude></horizontal>",
+    ),
+    "a camera of ROS 1": sensor(
+        "camera",
+        classic(
+            "gazebo_ros_camera",
+            "<robotNamespace>a</robotNamespace><imageTopicName>a</imageTopicName>"
+            "<hackBaseline>0</hackBaseline><cameraName>a</cameraName>",
+        )[8:-9],
     ),
     "hardware of our own": hardware("our_driver/System", '<param name="robot_ipp">1</param>'),
     "a parameter of a base class": hardware(

@@ -5,12 +5,13 @@ from __future__ import annotations
 from importlib import import_module
 from pkgutil import walk_packages
 
-from multibot_rewrite.findings.rule import Rule
+from multibot_rewrite.findings.rule import URDF, Rule
 from multibot_rewrite.lint import rules
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.files.subjects import read_subjects
+from multibot_rewrite.lint.groups import GROUPS, active_rules, rules_of
 from multibot_rewrite.lint.records import Subject
-from multibot_rewrite.lint.registry import GROUPS, RULES, rules_of
+from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.rules.meshes.shared import used_files
 
 MESHES = b"""<robot name="r"><link name="a"><visual><geometry><mesh filename="a.stl"/></geometry>
@@ -18,8 +19,17 @@ MESHES = b"""<robot name="r"><link name="a"><visual><geometry><mesh filename="a.
 
 
 def test_every_rule_is_in_its_group() -> None:
-    homes = {rule.code: start for start, _, group in GROUPS for rule in rules_of(group)}
+    homes = {rule.code: group.start for group in GROUPS for rule in rules_of(group)}
     assert homes == {code: code[:3] for code in RULES}
+
+
+def test_no_rule_of_a_format_is_left_out() -> None:
+    """Groups without rules for a URDF are not even loaded for one."""
+    formats = {it for rule in RULES.values() for it in rule.formats} - {"rewrite"}
+    assert URDF in formats
+    for format_ in formats:
+        active = [it.code for it in active_rules(Settings(), format_)]
+        assert active == [code for code, it in RULES.items() if format_ in it.formats]
 
 
 def test_no_file_of_rules_is_left_out_of_its_group() -> None:

@@ -400,7 +400,7 @@ def test_files_without_the_word_are_not_read_for_it(monkeypatch: pytest.MonkeyPa
     def never(_: bytes) -> list[object]:
         raise AssertionError
 
-    monkeypatch.setattr("multibot_rewrite.lint.config.suppress.read_directives", never)
+    monkeypatch.setattr("multibot_rewrite.lint.config.comments.read_directives", never)
     finding = Finding("MB501", "error", "m", "", "f", 1, 1)
     assert unsuppressed([finding], {"f": b"<robot/>"}, Settings()) == [finding]
 

@@ -26,6 +26,9 @@ COMMANDS = re.findall(
 )
 # Writes the fleet file that the next commands read.
 FIRST = "multibot init fixtures/robots/rover_gz.urdf -n 2 -o rovers.yaml"
+(START,) = re.findall(
+    r"^(multibot init .*)$", (ROOT / "docs" / "index.md").read_text(), re.MULTILINE
+)
 TRANSCRIPTS = page_commands.sections(README + REMAP)
 
 
@@ -47,7 +50,7 @@ def test_the_readme_shows_commands() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("line", COMMANDS)
+@pytest.mark.parametrize("line", [*COMMANDS, START])
 def test_a_command_of_the_readme_runs(line: str, tmp_path: Path) -> None:
     reader = readers_folder(tmp_path)
     for one in (FIRST, line) if "rovers.yaml" in line and line != FIRST else (line,):
@@ -70,7 +73,7 @@ def test_a_transcript_of_the_readme_is_the_whole_output(
     there = readers_folder(tmp_path, **tf2)
     for it in TRANSCRIPTS[heading]:
         if page_commands.is_live([it]) and not page_commands.has_ros():
-            pytest.skip("no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)")
+            pytest.skip("no rclpy: pip install '.[ros]'")
         done = there.run(it.command)
         printed = tuple(line.rstrip() for line in done.stdout.splitlines())
         assert (done.returncode, printed) == (it.code, it.lines), it.command

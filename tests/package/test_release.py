@@ -151,7 +151,7 @@ def workflow(name: str) -> dict[str, Any]:
     return loaded
 
 
-OURS = ("ci.yml", "release.yml")
+OURS = ("ci.yml", "docs.yml", "release.yml")
 
 
 @pytest.mark.slow
@@ -187,6 +187,13 @@ def test_one_job_may_publish_and_it_runs_nothing_of_the_repository() -> None:
         "pypa/gh-action-pypi-publish",
     ]
     assert (jobs["pypi"]["needs"], jobs["github"]["needs"]) == ("build", "pypi")
+
+
+def test_the_site_is_published_by_a_job_that_runs_nothing_of_the_repository() -> None:
+    jobs = workflow("docs.yml")["jobs"]
+    assert jobs["build"]["permissions"] == {"contents": "read"}
+    assert [list(it) for it in jobs["publish"]["steps"]] == [["uses"]]
+    assert "refs/heads/main" in jobs["publish"]["if"]
 
 
 def test_what_is_published_is_checked_first() -> None:

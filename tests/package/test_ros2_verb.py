@@ -9,7 +9,7 @@ from importlib.metadata import entry_points
 import pytest
 from paths import FIXTURES
 
-from multibot_rewrite.cli.declared import COMMANDS
+from multibot_rewrite.cli.declared.commands import COMMANDS
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.cli.ros2_verb import MultibotCommand
 from multibot_rewrite.version import __version__

@@ -112,10 +112,10 @@ class Html(HTMLParser):
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The site, made as for readers; a warning is an error."""
+    """The site, made as for readers; a warning is an error, but for one that ``-q`` would hide."""
     pytest.importorskip("mkdocstrings", reason="no mkdocs: pip install '.[docs]'")
     folder = tmp_path_factory.mktemp("site")
-    words = ["build", "--strict", "-q", "-f", str(SITE / "mkdocs.yml"), "-d", str(folder)]
+    words = ["build", "--strict", "-f", str(SITE / "mkdocs.yml"), "-d", str(folder)]
     command = [sys.executable, "-m", "mkdocs", *words]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
@@ -149,6 +149,8 @@ def test_links_lead_somewhere_on_the_site(read: dict[Path, Html], site: Path) ->
 @pytest.mark.slow
 def test_the_site_fetches_nothing_from_elsewhere(read: dict[Path, Html]) -> None:
     assert [it for html in read.values() for it in html.loads if STARTS.match(it)] == []
+    # The theme's component that asks GitHub for the stars of ``repo_url``.
+    assert not any('data-md-component="source"' in page.read_text() for page in read)
 
 
 @pytest.mark.slow

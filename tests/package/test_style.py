@@ -9,8 +9,9 @@ import sys
 import pytest
 from paths import ROOT
 
-# Waiting for a process; when to kill one; a clock that a test puts in place of the real one.
-CLOCKS = {"support/waiting.py", "fleets/test_build.py", "graph/test_snapshot.py"}
+# Waiting for a process; when to kill one; a clock that a test puts in place of the real one; seconds
+# that a page shows.
+CLOCKS = {"support/waiting.py", "fleets/test_build.py", "graph/test_snapshot.py", "support/walk.py"}
 
 
 def test_no_test_reads_a_clock() -> None:

@@ -153,8 +153,8 @@ def test_different_robots_have_names_of_their_own(tmp_path: Path) -> None:
 def test_a_layout_that_does_not_work_is_replaced(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def errors(data: Mapping[str, Any], *_: object) -> list[str]:
-        return [] if data["layout"] == "both" else ["MR102 they would meet"]
+    def errors(data: Mapping[str, Any], *_: object) -> list[tuple[str, str]]:
+        return [] if data["layout"] == "both" else [("", "MR102 they would meet")]
 
     monkeypatch.setattr(trying, "errors_of", errors)
     shutil.copy(ROBOTS / "rover.urdf", tmp_path)
@@ -180,6 +180,84 @@ def test_what_does_not_build_is_written_with_the_reason(tmp_path: Path, capsys: 
     said = capsys.readouterr().err
     assert "It does not build yet" in said
     assert "# It does not build yet" in (tmp_path / "fleet.yaml").read_text()
+
+
+def test_a_file_that_does_not_go_with_the_robot_is_left_out(tmp_path: Path) -> None:
+    """A config of ROS 1 would stop the build."""
+    shutil.copy(ROBOTS / "rover.urdf", tmp_path)
+    (tmp_path / "old.rviz").write_text("Visualization Manager:\n  Class: ''\n  Displays: []\n")
+    (tmp_path / "a.yaml").write_text("/**:\n  ros__parameters: {rate: 1}\n")
+    old = "Visualization Manager:\n  Displays:\n    - Class: rviz/Grid\n"
+    (tmp_path / "old.rviz").write_text(old)
+    fleet = made(tmp_path, tmp_path)
+    assert "rviz" not in fleet.get("companions", {})
+    assert "#   old.rviz: this is a ROS 1 config" in (tmp_path / "fleet.yaml").read_text()
+
+
+def test_another_description_is_taken_where_the_first_does_not_build(tmp_path: Path) -> None:
+    """``a.urdf`` would come first: its path is shorter."""
+    text = '<robot name="r"><link name="a"/><link name="a_robot1"/></robot>'
+    (tmp_path / "a.urdf").write_text(text)
+    (tmp_path / "other.urdf").write_text(text.replace("a_robot1", "b"))
+    fleet = made(tmp_path, tmp_path)
+    assert fleet["description"] == "other.urdf"
+
+
+@pytest.mark.parametrize(
+    "launch",
+    [
+        "DeclareLaunchArgument('kind', default_value='small')",
+        "DeclareLaunchArgument(\n'other', default_value='x'), DeclareLaunchArgument(\n"
+        "    'kind', description='it', choices=['small', 'large'])",
+        "LaunchConfiguration('other', default='x'), LaunchConfiguration('kind', default='small')",
+    ],
+)
+def test_what_a_xacro_needs_is_as_its_launch_file_has_it(launch: str, tmp_path: Path) -> None:
+    (tmp_path / "r.urdf.xacro").write_text(
+        TOOL.replace("/>", '><link name="$(arg kind)"/></robot>')
+    )
+    (tmp_path / "r.launch.py").write_text(f"x = [{launch}]\n")
+    fleet = made(tmp_path, tmp_path)
+    assert fleet["arguments"] == {"kind": "small"}
+    assert "# It needs kind, which nobody gave" in (tmp_path / "fleet.yaml").read_text()
+
+
+def test_a_default_that_is_no_value_is_chosen(tmp_path: Path) -> None:
+    """As ``ur_type`` of Universal Robots, whose default is the name of no robot."""
+    body = '<xacro:arg name="kind" default="none"/><xacro:include filename="$(arg kind).xacro"/>'
+    robot = TOOL.replace("/>", f'>{body}<link name="a"/></robot>')
+    (tmp_path / "r.urdf.xacro").write_text(robot)
+    (tmp_path / "small.xacro").write_text(TOOL)
+    (tmp_path / "r.launch.py").write_text("DeclareLaunchArgument('kind', choices=['small'])\n")
+    assert made(tmp_path, tmp_path)["arguments"] == {"kind": "small"}
+
+
+def test_classic_is_of_humble_and_its_plugin_has_the_manager(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As TurtleBot 4: a ros2_control_node beside the plugin would be a second manager."""
+    monkeypatch.delenv("ROS_DISTRO", raising=False)
+    text = (ROBOTS / "rover_gz.urdf").read_text()
+    at, end = text.index("<gazebo>"), text.rindex("</gazebo>") + len("</gazebo>")
+    plugin = '<gazebo><plugin name="gazebo_ros2_control" filename="libgazebo_ros2_control.so">'
+    plugin += "<ros><namespace></namespace><remapping>/tf:=tf</remapping></ros>"
+    plugin += "<parameters>c.yaml</parameters></plugin></gazebo>"
+    (tmp_path / "rover.urdf").write_text(text[:at] + plugin + text[end:])
+    fleet = made(tmp_path, tmp_path / "rover.urdf")
+    assert fleet["stack"] == ["gazebo_ros2_control"]
+    assert fleet["distro"] == "humble"
+    assert fleet["layout"] == "tf-per-robot", "its plugin sends tf on a topic of each robot"
+    assert "ros2_control_node" not in (tmp_path / "out" / "fleet.launch.py").read_text()
+    assert "gz_ros_control" not in (tmp_path / "out" / "plan.yaml").read_text()
+
+
+def test_names_of_the_robots_are_given(tmp_path: Path, capsys: Any) -> None:
+    shutil.copy(ROBOTS / "rover.urdf", tmp_path)
+    fleet = made(tmp_path, tmp_path, "--robots", "scout,carrier")
+    assert [it["name"] for it in fleet["robots"]] == ["scout", "carrier"]
+    two = (tmp_path / "rover.urdf", ROBOTS / "two_finger_arm.urdf")
+    assert init(*two, "--robots", "a,b", "-o", "-") == 2
+    assert "--robots is for one description" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -135,6 +135,33 @@ def test_a_package_of_the_same_repository_needs_no_sourced_ros(repository: Path)
     assert "needs a sourced ROS 2" in including(file, "$(find tool)/urdf/part.xacro")
 
 
+def test_the_repositories_of_a_workspace_are_beside_each_other(tmp_path: Path) -> None:
+    file = tmp_path / "src" / "one" / "arm" / "r.xacro"
+    part = tmp_path / "src" / "two" / "tool" / "part.xacro"
+    for it, name in ((file, "arm"), (part, "tool")):
+        it.parent.mkdir(parents=True)
+        (it.parent.parent / ".git").mkdir()
+        (it.parent / "package.xml").write_text(f"<package><name>{name}</name></package>")
+        it.write_text(XACRO.format('<link name="part"/>'))
+    assert '<link name="part"/>' in including(file, "$(find tool)/part.xacro")
+    (tmp_path / "src").rename(tmp_path / "other")
+    moved = tmp_path / "other" / "one" / "arm" / "r.xacro"
+    assert "needs a sourced ROS 2" in including(moved, "$(find tool)/part.xacro")
+
+
+def test_a_file_that_a_build_installs_elsewhere(repository: Path) -> None:
+    """As ros2_control_demos: description/urdf is installed as urdf."""
+    file, tool = repository / "arm" / "r.xacro", repository / "tool"
+    (tool / "description").mkdir()
+    (tool / "urdf").rename(tool / "description" / "urdf")
+    for folder in ("one", "two"):
+        (tool / folder / "urdf").mkdir(parents=True)
+        (tool / folder / "urdf" / "twice.xacro").write_text(PART)
+    assert '<link name="part"/>' in including(file, "$(find tool)/urdf/part.xacro")
+    assert "No such file" in including(file, "$(find tool)/rdf/part.xacro")
+    assert "No such file" in including(file, "$(find tool)/urdf/twice.xacro"), "which of both?"
+
+
 def test_a_package_that_is_nowhere(
     tmp_path: Path, repository: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -143,18 +143,21 @@ def _bridge(told: Told, rules: list[str], fleet: LoadedFleet) -> StubNode:
         for row in rows
         for role in _ROLES[row.get("direction", "BIDIRECTIONAL")]
     )
-    edges = tuple(_odometry(Path(config).parent.name, fleet))
+    sends = any(row["ros_type_name"] == _TF for row in rows)
+    edges = tuple(_odometry(Path(config).parent.name, fleet) if sends else ())
     return StubNode("ros_gz_bridge", (ROS_ARGS, *rules) if rules else (), (), ends, edges)
 
 
 def _odometry(name: str, fleet: LoadedFleet) -> Iterator[Edge]:
-    for robot in fleet.plan.robots:
-        if robot.spec.name == name:
-            planned = fleet.planned
-            _, added = with_odometry(planned.edges, robot.spec.namespace, planned.naming)
-            yield from (Edge(*added.split(" -> "), False) for _ in [added] if added)
+    """Of the robot whose bridge it is; the bridge of all robots is in no robot's folder."""
+    robots = [it for it in fleet.plan.robots if it.spec.name == name]
+    for robot in robots or fleet.plan.robots:
+        planned = fleet.planned
+        _, added = with_odometry(planned.edges, robot.spec.namespace, planned.naming)
+        yield from (Edge(*added.split(" -> "), False) for _ in [added] if added)
 
 
+_TF = "tf2_msgs/msg/TFMessage"
 _ROLES = {
     "GZ_TO_ROS": (PUBLISHES,),
     "ROS_TO_GZ": (SUBSCRIBES,),

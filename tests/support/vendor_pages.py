@@ -3,18 +3,29 @@
     python tests/support/vendor_pages.py [ROBOT ...]      print the pages
     python tests/support/vendor_pages.py --write          write all of them
 
-MULTIBOT_SOURCES as in ``vendor_systems.py``. Needs launch and launch_ros.
+MULTIBOT_SOURCES as in ``vendor_systems.py``. Needs launch, launch_ros and rclpy.
 """
 
 from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 
+from vendor_arm_pages import ARMS, told_of_arms
 from vendor_compare import Built, Difference
-from vendor_recipes import ROBOTS, Outcome, Recipe, false_findings, outcome, read_recipes
+from vendor_live import Told, said, told
+from vendor_recipes import (
+    ROBOTS,
+    Outcome,
+    Recipe,
+    false_findings,
+    is_true,
+    outcome,
+    read_recipes,
+)
 from vendor_sources import WITHOUT, sources_folder
 from vendor_systems import read_vendors
 
@@ -44,6 +55,17 @@ vendor's files. Which nodes are known is in [vendors](../vendors.md).
 
 | robot | before | vendor's layout | 2 | 3 | other layout | 2 | 3 | equal | better | wrong |
 |---|---|---|---|---|---|---|---|--:|--:|--:|\
+"""
+SAID = """
+## What is said
+
+Warnings and errors of `build`, of `rehearse`, which starts a stand-in for every node on a real graph,
+and of `check` of that graph against the plan that was built: of two robots and of three, each once for
+all robots. The page of a robot says why they are true; *false* is how many are not. Of [arms](arms.md)
+another page says what is equal.
+
+| robot | layout | build 2 | 3 | rehearse 2 | 3 | check 2 | 3 | false |
+|---|---|--:|--:|--:|--:|--:|--:|--:|\
 """
 
 
@@ -91,18 +113,36 @@ def _short(text: str) -> str:
 
 
 def _findings(found: Outcome) -> Iterator[str]:
-    said = {
-        rule["code"]: rule["reason"]
-        for rule in found.recipe.right
-        if any(it.code == rule["code"] for built in found.built for it in built.findings)
-    }
-    yield from ("## What the build says of the vendor's files, and is right", "") if said else ()
+    told = {it.code for built in found.built for it in built.findings}
+    told |= {it.code for look in found.looked for it in (*look.rehearsed, *look.checked)}
+    said = {it["code"]: it["reason"] for it in found.recipe.right if it["code"] in told}
+    yield from ("## What is said of the vendor's files, and is right", "") if said else ()
     yield from (f"- {code}: {reason}" for code, reason in said.items())
 
 
-def readme(found: Mapping[str, Outcome]) -> str:
-    """The table of all robots."""
-    return "\n".join([HEAD, *(_row(name, it) for name, it in found.items()), ""])
+def readme(found: Mapping[str, Outcome], arms: Mapping[str, Sequence[Told]]) -> str:
+    """The tables of all robots."""
+    rows = [HEAD, *(_row(name, it) for name, it in found.items()), SAID]
+    rows += [line for it in found.values() for line in said_rows(it.recipe.title, told_of(it))]
+    rows += [line for name, it in arms.items() for line in said_rows(ARMS[name], it)]
+    return "\n".join([*rows, ""])
+
+
+def told_of(found: Outcome) -> list[Told]:
+    """What is said of each build of a recipe."""
+    true = partial(is_true, found.recipe)
+    return [
+        told(built.layout, said(built.findings, built.robots), looked, true)
+        for built, looked in zip(found.built, found.looked, strict=True)
+    ]
+
+
+def said_rows(title: str, every: Sequence[Told]) -> Iterator[str]:
+    """A row a layout: what build, rehearsal and check say of two robots and of three."""
+    for two, three in zip(every[::2], every[1::2], strict=True):
+        both = [it for pair in zip(two.numbers, three.numbers, strict=True) for it in pair]
+        false = two.false + three.false
+        yield f"| {' | '.join(map(str, (title, two.layout, *both, false)))} |"
 
 
 def _row(name: str, it: Outcome) -> str:
@@ -137,12 +177,13 @@ def main(words: list[str]) -> int:
         return 2
     vendors, recipes = read_vendors(), read_recipes()
     names = [it for it in words if not it.startswith("--")] or list(recipes)
-    found = {it: outcome(recipes[it], vendors, folder) for it in names}
+    found = {it: outcome(recipes[it], vendors, folder, live=True) for it in names}
     pages = {
         name: page(it, vendors.sources, vendors.systems[it.recipe.system]["uses"])
         for name, it in found.items()
     }
-    pages |= {"README": readme(found)}
+    arms = told_of_arms(folder) if len(found) == len(recipes) else {}
+    pages |= {"README": readme(found, arms)}
     for name, text in pages.items():
         if "--write" in words:
             PAGES.mkdir(exist_ok=True)

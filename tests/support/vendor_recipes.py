@@ -14,11 +14,13 @@ import sys
 import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from itertools import product
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import yaml
 from vendor_compare import Built, Compared, Difference, compare
+from vendor_live import Looked, Said, look
 from vendor_sources import install, packages_below
 from vendor_systems import RECORDER, Vendors, filled, prepare
 
@@ -142,26 +144,29 @@ def _reason(recipe: Recipe, it: Difference) -> str:
 
 def false_findings(recipe: Recipe, built: Built) -> list[Finding]:
     """The warnings and errors of a build that the recipe does not call true."""
-    return [it for it in built.findings if not _is_true(recipe, it)]
+    return [it for it in built.findings if not is_true(recipe, it)]
 
 
-def _is_true(recipe: Recipe, it: Finding) -> bool:
+def is_true(recipe: Recipe, it: Finding | Said) -> bool:
+    """Does the recipe say so?"""
     rules = (rule for rule in recipe.right if rule["code"] == it.code)
     return any(re.search(rule.get("says", ""), it.message) for rule in rules)
 
 
 class Outcome(NamedTuple):
     """A recipe: what is built in each layout with two robots and with three, and what differs from
-    the vendor's two robots in the vendor's layout."""
+    the vendor's two robots in the vendor's layout; ``looked`` is what rehearsals of each say."""
 
     recipe: Recipe
     text: str
     built: tuple[Built, ...]
     compared: Compared
+    looked: tuple[Looked, ...] = ()
 
 
-def outcome(recipe: Recipe, vendors: Vendors, folder: Path) -> Outcome:
-    """Make a recipe in all its layouts, and run the vendor's launch files for two robots."""
+def outcome(recipe: Recipe, vendors: Vendors, folder: Path, live: bool = False) -> Outcome:
+    """Make a recipe in all its layouts, and run the vendor's launch files for two robots; ``live``
+    rehearses each."""
     system = dict(vendors.systems[recipe.system])
     opened = [recipe.window["launch"]] if recipe.window else []
     system["launch"] = [*(recipe.launch or system["launch"]), *opened]
@@ -170,11 +175,12 @@ def outcome(recipe: Recipe, vendors: Vendors, folder: Path) -> Outcome:
         for robot in ("/", *ROBOTS):
             prepare(system, words_for(folder, work, robot))
         words = words_for(folder, work, "")
-        built = tuple(
-            build(fleet_text(recipe, system, layout, count), words, layout, count)
-            for layout in recipe.layouts
-            for count in (2, 3)
-        )
+        built: list[Built] = []
+        looked: list[Looked] = []
+        for layout, count in product(recipe.layouts, (2, 3)):
+            made = build(fleet_text(recipe, system, layout, count), words, layout, count)
+            built.append(made)
+            looked += [rehearsed(made, work)] if live else []
         found = [
             compare(built[0], it, recorded(system, words_for(folder, work, it)), vendors)
             for it in ROBOTS[:2]
@@ -183,4 +189,12 @@ def outcome(recipe: Recipe, vendors: Vendors, folder: Path) -> Outcome:
             sum(it.equal for it in found), tuple(row for it in found for row in it.differences)
         )
         text = fleet_text(recipe, system, recipe.layouts[0], 2)
-        return Outcome(recipe, text, built, judged(recipe, both))
+        return Outcome(recipe, text, tuple(built), judged(recipe, both), tuple(looked))
+
+
+def rehearsed(built: Built, work: Path) -> Looked:
+    """What a rehearsal says of the fleet file that was built last."""
+    if built.outputs is None:
+        return Looked((), ())
+    files = {it.path: it.data for it in built.outputs.files}
+    return look(work / "fleet.yaml", files, built.robots)

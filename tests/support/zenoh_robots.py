@@ -16,6 +16,8 @@ from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from typing import Any, NamedTuple
 
+from waiting import wait_until
+
 TF_HASH = "RIHS01_e369d0f05a23ae52508854b66f6aa04437f3449d652e8cbf61d2ee8fb5e2e9a1"
 STRING_HASH = "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"
 TRIGGER_HASH = "RIHS01_eeff2cd6fc5ad9d27cdf4dec64818317839b62f12a91e6b5304b634b2062c5f3"
@@ -58,14 +60,17 @@ def router(**settings: Any) -> Iterator[str]:
 
 
 class Robot(NamedTuple):
-    """A session of rmw_zenoh with the tokens that it holds."""
+    """A session of rmw_zenoh with the tokens that it holds, and another session that hears of them."""
 
     session: Any
     domain: int
     held: list[Any]
+    witness: Any
 
     def hold(self, token: str) -> None:
+        """It is there when the witness knows of it: a session tells its router when it likes."""
         self.held.append(self.session.liveliness().declare_token(token))
+        wait_until(lambda: any(reply.ok for reply in self.witness.liveliness().get(token)))
 
     def node(self, number: int, namespace: str, name: str) -> None:
         self.hold(f"{self._start(number, number, 'NN')}/{mangled(namespace)}/{name}")
@@ -129,12 +134,13 @@ def robot(address: str, domain: int = 0, **settings: Any) -> Iterator[Robot]:
         **settings,
     }
     session = zenoh.open(config(**given))
-    # Held here: a token that nobody holds is taken back.
-    made = Robot(session, domain, [])
+    witness = zenoh.open(config(mode="client", connect__endpoints=[address]))
     try:
-        yield made
+        # Held here: a token that nobody holds is taken back.
+        yield Robot(session, domain, [], witness)
     finally:
         session.close()
+        witness.close()
 
 
 def drive(there: Robot, name: str, number: int = 0) -> None:

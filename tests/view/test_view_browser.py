@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from graph_cases import healthy
 from paths import ROBOTS
 from selenium import webdriver
 from selenium.webdriver.common.by import By
@@ -14,6 +15,7 @@ from selenium.webdriver.support.select import Select
 from selenium.webdriver.support.wait import WebDriverWait
 
 from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.graph.snapshot import to_json
 
 BROWSER = shutil.which("chromium") or shutil.which("google-chrome")
 DRIVER = shutil.which("chromedriver")
@@ -73,4 +75,20 @@ def test_the_page_draws_and_tells(chromium: webdriver.Chrome, tmp_path: Path) ->
         "return data.robots[0].built[0].moving['left_wheel_joint_robot1'].turn.quaternion.y"
     )
     assert before != after
+    assert [it for it in chromium.get_log("browser") if it["level"] == "SEVERE"] == []
+
+
+def test_the_robots_head_a_report(chromium: webdriver.Chrome, tmp_path: Path) -> None:
+    """The frame inherits the policy of the report: what it forbids is in the log."""
+    fleet, graph, out = (str(tmp_path / it) for it in ("fleet.yaml", "graph.json", "report.html"))
+    robots = "robots: [{name: robot1, pose: {x: 0}}, {name: robot2, pose: {x: 2}}]"
+    Path(fleet).write_text(f"description: {ROBOTS / 'rover.urdf'}\n{robots}\n")
+    Path(graph).write_bytes(to_json(healthy("postfix")))
+    main(["check", fleet, "--snapshot", graph, "--report", out, "-q"])
+    chromium.get(Path(out).as_uri())
+    chromium.switch_to.frame(chromium.find_element(By.TAG_NAME, "iframe"))
+    WebDriverWait(chromium, 30).until(
+        lambda it: it.find_element(By.TAG_NAME, "body").get_attribute("data-ready")
+    )
+    assert chromium.execute_script(COLOURS) > 20
     assert [it for it in chromium.get_log("browser") if it["level"] == "SEVERE"] == []

@@ -41,6 +41,8 @@ from multibot_rewrite.findings.finding import ERROR
 REMAP_FORMS = ("table", "ros-args", "launch", "yaml", "json", "gazebo", "markdown", "bridge")
 # Those of the fleet file's ``params_style``.
 PARAMS_STYLES = ("full", "bringup")
+# Those of ``fleets/shapes.yaml``.
+SHAPES = ("clearpath", "husarion", "nav2", "turtlebot4")
 # Those of ``remap.ways``.
 WAYS = ("process", "host", "component", "spawner", "plugin")
 
@@ -70,6 +72,26 @@ _DESCRIPTION = OptionGroup(
     ),
 )
 _FLEET_FILE = "A fleet file (*.yaml) has its own robots, stacks and layout."
+_FLEET_TEXT = """\
+A fleet file, as multibot init writes it; only robots is required (docs/fleet-file.md):
+
+  layout: frames-per-robot
+  description: rover.urdf
+  companions: {params: params.yaml, rviz: one_robot.rviz}
+  robots:
+    - {name: robot1, pose: {x: 0.0, y: 0.0}}
+    - {name: robot2, pose: {x: 0.0, y: 2.0}}
+
+Then ros2 launch out/fleet.launch.py starts the robots, and multibot check out/plan.yaml tells\
+ whether they run as planned."""
+_COUNT = value(
+    "-n",
+    "--count",
+    metavar="COUNT",
+    about="so many robots: with init of each description (default: 2), with build the first ones of the"
+    " file and more like the last one (default: as the file has them)",
+    type=values.count,
+)
 _TABLE_CODES = "0 done; 1 findings at the level of --fail-on; 2 wrong use or unreadable input"
 _BESIDE = (
     " Findings go to standard error; with a --format other than text they go to standard output, and"
@@ -103,13 +125,8 @@ INIT = Command(
         OptionGroup(
             "answers, which are asked for on a terminal where they are not given",
             (
-                value(
-                    "-n",
-                    "--count",
-                    metavar="COUNT",
-                    about="robots of each description; default: 2",
-                    type=values.count,
-                ),
+                _COUNT,
+                ROBOTS,
                 choice("--layout", "NAME", LAYOUT_NAMES, "default: what the files are made for"),
                 choice(
                     "--simulator", "NAME", ("none", "gazebo"), "default: what the plugins are for"
@@ -138,7 +155,15 @@ BUILD = Command(
         Example("multibot build fleet.yaml -o out/ --check", "in CI: what is stale?"),
     ),
     (
-        OptionGroup("input", (argument("fleet", "FLEET", "the fleet file, YAML"), DISTRO, TRUST)),
+        OptionGroup(
+            "input",
+            (
+                argument("fleet", "FLEET", "the fleet file, YAML"),
+                _COUNT,
+                DISTRO,
+                TRUST,
+            ),
+        ),
         output_group(
             output("write everything into that folder", required=True),
             switch("--check", about="list what is stale, write nothing"),
@@ -150,12 +175,20 @@ BUILD = Command(
                 "how parameter files are written: full (with the full names of nodes) or bringup (for"
                 " the launch files of nav2_bringup, docs/nav2.md); default: that of the fleet file",
             ),
+            choice(
+                "--shape",
+                "VENDOR",
+                SHAPES,
+                "write files as the launch files of a vendor take them, and the commands that start"
+                " these (docs/fleet-file.md); default: that of the fleet file",
+            ),
         ),
         FINDINGS,
         GENERAL,
     ),
     "0 done; 1 findings at the level of --fail-on, nothing was written, or with --check something is"
     " stale; 2 wrong use or unreadable input",
+    more=_FLEET_TEXT,
     fail_on=ERROR,
 )
 PLAN = Command(
@@ -223,6 +256,7 @@ VIEW = Command(
                     "input", "INPUT", "the robot's description before any rewrite, or a fleet file"
                 ),
                 argument("words", "ROBOT", "names of robots; NAME:=VALUE is for xacro", "*"),
+                ROBOTS,
                 SAVED,
                 DISTRO,
                 TRUST,

@@ -234,8 +234,8 @@ LEARN = Command(
         GENERAL,
     ),
     "0 done; 2 wrong use, unreadable input, or a node that is not there or there twice; 3 the view"
-    " may be incomplete, what is seen is written all the same; 4 rclpy or its RMW is missing or does"
-    " not start",
+    " may be incomplete, what is seen is written all the same; 4 rclpy or its RMW, or zenoh, is"
+    " missing or does not start",
 )
 SNAPSHOT = Command(
     "snapshot",
@@ -282,7 +282,7 @@ SNAPSHOT = Command(
         GENERAL,
     ),
     "0 done; 2 wrong use; 3 something may be missing in the view, which is written all the same;"
-    " 4 rclpy or its RMW is missing or does not start",
+    " 4 rclpy or its RMW, or zenoh, is missing or does not start",
     more="The graph is settled when all of --expect are seen, or nothing changed for 3.5 s.",
 )
 ZENOH_FILES = Command(

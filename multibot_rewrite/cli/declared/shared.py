@@ -195,8 +195,8 @@ FINDINGS_OUTPUT = output("write the findings there, not to standard output")
 
 LIVE_CODES = (
     "0 as planned; 1 findings at the level of --fail-on; 2 wrong use or unreadable input;"
-    " 3 inconclusive: the view may be incomplete; 4 rclpy or its RMW, or zenoh, is missing or does not"
-    " start"
+    " 3 inconclusive: the view may be incomplete; 4 rclpy or its RMW, zenoh or rosbags is"
+    " missing or does not start"
 )
 PICTURES = OptionGroup(
     "pictures",
@@ -210,6 +210,10 @@ PICTURES = OptionGroup(
             type=values.path,
         ),
         value("--dot", metavar="FILE", about="write a graph for Graphviz", type=values.path),
+        value(
+            "--view", metavar="FLEET", type=values.path,
+            about="with --report: show the robots of this fleet file in 3D; default: that of the input",
+        ),
     ),
 )  # fmt: skip
 

@@ -205,7 +205,9 @@ def _qos(latched: bool, reliable: bool) -> Any:
 
     durability = DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE
     reliability = ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT
-    return QoSProfile(depth=100, durability=durability, reliability=reliability)
+    # A stand-in without tf2_msgs sends each fixed transform in a message of its own.
+    depth = 1000 if latched else 100
+    return QoSProfile(depth=depth, durability=durability, reliability=reliability)
 
 
 def middleware() -> str:

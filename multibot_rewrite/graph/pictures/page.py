@@ -7,7 +7,9 @@ import hashlib
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
+from html import escape
 from importlib.resources import files
+from typing import NamedTuple
 
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.graph.check import ALL_RULES
@@ -36,17 +38,24 @@ LOOKS = {Verdict.PLANNED: "good", Verdict.INCONCLUSIVE: "unsure", Verdict.WRONG:
 NO_SNIPPETS: Mapping[str, Sequence[str]] = {}
 
 
+class Framed(NamedTuple):
+    """A page within the page: its HTML, and what its policy lets it use, which the outer one has to
+    allow too. W3C, Content Security Policy Level 3, 7.8: a frame of ``srcdoc`` inherits the policy."""
+
+    html: str
+    styles: str
+    scripts: str
+
+
 def to_html(
     scene: Scene,
     rules: Mapping[str, Rule] = ALL_RULES,
     snippets: Mapping[str, Sequence[str]] = NO_SNIPPETS,
+    robots: Framed | None = None,
 ) -> bytes:
-    """The page; ``snippets`` are lines of files by ``file:line``."""
+    """The page; ``snippets`` are lines of files by ``file:line``, ``robots`` is below its head."""
     css, js = _asset("page.css"), _asset("page.js") + _asset("zoom.js")
-    policy = (
-        f"default-src 'none'; style-src '{_hash(css)}'; script-src '{_hash(js)}';"
-        " base-uri 'none'; form-action 'none'"
-    )
+    policy = _policy(source_hash(css), source_hash(js), robots)
     ids, sections = make_ids(scene), make_sections(scene)
     parts = (
         '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
@@ -56,6 +65,7 @@ def to_html(
         f"<title>{safe(_title(scene))}</title>\n<style>{css}</style>\n</head>\n<body>\n",
         *_header(scene, sections, rules),
         "<main>\n",
+        _frame(robots),
         *filters(scene),
         *finding_list(scene, ids, sections, Sources(rules, snippets)),
         *_drawings(scene, ids, sections),
@@ -79,8 +89,27 @@ def _asset(name: str) -> str:
     return files(__package__).joinpath(name).read_text("utf-8")
 
 
-def _hash(text: str) -> str:
-    return f"sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}"
+def source_hash(text: str) -> str:
+    """A style or script as a policy names it."""
+    return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
+
+
+def _policy(style: str, script: str, robots: Framed | None) -> str:
+    """Nothing but what is in the page."""
+    end = "base-uri 'none'; form-action 'none'"
+    if robots is None:
+        return f"default-src 'none'; style-src {style}; script-src {script}; {end}"
+    styles, scripts = f"{style} {robots.styles}", f"{script} {robots.scripts}"
+    images = "img-src data: blob:"
+    return f"default-src 'none'; style-src {styles}; {images}; script-src {scripts}; {end}"
+
+
+def _frame(robots: Framed | None) -> str:
+    if robots is None:
+        return ""
+    page = escape(robots.html)
+    frame = f'<iframe title="the robots in 3D" sandbox="allow-scripts" srcdoc="{page}"></iframe>'
+    return f'<section id="robots">\n<h2>The robots</h2>\n{frame}\n</section>\n'
 
 
 def _title(scene: Scene) -> str:

@@ -11,7 +11,7 @@ from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.beside.kinds import kind_of
 from multibot_rewrite.lint.beside.records import Beside, Remark
 from multibot_rewrite.lint.config.settings import Settings
-from multibot_rewrite.lint.registry import active_rules
+from multibot_rewrite.lint.groups import active_rules
 from multibot_rewrite.model import InputError
 
 # Up to a reason, which is behind a dash.

@@ -8,7 +8,6 @@ from typing import Any
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.model import Edit
-from multibot_rewrite.sources.known_arguments import KnownArguments
 
 _EDITS = Finding._fields.index("edits")
 _ENCODING = "latin-1"
@@ -53,6 +52,8 @@ def among_written(settings: Settings, path: str = "") -> list[Any]:
 
 def among_from(value: Any, settings: Settings) -> Settings | None:
     """The settings with what was kept; None where nothing is."""
+    from multibot_rewrite.sources.known_arguments import KnownArguments
+
     try:
         part, urdfs, known = value
         elsewhere = None if known is None else KnownArguments(tuple(known[0]), bool(known[1]))

@@ -12,14 +12,14 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.lazy import lazy_compile
+from multibot_rewrite.lint.config.settings import MARK
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.nearest import nearest
 
-MARK = b"urdf-lint"
 IGNORE, IGNORE_FILE = "ignore", "ignore-file"
 # No comment can suppress these: a file was not checked, or a comment is wrong.
 ALWAYS_REPORTED = frozenset(
-    {"MB001", "MB002", "MB003", "MB004", "MB101", "MB102", "MB103", "MB119"}
+    {"MB001", "MB002", "MB003", "MB004", "MB101", "MB102", "MB103", "MB104", "MB119"}
 )
 _OPEN, _EMPTY, _CLOSE, _COMMENT, _OTHER = "open", "empty", "close", "comment", "other"
 _PART = lazy_compile(

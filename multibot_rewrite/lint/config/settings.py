@@ -5,17 +5,22 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from fnmatch import fnmatchcase
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.selection import NO_LEVELS, matched
 from multibot_rewrite.naming import Naming, make_naming
 from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.sources.known_arguments import KnownArguments
+
+if TYPE_CHECKING:
+    from multibot_rewrite.sources.known_arguments import KnownArguments
 
 ALL = ("MB",)
 TARGETS = ("usd", "mjcf")
 TIME_LIMIT = 60.0
 EVERY_FILE = "*"
+# What every comment for the lint begins with.
+MARK = b"urdf-lint"
 
 
 class ArgumentSet(NamedTuple):
@@ -76,3 +81,8 @@ def is_silent(settings: Settings, file: str, code: str) -> bool:
     return any(
         matched(codes, code) >= 0 and matches(file, pattern) for pattern, codes in settings.per_file
     )
+
+
+def file_of(finding: Finding) -> str:
+    """The file that a finding is about, whether it was expanded or not."""
+    return finding.file.removesuffix(" (expanded)")

@@ -1,43 +1,11 @@
-"""Findings that comments and settings suppress, and comments that suppress nothing."""
+"""Findings that settings suppress; those that comments do are looked at where there are comments."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple
+from collections.abc import Mapping, Sequence
 
 from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.findings.place import locate
-from multibot_rewrite.findings.selection import is_on, level_of
-from multibot_rewrite.lazy import lazy_compile
-from multibot_rewrite.lint.config.directives import (
-    ALWAYS_REPORTED,
-    IGNORE_FILE,
-    MARK,
-    Code,
-    Directive,
-    read_directives,
-)
-from multibot_rewrite.lint.config.settings import Settings, is_silent
-from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.model import Edit
-
-UNUSED, BROKEN = "MB002", "MB003"
-# With one of these the file was not checked completely.
-_UNFINISHED = ALWAYS_REPORTED - {UNUSED, BROKEN}
-_CALL = lazy_compile(r"(.*):(\d+): ")
-# A xacro file whose root has no name is a part of another one.
-_NAMED = lazy_compile(rb"<robot\s(?:[^>\"']|\"[^\"]*\"|'[^']*')*?\bname\s*=")
-Position = tuple[int, int]
-
-
-class Comment(NamedTuple):
-    """A comment of a file, with the lines it is on and the element it is about."""
-
-    file: str
-    source: bytes
-    it: Directive
-    lines: tuple[int, int]
-    element: tuple[Position, Position] | None
+from multibot_rewrite.lint.config.settings import MARK, Settings, file_of, is_silent
 
 
 def unsuppressed(
@@ -47,138 +15,10 @@ def unsuppressed(
 
     The first of ``sources`` is the file that is linted, the others are those it includes.
     """
-    comments = [it for file, source in sources.items() for it in _comments(file, source)]
-    reported = [it for it in findings if not is_silent(settings, _file(it), it.code)]
-    if not comments:
+    reported = [it for it in findings if not is_silent(settings, file_of(it), it.code)]
+    if not any(MARK in source for source in sources.values()):
         return reported
-    left, used = _apply(reported, comments)
-    left += _selected(_broken(comments), BROKEN, settings)
-    if _UNFINISHED.isdisjoint(it.code for it in findings):
-        own = [it for it in comments if it.file == next(iter(sources)) and _is_whole(it, settings)]
-        left += _selected(_unused(own, used, settings), UNUSED, settings)
-    return left
+    # Few files have a comment for the lint.
+    from multibot_rewrite.lint.config.comments import after_comments
 
-
-def _file(finding: Finding) -> str:
-    return finding.file.removesuffix(" (expanded)")
-
-
-def _comments(file: str, source: bytes) -> Iterator[Comment]:
-    for it in read_directives(source) if MARK in source else ():
-        first, last = (locate(source, offset)[0] for offset in it.lines)
-        span = it.element and (locate(source, it.element[0]), locate(source, it.element[1]))
-        yield Comment(file, source, it, (first, last), span)
-
-
-def _apply(
-    findings: Iterable[Finding], comments: Iterable[Comment]
-) -> tuple[list[Finding], set[tuple[str, int]]]:
-    """The findings that are left, and the codes that suppressed one, by file and offset."""
-    by_code: dict[str, list[tuple[Comment, Code]]] = {}
-    for comment in comments:
-        for code in comment.it.codes:
-            by_code.setdefault(code.text, []).append((comment, code))
-    left, used = [], set()
-    for finding in findings:
-        there = by_code.get(finding.code, ())
-        hits = {(it.file, code.start) for it, code in there if _reaches(it, finding)}
-        used |= hits
-        left += [] if hits else [finding]
-    return left, used
-
-
-def _reaches(comment: Comment, finding: Finding) -> bool:
-    """A comment at a macro definition or at its call reaches findings in the macro's output."""
-    if comment.it.word == IGNORE_FILE:
-        return _file(finding) == comment.file
-    if finding.file == comment.file and _holds(comment, (finding.line, finding.column)):
-        return True
-    calls = (_CALL.match(call) for call in finding.calls)
-    return any(it and it[1] == comment.file and _holds_line(comment, int(it[2])) for it in calls)
-
-
-def _holds(comment: Comment, at: Position) -> bool:
-    first, last = comment.lines
-    element = comment.element
-    return first <= at[0] <= last or (element is not None and element[0] <= at < element[1])
-
-
-def _holds_line(comment: Comment, line: int) -> bool:
-    spans = [comment.lines]
-    if comment.element:
-        spans.append((comment.element[0][0], comment.element[1][0]))
-    return any(first <= line <= last for first, last in spans)
-
-
-def _selected(found: Iterable[Finding], code: str, settings: Settings) -> Iterator[Finding]:
-    if not is_on(settings, code):
-        return
-    level = level_of(settings, code, RULES[code].level)
-    for finding in found:
-        if not is_silent(settings, finding.file, code):
-            yield finding._replace(code=code, level=level)
-
-
-def _broken(comments: Iterable[Comment]) -> Iterator[Finding]:
-    for comment in comments:
-        for fault in comment.it.faults:
-            line, column = locate(comment.source, fault.start)
-            yield Finding(BROKEN, "", fault.message, fault.hint, comment.file, line, column)
-
-
-def _is_whole(comment: Comment, settings: Settings) -> bool:
-    """Do all expansions of its file have what the comment is about, and is the file expanded?"""
-    if comment.file in settings.included:
-        return False
-    if not comment.file.endswith(".xacro"):
-        return True
-    return _NAMED.search(comment.source) is not None and not comment.it.sometimes
-
-
-def _unused(
-    comments: Iterable[Comment], used: set[tuple[str, int]], settings: Settings
-) -> Iterator[Finding]:
-    for comment in comments:
-        codes = comment.it.codes
-        idle = [it for it in codes if (comment.file, it.start) not in used]
-        idle = [it for it in idle if comment.it.idle or _is_asked(it.text, comment.file, settings)]
-        for code, edits in zip(idle, _removals(comment, idle), strict=True):
-            line, column = locate(comment.source, code.start)
-            message = f"this comment suppresses no {code.text} finding"
-            hint = "delete it" if not comment.it.idle else "put it on the line above the element"
-            yield Finding(UNUSED, "", message, hint, comment.file, line, column, edits=edits)
-
-
-def _is_asked(code: str, file: str, settings: Settings) -> bool:
-    """Is a rule on in that file, with the settings that it needs and without other files?"""
-    rule = RULES[code]
-    possible = not rule.beside and all(getattr(settings, it, True) for it in rule.options)
-    return possible and is_on(settings, code) and not is_silent(settings, file, code)
-
-
-def _removals(comment: Comment, idle: Sequence[Code]) -> Iterator[tuple[Edit, ...]]:
-    """For each of the codes the edit that removes it; all can be applied together."""
-    codes = comment.it.codes
-    if comment.it.faults or len(idle) == len(codes):
-        yield from [() if comment.it.faults else _removal(comment)] * len(idle)
-        return
-    kept = next(at for at, it in enumerate(codes) if it not in idle)
-    for code in idle:
-        at = codes.index(code)
-        # With the spaces up to the next code; after the first code that stays, from the one before.
-        span = (code.start, codes[at + 1].start) if at < kept else (codes[at - 1].end, code.end)
-        yield (Edit(*span, b"", None),)
-
-
-def _removal(comment: Comment) -> tuple[Edit, ...]:
-    """The whole comment, with its line if nothing else is on it; none where it is inside a text."""
-    source, it = comment.source, comment.it
-    start = len(source[: it.start].rstrip())
-    end = len(source) - len(source[it.end :].lstrip())
-    around = source[max(start - 1, 0) : start], source[end : end + 1]
-    if around[0] not in (b">", b"") or around[1] not in (b"<", b""):
-        return ()
-    first, last = it.lines
-    if not source[first : it.start].strip() and not source[it.end : last].strip():
-        return (Edit(first, min(last + 1, len(source)), b"", None),)
-    return (Edit(max(start, first), it.end, b"", None),)
+    return after_comments(reported, {it.code for it in findings}, sources, settings)

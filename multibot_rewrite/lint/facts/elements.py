@@ -15,12 +15,13 @@ _ByTag = Mapping[str, Sequence[_Element]]
 class Elements:
     """The elements of one document."""
 
-    __slots__ = ("_every", "_tops", "root")
+    __slots__ = ("_every", "_first", "_tops", "root")
 
     def __init__(self, document: Document) -> None:
         self.root = document.root
         self._every = _by_tag(document.elements)
         self._tops = _by_tag(document.root.iterchildren("*"))
+        self._first: dict[str, Mapping[_Element | None, _Element]] = {}
 
     def every(self, *tags: str) -> list[_Element]:
         """All of these tags, tag by tag in document order."""
@@ -29,6 +30,14 @@ class Elements:
     def tops(self, *tags: str) -> list[_Element]:
         """The same, only of the root's children."""
         return [it for tag in tags for it in self._tops.get(tag, ())]
+
+    def first(self, tag: str) -> Mapping[_Element | None, _Element]:
+        """The first child of that tag, by its parent: for rules that ask every element for one."""
+        found = self._first.get(tag)
+        if found is None:
+            below = self._every.get(tag, ())
+            found = self._first[tag] = {it.getparent(): it for it in reversed(below)}
+        return found
 
 
 def _by_tag(elements: Iterable[_Element]) -> _ByTag:

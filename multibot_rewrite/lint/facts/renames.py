@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from multibot_rewrite.lint.facts.memo import memoized
 from multibot_rewrite.lint.records import Subject
-from multibot_rewrite.steps.renames import RenameMap, make_renames
+
+if TYPE_CHECKING:
+    from multibot_rewrite.steps.renames import RenameMap
 
 
 @memoized
 def rename_map(subject: Subject) -> RenameMap:
     """The rename map of a subject, made once."""
+    from multibot_rewrite.steps.renames import make_renames  # most lints name no robots
+
     return make_renames(subject.inventory, subject.settings.naming)

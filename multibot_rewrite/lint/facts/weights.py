@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from multibot_rewrite.checks.numbers import Vector
-from multibot_rewrite.checks.poses import origin_of, plus, point_in, scaled
+from multibot_rewrite.checks.poses import plus, point_in, pose_in, scaled
 from multibot_rewrite.lint.facts.memo import memoized
 from multibot_rewrite.lint.facts.poses import link_poses
 from multibot_rewrite.lint.records import Subject
@@ -28,11 +28,11 @@ def carried(subject: Subject) -> Mapping[str, Weight]:
     """Each link with all that is below it, in the root's frame, all joints at 0."""
     poses = link_poses(subject)
     found = dict.fromkeys(poses, NO_WEIGHT)
-    afloat = _without_gravity(subject)
+    afloat, origins = _without_gravity(subject), subject.elements.first("origin")
     for link, inertial in ((it, it.inertial) for it in subject.robot.links):
         if inertial is None or link.name in afloat:
             continue
-        own = origin_of(inertial.element)
+        own = pose_in(origins.get(inertial.element))
         if own is not None and inertial.mass and inertial.mass > 0 and link.name in poses:
             found[link.name] = Weight(inertial.mass, point_in(poses[link.name], own.at))
     for name in reversed([*poses]):  # children come after their parents
@@ -44,6 +44,8 @@ def carried(subject: Subject) -> Mapping[str, Weight]:
 
 def _without_gravity(subject: Subject) -> set[str]:
     """The links that a block takes the gravity from, as sdformat's parser_urdf reads it."""
+    if not subject.elements.every("turnGravityOff", "gravity"):
+        return set()
     blocks = [it for it in subject.elements.tops("gazebo") if it.get("reference")]
     return {
         block.get("reference", "")

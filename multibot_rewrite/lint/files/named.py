@@ -8,6 +8,8 @@ from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.outside import outside
 
 _NAME = lazy_compile(rb"<robot\b[^>]*?\sname\s*=\s*[\"']([^\"'$]+)[\"']")
+# What the name of an SRDF has in it.
+SRDF_MARK = ".srdf"
 # The root element is in the first bytes: the whole file need not be read.
 HEAD = 4096
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 from multibot_rewrite.checks.links_and_joints import Robot, read_robot
 from multibot_rewrite.lint.beside.kinds import is_beside
 from multibot_rewrite.lint.config.settings import Settings, matches
-from multibot_rewrite.lint.files.named import files_like, robot_name
+from multibot_rewrite.lint.files.named import SRDF_MARK, files_like, robot_name
 from multibot_rewrite.model import InputError
 from multibot_rewrite.outside import is_file
 from multibot_rewrite.rewriters.builtin import builtin_tree
@@ -31,7 +31,6 @@ ENDINGS = ("*.urdf", "*.xacro")
 MOST, TRIED = 200, 6
 # How many of an SRDF's names its URDF may lack: one in PART, or SLIPS where there are few.
 PART, SLIPS = 4, 2
-SRDF_MARK = ".srdf"
 
 
 class Pair(NamedTuple):

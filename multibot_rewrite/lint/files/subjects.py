@@ -15,7 +15,7 @@ from multibot_rewrite.checks.links_and_joints import read_robot
 from multibot_rewrite.findings.rule import SRDF, URDF, XACRO
 from multibot_rewrite.lint.config.settings import ArgumentSet, Settings, matches
 from multibot_rewrite.lint.facts.elements import Elements
-from multibot_rewrite.lint.files.pairing import SRDF_MARK, find_pair, reach_of
+from multibot_rewrite.lint.files.named import SRDF_MARK
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.schema.faults import read_faults
 from multibot_rewrite.model import InputError
@@ -73,7 +73,9 @@ def _expansions(path: str, data: bytes, settings: Settings) -> Iterator[Subject 
 
 
 def _expanded(path: str, data: bytes, given: ArgumentSet, settings: Settings) -> Subject:
-    from multibot_rewrite.sources.expand import expand_traced  # a URDF needs none of it
+    # A URDF needs none of it.
+    from multibot_rewrite.lint.files.pairing import reach_of
+    from multibot_rewrite.sources.expand import expand_traced
 
     find = partial(package_folder, file=path, roots=settings.readable)
     # Warnings of xacro are not findings, and would be printed between them.
@@ -119,6 +121,8 @@ def make_subject(document: Document, settings: Settings) -> Subject:
         or has_xacro(document.source)
     ):
         return Subject(URDF, document, elements, inventory, tree, robot, settings, {})
+    from multibot_rewrite.lint.files.pairing import find_pair  # neither of this
+
     pair = find_pair(document.file.removesuffix(EXPANDED), inventory, settings)
     inventory = collect(document, tree, pair.declared or NO_URDF)
     return Subject(SRDF, document, elements, inventory, tree, robot, settings, {}, pair.robot)

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from textwrap import indent
-
 
 def block(opening: str, *inside: str) -> str:
     """An element with what is inside of it, indented; ``opening`` is its start tag."""
     if not inside:
         return f"{opening[:-1]}/>\n"
     tag = opening[1:-1].partition(" ")[0]
-    lines = "".join(indent(f"{it.rstrip()}\n", "  ") for it in inside)
+    lines = "".join(map(_indented, inside))
     return f"{opening}\n{lines}</{tag}>\n"
+
+
+def _indented(text: str) -> str:
+    # What textwrap.indent makes, which is slow to import, as examples have no empty lines.
+    return "".join(f"  {line}\n" for line in text.rstrip().split("\n"))
 
 
 def a_link(name: str) -> str:

@@ -18,7 +18,7 @@ rule_crashed = declare(
     formats=(),
 )
 
-# Reported after all rules have run: see ``config.suppress``.
+# Reported after all rules have run: see ``config.comments``.
 unused_suppression = declare(
     "MB002",
     "unused-suppression",

@@ -16,6 +16,7 @@ from multibot_rewrite.lazy import lazy_compile
 
 _FOLDER = Path(__file__).parent
 SDF, PLUGINS, UNITS = "sdf.schema", "plugins.schema", "units.schema"
+KINDS = ("words", "hardware", "ros1")
 NO_WORDS: tuple[str, ...] = ()
 _VERSION = lazy_compile(r"\d+\.\d+")
 
@@ -45,12 +46,14 @@ class Row(NamedTuple):
 
 
 class Described(NamedTuple):
-    """A section: its names, the words behind them, its rows by name, the names that are required.
+    """A section: its kind, if a word stands before its names, its names, the words behind them, its
+    rows by name, the names that are required.
 
     ``a/b`` is a row of what is in ``a``: ``blocks`` has the names that are read in each such ``a``, at
     "" those of the section itself, and ``blocks_of`` where each name is read.
     """
 
+    kind: str
     names: tuple[str, ...]
     about: tuple[str, ...]
     rows: Mapping[str, tuple[Row, ...]]
@@ -67,7 +70,7 @@ def chunks(file: str) -> Mapping[str, str]:
     for part in parts:
         head = part[: part.index("]")]
         kind, _, rest = head.partition(" ")
-        names = [f"{kind} {it}" for it in rest.split()] if kind in ("words", "hardware") else None
+        names = [f"{kind} {it}" for it in rest.split()] if kind in KINDS else None
         for name in names or head.split():
             found[name] = part
     return found
@@ -87,8 +90,11 @@ def described(file: str, name: str) -> Described | None:
     for word in about.split():
         shared = described(file, word[1:]) if word[0] == "+" else None
         rows = {**shared.rows, **rows} if shared else rows
+    kind, _, rest = names.partition(" ")
+    kind, names = (kind, rest) if kind in KINDS else ("", names)
     needed = tuple(name for name, its in rows.items() if any(it.required for it in its))
-    return Described(tuple(names.split()), tuple(about.split()), rows, needed, *_nested(rows))
+    own, rest_of = tuple(names.split()), tuple(about.split())
+    return Described(kind, own, rest_of, rows, needed, *_nested(rows))
 
 
 def _nested(rows: Iterable[str]) -> tuple[dict[str, tuple[str, ...]], dict[str, tuple[str, ...]]]:

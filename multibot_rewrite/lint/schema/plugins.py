@@ -22,14 +22,15 @@ from multibot_rewrite.releases import has_release, releases_with
 from multibot_rewrite.rewriters.text import text_at, text_of
 from multibot_rewrite.rewriters.tree import plugin_keys
 
-GZ, GAZEBO_ROS = "gz-sim-", "gazebo_ros_"
+GZ, GAZEBO_ROS, ROS_1 = "gz-sim-", "gazebo_ros_", "ros1 "
 HARDWARE = "hardware "
 
 
-def section_of_plugin(element: _Element) -> Described | None:
+def section_of_plugin(element: _Element, of_ros_1: bool = False) -> Described | None:
     """What is known of a plugin, by its library, else by its class."""
     known = chunks(PLUGINS)
-    key = next((it for it in plugin_keys(element) if it in known), "")
+    keys = (ROS_1 * of_ros_1 + it for it in plugin_keys(element))
+    key = next((it for it in keys if it in known), "")
     return described(PLUGINS, key) if key else None
 
 
@@ -43,9 +44,9 @@ def hardware_classes() -> list[str]:
     return [it.removeprefix(HARDWARE) for it in chunks(PLUGINS) if it.startswith(HARDWARE)]
 
 
-def plugin_faults(element: _Element, release: str) -> Iterator[Fault]:
+def plugin_faults(element: _Element, release: str, of_ros_1: bool = False) -> Iterator[Fault]:
     """The faults of a plugin's parameters; none where the plugin is not known."""
-    section = section_of_plugin(element)
+    section = section_of_plugin(element, of_ros_1)
     if section is None:
         return
     yield from _children(element, "", section, release)
@@ -146,7 +147,7 @@ def _unknown(child: _Element, above: str, name: str, section: Described) -> Iter
     parent, near = child.getparent(), slip_of(name, section.blocks[above])
     if parent is not None and near and parent.find(near) is not None:
         near = ""  # that one is there already
-    other = "" if above else _of_another(name, section.names[0])
+    other = "" if above else _of_another(name, section.kind, section.names[0])
     if other:
         hint = f"{other} does; did you mean {near!r}?" if near else f"{other} does"
         yield Fault("simulator", child, None, message, hint)
@@ -158,26 +159,31 @@ def _unknown(child: _Element, above: str, name: str, section: Described) -> Iter
 
 
 @lru_cache(maxsize=512)
-def _of_another(name: str, library: str) -> str:
-    """The plugin of the other simulator that does the same and has this parameter."""
-    own = _subject(library)
-    for other in _counterparts(library.startswith(GZ)):
+def _of_another(name: str, kind: str, library: str) -> str:
+    """The plugin of the other ROS or simulator that does the same and has this parameter."""
+    for other in _counterparts(kind, library):
         section = described(PLUGINS, other)
-        if own and _subject(other) & own and section and name in section.rows:
-            return other
+        # A block is no parameter that was taken from there: <imu> is an element of SDF as well.
+        if section and name in section.rows and name not in section.blocks:
+            return title(section)
     return ""
 
 
 @lru_cache
-def _counterparts(is_gz: bool) -> tuple[str, ...]:
-    start = GAZEBO_ROS if is_gz else GZ
-    return tuple(sorted(it for it in chunks(PLUGINS) if it.startswith(start) and "::" not in it))
+def _counterparts(kind: str, library: str) -> tuple[str, ...]:
+    """Those of the same name or subject: in the other ROS, in Gazebo for one of Classic, and the
+    reverse."""
+    own = _subject(library)
+    starts = (GAZEBO_ROS, ROS_1 + GAZEBO_ROS) if library.startswith(GZ) else (GZ,)
+    found = [it for it in chunks(PLUGINS) if it.startswith(starts) and "::" not in it]
+    same = sorted(it for it in found if own and _subject(it.removeprefix(ROS_1)) == own)
+    return (library if kind else ROS_1 + library, *same)
 
 
-def _subject(library: str) -> frozenset[str]:
-    """What a plugin is about by the words of its library; none where they say too little."""
+def _subject(library: str) -> str:
+    """What a plugin is about by the words of its library."""
     bare = library.removeprefix(GZ).removeprefix(GAZEBO_ROS).removesuffix("-system")
-    return frozenset({fold(bare).removesuffix("_sensor")})
+    return fold(bare).removesuffix("_sensor")
 
 
 def _missing(
@@ -194,4 +200,4 @@ def _missing(
 
 def title(section: Described) -> str:
     """What a section is about, as a message has it."""
-    return section.names[-1] if section.names[0] == HARDWARE.strip() else section.names[0]
+    return section.names[0] + " of ROS 1" * (section.kind == ROS_1.strip())

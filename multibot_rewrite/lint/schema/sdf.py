@@ -58,8 +58,10 @@ def version_of_release(release: str) -> Version:
 
 def block_faults(blocks: list[_Element], robot: Robot, release: str) -> tuple[Fault, ...]:
     """Every fault in these ``<gazebo>`` elements."""
-    version = version_of_release(release)
-    return tuple(fault for block in blocks if len(block) for fault in _block(block, robot, version))
+    version, taken = version_of_release(release), described(SDF, "urdf")
+    assert taken
+    filled = (it for it in blocks if len(it))
+    return tuple(fault for block in filled for fault in _block(block, robot, version, taken))
 
 
 def model_faults(root: _Element, release: str) -> tuple[Fault, ...]:
@@ -69,18 +71,18 @@ def model_faults(root: _Element, release: str) -> tuple[Fault, ...]:
     return tuple(fault for model in models for fault in _element(model, "model", version))
 
 
-def _block(block: _Element, robot: Robot, version: Version) -> Iterator[Fault]:
+def _block(block: _Element, robot: Robot, version: Version, taken: Described) -> Iterator[Fault]:
     name = block.get("reference", "")
     if name and name not in robot.link and name not in robot.joint:
         return  # MB212 reports it
     home = "model" if not name else "link" if name in robot.link else "joint"
-    taken, known = described(SDF, "urdf"), described(SDF, home)
-    assert taken and known
     for child in block.iterchildren("*"):
         tag = str(child.tag)
         if tag in taken.rows:
             yield from _taken(child, taken.rows[tag][0], home)
         elif tag not in _MERGED:
+            known = described(SDF, home)
+            assert known
             yield from _child(child, home, known, version, taken.rows)
 
 

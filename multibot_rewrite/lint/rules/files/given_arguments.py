@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from multibot_rewrite.checks.arguments import unread_arguments
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import WARNING
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.config.settings import EVERY_FILE, ArgumentSet
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.nearest import did_you_mean_one_of
-from multibot_rewrite.sources.known_arguments import known_arguments
 
 _HEAD = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
 _BODY = """\
@@ -39,7 +37,12 @@ _BODY = """\
 )
 def argument_not_read(subject: Subject) -> Iterator[Problem]:
     """Arguments of one expansion; one that is for many files need not be for each."""
-    known = known_arguments(subject.sources.values()) if subject.given else None
+    if not subject.given:
+        return
+    from multibot_rewrite.checks.arguments import unread_arguments
+    from multibot_rewrite.sources.known_arguments import known_arguments
+
+    known = known_arguments(subject.sources.values())
     lacking = known.lacks(subject.given) if known else ()
     others = subject.settings.elsewhere
     if known and others is not None:

@@ -67,7 +67,16 @@ def _materials(elements: Elements) -> list[etree._Element]:
 def _looks(subject: Subject) -> list[etree._Element]:
     """The named materials of visuals."""
     named = (it for it in subject.elements.every("material") if it.get("name") is not None)
-    return [it for it in named if [above.tag for above in it.iterancestors()] == _LOOKS]
+    return [it for it in named if _tags_above(it) == _LOOKS]
+
+
+def _tags_above(element: etree._Element) -> list[str]:
+    found: list[str] = []
+    above = element.getparent()
+    while above is not None:
+        found.append(str(above.tag))
+        above = above.getparent()
+    return found
 
 
 def _misspelled(subject: Subject) -> set[etree._Element | None]:

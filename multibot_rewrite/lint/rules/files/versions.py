@@ -179,8 +179,8 @@ def ignored_limit(subject: Subject) -> Iterator[Problem]:
     read = min(version_of(subject.document.root), _reads(subject)) >= newest
     for joint in subject.robot.joints if not read else ():
         limit = joint.parts.get("limit")
-        names = [it for it in ("acceleration", "deceleration", "jerk") if limit is not None]
-        there = [it for it in names if limit is not None and limit.get(it) is not None]
+        given = () if limit is None else limit.keys()
+        there = [it for it in ("acceleration", "deceleration", "jerk") if it in given]
         if limit is not None and there:
             verb = "are" if there[1:] else "is"
             message = f"joint {joint.name!r}: {' and '.join(there)} {verb} not read"

@@ -33,10 +33,10 @@ parameter_of_other_simulator = rule(
     "parameter-of-other-simulator",
     WARNING,
     what="A plugin of Gazebo has a parameter that only the plugin of Gazebo Classic with the same task "
-    "reads, or the reverse.",
+    "reads, or the reverse; or one of ROS 2 has a parameter of ROS 1's, or the reverse.",
     why="It has no effect: what a file was migrated for is at its default. Classic's wheel_diameter "
-    "is no wheel_radius.",
-    fix="Use the parameter of this simulator, if it has one.",
+    "is no wheel_radius; commandTopic of ROS 1 leaves the robot of ROS 2 at cmd_vel.",
+    fix="Use the parameter of this simulator and ROS, if it has one.",
     bad=_drive("<wheel_diameter>0.2</wheel_diameter>"),
     good=_drive("<wheel_radius>0.1</wheel_radius>"),
     line=3,

@@ -54,25 +54,21 @@ def element_faults(subject: Subject) -> ByKind:
 def parameter_faults(subject: Subject) -> ByKind:
     """What is wrong with the parameters of plugins and of hardware."""
     release, systems = subject.settings.distro, subject.elements.tops("ros2_control")
-    plugins = described_plugins(subject)
+    plugins = simulator_plugins(subject)
     if not plugins and not systems:
         return {}
     from multibot_rewrite.lint.schema.plugins import hardware_faults, plugin_faults
 
-    found = [it for one in plugins for it in plugin_faults(one, release)]
+    of_ros_1 = _of_ros_1(subject)
+    found = [it for one in plugins for it in plugin_faults(one, release, one in of_ros_1)]
     for hardware in (it for system in systems for it in system.iterchildren("hardware")):
         found += hardware_faults(hardware, release)
     return _by_kind(found)
 
 
-@memoized
-def described_plugins(subject: Subject) -> list[_Element]:
-    """The plugins of Gazebo, those of ROS 1 aside: nobody described their parameters here."""
-    plugins = simulator_plugins(subject)
-    if not plugins:
-        return []
-    of_ros_1 = {element for element, section in subject.inventory.served if section.ros == "1"}
-    return [it for it in plugins if it not in of_ros_1]
+def _of_ros_1(subject: Subject) -> set[_Element]:
+    """The plugins that are written as ROS 1's: their libraries have the same names in ROS 2."""
+    return {element for element, section in subject.inventory.served if section.ros == "1"}
 
 
 def _by_kind(faults: Iterable[Fault]) -> ByKind:

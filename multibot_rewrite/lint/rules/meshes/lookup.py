@@ -28,37 +28,50 @@ class Lookup(NamedTuple):
 
 
 @memoized
-def _lookups(subject: Subject) -> tuple[Lookup, ...]:
+def lookups(subject: Subject) -> tuple[Lookup, ...]:
     """Each file that can be looked for once, by the first element that names it."""
     file, roots = subject.document.file.removesuffix(EXPANDED), subject.settings.roots
     first = {it.name: it for it in reversed(used_files(subject)) if it.scheme in ("package", "")}
     asked = (it for it in reversed(first.values()) if "$" not in it.name and "\\" not in it.name)
-    folders_of = cache(lambda name: package_folders(name, file, roots))
+    folders_of = cache(lambda name, first: _packages(name, first, file, roots))
     return tuple(_looked_up(it, *_where(it, file, folders_of)) for it in asked)
 
 
 def _looked_up(it: Used, folders: tuple[str, ...], path: str) -> Lookup:
+    if not folders:
+        return Lookup(it, folders, path, "")
     found = [find_in(folder, path) for folder in folders]
     exact = os.path.normpath(path)
     return Lookup(it, folders, path, exact if exact in found else next(filter(None, found), ""))
 
 
 def _where(
-    it: Used, file: str, folders_of: Callable[[str], tuple[str, ...]]
+    it: Used, file: str, folders_of: Callable[[str, str], tuple[str, ...]]
 ) -> tuple[tuple[str, ...], str]:
     """The folders in which a file may be, and its path below them."""
     if it.scheme == "":
         here = os.path.dirname(os.path.abspath(file))
         return (here, os.path.dirname(here)), it.path
-    from urllib.parse import unquote  # slow to import, and many robots have no meshes
-
-    package, _, path = unquote(it.path).partition("/")
+    package, _, path = _unquoted(it.path).partition("/")
     if not package or not path:
         return (), ""
     path = path.lstrip("/")
-    first = path.partition("/")[0].lower()
-    # A folder without a manifest must at least have the first folder of the path.
-    return tuple(it for it in folders_of(package) if _may_be_the_package(entries(it), first)), path
+    return folders_of(package, path.partition("/")[0].lower()), path
+
+
+def _unquoted(path: str) -> str:
+    if "%" not in path:
+        return path
+    from urllib.parse import unquote  # slow to import, and few names need it
+
+    return unquote(path)
+
+
+def _packages(name: str, first: str, file: str, roots: tuple[str, ...]) -> tuple[str, ...]:
+    """The folders that may be a package; ``first`` is the first folder of a path below it."""
+    # A folder without a manifest must at least have that.
+    found = package_folders(name, file, roots)
+    return tuple(it for it in found if _may_be_the_package(entries(it), first))
 
 
 def _may_be_the_package(names: frozenset[str], first: str) -> bool:
@@ -83,7 +96,7 @@ def _may_be_the_package(names: frozenset[str], first: str) -> bool:
 def mesh_missing(subject: Subject) -> Iterator[Problem]:
     """Files of packages that were found, and relative ones."""
     lost: dict[tuple[str, ...], list[Lookup]] = {}
-    for it in _lookups(subject):
+    for it in lookups(subject):
         if it.folders and not it.found and not _elsewhere(subject, it):
             lost.setdefault(_missing_folder(it) or (it.path,), []).append(it)
     for first, *others in lost.values():
@@ -119,7 +132,7 @@ def _missing_folder(it: Lookup) -> tuple[str, ...]:
 )
 def mesh_elsewhere(subject: Subject) -> Iterator[Problem]:
     """Relative files that are in the package, but not where the path says."""
-    for it in _lookups(subject):
+    for it in lookups(subject):
         found = _elsewhere(subject, it) if it.folders and not it.found else ""
         if found:
             yield problem(it.used, f"{it.used.name!r} is not there from here", f"use {found}")
@@ -172,7 +185,7 @@ def _nearest(it: Lookup) -> str:
 )
 def package_not_found(subject: Subject) -> Iterator[Problem]:
     """Once for each package."""
-    lost = [it for it in _lookups(subject) if it.path and not it.folders]
+    lost = [it for it in lookups(subject) if it.path and not it.folders]
     for package, it in {_package(it): it for it in reversed(lost)}.items():
         yield problem(it.used, f"package {package!r} was not found", "give its folder with --roots")
 
@@ -198,7 +211,7 @@ def _package(it: Lookup) -> str:
 )
 def mesh_name_case(subject: Subject) -> Iterator[Problem]:
     """Paths that differ from the file only in upper and lower case."""
-    for it in _lookups(subject):
+    for it in lookups(subject):
         if it.found and it.found != os.path.normpath(it.path):
             message = f"{it.path!r} is {it.found!r} on the disk"
             yield problem(it.used, message, f"use {it.found!r}")

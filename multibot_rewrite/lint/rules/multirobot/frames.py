@@ -42,8 +42,10 @@ def robot_name_in_frame(subject: Subject) -> Iterator[Problem]:
     """Frames that are a link with something and a slash in front."""
     links = subject.inventory.declared["link"]
     for claim in subject.inventory.claims if subject.inventory.hosts else ():
+        if "/" not in claim.value or "frame" not in claim.site.kinds:
+            continue
         value = claim.value.strip("/")
-        if "/" not in value or "frame" not in claim.site.kinds or value in links:
+        if "/" not in value or value in links:
             continue
         link = value.partition("/")[2].strip("/")
         if link in links and is_plain(value) and claim_is_fixed(subject, claim):

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial
+from typing import TYPE_CHECKING
 
-from multibot_rewrite.checks import hazards, robots
+from multibot_rewrite.checks import hazards
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import ERROR, WARNING
 from multibot_rewrite.findings.rule import SRDF, rule
@@ -15,9 +16,11 @@ from multibot_rewrite.lint.rules.multirobot.shared import AS_WRITTEN, ONE_TF, TW
 from multibot_rewrite.naming import Naming, make_naming, overlap
 from multibot_rewrite.rewriters.spelling import ROBOT_SLOT
 from multibot_rewrite.steps.collect import Inventory
-from multibot_rewrite.steps.renames import RenameMap
 
-Hazard = Callable[[Inventory, RenameMap], Iterable[Problem]]
+if TYPE_CHECKING:
+    from multibot_rewrite.steps.renames import RenameMap
+
+Hazard = Callable[[Inventory, "RenameMap"], Iterable[Problem]]
 ByNaming = Callable[[Inventory, Naming], Iterable[Problem]]
 
 
@@ -71,6 +74,8 @@ def name_taken(subject: Subject) -> Iterator[Problem]:
     """What a rewrite for the robots rejects as MB420."""
     names = subject.settings.robots
     if names:
+        from multibot_rewrite.checks import robots  # most lints name none
+
         yield from robots.taken_names(subject.inventory, rename_map(subject), names)
 
 
@@ -94,6 +99,8 @@ def robots_share_a_name(subject: Subject) -> Iterator[Problem]:
     naming, names = subject.settings.naming, subject.settings.robots
     pairs = overlap(naming, names) if len(names) > 1 else []
     if pairs:
+        from multibot_rewrite.checks import robots
+
         yield from robots.meeting(subject.inventory, rename_map(subject), pairs)
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
+from operator import itemgetter
 
 from lxml.etree import _Element
 
@@ -21,9 +22,18 @@ ONE_TF = make_naming("frames-per-robot")
 
 def claims_of(subject: Subject, kinds: tuple[str, ...]) -> list[Claim]:
     """Claims whose first kind is one of ``kinds``; only plugins, sensors and hardware have them."""
-    if not subject.inventory.hosts:
-        return []
-    return [it for it in subject.inventory.claims if it.site.kinds[0] in kinds]
+    by_kind = _claims_by_kind(subject) if subject.inventory.hosts else {}
+    found = [it for kind in kinds for it in by_kind.get(kind, ())]
+    return [claim for _, claim in sorted(found, key=itemgetter(0))]
+
+
+@memoized
+def _claims_by_kind(subject: Subject) -> Mapping[str, Sequence[tuple[int, Claim]]]:
+    """All claims by their first kind, each with its number."""
+    found: dict[str, list[tuple[int, Claim]]] = {}
+    for at, claim in enumerate(subject.inventory.claims):
+        found.setdefault(claim.site.kinds[0], []).append((at, claim))
+    return found
 
 
 def is_plain(text: str) -> bool:

@@ -20,7 +20,6 @@ from multibot_rewrite.lint.rules.multirobot.shared import (
 )
 from multibot_rewrite.model import Claim
 from multibot_rewrite.naming import TF_TOPICS
-from multibot_rewrite.remap.bridged_topics import GZ_LIBRARIES, plugin_libraries
 from multibot_rewrite.rosnames import split_remap
 
 ROS_KINDS = ("topic", "service")
@@ -121,6 +120,8 @@ def _is_gz(claim: Claim) -> bool:
 
 def _is_classic(subject: Subject) -> bool:
     """Is it for Gazebo Classic, which itself puts the model's name before sensor topics?"""
+    from multibot_rewrite.remap.bridged_topics import GZ_LIBRARIES, plugin_libraries
+
     keys = plugin_libraries(subject.inventory)
     return bool(keys) and not any(key.startswith(GZ_LIBRARIES) for key in keys)
 

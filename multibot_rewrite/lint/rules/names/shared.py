@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 
 from lxml.etree import _Element
 
 from multibot_rewrite.lazy import lazy_compile
+from multibot_rewrite.lint.facts.memo import memoized
 from multibot_rewrite.lint.records import Subject
 
 # Names with a substitution are skipped: MB105 reports them.
@@ -16,14 +16,19 @@ BLANK = lazy_compile(r"\s")
 TOKEN = lazy_compile(r"[A-Za-z_]\w*", re.ASCII)
 
 
-def named(subject: Subject) -> Iterator[tuple[str, str, _Element]]:
+@memoized
+def named(subject: Subject) -> list[tuple[str, str, _Element]]:
     """(kind, name, element) of the links and joints that have a name attribute."""
-    for link in subject.robot.links:
-        if SUBSTITUTION not in link.name and "name" in link.element.attrib:
-            yield "link", link.name, link.element
-    for joint in subject.robot.joints:
-        if SUBSTITUTION not in joint.name and "name" in joint.element.attrib:
-            yield "joint", joint.name, joint.element
+    links, joints = subject.robot.links, subject.robot.joints
+    every = [
+        *[("link", it.name, it.element) for it in links],
+        *[("joint", it.name, it.element) for it in joints],
+    ]
+    return [it for it in every if SUBSTITUTION not in it[1] and _has_name(*it[1:])]
+
+
+def _has_name(name: str, element: _Element) -> bool:
+    return bool(name) or element.get("name") is not None
 
 
 def name_of_robot(subject: Subject) -> str | None:

@@ -148,16 +148,18 @@ def inertia_scale(subject: Subject) -> Iterator[Problem]:
         if largest < NOTHING:
             continue
         radius = sqrt(largest / mass)
+        if SHORT <= radius <= LONG and 0.1 <= radius <= LARGER * SMALL_SHAPE:
+            continue
         message = (
             f"inertia of link {link.name!r}: {mass:g} kg would be {radius:.3g} m from the centre"
         )
         if radius > LONG or radius < SHORT:
             yield Problem(part_of(inertial, "inertia"), message, None, "is the unit right?")
-        elif radius > LARGER * SMALL_SHAPE or radius < 0.1:
-            size = _size(link.element)
-            if size > SMALL_SHAPE and not SMALLER <= radius / size <= LARGER:
-                message += f", its shapes reach {size:.3g} m from the origin"
-                yield Problem(part_of(inertial, "inertia"), message, None, "is the unit right?")
+            continue
+        size = _size(link.element)
+        if size > SMALL_SHAPE and not SMALLER <= radius / size <= LARGER:
+            message += f", its shapes reach {size:.3g} m from the origin"
+            yield Problem(part_of(inertial, "inertia"), message, None, "is the unit right?")
 
 
 @rule(

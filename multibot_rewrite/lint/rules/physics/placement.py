@@ -9,15 +9,18 @@ from lxml.etree import _Element
 
 from multibot_rewrite.checks.links_and_joints import Link
 from multibot_rewrite.checks.numbers import Vector, vector
-from multibot_rewrite.checks.poses import length, minus, origin_of
+from multibot_rewrite.checks.pose import Pose
+from multibot_rewrite.checks.poses import length, minus, pose_in
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.checks.rotation import is_same
-from multibot_rewrite.checks.shapes import Extent, around, extent_of, shapes_of
+from multibot_rewrite.checks.shapes import Extent, around, extent_of, placed_box
 from multibot_rewrite.findings.finding import WARNING
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.memo import memoized
+from multibot_rewrite.lint.facts.parts import parts
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.examples import block
+from multibot_rewrite.lint.rules.meshes.boxes import box_of
 from multibot_rewrite.lint.rules.physics.shared import BOX, INERTIA, inertials, one_link, part_of
 
 # Metres between shapes that should be in one place, and between two places of one mesh; smaller shapes
@@ -49,10 +52,11 @@ def collision_away(subject: Subject) -> Iterator[Problem]:
     """Links with shapes of known size, and links with one mesh for both."""
     for link in subject.robot.links:
         seen, hard = _shapes(subject)[link.element]
-        if not seen or not hard or _alike(seen[0], hard[0]):
+        if not seen or not hard or _alike(subject, seen[0], hard[0]):
             continue
-        box = _around(seen)
-        gap = (0.0 if box is None else _gap(box, _around(hard))) or _moved(seen, hard)
+        box = _around(subject, seen)
+        gap = 0.0 if box is None else _gap(box, _around(subject, hard))
+        gap = gap or _moved(subject, seen, hard)
         if gap:
             message = f"the collision of link {link.name!r} is {gap:.3g} m away from its visual"
             yield Problem(hard[0][0], message)
@@ -64,32 +68,47 @@ _Shapes = list[tuple[_Element, _Element]]
 @memoized
 def _shapes(subject: Subject) -> Mapping[_Element, tuple[_Shapes, _Shapes]]:
     """The shapes of each link: those that are seen, and those that bump."""
-    found = (it.element for it in subject.robot.links)
-    return {it: (list(shapes_of(it, "visual")), list(shapes_of(it, "collision"))) for it in found}
+    found: dict[_Element, tuple[_Shapes, _Shapes]]
+    found = {it.element: ([], []) for it in subject.robot.links}
+    for link, element, _, shape in parts(subject):
+        if shape is not None and link in found:
+            found[link][element.tag == "collision"].append((element, shape))
+    return found
 
 
-def _alike(one: tuple[_Element, _Element], other: tuple[_Element, _Element]) -> bool:
+def _alike(
+    subject: Subject, one: tuple[_Element, _Element], other: tuple[_Element, _Element]
+) -> bool:
     """Are two shapes written alike, at one place? Most are, and nothing has to be computed."""
     (here, shape), (there, same) = one, other
     if shape.tag != same.tag or shape.items() != same.items():
         return False
-    origins = [next(it.iterchildren("origin"), None) for it in (here, there)]
+    origins = [subject.elements.first("origin").get(it) for it in (here, there)]
     written = [[] if it is None else it.items() for it in origins]
     return written[0] == written[1]
 
 
-def _around(shapes: _Shapes) -> Extent | None:
+def _pose(subject: Subject, element: _Element) -> Pose | None:
+    return pose_in(subject.elements.first("origin").get(element))
+
+
+def _around(subject: Subject, shapes: _Shapes) -> Extent | None:
     """The box around some shapes; None if one of them has no known size."""
-    if any(shape.tag == "mesh" for _, shape in shapes):
-        return None
     found = []
     for element, shape in shapes:
-        own = origin_of(element)
-        extent = None if own is None else extent_of(shape, own)
+        own = _pose(subject, element)
+        extent = None if own is None else _extent(subject, shape, own)
         if extent is None:
             return None
         found.append(extent)
     return around(found)
+
+
+def _extent(subject: Subject, shape: _Element, pose: Pose) -> Extent | None:
+    if shape.tag != "mesh":
+        return extent_of(shape, pose)
+    box = box_of(subject, shape)
+    return placed_box(box, pose) if box else None
 
 
 def _gap(one: Extent, other: Extent | None) -> float:
@@ -103,14 +122,14 @@ def _gap(one: Extent, other: Extent | None) -> float:
     return gap if gap > AWAY else 0.0
 
 
-def _moved(seen: _Shapes, hard: _Shapes) -> float:
+def _moved(subject: Subject, seen: _Shapes, hard: _Shapes) -> float:
     """How far the one collision is from the one visual of the same mesh."""
     if len(seen) != 1 or len(hard) != 1:
         return 0.0
     (one, visual), (other, collision) = seen[0], hard[0]
     if visual.tag != "mesh" or visual.items() != collision.items():
         return 0.0
-    here, there = origin_of(one), origin_of(other)
+    here, there = _pose(subject, one), _pose(subject, other)
     # Of a mesh that is turned as well it is unknown where it ends up.
     if here is None or there is None or not is_same(here.matrix, there.matrix):
         return 0.0
@@ -140,7 +159,7 @@ def centre_of_mass_outside(subject: Subject) -> Iterator[Problem]:
     for link, inertial in inertials(subject.robot):
         if (inertial.mass or 0) < LIGHT:
             continue
-        origin = next(inertial.element.iterchildren("origin"), None)
+        origin = subject.elements.first("origin").get(inertial.element)
         centre = None if origin is None else vector(origin.get("xyz"))
         if centre is None or not any(centre):
             continue
@@ -154,7 +173,8 @@ def _outside(subject: Subject, link: Link, centre: Vector) -> float:
     """How far a centre is from the shapes of its link, if that is too far."""
     seen, hard = _shapes(subject)[link.element]
     shapes = seen + hard
-    box = _around(shapes)
+    # A mesh may show less than what weighs: the shafts of an arm's wrist are within the link before.
+    box = None if any(it.tag == "mesh" for _, it in shapes) else _around(subject, shapes)
     if box is None:
         return _far_from_mesh(subject, link, shapes, centre)
     size = max(minus(box.high, box.low))
@@ -168,7 +188,7 @@ def _far_from_mesh(subject: Subject, link: Link, shapes: _Shapes, centre: Vector
     if length(centre) < FAR_OF_MESH:
         return 0.0
     below = [it.element for it in subject.robot.below.get(link.name, ())]
-    places = [origin_of(it) for it in (*below, *(element for element, _ in shapes))]
+    places = [_pose(subject, it) for it in (*below, *(element for element, _ in shapes))]
     known = [(0.0, 0.0, 0.0), *(it.at for it in places if it is not None)]
     way = min((length(minus(centre, it)) for it in known), default=inf)
     return way if way > FAR_OF_MESH else 0.0

@@ -12,6 +12,7 @@ from multibot_rewrite.findings.finding import NOTE, WARNING
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.elements import Elements
 from multibot_rewrite.lint.facts.memo import memoized
+from multibot_rewrite.lint.facts.parts import parts
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.physics.shared import (
     BOX,
@@ -120,24 +121,18 @@ def shape_units(subject: Subject) -> Iterator[Problem]:
 )
 def shape_missing(subject: Subject) -> Iterator[Problem]:
     """Elements without a shape that urdfdom reads."""
-    root = subject.document.root
-    if root.tag != "robot":
-        return
     # MB128 reports a capsule in a file of URDF 1.0.
     known = {*SHAPES, "mesh", "capsule"}
-    for element in subject.elements.every("visual", "collision"):
-        parent = element.getparent()
-        if parent is None or parent.tag != "link":
-            continue
-        geometry = next(element.iterchildren("geometry"), None)
-        shape = None if geometry is None else next(geometry.iterchildren("*"), None)
+    for link, element, geometry, shape in (
+        parts(subject) if subject.document.root.tag == "robot" else ()
+    ):
         if shape is None:
             lack = "<geometry>" if geometry is None else "shape in its <geometry>"
-            message = f"<{element.tag}> of link {parent.get('name')!r} has no {lack}"
+            message = f"<{element.tag}> of link {link.get('name')!r} has no {lack}"
             yield Problem(element, message)
         elif shape.tag not in known:
             tag = str(shape.tag).rpartition("}")[2]
-            message = f"<{element.tag}> of link {parent.get('name')!r}: unknown shape <{tag}>"
+            message = f"<{element.tag}> of link {link.get('name')!r}: unknown shape <{tag}>"
             yield Problem(shape, message)
 
 

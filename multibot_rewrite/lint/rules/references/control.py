@@ -32,7 +32,10 @@ UNDRIVEN = ("fixed", "floating", "planar", "")
 )
 def transmission_without_joint(subject: Subject) -> Iterator[Problem]:
     """Transmissions of the robot; those of the PR2 name joints by other tags."""
+    with_joint = subject.elements.first("joint")
     for it in subject.elements.tops("transmission"):
+        if it in with_joint:
+            continue
         if not any("joint" in str(child.tag).lower() for child in it.iterchildren("*")):
             message = f"transmission {it.get('name', '')!r} has no joint"
             yield Problem(it, message, None, "name its joint")
@@ -72,6 +75,8 @@ def driven_fixed_joint(subject: Subject) -> Iterator[Problem]:
 )
 def fixed_transmission(subject: Subject) -> Iterator[Problem]:
     """Joints of transmissions that cannot move."""
+    if all(it.type != "fixed" for it in subject.robot.joints):
+        return
     for transmission in subject.elements.tops("transmission"):
         for it in transmission.iterchildren("joint"):
             joint = subject.robot.joint.get(it.get("name", ""))

@@ -128,13 +128,13 @@ def duplicate_hardware(subject: Subject) -> Iterator[Problem]:
 )
 def duplicate_sensor(subject: Subject) -> Iterator[Problem]:
     """Sensors in blocks for one link."""
-    blocks = subject.elements.tops("gazebo")
+    root = subject.document.root
+    inside = ((it.getparent(), it) for it in subject.elements.every("sensor"))
     sensors = (
         ((block.get("reference"), name_of(it)), it)
-        for block in blocks
-        if block.get("reference")
-        for it in block.iterchildren("sensor")
-        if name_of(it)
+        for block, it in inside
+        if block is not None and block.tag == "gazebo" and block.getparent() is root
+        if block.get("reference") and name_of(it)
     )
     for it in _repeated(sensors):
         link = it.getparent().get("reference")  # type: ignore[union-attr]

@@ -8,11 +8,12 @@ from math import hypot
 
 from lxml.etree import _Element
 
-from multibot_rewrite.checks.links_and_joints import Joint, Robot
+from multibot_rewrite.checks.links_and_joints import Joint
 from multibot_rewrite.checks.numbers import vector
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.findings.rule import rule
+from multibot_rewrite.lint.facts.memo import memoized
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.structure.shared import (
     LIMIT,
@@ -68,7 +69,7 @@ def joint_type(subject: Subject) -> Iterator[Problem]:
 )
 def zero_axis(subject: Subject) -> Iterator[Problem]:
     """Axes of length 0."""
-    for joint, axis, length in _axes(subject.robot):
+    for joint, axis, length in _axes(subject):
         if length == 0:
             fault = "is 0 0 0" if axis.get("xyz") else "has no xyz, which is 0 0 0"
             yield Problem(axis, f"<axis> of {joint.type} joint {joint.name!r} {fault}", "xyz")
@@ -76,7 +77,7 @@ def zero_axis(subject: Subject) -> Iterator[Problem]:
 
 def _not_unit(subject: Subject, *, types: tuple[str, ...]) -> Iterator[Problem]:
     """Axes of joints of these types whose length is not 1."""
-    for joint, axis, length in _axes(subject.robot):
+    for joint, axis, length in _axes(subject):
         if length and abs(length - 1) > TOLERANCE and joint.type in types:
             message = f"axis of joint {joint.name!r} has the length {length:.4g}"
             yield Problem(axis, message, "xyz")
@@ -109,13 +110,16 @@ axis_length = rule(
 )(partial(_not_unit, types=("revolute", "continuous")))
 
 
-def _axes(robot: Robot) -> Iterator[tuple[Joint, _Element, float]]:
+@memoized
+def _axes(subject: Subject) -> list[tuple[Joint, _Element, float]]:
     """The joints that use an <axis>, and its length; without xyz it is 0."""
-    for joint, axis in joints_with(robot, "axis"):
+    found = []
+    for joint, axis in joints_with(subject.robot, "axis"):
         if joint.type in ONE_AXIS:
             xyz = vector(axis.get("xyz", "0 0 0"))
             if xyz is not None:
-                yield joint, axis, hypot(*xyz)
+                found.append((joint, axis, hypot(*xyz)))
+    return found
 
 
 @rule(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 from math import pi
 
 from lxml.etree import _Element
@@ -12,6 +12,7 @@ from multibot_rewrite.checks.numbers import number, value_of
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.findings.rule import rule
+from multibot_rewrite.lint.facts.memo import memoized
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.examples import block
 from multibot_rewrite.lint.rules.structure.shared import (
@@ -96,8 +97,8 @@ def limit_incomplete(subject: Subject) -> Iterator[Problem]:
 def limits_inverted(subject: Subject) -> Iterator[Problem]:
     """Lower limits above the upper one; in URDF 1.2 of any joint."""
     types = TYPES if _is_strict(subject) else BOUNDED
-    for joint, limit, lower, upper in _bounds(subject.robot, types):
-        if lower > upper:
+    for joint, limit, lower, upper in _bounds(subject):
+        if lower > upper and joint.type in types:
             message = f"joint {joint.name!r}: lower {lower:g} is above upper {upper:g}"
             yield Problem(limit, message, "lower")
 
@@ -117,8 +118,8 @@ def limits_inverted(subject: Subject) -> Iterator[Problem]:
 )
 def limits_zero_range(subject: Subject) -> Iterator[Problem]:
     """Equal limits: an exporter's mistake, or a frame that Gazebo should not merge."""
-    for joint, limit, lower, upper in _bounds(subject.robot):
-        if lower == upper:
+    for joint, limit, lower, upper in _bounds(subject):
+        if lower == upper and joint.type in BOUNDED:
             message = (
                 f"{joint.type} joint {joint.name!r} cannot move: lower and upper are {lower:g}"
             )
@@ -208,10 +209,10 @@ def negative_limit(subject: Subject) -> Iterator[Problem]:
 def zero_limit(subject: Subject) -> Iterator[Problem]:
     """One finding per joint; joints that mimic another one or cannot move need no effort."""
     for joint, limit in joints_with(subject.robot, "limit"):
-        if joint.type not in ONE_AXIS or "mimic" in joint.parts or _cannot_move(joint, limit):
+        if joint.type not in ONE_AXIS or "mimic" in joint.parts:
             continue
         zero = [it for it in ("effort", "velocity") if value_of(limit, it) == 0]
-        if zero:
+        if zero and not _cannot_move(joint, limit):
             verb = "are" if zero[1:] else "is"
             message = f"joint {joint.name!r}: {' and '.join(zero)} {verb} 0"
             yield Problem(limit, message, zero[0])
@@ -254,7 +255,7 @@ def continuous_limits(subject: Subject) -> Iterator[Problem]:
 )
 def prismatic_units(subject: Subject) -> Iterator[Problem]:
     """Long ranges; one that is the same to both sides is mostly a virtual joint without real limits."""
-    for joint, limit, lower, upper in _bounds(subject.robot):
+    for joint, limit, lower, upper in _bounds(subject):
         far = max(abs(lower), abs(upper))
         if joint.type == "prismatic" and LONG_WAY <= far < 1e4 and lower != -upper:
             message = f"prismatic joint {joint.name!r} goes from {lower:g} m to {upper:g} m"
@@ -275,7 +276,7 @@ def prismatic_units(subject: Subject) -> Iterator[Problem]:
 )
 def revolute_degrees(subject: Subject) -> Iterator[Problem]:
     """Round numbers that are many turns in radians, and an angle in degrees."""
-    for joint, limit, lower, upper in _bounds(subject.robot):
+    for joint, limit, lower, upper in _bounds(subject):
         if joint.type == "revolute" and (_is_degrees(lower) or _is_degrees(upper)):
             message = f"revolute joint {joint.name!r} turns from {lower:g} to {upper:g} radians"
             name = "upper" if _is_degrees(upper) else "lower"
@@ -291,15 +292,16 @@ def _is_strict(subject: Subject) -> bool:
     return version_of(subject.document.root) >= STRICT
 
 
-def _bounds(
-    robot: Robot, types: Collection[str] = BOUNDED
-) -> Iterator[tuple[Joint, _Element, float, float]]:
-    """The joints of these types that have both bounds; by default of those that need them."""
-    for joint, limit in joints_with(robot, "limit"):
-        if joint.type in types:
+@memoized
+def _bounds(subject: Subject) -> list[tuple[Joint, _Element, float, float]]:
+    """The joints of the known types that have both bounds."""
+    found = []
+    for joint, limit in joints_with(subject.robot, "limit"):
+        if joint.type in TYPES:
             lower, upper = number(limit.get("lower")), number(limit.get("upper"))
             if lower is not None and upper is not None:
-                yield joint, limit, lower, upper
+                found.append((joint, limit, lower, upper))
+    return found
 
 
 def _cannot_move(joint: Joint, limit: _Element) -> bool:

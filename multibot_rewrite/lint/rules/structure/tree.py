@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from lxml.etree import _Element
 
-from multibot_rewrite.checks.links_and_joints import loops, reached, roots
+from multibot_rewrite.checks.links_and_joints import is_tree, loops, reached, roots
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import ERROR, WARNING
 from multibot_rewrite.findings.rule import rule
@@ -99,7 +99,7 @@ def no_link(subject: Subject) -> Iterator[Problem]:
 def kinematic_loop(subject: Subject) -> Iterator[Problem]:
     """Each loop, at the last of its joints in the file."""
     order: dict[_Element, int] = {}
-    for joints in loops(subject.robot):
+    for joints in [] if is_tree(subject.robot) else loops(subject.robot):
         order = order or {it.element: at for at, it in enumerate(subject.robot.joints)}
         last = max(joints, key=lambda it: order[it.element])
         at = joints.index(last) + 1
@@ -164,6 +164,8 @@ def several_parents(subject: Subject) -> Iterator[Problem]:
 def unreachable_link(subject: Subject) -> Iterator[Problem]:
     """One finding, at the first link; links in the loop itself are MB503."""
     robot = subject.robot
+    if is_tree(robot):
+        return
     seen: set[str] = set()
     reached(robot, (it for it in (*robot.link, *robot.below) if it not in robot.above), seen)
     if not seen or all(it in seen for it in robot.link):

@@ -1,0 +1,66 @@
+"""The groups of rules, and which rules are active for a document."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from importlib import import_module
+from types import ModuleType
+from typing import NamedTuple
+
+from multibot_rewrite.findings.rule import URDF, Rule
+from multibot_rewrite.findings.selection import is_on
+from multibot_rewrite.lint.config.settings import Settings
+
+
+class Group(NamedTuple):
+    """The rules whose codes begin with ``start``, in a module or package of ``rules``; some are
+    ``of_urdf``, or all are for other files: then a lint of a URDF does not load them."""
+
+    start: str
+    title: str
+    module: str
+    of_urdf: bool = True
+
+
+GROUPS = (
+    Group("MB0", "the lint itself", "meta"),
+    Group("MB1", "file, encoding and values", "files"),
+    Group("MB2", "references", "references"),
+    Group("MB3", "names", "names"),
+    Group("MB4", "several robots", "multirobot"),
+    Group("MB5", "structure", "structure"),
+    Group("MB6", "physics", "physics"),
+    Group("MB7", "meshes and packages", "meshes"),
+    Group("MB8", "files beside the URDF: SRDF, parameters, RViz, MoveIt, bridges", "beside", False),
+    Group("MB9", "rewriting", "rewriting"),
+)
+
+
+def rules_of(group: Group) -> list[Rule]:
+    """The rules of a group's themes; a group of one file is its own theme."""
+    module = import_module(f"{__package__}.rules.{group.module}")
+    themes: tuple[ModuleType, ...] = getattr(module, "THEMES", (module,))
+    return [it for theme in themes for it in vars(theme).values() if isinstance(it, Rule)]
+
+
+def active_rules(settings: Settings, format_: str) -> tuple[Rule, ...]:
+    """The rules that are on and check a subject of that format, by their codes."""
+    levels = tuple(settings.levels.items())
+    return _active(settings.select, settings.ignore, levels, format_)
+
+
+@lru_cache(maxsize=16)
+def _active(
+    select: tuple[str, ...],
+    ignore: tuple[str, ...],
+    levels: tuple[tuple[str, str], ...],
+    format_: str,
+) -> tuple[Rule, ...]:
+    settings = Settings(select=select, ignore=ignore, levels=dict(levels))
+    groups = (it for it in GROUPS if it.of_urdf or format_ != URDF)
+    rules = (it for group in groups for it in rules_of(group) if format_ in it.formats)
+    return tuple(sorted((it for it in rules if is_on(settings, it.code)), key=_code))
+
+
+def _code(rule: Rule) -> str:
+    return rule.code

@@ -1,0 +1,100 @@
+"""``multibot init`` on a terminal: what it asks, and what the answers make of the fleet file."""
+
+from __future__ import annotations
+
+import os
+import pty
+import shutil
+import subprocess
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from paths import ROBOTS, ROOT
+
+ARM = """\
+<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="prefix" default=""/>
+  <link name="$(arg prefix)base"/><link name="$(arg prefix)hand"/>
+  <joint name="$(arg prefix)turn" type="continuous">
+    <parent link="$(arg prefix)base"/><child link="$(arg prefix)hand"/>
+  </joint>
+</robot>
+"""
+
+
+def talked(folder: Path, answers: Sequence[str], *words: str) -> tuple[str, Mapping[str, Any]]:
+    """What a terminal shows, and the fleet file; every answer ends with Enter."""
+    ours, theirs = pty.openpty()
+    command = [sys.executable, "-m", "multibot_rewrite", "init", *words]
+    environ = {**os.environ, "TERM": "dumb", "COLUMNS": "200"}
+    environ.pop("ROS_DISTRO", None)
+    with subprocess.Popen(
+        command, cwd=folder, stdin=theirs, stdout=theirs, stderr=theirs, env=environ
+    ) as child:
+        os.close(theirs)
+        # The terminal keeps the lines until they are asked for.
+        os.write(ours, "".join(f"{it}\n" for it in answers).encode())
+        shown = "".join(read_all(ours))
+        assert child.wait(60) == 0, shown
+    return shown, yaml.safe_load((folder / "fleet.yaml").read_text())
+
+
+def read_all(file: int) -> Sequence[str]:
+    """Until the child closes its side."""
+    found = []
+    while True:
+        try:
+            data = os.read(file, 65536)
+        except OSError:
+            data = b""
+        if not data:
+            os.close(file)
+            return found
+        found.append(data.decode("utf-8", "replace"))
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    shutil.copy(ROBOTS / "rover.urdf", tmp_path)
+    shutil.copy(ROOT / "examples" / "multibot_example" / "config" / "rover.rviz", tmp_path)
+    return tmp_path
+
+
+def test_enter_takes_all_defaults(folder: Path) -> None:
+    shown, fleet = talked(folder, [""] * 6)
+    asked = ("Robots", "ROS release", "Files to leave out", "Metres", "Layout", "Simulator")
+    places = [shown.index(it) for it in asked]
+    assert places == sorted(places)
+    without = subprocess.run(
+        [sys.executable, "-m", "multibot_rewrite", "init", "--yes", "-o", "-"],
+        cwd=folder, capture_output=True, check=True, timeout=60,
+    )  # fmt: skip
+    assert yaml.safe_load(without.stdout) == fleet
+
+
+def test_answers_are_taken_and_wrong_ones_asked_for_again(folder: Path) -> None:
+    answers = ["1robot", "scout, carrier", "jazzy", "7", "1", "wide", "3.5", "both", "none"]
+    shown, fleet = talked(folder, answers, "rover.urdf")
+    assert "'1robot' does not fit" in shown and "'7' does not fit" in shown
+    assert "'wide' does not fit" in shown
+    assert {it["name"]: it["pose"]["y"] for it in fleet["robots"]} == {"scout": 0.0, "carrier": 3.5}
+    assert (fleet["distro"], fleet["layout"], fleet["simulator"]) == ("jazzy", "both", "none")
+    assert "companions" not in fleet
+
+
+def test_what_options_say_is_not_asked(folder: Path) -> None:
+    words = ("--robots", "a,b", "--distro", "jazzy", "--layout", "both", "--simulator", "gazebo")
+    shown, fleet = talked(folder, ["", ""], *words)
+    assert "Robots" not in shown and "release" not in shown.lower().replace("releases", "")
+    assert [it["name"] for it in fleet["robots"]] == ["a", "b"]
+
+
+def test_an_argument_that_names_the_robot(tmp_path: Path) -> None:
+    (tmp_path / "arm.urdf.xacro").write_text(ARM)
+    shown, fleet = talked(tmp_path, ["", "", "{robot}/", "", "", ""])
+    assert "Argument prefix of the xacro ({robot}_)" in shown
+    assert fleet["arguments"] == {"prefix": "{robot}/"}
