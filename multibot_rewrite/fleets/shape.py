@@ -95,7 +95,8 @@ def placed(robot: RewrittenRobot, shape: str) -> RewrittenRobot:
 
 def _kept(robot: RewrittenRobot, shape: Shape) -> Iterator[tuple[str, str]]:
     """The files that lie in a vendor's folder already."""
-    for source in robot.spec.companions.get("params", ()):
+    companions = robot.spec.companions
+    for source in (*companions.get("params", ()), *companions.get(BRIDGE, ())):
         folder = os.path.dirname(os.path.abspath(source))
         for it in shape.keeps:
             if f"{folder}/".endswith(f"/{it}/"):

@@ -93,6 +93,27 @@ def test_clearpath_has_a_setup_folder(tmp_path: Path) -> None:
     ]
 
 
+def test_clearpath_starts_a_bridge_for_each_sensor(tmp_path: Path) -> None:
+    """clearpath_generator_gz launch/sensors.py: each gets the file of its sensor."""
+    folder = tmp_path / "sensors/config"
+    folder.mkdir(parents=True)
+    types = "ros_type_name: sensor_msgs/msg/LaserScan, gz_type_name: gz.msgs.LaserScan"
+    for it in ("lidar2d_0", "lidar2d_1"):
+        row = f"- {{topic_name: {it}/scan, {types}, direction: GZ_TO_ROS}}\n"
+        (folder / f"{it}.yaml").write_text(row)
+    bridges = {"bridge": [str(it) for it in sorted(folder.iterdir())]}
+    made = load_fleet(fleet(tmp_path, "clearpath", companions=bridges))
+    for it in ("lidar2d_0", "lidar2d_1"):
+        (row,) = yaml.safe_load(made.text(f"robot2/sensors/config/{it}.yaml"))
+        assert (
+            row["ros_topic_name" if "ros_topic_name" in row else "topic_name"]
+            == f"/robot2/{it}/scan"
+        )
+    assert len(yaml.safe_load(made.text("robot2/bridge.yaml"))) == 2
+    plain = load_fleet(fleet(tmp_path, "", layout="tf-per-robot", companions=bridges))
+    assert not [it for it in plain.files if "lidar2d" in it]
+
+
 @pytest.mark.parametrize(("simulator", "robot"), [("none", "robot"), ("gazebo", "gz")])
 def test_clearpaths_generator_is_that_of_the_robot(
     simulator: str, robot: str, tmp_path: Path
