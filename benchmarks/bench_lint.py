@@ -179,7 +179,11 @@ def in_public(public: PublicFiles) -> Row:
 
 
 def _files_a_second(public: PublicFiles) -> float:
-    (ours,) = least_seconds(lambda: [linted(it) for it in public.files], runs=3)
+    def every() -> None:
+        for source in public.files:
+            linted(source)
+
+    (ours,) = least_seconds(every, runs=3)
     return len(public.files) / ours
 
 

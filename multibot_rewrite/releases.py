@@ -11,13 +11,14 @@ import os
 import re
 from collections.abc import Iterator, Mapping
 
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.nearest import did_you_mean_one_of
 
 RELEASES = ("humble", "jazzy", "kilted", "lyrical", "rolling")
 NEWEST_LTS = "lyrical"
 VARIABLE = "ROS_DISTRO"
-_TERM = re.compile(r"(?P<until><=)?(?P<release>[a-z]+)(?: (?P<version>[0-9][0-9.]*))?(?P<on>\+)?")
+_TERM = lazy_compile(r"(?P<until><=)?(?P<release>[a-z]+)(?: (?P<version>[0-9][0-9.]*))?(?P<on>\+)?")
 
 
 def chosen_release(given: str, environment: Mapping[str, str]) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator
 from itertools import chain, islice
 from typing import TYPE_CHECKING
@@ -20,6 +19,7 @@ from multibot_rewrite.checks.references import (
     undeclared_names,
 )
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING, Finding
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.nearest import Guesses
 from multibot_rewrite.releases import releases_with
@@ -45,7 +45,7 @@ ANOTHER_RELEASE = (
     "name the release that the description is for with --distro, or distro: in a fleet file"
 )
 # A step of a path that asks for an attribute.
-_STEP = re.compile(r"\[@(\w+)=(.*)\]")
+_STEP = lazy_compile(r"\[@(\w+)=(.*)\]")
 
 
 def audit(inventory: Inventory, renames: RenameMap, tree: Tree) -> list[Finding]:

@@ -153,5 +153,7 @@ def _unknown_option(words: Sequence[str], known: Sequence[str]) -> str:
     before_end = takewhile(lambda word: word != "--", words)
     names = (word.partition("=")[0] for word in before_end if word.startswith("--"))
     wrong = next((name for name in names if name not in known), "")
+    if not wrong:
+        return ""
     near = did_you_mean_one_of(wrong, known)
-    return f"unknown option {wrong}{'; ' * bool(near)}{near}" if wrong else ""
+    return f"unknown option {wrong}{'; ' * bool(near)}{near}"

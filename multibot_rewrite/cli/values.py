@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import argparse
 import math
-import re
 from collections.abc import Callable, Collection
 
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.nearest import did_you_mean_one_of
 
 MAX_SECONDS = 3600
 # The highest ROS_DOMAIN_ID that rcl takes.
 MAX_DOMAIN = 232
 # zenoh-protocol endpoint.rs: PROTOCOL/ADDRESS, then metadata behind ? and configuration behind #.
-_ENDPOINT = re.compile(r"(tcp|udp|tls|quic|ws)/[^\s/?#]+:\d{1,5}([?#]\S*)?|unixsock-stream/\S+")
-_WORD = re.compile(r"[A-Za-z0-9_.-]+")
+_ENDPOINT = lazy_compile(r"(tcp|udp|tls|quic|ws)/[^\s/?#]+:\d{1,5}([?#]\S*)?|unixsock-stream/\S+")
+_WORD = lazy_compile(r"[A-Za-z0-9_.-]+")
 
 
 def names(text: str) -> list[str]:

@@ -49,7 +49,7 @@ def fails(findings: Iterable[Finding], fail_on: str) -> bool:
 
 def matched(codes: Sequence[str], code: str) -> int:
     """The length of the longest of ``codes`` that ``code`` begins with; -1 for none."""
-    return max((len(it) for it in codes if code.startswith(it)), default=-1)
+    return max([len(it) for it in codes if code.startswith(it)], default=-1)
 
 
 def is_on(selection: Selecting, code: str) -> bool:
@@ -66,4 +66,6 @@ def level_of(selection: Selecting, code: str, default: str) -> str:
 
 
 def _level_key(selection: Selecting, code: str) -> str:
+    if not selection.levels:
+        return ""
     return max((it for it in selection.levels if code.startswith(it)), key=len, default="")

@@ -23,6 +23,7 @@ from multibot_rewrite.fleets.fleet import Fleet, expected, possible
 from multibot_rewrite.fleets.fleet_file import input_files
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.launch_file import launch_files
+from multibot_rewrite.fleets.launched_prefix import launched_prefixes
 from multibot_rewrite.fleets.meeting import without_started
 from multibot_rewrite.fleets.moveit_frames import moveit_frames
 from multibot_rewrite.fleets.moveit_parameters import moveit_parameters
@@ -84,7 +85,7 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
         findings += one_device(plan.robots)
         for found in plan.evidence.values():
             findings += found.findings
-        findings += (*too_near(plan), *moveit_frames(plan))
+        findings += (*too_near(plan), *launched_prefixes(plan), *moveit_frames(plan))
         findings += differences(plan)
         texts = texts_of(files)
         gaps = gaps_of(plan, fleet, texts, findings)

@@ -6,21 +6,21 @@ and remap rules need no writer of their own.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import Claim
 from multibot_rewrite.rosnames import split_remap
 
 Declared = Mapping[str, Mapping[str, Claim]]
 Kinds = tuple[str, ...]
-_WORD = re.compile(r"[^\s(),;\"]+")
+_WORD = lazy_compile(r"[^\s(),;\"]+")
 # Of a path through nested models, or a pattern; looking for names in it costs its length squared.
 LONGEST = 4096
-_OWNED = re.compile(r"::|/")
+_OWNED = lazy_compile(r"::|/")
 # Not a letter of it means more than itself.
-_LITERAL = re.compile(r"[\w /:-]*")
+_LITERAL = lazy_compile(r"[\w /:-]*")
 
 
 class NamePart(NamedTuple):

@@ -12,6 +12,7 @@ from collections.abc import Iterable
 
 from lxml import etree
 
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import Site
 from multibot_rewrite.naming import POSTFIX, Naming
 from multibot_rewrite.rewriters.switches import is_true
@@ -22,7 +23,7 @@ from multibot_rewrite.rewriters.vocabulary import VocabularySection
 MODEL, SENSOR = "{model}/", "{sensor}"
 WORLD = "world"
 BOOLEANS = {"true": True, "false": False}
-_SLOT = re.compile(r"\{(\w+)\}")
+_SLOT = lazy_compile(r"\{(\w+)\}")
 Hosts = Iterable[tuple[etree._Element, VocabularySection]]
 
 

@@ -10,6 +10,7 @@ import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import DECLARED_KINDS, TWIN, Affix, OwnNames
 
@@ -19,8 +20,8 @@ if TYPE_CHECKING:
 ROBOT = "{robot}"
 # Stand for the words of a robot.
 MARKS = (TWIN, "qznamespacezq", "qztagzq")
-_TWICE = re.compile(r"(qz\w+?zq)[/_]*\1")
-_PLACEHOLDER = re.compile(r"(?<!\$)\{[A-Za-z_]\w*\}")
+_TWICE = lazy_compile(r"(qz\w+?zq)[/_]*\1")
+_PLACEHOLDER = lazy_compile(r"(?<!\$)\{[A-Za-z_]\w*\}")
 Arguments = Mapping[str, str]
 # Kind and text of a name -> another text of it.
 NameTexts = Mapping[tuple[str, str], str]

@@ -9,6 +9,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, NamedTuple
 
 from multibot_rewrite.bounded import MAX_BYTES, read_bytes
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import InputError, UsageError
 
 if TYPE_CHECKING:
@@ -17,8 +18,8 @@ if TYPE_CHECKING:
 Source = str | bytes | os.PathLike[str]
 XACRO = ".xacro"
 _MAYBE_XACRO = (".urdf", ".srdf", ".sdf", ".xml")
-_COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
-_SPACE = re.compile(rb"""xmlns:([\w.-]+)\s*=\s*["'][^"'<>]*/xacro/?["']""")
+_COMMENT = lazy_compile(rb"<!--.*?-->", re.DOTALL)
+_SPACE = lazy_compile(rb"""xmlns:([\w.-]+)\s*=\s*["'][^"'<>]*/xacro/?["']""")
 
 
 class SourceText(NamedTuple):

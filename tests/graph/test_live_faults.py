@@ -31,9 +31,7 @@ from multibot_rewrite.steps.document import read_document
 
 pytestmark = pytest.mark.live
 
-pytest.importorskip(
-    "rclpy", reason="no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)", exc_type=ImportError
-)
+pytest.importorskip("rclpy", reason="no rclpy: pip install '.[ros]'", exc_type=ImportError)
 GRAPHS = ROOT / "fixtures" / "graphs"
 ROVER = str(ROOT / "fixtures" / "robots" / "rover.urdf")
 LISTS = {PUBLISHES: "publishers", SUBSCRIBES: "subscriptions", SERVES: "services"}

@@ -23,9 +23,7 @@ from multibot_rewrite.remap.table import build_table
 
 pytestmark = pytest.mark.live
 
-pytest.importorskip(
-    "rclpy", reason="no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)", exc_type=ImportError
-)
+pytest.importorskip("rclpy", reason="no rclpy: pip install '.[ros]'", exc_type=ImportError)
 ROBOTS = ("robot1", "robot2")
 ALWAYS = {"/rosout", "/parameter_events"}
 Build = dict[str, str]

@@ -18,9 +18,7 @@ from network_hosts import Host, discovery_server, hosts, lose_packets
 from paths import ROOT
 
 pytestmark = pytest.mark.live
-pytest.importorskip(
-    "rclpy", reason="no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)", exc_type=ImportError
-)
+pytest.importorskip("rclpy", reason="no rclpy: pip install '.[ros]'", exc_type=ImportError)
 # The hosts are alone in their network, so any will do.
 DOMAIN = 7
 SUBNET = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}

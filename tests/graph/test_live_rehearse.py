@@ -22,9 +22,7 @@ from multibot_rewrite.graph.snapshot import Snapshot, from_json
 
 pytestmark = pytest.mark.live
 
-pytest.importorskip(
-    "rclpy", reason="no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)", exc_type=ImportError
-)
+pytest.importorskip("rclpy", reason="no rclpy: pip install '.[ros]'", exc_type=ImportError)
 COMMAND = [sys.executable, "-m", "multibot_rewrite.cli.multibot", "rehearse"]
 ROVER = str(ROBOTS / "rover.urdf")
 PAIR = (ROVER, "robot1", "robot2")

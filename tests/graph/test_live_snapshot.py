@@ -32,9 +32,7 @@ from multibot_rewrite.graph.snapshot import (
 
 pytestmark = pytest.mark.live
 
-pytest.importorskip(
-    "rclpy", reason="no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)", exc_type=ImportError
-)
+pytest.importorskip("rclpy", reason="no rclpy: pip install '.[ros]'", exc_type=ImportError)
 
 COMMAND = [sys.executable, "-m", "multibot_rewrite.cli.multibot", "snapshot"]
 TF_TYPE = "tf2_msgs/msg/TFMessage"

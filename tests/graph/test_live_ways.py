@@ -13,9 +13,7 @@ from paths import ROBOTS
 
 pytestmark = pytest.mark.live
 
-pytest.importorskip(
-    "rclpy", reason="no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)", exc_type=ImportError
-)
+pytest.importorskip("rclpy", reason="no rclpy: pip install '.[ros]'", exc_type=ImportError)
 FLEET = """\
 layout: tf-per-robot
 distro: {release}

@@ -196,7 +196,7 @@ def test_a_build_is_up_to_date_until_a_source_changes(tmp_path: Path) -> None:
 @pytest.mark.deep
 def test_twenty_robots_are_as_planned(tmp_path: Path, tf2: dict[str, str]) -> None:
     if not page_commands.has_ros():
-        pytest.skip("no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)")
+        pytest.skip("no rclpy: pip install '.[ros]'")
     rows = "".join(f"  - {{name: robot{at}, pose: {{x: {at}}}}}\n" for at in range(20))
     include = "include: examples/two_robots_postfix/fleet.yaml\n"
     (tmp_path / "twenty.yaml").write_text(f"{include}robots:\n{rows}")

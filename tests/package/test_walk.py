@@ -24,7 +24,7 @@ def test_the_help_on_the_page_is_current(tmp_path: Path) -> None:
 @pytest.mark.skipif(bool(launch.missing()), reason=f"no real launch: {launch.missing()}")
 def test_the_walk_is_current_in_its_words() -> None:
     """As planned at its end, too: the page says so."""
-    pytest.importorskip("rclpy", reason="no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)")
+    pytest.importorskip("rclpy", reason="no rclpy: pip install '.[ros]'")
     folder = sources_folder()
     found = sorted(folder.glob(f"*{walk.REPOSITORY}*")) if folder else []
     if not found:

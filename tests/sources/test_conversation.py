@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import json
+import signal
 import socket
 import struct
 import threading
 from array import array
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager, nullcontext, suppress
+from functools import partial
 from pathlib import Path
 
 import pytest
 
 from multibot_rewrite.model import InputError
+from multibot_rewrite.outside import recorded
 from multibot_rewrite.sources import conversation
 from multibot_rewrite.sources.child.frames import CALLS, ORIGINS, QUESTION, REPORT, TEXT, framed
 from multibot_rewrite.sources.expand import expand, expand_traced
@@ -180,3 +183,44 @@ def test_what_a_terminal_would_obey_is_not_printed(
     lie(monkeypatch, told({**GOOD, "notes": "a\x1b]0;x\x07\u009b1m\u202eb\n"}))
     expand(file, {})
     assert capsys.readouterr().err == "a?]0;x??1m?b\n"
+
+
+class Gone:
+    """A child that is asked and gives no answer."""
+
+    def __init__(self, fault: type[Exception]) -> None:
+        self.fault = fault
+
+    def send(self, data: bytes) -> None:
+        pass
+
+    def read(self, count: int) -> bytes:
+        raise self.fault
+
+    def end(self, ended: bool = False) -> int:
+        return signal.SIGKILL
+
+
+def refusal(file: str) -> str:
+    with pytest.raises(InputError) as caught:
+        expand(file, {})
+    return str(caught.value)
+
+
+@pytest.mark.parametrize("fault", [TimeoutError, EOFError, ConnectionResetError])
+def test_no_answer_may_be_an_answer_next_time(
+    fault: type[Exception], file: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Time and memory decided, so nobody may keep the result."""
+    monkeypatch.setattr(conversation, "child", lambda _: nullcontext(Gone(fault)))
+    said, asked = recorded(partial(refusal, file))
+    assert said.startswith(f"{file}: xacro failed: ")
+    assert asked is None
+
+
+def test_what_xacro_says_is_an_answer(file: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    report = json.dumps(GOOD | {"error": FAILED}).encode()
+    lie(monkeypatch, framed(REPORT, report) + framed(CALLS, b""))
+    said, asked = recorded(partial(refusal, file))
+    assert "): r; " in said
+    assert asked is not None

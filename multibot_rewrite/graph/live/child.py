@@ -29,8 +29,7 @@ from multibot_rewrite.graph.states import NodeState
 from multibot_rewrite.model import MultibotError
 
 INSTALL = (
-    "source ROS 2 (. /opt/ros/jazzy/setup.bash) or, with Python 3.10 to 3.12,"
-    " pip install 'multibot_rewrite[ros]'"
+    "source ROS 2 (. /opt/ros/jazzy/setup.bash) or, on Linux, pip install 'multibot_rewrite[ros]'"
 )
 OBSERVE, RUN_STUBS = "multibot_rewrite.graph.live.observe", "multibot_rewrite.graph.live.stub_nodes"
 ASK = "multibot_rewrite.graph.live.ask"

@@ -222,9 +222,10 @@ class Vocabulary:
     def places(self) -> dict[str, list[str]]:
         """Each element with a section and the elements it may be in, without reading more."""
         found: dict[str, list[str]] = {}
-        for (type_, name), all_raws in self._raw.items():
+        elements = ((key[1], raws) for key, raws in self._raw.items() if key[0] == "element")
+        for name, all_raws in elements:
             raws = [raw for raw in all_raws if self._is_here(_released(raw[2]))]
-            if type_ == "element" and raws:
+            if raws:
                 parents = [
                     word for raw in raws for row in _AT.findall(raw[2]) for word in row.split()
                 ]
