@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from importlib.util import find_spec
 from pathlib import Path
 
 import live_commands
@@ -52,6 +53,10 @@ def test_the_readme_shows_commands() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("line", [*COMMANDS, START])
 def test_a_command_of_the_readme_runs(line: str, tmp_path: Path) -> None:
+    if line.startswith(page_commands.LIVE) and not page_commands.has_ros():
+        pytest.skip("no rclpy: pip install '.[ros]'")
+    if line.startswith("multibot view") and not find_spec("yourdfpy"):
+        pytest.skip("no yourdfpy: pip install '.[view]'")
     reader = readers_folder(tmp_path)
     for one in (FIRST, line) if "rovers.yaml" in line and line != FIRST else (line,):
         done = reader.run(one)
