@@ -26,7 +26,7 @@ COMMANDS = re.findall(
     re.MULTILINE,
 )
 # Writes the fleet file that the next commands read.
-FIRST = "multibot init fixtures/robots/rover_gz.urdf -n 2 -o rovers.yaml"
+FIRST = "multibot init examples/launch_tutorial/rover.urdf -n 2 -o rovers.yaml"
 (START,) = re.findall(
     r"^(multibot init .*)$", (ROOT / "docs" / "index.md").read_text(), re.MULTILINE
 )
@@ -102,7 +102,9 @@ def test_the_readme_diff_is_what_the_command_prints(tmp_path: Path) -> None:
 
 
 def test_the_page_of_commands_is_current() -> None:
-    assert (ROOT / "docs" / "commands.md").read_text() == commands_page()
+    assert (ROOT / "docs" / "commands.md").read_text() == commands_page(), (
+        "run python share/make.py"
+    )
 
 
 def test_the_readme_python_example_runs(monkeypatch: pytest.MonkeyPatch) -> None:
