@@ -47,8 +47,8 @@ unread_parameter = rule(
     "unread-parameter",
     NOTE,
     what="A parameter that the code of a known plugin does not read.",
-    why="It has no effect: the plugin runs with what it has built in, and who changes the value changes "
-    "nothing. <alwaysOn> and <updateRate> in a lidar's plugin are the sensor's own elements.",
+    why="It has no effect: the plugin runs with what it has built in, whatever the value says. "
+    "<alwaysOn> and <updateRate> in a lidar's plugin are the sensor's own elements.",
     fix="Delete it.",
     bad=_drive("<use_sim_time>true</use_sim_time>"),
     good=_drive("<topic>cmd_vel</topic>"),
@@ -139,8 +139,8 @@ parameter_in_degrees = rule(
     "parameter-in-degrees",
     WARNING,
     what="An angle of a plugin is more than a turn.",
-    why="Gazebo's angles are in radians: a steering limit of 30 limits nothing, and the wheels turn all "
-    "the way round.",
+    why="Gazebo's angles are in radians: a steering limit of 30 limits nothing, and the wheels turn "
+    "all the way round.",
     fix="Write radians; the hint has them.",
     bad=a_system("ackermann-steering", "AckermannSteering", "<steering_limit>30</steering_limit>"),
     good=a_system(
