@@ -153,3 +153,21 @@ def real_path(path: str) -> str:
 def variable(name: str) -> str | None:
     """A variable of the environment; None where it is not set."""
     return os.environ.get(name)
+
+
+@outside
+def file_state(path: str) -> tuple[int, ...]:
+    """What differs where a file was written anew; empty where it is not there."""
+    try:
+        it = os.stat(path)
+    except (OSError, ValueError):
+        return ()
+    return it.st_mtime_ns, it.st_size
+
+
+def kept_bytes(path: str, most: int) -> bytes:
+    """The first bytes of a large file; raises OSError. What rests on them holds as long as the file
+    has its state: to read it again would cost more than the answer."""
+    file_state(path)
+    with _noting(None), open(path, "rb") as file:
+        return file.read(most)

@@ -1,5 +1,5 @@
-"""How large the simple shapes of links are: boxes, cylinders and spheres. A mesh is a file, and
-not read."""
+"""How large the simple shapes of links are: boxes, cylinders and spheres. A mesh is a file:
+``mesh_box`` reads it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.checks.numbers import Vector, numbers, vector
 from multibot_rewrite.checks.pose import Pose
-from multibot_rewrite.checks.poses import STRAIGHT, dot, minus, plus, scaled
+from multibot_rewrite.checks.poses import STRAIGHT, dot, minus, plus, point_in, scaled
 
 
 class Extent(NamedTuple):
@@ -37,6 +37,14 @@ def extent_of(shape: _Element, pose: Pose) -> Extent | None:
         x, y, z = half
         reach = _three(abs(a) * x + abs(b) * y + abs(c) * z for a, b, c in pose.matrix)
     return Extent(minus(pose.at, reach), plus(pose.at, reach))
+
+
+def placed_box(box: Extent, pose: Pose) -> Extent:
+    """The box around a box at a pose."""
+    centre, half = point_in(pose, box.middle), minus(box.high, box.middle)
+    x, y, z = half
+    reach = _three(abs(a) * x + abs(b) * y + abs(c) * z for a, b, c in pose.matrix)
+    return Extent(minus(centre, reach), plus(centre, reach))
 
 
 def _half(shape: _Element) -> Vector | None:

@@ -28,6 +28,7 @@ from multibot_rewrite.fleets.manifest import (
     read_manifest,
 )
 from multibot_rewrite.fleets.output_file import OutputFile
+from multibot_rewrite.fleets.robot_choice import Choice
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
 from multibot_rewrite.releases import facts_of_release
@@ -38,7 +39,10 @@ def run(options: argparse.Namespace) -> int:
     """Build or check; returns the exit code."""
     _check_folder(options.output)
     check_report(options, printed=False)
-    fleet = read_fleet(options.fleet, options.distro or "", os.environ)
+    if options.count == 0:
+        raise UsageError("--count 0: a fleet has at least one robot")
+    choice = Choice(number=options.count or 0)
+    fleet = read_fleet(options.fleet, options.distro or "", os.environ, choice)
     fleet = fleet._replace(
         params_style=options.params_style or fleet.params_style, shape=options.shape or fleet.shape
     )

@@ -11,7 +11,7 @@ import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cache, lru_cache
 from importlib.resources import files
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.companions.params.known_nodes import KnownNodes
@@ -284,7 +284,24 @@ def _given(
     for it in given_nodes(documents, parameters):
         mine = without_robot(it, words)
         if mine.name in names or mine.manager == pair.facts.name:
-            yield _placed(mine, pair.node.place)
+            yield _of_any_robot(_placed(mine, pair.node.place), pair.node.namespace, words)
+
+
+def _of_any_robot(given: GivenNode, namespace: str, words: Collection[str]) -> GivenNode:
+    """Parameters that a launch file filled for a robot, without it: ``/scan`` of ``/robot1/scan``."""
+    own = [f"/{it}/" for it in words if f"{namespace}/".startswith(f"/{it}/")]
+    if not own:
+        return given
+    above = max(own, key=len)
+    values = {
+        name: it._replace(value=_without(it.value, above)) for name, it in given.values.items()
+    }
+    return given._replace(values=values)
+
+
+def _without(value: Any, above: str) -> Any:
+    is_name = isinstance(value, str) and value.startswith(above)
+    return f"/{value.removeprefix(above)}" if is_name else value
 
 
 def _placed(given: GivenNode, place: Place) -> GivenNode:

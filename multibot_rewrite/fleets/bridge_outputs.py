@@ -67,6 +67,10 @@ def _for_robot(
         (path, fill_bridge(file.own.template, spec.namespace, spec.tag, spec.model))
         for path, file in files.items()
     ]
+    for path, own in texts:
+        # A vendor's launch file starts a bridge for each of them.
+        if path_for(robot, path).partition("/")[2] in dict(spec.places).values():
+            yield OutputFile(path_for(robot, path), own.encode(), (path,))
     text, findings = merge_bridges(texts, [it for it in topics if it.robot == spec.namespace])
     yield from findings
     if text:

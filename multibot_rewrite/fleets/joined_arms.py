@@ -147,7 +147,7 @@ def _check_parts(cell: Cell, name: str, parts: Sequence[str], known: Sequence[st
         raise InputError(f"{where} is a group of one arm; write another name")
     for it in parts:
         if it not in known:
-            near = did_you_mean_one_of(it, known)
+            near = did_you_mean_one_of(it, known) or "name a group of an SRDF"
             raise InputError(f"{where}: no arm has a group {it!r}; {near}")
 
 

@@ -50,9 +50,19 @@ def text(name):
     return ParameterValue((FOLDER / name).read_text(), value_type=str)
 '''
 _CHOSEN = '''\
+def first(count):
+    """The names of so many robots."""
+    if not 0 < count <= len(ROBOTS):
+        more = f"multibot build FLEET -o {FOLDER} --count {count}"
+        raise RuntimeError(f"robots:={count}: {len(ROBOTS)} robots were built; for more: {more}")
+    return list(ROBOTS)[:count]
+
+
 def chosen(context):
-    """What the robots run that robots:= names; all of them by default."""
+    """What the robots run that robots:= names, or so many of them; all of them by default."""
     words = LaunchConfiguration("robots").perform(context).replace(",", " ").split()
+    if len(words) == 1 and words[0].isdigit():
+        words = first(int(words[0]))
     unknown = [it for it in words if it not in ROBOTS]
     if unknown:
         raise RuntimeError(f"robots:={unknown[0]} is not in this fleet; it has {', '.join(ROBOTS)}")
@@ -241,7 +251,7 @@ def _description(it: FleetStarts) -> Iterator[str]:
 
 def launch_arguments(it: FleetStarts) -> Iterator[tuple[str, str | File, str]]:
     """The launch arguments: name, default, what it is."""
-    yield "robots", "", "only these: robot1,robot2"
+    yield "robots", "", "only these: robot1,robot2, or so many: 2"
     yield "use_sim_time", str(it.use_sim_time).lower(), "whether all nodes use /clock"
     if it.windows:
         yield "rviz", "true", "whether to open RViz"

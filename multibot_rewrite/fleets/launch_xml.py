@@ -26,7 +26,8 @@ _SIMULATORS: Mapping[str, tuple[str, tuple[tuple[str, str], ...]]] = {
 }
 _CHOSEN = (
     "$(eval '\\'{0}\\' in \\'$(var robots)\\'.replace(\\',\\', \\' \\').split()"
-    " or not \\'$(var robots)\\'')"
+    " or not \\'$(var robots)\\'"
+    " or (\\'$(var robots)\\'.isdigit() and {1} < int(\\'$(var robots)\\'))')"
 )
 
 
@@ -51,9 +52,9 @@ def _lines(it: FleetStarts) -> Iterator[str]:
         yield "  </include>"
     for start in it.shared:
         yield from _process(start, 2)
-    for robot in it.robots:
+    for at, robot in enumerate(it.robots):
         yield f"  <!-- {robot.about} -->"
-        yield f"  {_tag('group', '>', **{'if': _CHOSEN.format(robot.name)})}"
+        yield f"  {_tag('group', '>', **{'if': _CHOSEN.format(robot.name, at)})}"
         yield from _group(robot.starts, 4)
         for command in robot.commands:
             yield f"    {_tag('executable', cmd=shlex.join(['sh', '-c', command]))}"

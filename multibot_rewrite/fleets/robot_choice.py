@@ -6,6 +6,7 @@ robot1, robot2 and robot3, each 2 m beside the one before.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
@@ -21,6 +22,8 @@ AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 # What each robot has for itself.
 OWN = ("namespace", "prefix", "postfix", "model")
 MOST = 10_000
+_NUMBERED = re.compile(r"(\w*[A-Za-z_])(\d+)")
+_TWO = 2
 _EXAMPLE = "write robot1={x: 1.0, y: 0}; robot2={x: 2.0}"
 
 
@@ -48,8 +51,7 @@ def with_robots(read: FleetData, choice: Choice) -> FleetData:
         return read
     rows = [row for at in range(len(given)) for row in _repeated(read, at, choice.number)]
     if choice.number and not any(COUNT in it for it in given):
-        hint = "write count: into one of its robots"
-        raise UsageError(f"count {choice.number}: {read.file} has no robot as a pattern; {hint}")
+        rows = list(_continued(read, choice.number))
     if choice.robots:
         rows = list(_chosen(choice.robots, rows, given))
     places = {
@@ -83,6 +85,39 @@ def _repeated(read: FleetData, at: int, asked: int) -> Iterator[_Row]:
         first, step = robot.get(POSE, {}), robot.get(STEP, {})
         pose = {it: first.get(it, 0) + number * step.get(it, 0) for it in {**first, **step}}
         yield at, {**row, POSE: pose} if pose else row
+
+
+def _continued(read: FleetData, count: int) -> Iterator[_Row]:
+    """The first robots of a file that numbers them, and more like the last one, as far from each other
+    as the last two."""
+    given = read.data["robots"]
+    stem, number = _numbered(read, count)
+    yield from list(enumerate(given))[:count]
+    last = len(given) - 1
+    before, pose = (robot.get(POSE, {}) for robot in (given[last - 1], given[last]))
+    kept = {key: it for key, it in _without(given[last]).items() if key not in OWN}
+    for more in range(1, count - last):
+        place = {it: _further(before, pose, it, more) for it in {**before, **pose}}
+        row = {**kept, NAME: f"{stem}{number + more}"}
+        yield last, {**row, POSE: place} if place else row
+
+
+def _numbered(read: FleetData, count: int) -> tuple[str, int]:
+    """The name of all robots without their numbers, and the last number; raises UsageError."""
+    given = read.data["robots"]
+    if not 0 < count <= MOST:
+        raise UsageError(f"count {count}: write a number from 1 to {MOST}")
+    found = [_NUMBERED.fullmatch(robot[NAME]) for robot in given]
+    names = [(it[1], int(it[2])) for it in found if it]
+    if len({stem for stem, _ in names}) == 1 and len(names) == len(given) and len(given) >= _TWO:
+        return names[-1]
+    hint = "write count: into one of its robots, or call them robot1 and robot2"
+    raise UsageError(f"count {count}: {read.file} has no robot as a pattern; {hint}")
+
+
+def _further(before: Mapping[str, float], pose: Mapping[str, float], axis: str, more: int) -> float:
+    step = pose.get(axis, 0) - before.get(axis, 0)
+    return round(pose.get(axis, 0) + more * step, 6)
 
 
 def _without(robot: Mapping[str, Any]) -> dict[str, Any]:

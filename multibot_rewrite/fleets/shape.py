@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
@@ -89,13 +90,15 @@ def placed(robot: RewrittenRobot, shape: str) -> RewrittenRobot:
     made = dict(_kept(robot, shapes()[shape]))
     for place, what in shapes()[shape].places.items():
         if place not in made.values():
-            made |= {name: place for name in [name_of(robot, what)] if name and name not in made}
+            free = (name for name in _names_of(robot, what) if name not in made)
+            made |= dict.fromkeys(itertools.islice(free, 1), place)
     return robot._replace(spec=robot.spec._replace(places=tuple(made.items())))
 
 
 def _kept(robot: RewrittenRobot, shape: Shape) -> Iterator[tuple[str, str]]:
     """The files that lie in a vendor's folder already."""
-    for source in robot.spec.companions.get("params", ()):
+    companions = robot.spec.companions
+    for source in (*companions.get("params", ()), *companions.get(BRIDGE, ())):
         folder = os.path.dirname(os.path.abspath(source))
         for it in shape.keeps:
             if f"{folder}/".endswith(f"/{it}/"):
@@ -105,14 +108,19 @@ def _kept(robot: RewrittenRobot, shape: Shape) -> Iterator[tuple[str, str]]:
 def name_of(robot: RewrittenRobot, what: str) -> str:
     """The output of a robot without its place: its description, its SRDF, its bridge, or the first
     parameter file with a section of a node; empty if it has none."""
+    return next(_names_of(robot, what), "")
+
+
+def _names_of(robot: RewrittenRobot, what: str) -> Iterator[str]:
     spec = robot.spec
     described = {DESCRIPTION: spec.description, SRDF: spec.srdf}
     if what in described:
-        return expanded_name(described[what]) if described[what] else ""
-    if what == BRIDGE:
-        return "bridge.yaml" if spec.companions.get(BRIDGE) else ""
-    found = (path for path, nodes in _nodes_by_file(spec) if what in nodes)
-    return next((_plain_name(robot, path) for path in found), "")
+        yield from [expanded_name(described[what])] if described[what] else ()
+    elif what == BRIDGE:
+        yield from ["bridge.yaml"] if spec.companions.get(BRIDGE) else ()
+    else:
+        found = (path for path, nodes in _nodes_by_file(spec) if what in nodes)
+        yield from (_plain_name(robot, path) for path in found)
 
 
 def _plain_name(robot: RewrittenRobot, source: str) -> str:

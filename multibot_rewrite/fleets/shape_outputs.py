@@ -17,6 +17,7 @@ from multibot_rewrite.fleets.output_file import OutputFile, yaml_of
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.shape import REAL, SIMULATED, TakingCommand, name_of, shapes
 from multibot_rewrite.fleets.spawn import is_simulated
+from multibot_rewrite.model import InputError
 from multibot_rewrite.releases import has_release
 
 
@@ -45,7 +46,10 @@ def taken_as_they_are(plan: FleetPlan) -> set[str]:
 
 
 def copied(plan: FleetPlan) -> Iterator[OutputFile]:
-    """The vendor's files beside descriptions, with each robot's namespace."""
+    """The vendor's files beside descriptions, with each robot's namespace.
+
+    Raises InputError for one that cannot be read or has no namespace.
+    """
     wanted = shapes()[plan.file.shape].namespace_in if plan.file.shape else {}
     for robot in plan.robots:
         for name, keys in wanted.items():
@@ -86,10 +90,11 @@ def _path(robot: RewrittenRobot, name: str) -> str:
 
 
 def _with_namespace(document: YamlText, keys: Sequence[str], namespace: str) -> str:
-    """The text with another value of a key; as it is where it has no such key."""
+    """The text with another value of a key; raises InputError where it has no such key."""
     node = document.root
     for key in keys:
         node = next((value for name, value in pairs(node) if name.value == key), None)
-    return spliced(
-        document, [replaced(node, namespace)] if isinstance(node, yaml.ScalarNode) else []
-    )
+    if not isinstance(node, yaml.ScalarNode) or node.style in ("|", ">"):
+        what = f"{document.file}: {'.'.join(keys)} is not one word"
+        raise InputError(f"{what}; write it: each robot gets its own namespace there")
+    return spliced(document, [replaced(node, namespace)])

@@ -14,14 +14,12 @@ from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.outside import unrepeatable
 
 _PLACE = lazy_compile(r"(?P<file>.*?)(?::(?P<line>\d+):(?P<column>\d+))?: (?P<text>.*)", re.DOTALL)
-# A part of a reader's message -> the rule that reports it.
+# What a reader's message says -> the rule that reports it.
 _CODES = (
-    ("No such file", "MB102"),
-    ("cannot be read", "MB102"),
-    ("Is a directory", "MB102"),
-    ("Permission denied", "MB102"),
-    ("xacro failed: package '", "MB119"),
-    ("xacro failed", "MB103"),
+    (lazy_compile("No such file|cannot be read|Is a directory|Permission denied"), "MB102"),
+    (lazy_compile("xacro failed[^:]*: package '[^']*' is not found"), "MB119"),
+    (lazy_compile("xacro failed[^:]*: Undefined substitution argument"), "MB145"),
+    (lazy_compile("xacro failed"), "MB103"),
 )
 
 
@@ -29,7 +27,7 @@ def failure(path: str, message: str, settings: Settings) -> Finding:
     """The finding for a file that cannot be read; ``message`` is that of its InputError."""
     from multibot_rewrite.lint.registry import RULES  # all rules: a file that is read needs few
 
-    code = next((code for part, code in _CODES if part in message), "MB101")
+    code = next((code for said, code in _CODES if said.search(message)), "MB101")
     level = level_of(settings, code, RULES[code].level)
     it = _PLACE.fullmatch(message)
     assert it is not None, "an InputError names its file"

@@ -110,22 +110,29 @@ def _shapes(link: Any, colours: dict[str, tuple[float, ...]], source: str) -> It
         elif it.sphere is not None:
             yield Shape("sphere", (float(it.sphere.radius),), pose, colour)
         elif it.mesh is not None:
-            yield _mesh_shape(it.mesh, pose, colour, source)
+            yield mesh_shape(it.mesh.filename, _scale(it.mesh), pose, colour, source)
 
 
-def _mesh_shape(mesh: Any, pose: Matrix, colour: tuple[float, ...], source: str) -> Shape:
-    scale = mesh.scale if mesh.scale is not None else 1.0
-    sizes = (float(scale),) * 3 if isinstance(scale, float) else tuple(map(float, scale))
-    path = find_mesh(mesh.filename, source)
+def mesh_shape(
+    name: str, scale: tuple[float, ...], pose: Matrix, colour: tuple[float, ...], source: str
+) -> Shape:
+    """A mesh of the file ``source``, or a small box in its place."""
+    path = find_mesh(name, source)
     if path:
-        return Shape("mesh", sizes, pose, colour, path)
-    return Shape("box", (0.1, 0.1, 0.1), pose, colour, "", f"{mesh.filename} is not found")
+        return Shape("mesh", scale, pose, colour, path)
+    return Shape("box", (0.1, 0.1, 0.1), pose, colour, "", f"{name} is not found")
+
+
+def _scale(mesh: Any) -> tuple[float, ...]:
+    scale = mesh.scale if mesh.scale is not None else 1.0
+    return (float(scale),) * 3 if isinstance(scale, float) else tuple(map(float, scale))
 
 
 def find_mesh(name: str, source: str) -> str:
-    """The file of a mesh's name; empty if there is none."""
-    if name.startswith("package://"):
-        package, _, rest = name.removeprefix("package://").partition("/")
+    """The file of a mesh's name; empty if there is none. Gazebo finds model:// where packages are."""
+    scheme, _, below = name.partition("://")
+    if scheme in ("package", "model"):
+        package, _, rest = below.partition("/")
         folder = package_folder(package, source, ())
         path = os.path.join(folder, rest) if folder else ""
     elif name.startswith("file://"):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 from multibot_rewrite.companions.names.rename_map import spell
@@ -12,9 +12,10 @@ from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.rewritten_robots import GRAPH_KINDS, RewrittenRobot
 from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.library import Prepared
-from multibot_rewrite.model import Change, UsageError
+from multibot_rewrite.model import Change
 from multibot_rewrite.reports.changes import list_changes
 from multibot_rewrite.view.models import Model, load_model
+from multibot_rewrite.view.sdf_model import declared, line_of, load_sdf
 
 HEARD, ELSEWHERE, SILENT = "heard", "elsewhere", "silent"
 # What is changed for a robot, by its name.
@@ -45,7 +46,7 @@ class ViewedRobot(NamedTuple):
 
 
 def scene_of(plan: FleetPlan, graph: Snapshot | None = None) -> tuple[ViewedRobot, ...]:
-    """The robots; raises as ``load_model``, and UsageError for an SDF."""
+    """The robots; raises as ``load_model`` and ``load_sdf``."""
     changes = {sources: _changes(plan, sources) for sources in plan.jobs}
     return tuple(_robot(it, changes[it.spec.sources], graph) for it in plan.robots)
 
@@ -56,13 +57,11 @@ def _changes(plan: FleetPlan, sources: Sources) -> _Changes:
 
 
 def _robot(it: RewrittenRobot, changes: _Changes, graph: Snapshot | None) -> ViewedRobot:
-    spec, root = it.spec, it.member.inventory.document.root
-    if root.tag == "sdf":
-        raise UsageError(f"{spec.description}: the view shows URDF and xacro, this is an SDF")
-    model = load_model(it.description, os.path.abspath(spec.description))
+    spec = it.spec
+    model = _model(it)
     # Frames have the tag of a robot, its topics the namespace.
     made = [*_of(changes(spec.tag), False), *_of(changes(spec.namespace), True)]
-    names = tuple(_names(it, model, made))
+    names = tuple(_names(it, model))
     heard = _heard(model, graph, it) if graph else {}
     file = (
         f"{spec.description} (expanded)"
@@ -79,16 +78,35 @@ def _of(changes: Iterable[Change], graph: bool) -> Iterator[Change]:
     yield from (it for it in changes if (it.kind in GRAPH_KINDS) == graph)
 
 
-def _names(it: RewrittenRobot, model: Model, made: Sequence[Change]) -> Iterator[Name]:
-    lines = {(one.kind, one.old): one.line for one in reversed(made)}
-    source = it.member.source
-    for kind, tag in (("link", "link"), ("joint", "joint")):
-        own = [one.get("name", "") for one in source.root.iterfind(tag)]
-        before = {spell(it.names, kind, name): name for name in own}
-        after = model.links if kind == "link" else [one.name for one in model.joints]
-        for name in after:
-            old = before.get(name, name)
-            yield Name(name, old, lines.get((kind, old), 0))
+def _model(it: RewrittenRobot) -> Model:
+    root, source = it.member.described.document.root, os.path.abspath(it.spec.description)
+    return load_sdf(root, source) if root.tag == "sdf" else load_model(it.description, source)
+
+
+def _names(it: RewrittenRobot, model: Model) -> Iterator[Name]:
+    before = _before(it, model)
+    for kind, names in (("link", model.links), ("joint", [one.name for one in model.joints])):
+        for name in names:
+            yield Name(name, *before.get((kind, name), (name, 0)))
+
+
+def _before(it: RewrittenRobot, model: Model) -> dict[tuple[str, str], tuple[str, int]]:
+    """What a link or joint was called, and the line that declares it. Names within nested models of an
+    SDF are told by their order, which a rewrite keeps."""
+    root = it.member.source.root
+    if root.tag == it.member.described.document.root.tag == "sdf":
+        old, lines = load_sdf(root, ""), declared(root)
+        both = [("link", *pair) for pair in zip(model.links, old.links, strict=True)]
+        both += [
+            ("joint", new.name, was.name) for new, was in zip(model.joints, old.joints, strict=True)
+        ]
+        return {(kind, new): (was, lines.get(was, 0)) for kind, new, was in both}
+    return {
+        (kind, spell(it.names, kind, name)): (name, line_of(one))
+        for kind in ("link", "joint")
+        for one in root.iterfind(kind)
+        for name in [one.get("name", "")]
+    }
 
 
 def _heard(model: Model, graph: Snapshot, it: RewrittenRobot) -> dict[str, str]:

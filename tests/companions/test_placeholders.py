@@ -43,6 +43,8 @@ Visualization Manager:
   Displays:
     - {Class: rviz_default_plugins/Path, Name: path, Topic: {Value: "/IT/plan"}}
     - {Class: rviz_default_plugins/Axes, Name: axes, Reference Frame: "IT/lidar_link"}
+    - {Class: rviz_default_plugins/RobotModel, Name: model, TF Prefix: "IT",
+       Description Topic: {Value: "IT/robot_description", Durability Policy: Transient Local}}
   Global Options: {Fixed Frame: map}
 """
 TREE = """\
@@ -95,6 +97,10 @@ def test_one_meaning_in_every_file(
     shown = text.get("r.rviz", "") + text.get("robot2/r.rviz", "")
     assert "/robot2/plan" in shown
     assert f'Reference Frame: "{lidar}"' in shown or f"Reference Frame: {lidar}" in shown
+    # RViz puts it before the links of the description, which have the robot's name or none in tf.
+    prefix = "robot2" if layout == "frame-prefix" else '""'
+    assert f"TF Prefix: {prefix}," in shown.replace('"robot2"', "robot2")
+    assert f'"{form}"' not in shown
     tree = text["robot2/t.xml"]
     assert f'robot_base_frame="{base}"' in tree
     assert 'server_name="/robot2/spin"' in tree or 'server_name="spin"' in tree

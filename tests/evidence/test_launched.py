@@ -154,6 +154,27 @@ def test_parameters_of_a_launch_file_set_names_and_later_ones_win() -> None:
     assert "two" in names and not {"one", "three", "scan"} & names
 
 
+@pytest.mark.parametrize(
+    ("namespace", "told", "name"),
+    [
+        # Filled for the robot by the launch file: the plan puts the name in front once.
+        ("/robot1", "/robot1/scan", "/scan"),
+        ("/robot1/front", "/robot1/front/scan", "/front/scan"),
+        ("/robot1", "/robot10/scan", "/robot10/scan"),
+        ("/robot1", "/scan", "/scan"),
+        ("/", "/robot1/scan", "/robot1/scan"),
+        ("/front", "/front/scan", "/front/scan"),
+    ],
+)
+def test_a_name_that_a_launch_file_filled_for_its_robot_is_that_of_any(
+    namespace: str, told: str, name: str
+) -> None:
+    text = f"/**:\n  ros__parameters: {{scan_topic: {told}}}\n"
+    node = AMCL._replace(namespace=namespace, parameters=(ParameterText("/ws/a.yaml", text),))
+    (found,) = (it for it in runs(launched(node)).values() if it.package == "nav2_amcl")
+    assert name in {it.name for it in found.endpoints}
+
+
 def test_a_file_that_sets_no_parameters_of_nodes_is_passed_over() -> None:
     flat = AMCL._replace(parameters=(ParameterText("/ws/flat.yaml", "scan_topic: one\n"),))
     assert "amcl" in runs(launched(flat))

@@ -15,12 +15,15 @@ from vendor_rows import (
     bridge_rows,
     description_rows,
     parameter_rows,
+    rviz_rows,
     static_edge,
 )
 from vendor_sources import VARIABLE, WITHOUT, sources_folder
 from vendor_systems import missing, read_vendors
 
 from multibot_rewrite.launch import missing as without_launch
+from multibot_rewrite.rosnames import bind
+from multibot_rewrite.rosnames.rules import parse_remap
 
 RECIPES = read_recipes()
 
@@ -91,3 +94,38 @@ def test_what_bridges_and_static_transforms_say() -> None:
     assert bridge_argument("--ros-args") is None
     assert static_edge(["0", "0", "0", "0", "0", "0", "odom", "base"]) == "odom -> base"
     assert static_edge(["--frame-id", "a", "--x", "1", "--child-frame-id", "b"]) == "a -> b"
+
+
+WINDOW = """\
+Visualization Manager:
+  Displays:
+    - {Class: rviz_common/Group, Name: Robot, Displays: [{Class: TF, Name: tf}]}
+    - {Class: rviz_common/Group, Name: robot1, Displays: [
+        {Class: rviz_common/Group, Name: Robot, Displays: [
+          {Class: Path, Name: plan, Topic: {Value: /robot1/plan, Depth: 5}}]}]}
+    - {Class: rviz_common/Group, Name: robot2, Displays: [{Class: Path, Name: other, Topic: /x}]}
+  Tools:
+    - {Class: SetGoal, Topic: {Value: /robot1/goal_pose}}
+    - {Class: SetGoal, Topic: {Value: /robot2/goal_pose}}
+    - {Class: Measure}
+  Global Options: {Fixed Frame: map}
+"""
+
+
+def test_a_window_for_all_robots_shows_one_as_a_window_of_its_own() -> None:
+    own = """\
+Visualization Manager:
+  Displays:
+    - {Class: rviz_common/Group, Name: Robot, Displays: [
+        {Class: TF, Name: tf}, {Class: Path, Name: plan, Topic: {Value: plan, Depth: 5}}]}
+  Tools: [{Class: Measure}, {Class: SetGoal, Topic: {Value: /goal_pose}}]
+  Global Options: {Fixed Frame: map}
+"""
+    rules = [it for it in [parse_remap("/goal_pose:=goal_pose")] if it]
+    all_ = rviz_rows(WINDOW, bind("rviz2", "/", []), "robot1")
+    one = rviz_rows(own, bind("rviz2", "/robot1", rules), "robot1")
+    assert all_ == one
+    assert "/robot1/plan" in one.values()
+    assert "/robot1/goal_pose" in one.values()
+    assert all_ != rviz_rows(own, bind("rviz2", "/robot1", []), "robot1")
+    assert all_ != rviz_rows(own.replace("map", "odom"), bind("rviz2", "/robot1", rules), "robot1")

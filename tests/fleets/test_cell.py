@@ -70,7 +70,7 @@ distro: jazzy
 srdf: arm.srdf
 stack: moveit
 simulator: none
-companions: {moveit: [limits.yaml, controllers.yaml], rviz: moveit.rviz}
+companions: {moveit: [limits.yaml, controllers.yaml, servo.yaml], rviz: moveit.rviz}
 robots:
   - {name: left, description: arm.urdf, pose: {y: 0.5, yaw: 1.5}}
   - {name: right, description: other.urdf, pose: {y: -0.5}}
@@ -81,6 +81,7 @@ FILES = {
     "arm.srdf": SRDF,
     "limits.yaml": "joint_limits:\n  elbow: {has_velocity_limits: true, max_velocity: 1.0}\n",
     "controllers.yaml": CONTROLLERS,
+    "servo.yaml": "move_group_name: arm\nplanning_frame: base\n",
     "moveit.rviz": RVIZ,
     "fleet.yaml": FLEET,
 }
@@ -190,6 +191,8 @@ def test_move_group_gets_all_files_joined(tmp_path: Path) -> None:
     assert simple["controller_names"] == ["left/arm_controller", "right/arm_controller"]
     assert simple["right/arm_controller"]["joints"] == ["right_elbow"]
     assert set(simple) == {"controller_names", *simple["controller_names"]}
+    # servo runs for each arm.
+    assert "moveit_servo" not in given
 
 
 def test_one_move_group_is_planned_and_started(tmp_path: Path) -> None:
@@ -197,6 +200,8 @@ def test_one_move_group_is_planned_and_started(tmp_path: Path) -> None:
     plan = yaml.safe_load(files["plan.yaml"])
     assert list(plan["shared_nodes"]) == ["/move_group"]
     assert plan["ignored_nodes"] == ["/move_group_private_*"]
+    # Both arms send what it hears.
+    assert {"/joint_states", "/clock", "/diagnostics"} <= set(plan["shared_topics"])
     heard = [it for it in plan["shared_nodes"]["/move_group"] if it[:2] == ["subscribes", "topic"]]
     assert "/joint_states" in [it[2] for it in heard]
     assert not [
@@ -205,7 +210,9 @@ def test_one_move_group_is_planned_and_started(tmp_path: Path) -> None:
     run = "move_group move_group --ros-args --params-file cell/moveit_parameters.yaml"
     assert files["commands.md"].decode().count("move_group move_group") == 1
     assert run in files["commands.md"].decode()
-    assert b'parameters=[file("cell/moveit_parameters.yaml"), CLOCK]' in files["fleet.launch.py"]
+    given = 'parameters=[file("cell/moveit_parameters.yaml"), CLOCK]'
+    started = files["fleet.launch.py"].decode().partition('executable="move_group"')[2]
+    assert given in started.partition("output=")[0]
 
 
 def test_one_window_plans_for_all_arms(tmp_path: Path) -> None:

@@ -288,15 +288,63 @@ def programs(out: Path) -> dict[str, str]:
 
 
 @REAL
-def test_arguments_choose_robots_and_windows(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("words", "robot"), [("robots:=robot2", "robot2"), ("robots:=1", "robot1")]
+)
+def test_arguments_choose_robots_and_windows(words: str, robot: str, tmp_path: Path) -> None:
     out = built(tmp_path, "classic", "both")
     for form in ("py", "xml"):
         (tmp_path / form).mkdir()
         told, _ = launched(
-            out / f"fleet.launch.{form}", tmp_path / form, "robots:=robot2", programs=programs(out)
+            out / f"fleet.launch.{form}", tmp_path / form, words, programs=programs(out)
         )
         spaces = [word for it in told for word in words_of(it)[2] if word.startswith("__ns")]
-        assert set(spaces) == {"__ns:=/robot2"}
+        assert set(spaces) == {f"__ns:=/{robot}"}
+
+
+def chosen(out: Path, monkeypatch: pytest.MonkeyPatch, text: str) -> list[str]:
+    """The robots that the Python file starts for ``robots:=`` with this text."""
+    of_python(out, monkeypatch)
+    names: dict[str, Any] = {"__file__": str(out / "fleet.launch.py"), "__name__": "fleet"}
+    exec(compile((out / "fleet.launch.py").read_text(), "fleet.launch.py", "exec"), names)
+    names["ROBOTS"] = {name: lambda name=name: [name] for name in names["ROBOTS"]}
+
+    class Given:
+        def __init__(self, _: str) -> None: ...
+
+        def perform(self, _: object) -> str:
+            return text
+
+    names["LaunchConfiguration"] = Given
+    found: list[str] = names["chosen"](None)
+    return found
+
+
+def test_so_many_robots_are_started(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    out = built(tmp_path, "ten", "both")
+    assert chosen(out, monkeypatch, "3") == ["robot1", "robot2", "robot3"]
+    assert chosen(out, monkeypatch, "robot9, robot2") == ["robot9", "robot2"]
+    assert len(chosen(out, monkeypatch, "")) == 10
+    for text, said in (
+        ("12", "10 robots were built; for more: multibot build"),
+        ("0", "robots:=0"),
+    ):
+        with pytest.raises(RuntimeError, match=said):
+            chosen(out, monkeypatch, text)
+
+
+def test_more_robots_than_the_file_has_are_built(tmp_path: Path) -> None:
+    """No file is edited: the third one stands as far from the second as that from the first."""
+    built(tmp_path, "classic", "both")
+    fleet, out = tmp_path / "fleet.yaml", tmp_path / "more"
+    before = fleet.read_text()
+    assert main(["build", str(fleet), "-o", str(out), "-q", "--count", "3"]) == 0
+    assert fleet.read_text() == before
+    assert (out / "robot3" / "rover.urdf").exists()
+    assert (
+        '"robot3", "-topic", "/robot3/robot_description", "-x", "5.0"'
+        in (out / "fleet.launch.py").read_text()
+    )
 
 
 def runs() -> Iterator[Any]:

@@ -72,6 +72,14 @@ def test_a_fleet_of_a_dict_is_that_of_its_file(here: Path) -> None:
     )
 
 
+def test_numbered_robots_go_on(here: Path) -> None:
+    two = [{"name": "r1", "pose": {"x": 1.0}}, {"name": "r2", "pose": {"x": 1.5, "y": 2.0}}]
+    four = poses(two, Choice(number=4))
+    assert list(four) == ["r1", "r2", "r3", "r4"]
+    assert four["r4"] == (2.5, 6.0)
+    assert list(poses(two, Choice(number=1))) == ["r1"]
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [
@@ -96,6 +104,9 @@ def test_a_wrong_text_is_one_line(here: Path, text: str, said: str) -> None:
     ("robots", "choice", "said"),
     [
         ([{"name": "a"}], Choice(number=2), "no robot as a pattern"),
+        ([{"name": "a1"}], Choice(number=2), "no robot as a pattern"),
+        ([{"name": "a1"}, {"name": "b2"}], Choice(number=3), "no robot as a pattern"),
+        ([{"name": "a1"}, {"name": "a2"}], Choice(number=20_000), "from 1 to"),
         ([PATTERN], Choice(number=-1), "from 1 to"),
         ([{"name": "a", "step": {"x": 1}}], Choice(), "step is of a robot with count"),
         ([{"name": "a", "count": 0}], Choice(), "count"),

@@ -17,7 +17,7 @@ from vendor_shapes import taken
 from vendor_sources import VARIABLE, WITHOUT, sources_folder
 from vendor_systems import missing, read_vendors
 
-from multibot_rewrite import UsageError, load_fleet
+from multibot_rewrite import InputError, UsageError, load_fleet
 from multibot_rewrite.cli.declared.fleet import SHAPES
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleets.fleet_data import schema
@@ -88,9 +88,50 @@ def test_clearpath_has_a_setup_folder(tmp_path: Path) -> None:
     # Whoever else names the files names them there.
     assert "robot2/robot.urdf.xacro" in made.text("fleet.launch.py")
     assert "robot2/platform/config/control.yaml" in made.text("fleet.launch.xml")
+    robot = made.robot("robot2")
+    text = made.text("robot2/platform/config/control.yaml")
+    assert robot.text("my controller_manager.yaml") == text
+    assert robot.node_text("my controller_manager.yaml") == text
     assert list(yaml.safe_load(made.text("robot2/platform/config/localization.yaml"))) == [
         "/robot2/ekf_node"
     ]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "a: 1\n",
+        "- a\n",
+        "",
+        "system: {ros2: {namespace: {}}}\n",
+        "system:\n  ros2:\n    namespace: |\n      a\n",
+    ],
+)
+def test_a_vendors_file_without_a_namespace_is_refused(text: str, tmp_path: Path) -> None:
+    (tmp_path / "robot.yaml").write_text(text)
+    with pytest.raises(InputError, match=r"robot\.yaml: system\.ros2\.namespace is not one word"):
+        load_fleet(fleet(tmp_path, "clearpath")).text("commands.md")
+
+
+def test_clearpath_starts_a_bridge_for_each_sensor(tmp_path: Path) -> None:
+    """clearpath_generator_gz launch/sensors.py: each gets the file of its sensor."""
+    folder = tmp_path / "sensors/config"
+    folder.mkdir(parents=True)
+    types = "ros_type_name: sensor_msgs/msg/LaserScan, gz_type_name: gz.msgs.LaserScan"
+    for it in ("lidar2d_0", "lidar2d_1"):
+        row = f"- {{topic_name: {it}/scan, {types}, direction: GZ_TO_ROS}}\n"
+        (folder / f"{it}.yaml").write_text(row)
+    bridges = {"bridge": [str(it) for it in sorted(folder.iterdir())]}
+    made = load_fleet(fleet(tmp_path, "clearpath", companions=bridges))
+    for it in ("lidar2d_0", "lidar2d_1"):
+        (row,) = yaml.safe_load(made.text(f"robot2/sensors/config/{it}.yaml"))
+        assert (
+            row["ros_topic_name" if "ros_topic_name" in row else "topic_name"]
+            == f"/robot2/{it}/scan"
+        )
+    assert len(yaml.safe_load(made.text("robot2/bridge.yaml"))) == 2
+    plain = load_fleet(fleet(tmp_path, "", layout="tf-per-robot", companions=bridges))
+    assert not [it for it in plain.files if "lidar2d" in it]
 
 
 @pytest.mark.parametrize(("simulator", "robot"), [("none", "robot"), ("gazebo", "gz")])
@@ -108,6 +149,27 @@ def test_only_the_first_file_of_a_node_gets_its_place(tmp_path: Path) -> None:
     keys["companions"]["params"].append(str(tmp_path / "more.yaml"))
     files = load_fleet(keys).files
     assert {"robot1/more.yaml", "robot1/platform/config/control.yaml"} <= set(files)
+
+
+def test_a_file_in_a_folder_of_the_vendor_takes_no_other_place(tmp_path: Path) -> None:
+    folder = tmp_path / "manipulators/config"
+    folder.mkdir(parents=True)
+    (folder / "control.yaml").write_text(PARAMS.format("controller_manager"))
+    keys = fleet(tmp_path, "clearpath")
+    keys["companions"]["params"].insert(0, str(folder / "control.yaml"))
+    files = set(load_fleet(keys).files)
+    places = {f"robot1/{it}/config/control.yaml" for it in ("manipulators", "platform")}
+    assert places <= files
+    keys["companions"]["params"] = [str(folder / "control.yaml")]
+    assert set(load_fleet(keys).files) & places == {"robot1/manipulators/config/control.yaml"}
+
+
+def test_the_fleet_file_says_that_hardware_is_simulated(tmp_path: Path) -> None:
+    keys = fleet(tmp_path, "clearpath", simulator="gazebo")
+    hardware = '<ros2_control name="s" type="system"><hardware><plugin>a/B</plugin></hardware>'
+    text = ROBOT.partition("<gazebo>")[0] + hardware + "</ros2_control></robot>"
+    (tmp_path / "r.urdf").write_text(text)
+    assert "ros2 run clearpath_generator_gz" in load_fleet(keys).text("commands.md")
 
 
 @pytest.mark.parametrize(("distro", "word"), [("jazzy", " use_namespace:=True"), ("kilted", "")])
@@ -132,9 +194,10 @@ def test_turtlebot4_as_it_is(tmp_path: Path) -> None:
     first = commands(tmp_path, "turtlebot4", simulator="none")[0]
     robot = "ROBOT_NAMESPACE=robot1 ros2 launch turtlebot4_bringup standard.launch.py"
     assert first == f"{robot} param_file:=$PWD/'{node}'"
-    spawn = "turtlebot4_ignition_bringup turtlebot4_spawn.launch.py namespace:=robot1 x:=1.5"
-    first = commands(tmp_path, "turtlebot4", simulator="gazebo")[0]
-    assert first == f"ros2 launch {spawn} param_file:=$PWD/'{node}'"
+    for distro, package in {"humble": "ignition", "jazzy": "gz", "lyrical": "gz"}.items():
+        spawn = f"turtlebot4_{package}_bringup turtlebot4_spawn.launch.py namespace:=robot1 x:=1.5"
+        first = commands(tmp_path, "turtlebot4", simulator="gazebo", distro=distro)[0]
+        assert first == f"ros2 launch {spawn} param_file:=$PWD/'{node}'"
 
 
 def test_husarion_gets_its_bridge_file(tmp_path: Path) -> None:

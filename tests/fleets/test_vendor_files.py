@@ -177,3 +177,52 @@ def test_a_launch_file_is_named_alike_from_every_working_directory(
         plans += [it.data for it in make_outputs(made).files if it.path == "plan.yaml"]
     assert plans[0] == plans[1]
     assert b"/controller_manager: system_model.yaml:" in plans[0]
+
+
+STATE = """\
+structure:
+  nodes:
+    /{robot}/robot_state_publisher:
+      pkg: robot_state_publisher
+      exec: robot_state_publisher
+      node_name: robot_state_publisher
+      params: {frame_prefix: PREFIX}
+    /{robot}/dock_state_publisher:
+      pkg: robot_state_publisher
+      exec: robot_state_publisher
+      node_name: dock_state_publisher
+      params: {frame_prefix: dock/}
+"""
+
+
+@pytest.mark.parametrize(
+    ("layout", "prefix", "told"),
+    [
+        ("tf-per-robot", "robot1/", True),
+        ("frames-per-robot", "robot1/", True),
+        # turtlebot3_state_publisher.launch.py without its argument; tf2 strips the slash.
+        ("frames-per-robot", "/", False),
+        ("frame-prefix", "robot1/", False),
+        ("frame-prefix", "other/", True),
+        ("frame-prefix", '""', True),
+    ],
+)
+def test_a_launch_file_that_gives_the_state_publisher_a_prefix(
+    layout: str, prefix: str, told: bool, tmp_path: Path
+) -> None:
+    text = STATE.replace("{robot}", "robot1").replace("PREFIX", prefix)
+    (tmp_path / "system_model.yaml").write_text(text)
+    plan(tmp_path, SENSOR, "launch: system_model.yaml\n")
+    file = tmp_path / "fleet.yaml"
+    file.write_text(file.read_text().replace("layout: tf-per-robot", f"layout: {layout}"))
+    found = said(plan_fleet(read_fleet(str(file), "jazzy", {})), "MF841")
+    assert [(Path(it.file).name, it.line) for it in found] == (
+        [("system_model.yaml", 3)] if told else []
+    )
+
+
+def test_a_prefix_in_a_parameter_file_is_rewritten_there(tmp_path: Path) -> None:
+    (tmp_path / "system_model.yaml").write_text(OWN_MANAGER)
+    params = "robot_state_publisher:\n  ros__parameters: {frame_prefix: old/}\n"
+    made = plan(tmp_path, SENSOR, "launch: system_model.yaml\n", params)
+    assert said(made, "MF841") == []

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
+from struct import pack
 
 import pytest
 
+from multibot_rewrite.checks.mesh_box import mesh_box
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.sources import packages
@@ -159,3 +161,106 @@ def test_a_mesh_of_sdf_has_a_uri(workspace: Path) -> None:
     )
     found = lint_file(str(file), Settings(select=("MB706",)))
     assert [it.code for it in found] == ["MB706"]
+
+
+# ---------------------------------------------------------------- how large they are
+
+SIDES = (300.0, 200.0, 100.0)
+
+
+def binary_stl(x: float, y: float, z: float) -> bytes:
+    """Two triangles from the origin to a corner."""
+    corners = (0, 0, 0, x, 0, 0, x, y, 0), (0, 0, 0, x, y, z, 0, y, z)
+    triangles = [pack("<12f2x", 0, 0, 1, *it) for it in corners]
+    return b"solid by chance".ljust(80) + pack("<I", 2) + b"".join(triangles)
+
+
+def text_stl(x: float, y: float, z: float) -> bytes:
+    corners = "".join(f"vertex {it}\n" for it in ("0 0 0", f"{x:e} 0 0", f"{x} {y} {z}"))
+    return f"solid a\nfacet normal 0 0 1\nouter loop\n{corners}endloop\nendfacet\n".encode()
+
+
+def obj(x: float, y: float, z: float) -> bytes:
+    return f"# v 9 9 9\nvn 0 0 1\nv 0 0 0\nv {x} {y} {z} 1.0\nf 1 2 1\n".encode()
+
+
+@pytest.mark.parametrize(
+    ("name", "data"),
+    [("a.stl", binary_stl(*SIDES)), ("a.STL", text_stl(*SIDES)), ("a.obj", obj(*SIDES))],
+)
+def test_the_box_around_a_mesh(tmp_path: Path, name: str, data: bytes) -> None:
+    file = tmp_path / name
+    file.write_bytes(data)
+    for whole in (True, False):
+        assert mesh_box(str(file), whole) == ((0.0, 0.0, 0.0), SIDES)
+
+
+@pytest.mark.parametrize(
+    ("name", "data"),
+    [
+        ("a.dae", b"<COLLADA/>"),
+        ("a.stl", b""),
+        ("a.stl", b"solid"),
+        ("a.stl", binary_stl(*SIDES)[:-1]),
+        ("a.stl", binary_stl(1, 2, float("nan"))),
+        ("a.stl", binary_stl(1, 2, float("inf"))),
+        ("a.obj", b"v 1 2\nv . . .\n"),
+    ],
+)
+def test_what_cannot_be_measured_has_no_box(tmp_path: Path, name: str, data: bytes) -> None:
+    (tmp_path / name).write_bytes(data)
+    assert mesh_box(str(tmp_path / name)) is None
+
+
+def test_a_large_mesh_is_read_in_part_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("multibot_rewrite.checks.mesh_box.MOST_BYTES", 100)
+    file = tmp_path / "a.stl"
+    file.write_bytes(binary_stl(*SIDES))
+    assert mesh_box(str(file)) is None
+    assert mesh_box(str(file), whole=False) is not None
+
+
+def test_a_mesh_that_was_written_anew_is_read_again(tmp_path: Path) -> None:
+    file = tmp_path / "a.obj"
+    file.write_bytes(obj(*SIDES))
+    assert mesh_box(str(file)) == ((0.0, 0.0, 0.0), SIDES)
+    file.write_bytes(obj(1, 2, 3) + b"# more")
+    assert mesh_box(str(file)) == ((0.0, 0.0, 0.0), (1, 2, 3))
+
+
+@pytest.mark.parametrize(
+    ("data", "scale", "expected"),
+    [
+        (binary_stl(*SIDES), "", ["MB714"]),
+        (binary_stl(*SIDES), 'scale="0.001 0.001 0.001"', []),
+        (binary_stl(0.3, 0.2, 0.1), "", []),
+        (binary_stl(0.3, 0.2, 0.1), 'scale="1000 -1000 1000"', ["MB714"]),
+        (binary_stl(300, 1, 1), "", []),
+        (binary_stl(40, 40, 40), "", []),
+    ],
+)
+def test_a_mesh_in_millimetres(
+    data: bytes, scale: str, expected: list[str], workspace: Path
+) -> None:
+    (workspace / "src/arm/meshes/Base.stl").write_bytes(data)
+    name = f'package://arm/meshes/Base.stl" {scale} x="'
+    assert linted(workspace, name, name, select="MB714") == expected
+    absolute = workspace / "src/arm/meshes/Base.stl"
+    assert linted(workspace, f'file://{absolute}" {scale} x="', select="MB714") == expected
+
+
+@pytest.mark.parametrize(("x", "expected"), [("0", []), ("2", ["MB631"])])
+def test_a_collision_away_from_a_mesh(x: str, expected: list[str], workspace: Path) -> None:
+    (workspace / "src/arm/meshes/Base.stl").write_bytes(binary_stl(300, 200, 100))
+    mesh = '<mesh filename="package://arm/meshes/Base.stl" scale="0.001 0.001 0.001"/>'
+    turned = '<origin rpy="0 0 1.5708"/>'
+    file = workspace / "src/arm/urdf/r.urdf"
+    file.write_text(
+        f'<robot name="r"><link name="a"><visual>{turned}<geometry>{mesh}</geometry></visual>'
+        f'<collision><origin xyz="{x} 0 0"/><geometry><box size="0.1 0.1 0.1"/></geometry>'
+        "</collision></link></robot>"
+    )
+    found = lint_file(str(file), Settings(select=("MB631",), roots=(str(workspace),)))
+    assert [it.code for it in found] == expected

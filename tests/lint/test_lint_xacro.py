@@ -11,6 +11,7 @@ import pytest
 from multibot_rewrite.cli.urdf_lint import main
 from multibot_rewrite.findings.finding import NOTE, Finding
 from multibot_rewrite.lint.config.settings import ArgumentSet, Settings
+from multibot_rewrite.lint.files.included import included
 from multibot_rewrite.lint.run import lint_files
 
 SPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
@@ -31,8 +32,8 @@ def write(folder: Path, files: Mapping[str, str | bytes]) -> None:
         path.write_bytes(content if isinstance(content, bytes) else content.encode())
 
 
-# A note, and the file was not checked.
-UNREAD = ("MB119",)
+# Notes, and the file was not checked.
+UNREAD = ("MB145", "MB119")
 
 
 def linted(folder: Path, *paths: str, **settings: object) -> list[Finding]:
@@ -177,9 +178,9 @@ def test_what_all_of_them_have_is_told_once_and_without_arguments(tmp_path: Path
 @pytest.mark.parametrize(
     ("given", "expected"),
     [
-        ({}, [("MB103", "")]),
+        ({}, [("MB145", "")]),
         ({"side": "left"}, []),
-        ({"other": "left"}, [("MB103", "other:=left")]),
+        ({"other": "left"}, [("MB145", "other:=left")]),
     ],
 )
 def test_an_argument_without_default(
@@ -310,6 +311,28 @@ def test_a_package_that_nobody_has_is_named(
     assert "roots" in found.hint
 
 
+def test_a_package_that_a_macro_or_an_included_file_asks_for_is_a_note_too(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
+    lost = '<xacro:include filename="$(find far)/p.xacro"/>'
+    macro = f'<xacro:macro name="m" params="">{lost}</xacro:macro>'
+    write(tmp_path, {"a.xacro": xacro(f"{macro}<xacro:m/>"), "part.xacro": xacro(lost)})
+    write(tmp_path, {"b.xacro": xacro('<xacro:include filename="part.xacro"/>')})
+    for name in ("a.xacro", "b.xacro"):
+        assert [it.code for it in linted(tmp_path, name)] == ["MB119"]
+
+
+def test_a_part_whose_name_is_filled_in_is_judged_where_it_is_included(tmp_path: Path) -> None:
+    include = '<xacro:include filename="parts/rover_$(arg kind)_parts.xacro"/>'
+    write(tmp_path, {"r.xacro": xacro(include)})
+    part = xacro('<link name="${name}_part"/>')
+    write(tmp_path, {f"parts/rover_{it}_parts.xacro": part for it in ("lidar", "camera")})
+    write(tmp_path, {"parts/other.xacro": part})
+    parts = {str(tmp_path / f"parts/rover_{it}_parts.xacro") for it in ("lidar", "camera")}
+    assert included([str(it) for it in tmp_path.rglob("*.xacro")]) == parts
+
+
 def test_installed_packages_are_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     packages(tmp_path)
     share = tmp_path / "install" / "share"
@@ -370,3 +393,23 @@ def test_a_configuration_lets_xacro_read_no_folder_but_its_own(
         assert "MB202" in capsys.readouterr().out
     assert main(["robot/urdf/next.xacro", *quiet]) == 1
     assert "MB202" in capsys.readouterr().out
+
+
+def test_controllers_that_cmake_installs_from_elsewhere_are_there(tmp_path: Path) -> None:
+    control = (
+        '<link name="a"/><gazebo><plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" '
+        'filename="gz_ros2_control-system"><parameters>$(find robot)/config/%s.yaml</parameters>'
+        "</plugin></gazebo>"
+    )
+    write(
+        tmp_path,
+        {
+            "robot/package.xml": MANIFEST % "robot",
+            "robot/config/other.yaml": "",
+            "robot/bringup/config/there.yaml": "",
+            "robot/urdf/a.xacro": xacro(control % "there"),
+            "robot/urdf/b.xacro": xacro(control % "gone"),
+        },
+    )
+    found = linted(tmp_path, "robot/urdf/a.xacro", "robot/urdf/b.xacro", select=("MB234",))
+    assert [(it.code, it.file) for it in found] == [("MB234", "robot/urdf/b.xacro")]

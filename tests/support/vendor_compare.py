@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shlex
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -12,9 +13,8 @@ from vendor_rows import (
     bridge_argument,
     bridge_rows,
     description_rows,
-    flat,
-    load,
     parameter_rows,
+    rviz_rows,
     static_edge,
 )
 from vendor_systems import Vendors, started_by
@@ -23,8 +23,9 @@ from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.build import Outputs
 from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.graph.expectation import Expectation
+from multibot_rewrite.remap.records import Endpoint
 from multibot_rewrite.remap.table import parsed
-from multibot_rewrite.rosnames import bind, resolve_bound
+from multibot_rewrite.rosnames import BoundNode, bind, check_topic_name, resolve_bound
 from multibot_rewrite.rosnames.rules import RemapRule, parse_remap
 
 DESCRIPTION = "robot_description"
@@ -118,8 +119,8 @@ def _node(
         later = built.layout == "frame-prefix"
         ours |= _put("description", description_rows(urdf, robot, prefix if later else ""))
     if row["executable"] not in BRIDGES:
-        _topics(built, row, name, theirs, ours)
-    _special(row, name, files, built, theirs, ours)
+        _topics(built, row, name, {**given, **inline}, theirs, ours)
+    _special(row, name, robot, built, theirs, ours)
 
 
 def _same_robot(one: str, other: str) -> bool:
@@ -138,8 +139,10 @@ def files_of(built: Built, robot: str) -> dict[str, str]:
     return {it.path.partition("/")[2]: it.data.decode() for it in mine}
 
 
-def _topics(built: Built, row: dict[str, Any], name: str, theirs: Rows, ours: Rows) -> None:
-    """Where the names of a node lead by the vendor's rules, and by those of the table."""
+def _topics(
+    built: Built, row: dict[str, Any], name: str, given: Rows, theirs: Rows, ours: Rows
+) -> None:
+    """Where the names of a node lead by the vendor's parameters and rules, and by the table."""
     nodes = built.fleet.table.nodes if built.fleet else ()
     table = next((it for it in nodes if it.full_name == name), None)
     if table is None or built.fleet is None:
@@ -151,11 +154,17 @@ def _topics(built: Built, row: dict[str, Any], name: str, theirs: Rows, ours: Ro
         if "<" not in it.name and not it.helper:
             kind = "service" if it.kind == "service" else "topic"
             at = f"{name} {it.kind} {it.name}"
-            theirs[at] = resolve_bound(it.name, kind, vendor)
+            theirs[at] = resolve_bound(_told(it, given), kind, vendor)
             ours[at] = resolve_bound(it.name, kind, own)
 
 
-def rules_of(row: dict[str, Any]) -> list[RemapRule]:
+def _told(it: Endpoint, given: Rows) -> str:
+    """The name of an endpoint as a parameter has it: an absolute one may have the robot's already."""
+    told = given.get(it.parameter, "")
+    return told if told.startswith("/") and not check_topic_name(told) else it.name
+
+
+def rules_of(row: Mapping[str, Any]) -> list[RemapRule]:
     """The remap rules of a program."""
     found = (parse_remap(f"{old}:={new}") for old, new in row["rules"])
     return [it for it in found if it is not None]
@@ -164,7 +173,7 @@ def rules_of(row: dict[str, Any]) -> list[RemapRule]:
 def _special(
     row: dict[str, Any],
     name: str,
-    files: Mapping[str, str],
+    robot: str,
     built: Built,
     theirs: Rows,
     ours: Rows,
@@ -175,13 +184,39 @@ def _special(
         theirs[f"{name} sends"] = static_edge(row["own"])
         ours[f"{name} sends"] = dict(built.plan.sends).get(name, "-") if built.plan else "-"
     if program == "rviz2":
-        vendor = next((it for it in row.get("texts", {}).values()), "")
-        mine = next((it for path, it in files.items() if path.endswith(".rviz")), "")
-        theirs |= {f"{name} rviz {at}": it for at, it in flat(load(vendor) or {}, "")}
-        ours |= {f"{name} rviz {at}": it for at, it in flat(load(mine) or {}, "")}
+        _rviz(row, name, robot, built, theirs, ours)
     if program in BRIDGES:
-        _bridge(row, name, files, theirs, ours)
+        _bridge(row, name, files_of(built, robot), theirs, ours)
         _bridge_arguments(row, name, built, theirs, ours)
+
+
+def _rviz(
+    row: dict[str, Any],
+    name: str,
+    robot: str,
+    built: Built,
+    theirs: Rows,
+    ours: Rows,
+) -> None:
+    """The config that the vendor opens with its rules, and the one that is built with its command's."""
+    vendor = next((it for it in row.get("texts", {}).values()), "")
+    namespace = row["namespace"] or "/"
+    found = rviz_rows(vendor, bind("rviz2", namespace, rules_of(row)), robot)
+    texts = {it.path: it.data.decode() for it in (built.outputs.files if built.outputs else ())}
+    windows = [it for it in texts if it.endswith(".rviz")]
+    path = next((it for it in windows if it.startswith(f"{robot}/")), next(iter(windows), ""))
+    opened = rviz_rows(texts.get(path, ""), _window(texts, path), robot)
+    theirs |= {f"{name} rviz {at}": it for at, it in found.items()}
+    ours |= {f"{name} rviz {at}": it for at, it in opened.items()}
+
+
+def _window(texts: Mapping[str, str], path: str) -> BoundNode:
+    """How the rviz2 of a config is started by ``commands.md``."""
+    lines = texts.get("commands.md", "").splitlines()
+    words = next((shlex.split(it) for it in lines if f"rviz2 -d {path}" in it), [])
+    rules = dict(it.split(":=", 1) for it in words if ":=" in it)
+    namespace = rules.pop("__ns", "/")
+    return bind("rviz2", namespace, rules_of({"rules": rules.items()}))
 
 
 def _bridge(

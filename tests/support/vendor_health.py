@@ -18,7 +18,7 @@ from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphNode, Snapshot
-from multibot_rewrite.remap.records import NodeRule, NodeTable
+from multibot_rewrite.remap.records import NodeFacts, NodeRule, NodeTable
 
 TF = ("/tf", "/tf_static")
 _EKF = "robot_localization/ekf_node"
@@ -27,7 +27,7 @@ _TWIST = "geometry_msgs/msg/Twist"
 
 def findings(found: Outcome, release: str, kinds: Mapping[str, str]) -> tuple[Finding, ...]:
     """What ``check`` says of two robots that run as the vendor starts them."""
-    known = {it.name: it for it in found.fleet.facts}
+    known = {it.name: _unstamped(it) for it in found.fleet.facts}
     rules = {it.full_name: it.rules for it in found.fleet.table.nodes}
     nodes: list[str] = []
     ends: list[GraphEndpoint] = []
@@ -43,6 +43,12 @@ def findings(found: Outcome, release: str, kinds: Mapping[str, str]) -> tuple[Fi
     owners = dict.fromkeys([*nodes, *(it.node for it in ends)])
     seen = Snapshot(tuple(GraphNode(it, it) for it in owners), tuple(ends), (), environment())
     return tuple(check(_of(found.launched, declared), seen))
+
+
+def _unstamped(node: NodeFacts) -> NodeFacts:
+    """The node without the plan's choice of the type of commands: ``_as_set`` makes its own."""
+    ends = (it._replace(type=it.type.replace(f"{_TWIST}Stamped", _TWIST)) for it in node.endpoints)
+    return node._replace(endpoints=tuple(ends))
 
 
 def _as_set(node: Started, ends: Iterable[GraphEndpoint]) -> Iterator[GraphEndpoint]:

@@ -8,6 +8,7 @@ MULTIBOT_SOURCES as in ``vendor_systems.py``. Needs launch, launch_ros and rclpy
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
@@ -30,6 +31,8 @@ from vendor_systems import read_vendors
 
 PAGES = Path(__file__).parent.parent.parent / "docs" / "robots"
 _WIDE = 60
+# Where packages are for a comparison.
+_INSTALLED = re.compile(r"/tmp/\w+/prefix")
 MADE = "Made by `MULTIBOT_SOURCES=FOLDER python tests/support/vendor_pages.py --write`."
 COMMANDS = """\
 In a workspace that has the vendor's packages:
@@ -43,9 +46,10 @@ HEAD = f"""\
 {MADE} Each robot is built from its vendor's own files, in the vendor's
 layout and one other, with two robots and with three. Its first two are compared with what the vendor's
 own launch files and generators make of two robots: descriptions, parameters, names of nodes, where
-topics, services and actions lead, bridges, RViz and static transforms. *Better* is a difference that
-the page of the robot gives a reason for, *wrong* any other. *False* are warnings and errors of the
-build that are not true of the vendor's files. Which nodes are known is in [vendors](../vendors.md).
+topics, services and actions lead, bridges, static transforms, and RViz by displays and tools, with
+topics as they are called in the graph. *Better* is a difference that the page of the robot gives a
+reason for, *wrong* any other. *False* are warnings and errors of the build that are not true of the
+vendor's files. Which nodes are known is in [vendors](../vendors.md).
 
 *Before* is what was false in the vendor's layout before the package knew these robots.
 
@@ -69,7 +73,7 @@ def page(found: Outcome, revisions: Mapping[str, str], uses: list[str]) -> str:
     """The page of a robot."""
     it = found.recipe
     lines = [f"# {it.title}", "", MADE, "", it.about.strip(), "", "## The fleet file", ""]
-    lines += ["```yaml", plain_paths(found.text).rstrip(), "```", "", COMMANDS, ""]
+    lines += ["```yaml", plain_paths(found.text).rstrip(), "```", "", commands(it), ""]
     lines += ["Sources: " + ", ".join(revisions[use] for use in uses) + ".", ""]
     lines += ["## Against the vendor's two robots", "", verdict(found), ""]
     lines += [*_reasons(found), *_findings(found)]
@@ -79,6 +83,12 @@ def page(found: Outcome, revisions: Mapping[str, str], uses: list[str]) -> str:
 def plain_paths(text: str) -> str:
     """A fleet file with paths as a user has them."""
     return text.replace("{sources}/", "src/").replace("{work}/", "")
+
+
+def commands(it: Recipe) -> str:
+    """What to run; outputs are in the shape of the vendor, if there is one."""
+    option = f" --shape {it.shape}" if it.shape else ""
+    return COMMANDS.replace("-o fleet/", f"-o fleet/{option}")
 
 
 def verdict(found: Outcome) -> str:
@@ -104,7 +114,7 @@ def _reasons(found: Outcome) -> Iterator[str]:
 
 
 def _short(text: str) -> str:
-    text = text.replace("|", "/")
+    text = _INSTALLED.sub("/ws/install", text.replace("|", "/"))
     return text if len(text) <= _WIDE else f"{text[: _WIDE // 2]}...{text[-_WIDE // 2 :]}"
 
 

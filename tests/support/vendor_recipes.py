@@ -36,21 +36,26 @@ ROBOTS = ("robot1", "robot2", "robot3")
 
 
 class Recipe(NamedTuple):
-    """A robot: the system of ``vendors/*.yaml`` that it is, what its fleet file has besides, the
-    layouts (the vendor's first), which differences are ``better``, and which findings are ``right``,
+    """A robot: the system of ``vendors/*.yaml`` that it is (with other ``launch`` files, if it has
+    them), the ``window`` of RViz that the vendor opens, what its fleet file has besides, the layouts
+    (the vendor's first), which differences are ``better``, and which findings are ``right``,
     each with the reason. ``wrong`` and ``false`` (of each build) are how many others there are;
-    ``before`` is what was false in the vendor's layout before the package knew these robots."""
+    ``before`` is what was false in the vendor's layout before the package knew these robots. ``shape``
+    is that of the vendor's launch files, if they take any."""
 
     title: str
     system: str
     about: str
     layouts: tuple[str, ...]
+    launch: tuple[str, ...] = ()
+    window: Mapping[str, str] = {}
     fleet: Mapping[str, Any] = {}
     robot: Mapping[str, Any] = {}
     better: tuple[Mapping[str, str], ...] = ()
     right: tuple[Mapping[str, str], ...] = ()
     wrong: int = 0
     before: str = ""
+    shape: str = ""
     false: tuple[int, ...] = (0, 0, 0, 0)
 
 
@@ -95,6 +100,8 @@ def fleet_text(recipe: Recipe, system: Mapping[str, Any], layout: str, count: in
         robots.append({"name": name, **filled(mine, {"robot": name})})
     keys = {"layout": layout, "affix": "prefix", "distro": system["release"]}
     rest = {**system["fleet"], **recipe.fleet}
+    if recipe.window:
+        rest["companions"] = {**rest.get("companions", {}), "rviz": recipe.window["config"]}
     fleet = {**keys, **{key: it for key, it in rest.items() if key not in ("layout", "affix")}}
     return yaml.safe_dump({**fleet, "robots": robots}, sort_keys=False, width=110)
 
@@ -162,7 +169,9 @@ class Outcome(NamedTuple):
 def outcome(recipe: Recipe, vendors: Vendors, folder: Path, live: bool = False) -> Outcome:
     """Make a recipe in all its layouts, and run the vendor's launch files for two robots; ``live``
     rehearses each."""
-    system = vendors.systems[recipe.system]
+    system = dict(vendors.systems[recipe.system])
+    opened = [recipe.window["launch"]] if recipe.window else []
+    system["launch"] = [*(recipe.launch or system["launch"]), *opened]
     with workspace(system, vendors, folder) as work:
         # "/" is the namespace of a robot that is alone.
         for robot in ("/", *ROBOTS):

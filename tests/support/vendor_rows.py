@@ -13,7 +13,12 @@ from typing import Any
 
 import yaml
 
+from multibot_rewrite.rosnames import BoundNode, resolve_bound
+
 Rows = dict[str, str]
+# The topic of a display, a tool or a panel.
+_GROUP, _ROBOT = "rviz_common/Group", re.compile(r"robot\d")
+_TOPIC = re.compile(r"(^|[. ])Topic(\.Value)?$")
 _SPACE = re.compile(r"\s+")
 _ARGUMENT = re.compile(r"([^@]+)@([^@\[\]]+)([@\[\]])(.+)")
 _WAYS = {"[": "GZ_TO_ROS", "]": "ROS_TO_GZ", "@": "BIDIRECTIONAL"}
@@ -125,6 +130,57 @@ def flat(value: Any, at: str) -> Iterator[tuple[str, str]]:
             yield from flat(it, f"{at}[{index}]")
     else:
         yield at, str(value)
+
+
+def rviz_rows(text: str, bound: BoundNode, robot: str) -> Rows:
+    """What an RViz config shows of a robot: displays and tools by class and name, topics as they are
+    called in the graph; ``bound`` is its rviz2. A window for all robots has a group for each."""
+    data = load(text) or {}
+    manager = data.get("Visualization Manager", {})
+    shown = [part for it in manager.get("Displays", ()) for part in _dissolved(it, robot)]
+    tools = [it for it in manager.get("Tools") or () if _is_of(it, robot)]
+    manager |= {"Displays": shown, "Tools": tools}
+    found = dict(flat(_by_name(data), ""))
+    topics = {at for at, it in found.items() if _TOPIC.search(at) and it not in ("", "None")}
+    return found | {at: resolve_bound(found[at], "topic", bound) for at in topics}
+
+
+def _dissolved(display: dict[str, Any], robot: str) -> list[dict[str, Any]]:
+    """The displays of the robot's group, none of another robot's, any other display itself."""
+    name = str(display.get("Name"))
+    if display.get("Class") != _GROUP or not _ROBOT.fullmatch(name):
+        return [display]
+    return list(display["Displays"]) if name == robot else []
+
+
+def _is_of(tool: Any, robot: str) -> bool:
+    """Is it a tool that names no other robot?"""
+    heads = {str(it).strip("/").partition("/")[0] for _, it in flat(tool, "")}
+    return heads.isdisjoint({it for it in heads if _ROBOT.fullmatch(it)} - {robot})
+
+
+def _by_name(value: Any) -> Any:
+    """Lists of displays and tools as maps; groups of one name are one."""
+    if isinstance(value, dict):
+        return {key: _by_name(it) for key, it in value.items()}
+    if not isinstance(value, list) or not all(
+        isinstance(it, dict) and "Class" in it for it in value
+    ):
+        return value
+    found: dict[str, Any] = {}
+    for it in value:
+        key = f"{it['Class']}[{it.get('Name', '')}]"
+        found[key] = _both(found[key], _by_name(it)) if key in found else _by_name(it)
+    return found
+
+
+def _both(one: Any, other: Any) -> Any:
+    if not isinstance(one, dict) or not isinstance(other, dict):
+        return one
+    return {
+        **other,
+        **{key: _both(it, other[key]) if key in other else it for key, it in one.items()},
+    }
 
 
 def bridge_rows(text: str) -> Iterator[tuple[str, str]]:

@@ -79,6 +79,15 @@ def test_a_mesh_is_in_the_page_once(file: Path) -> None:
     assert {it["name"]: it["pose"][1] for it in made["robots"]} == {"robot1": 0, "robot2": 1.5}
 
 
+def test_an_sdf_with_a_model_inside(tmp_path: Path) -> None:
+    (robot,) = page(tmp_path, ROBOTS / "rover.sdf", "a")["robots"]
+    assert robot["names"]["head_a::base_link/a"] == ["head::base_link", 39]
+    assert robot["names"]["neck_a"] == ["neck", 46]
+    (neck,) = [it for it in robot["joints"] if it[0] == "neck_a"]
+    # The frame on the base is at 0.1 0 0.1, the head 0.1 above it.
+    assert [row[3] for row in neck[4][:3]] == pytest.approx([0.1, 0, 0.2])
+
+
 def test_what_names_were_and_where(file: Path) -> None:
     (robot,) = page(file.parent, file, "a")["robots"]
     assert robot["names"]["base/a"] == ["base", 3]
@@ -136,7 +145,6 @@ def test_names_of_a_file_do_not_reach_the_page_as_code(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "says"),
     [
-        ([str(ROBOTS / "rover.sdf")], "the view shows URDF and xacro, this is an SDF"),
         (["nowhere.urdf"], "nowhere.urdf"),
         (["{folder}/fleet.yaml", "robot1"], "a fleet file has its own robots, leave out robot1"),
         (["{folder}/r.urdf", "a", "a"], "'a'"),

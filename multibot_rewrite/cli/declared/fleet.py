@@ -84,6 +84,14 @@ A fleet file, as multibot init writes it; only robots is required (docs/fleet-fi
 
 Then ros2 launch out/fleet.launch.py starts the robots, and multibot check out/plan.yaml tells\
  whether they run as planned."""
+_COUNT = value(
+    "-n",
+    "--count",
+    metavar="COUNT",
+    about="so many robots: with init of each description (default: 2), with build the first ones of the"
+    " file and more like the last one (default: as the file has them)",
+    type=values.count,
+)
 _TABLE_CODES = "0 done; 1 findings at the level of --fail-on; 2 wrong use or unreadable input"
 _BESIDE = (
     " Findings go to standard error; with a --format other than text they go to standard output, and"
@@ -117,13 +125,7 @@ INIT = Command(
         OptionGroup(
             "answers, which are asked for on a terminal where they are not given",
             (
-                value(
-                    "-n",
-                    "--count",
-                    metavar="COUNT",
-                    about="robots of each description, if not --robots; default: 2",
-                    type=values.count,
-                ),
+                _COUNT,
                 ROBOTS,
                 choice("--layout", "NAME", LAYOUT_NAMES, "default: what the files are made for"),
                 choice(
@@ -153,7 +155,15 @@ BUILD = Command(
         Example("multibot build fleet.yaml -o out/ --check", "in CI: what is stale?"),
     ),
     (
-        OptionGroup("input", (argument("fleet", "FLEET", "the fleet file, YAML"), DISTRO, TRUST)),
+        OptionGroup(
+            "input",
+            (
+                argument("fleet", "FLEET", "the fleet file, YAML"),
+                _COUNT,
+                DISTRO,
+                TRUST,
+            ),
+        ),
         output_group(
             output("write everything into that folder", required=True),
             switch("--check", about="list what is stale, write nothing"),

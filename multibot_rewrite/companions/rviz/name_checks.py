@@ -16,6 +16,7 @@ from multibot_rewrite.companions.rviz.values import (
     LINK,
     RvizRobot,
     is_name,
+    robot_value,
 )
 from multibot_rewrite.companions.yaml_text import found_at, is_text, pairs
 from multibot_rewrite.findings.finding import WARNING, Finding
@@ -30,7 +31,7 @@ def name_findings(config: RvizConfig, one: RvizItem, robots: Robots) -> Iterator
     """What is wrong with the names in a display or tool."""
     for place in filter(is_name, one.places):
         yield from _robot_in_name(config, place, robots)
-        if _has_placeholder(str(place.node.value)):
+        if _has_placeholder(robot_value(place, robots[0])):
             yield _placeholder(config, place)
         else:
             yield from _undeclared(config, place, robots)

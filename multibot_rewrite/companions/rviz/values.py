@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import yaml
 
-from multibot_rewrite.companions.names.placeholders import without_robot
+from multibot_rewrite.companions.names.placeholders import is_robot, without_robot
 from multibot_rewrite.companions.names.rename_map import CompanionNames, spell
 from multibot_rewrite.companions.names.robot_topics import NOTHING, robot_topic
 from multibot_rewrite.companions.rviz.colours import Colour
@@ -56,7 +56,9 @@ def robot_value(place: ValuePlace, robot: RvizRobot) -> str:
     """The value of a place for the robot."""
     value = str(place.node.value)
     if place.word == TF_PREFIX:
-        return robot.tf_prefix if robot.names.naming.layout.frames else value
+        # Where frames have no prefix, one that stands for the robot is none.
+        own = robot.names.naming.layout.frames or is_robot(value)
+        return robot.tf_prefix if own else value
     if place.word == TOPIC:
         return robot_topic(robot.topics, without_robot(value, "/"), robot.known)
     if place.word == GRAPH_NAMESPACE:

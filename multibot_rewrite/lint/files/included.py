@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Sequence
+from fnmatch import fnmatchcase
 
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import InputError
@@ -13,6 +14,9 @@ from multibot_rewrite.sources.read import read_file
 
 # No tag goes on behind a "<": every letter is looked at once.
 _INCLUDE = lazy_compile(rb"<xacro:include\s[^<>]*?filename\s*=\s*[\"']([^<\"']+)[\"']")
+# What xacro fills in, and a name that says something beside it.
+_FILLED = lazy_compile(r"\$\([^()]*\)|\$\{[^{}]*\}")
+_LITERAL = lazy_compile(r"^[^*.]{4,}.*\*|\*[^*.]{4,}|^[^*]*$")
 
 
 def included(paths: Sequence[str]) -> frozenset[str]:
@@ -22,10 +26,12 @@ def included(paths: Sequence[str]) -> frozenset[str]:
     for path in filter(_is_read, files.values()):
         for asked in _asked_for(path):
             ends.setdefault(os.path.basename(asked), set()).add(asked)
+    loose = [it for its in ends.values() for it in its if "*" in it]
     return frozenset(
         path
         for real, path in files.items()
         if any(real.endswith(f"/{asked}") for asked in ends.get(os.path.basename(real), ()))
+        or any(fnmatchcase(real, f"*/{asked}") for asked in loose)
     )
 
 
@@ -44,10 +50,13 @@ def _asked_for(path: str) -> Iterator[str]:
     """The paths that a file includes, without what only xacro can fill in, and without itself."""
     own = real_path(path)
     for name in _names(path):
-        # What is before the last substitution of a path is not known.
-        known = name[max(name.rfind(")"), name.rfind("}")) + 1 :]
+        # What is before the last substitution of a path is not known; one within a file's name stands
+        # for a part of it.
+        folder, _, last = _FILLED.sub("*", _FILLED.sub("*", name)).rpartition("/")
+        above = folder.rpartition("*")[2]
+        known = f"{above}/{last}" if _LITERAL.search(last) else last.rpartition("*")[2]
         asked = os.path.normpath(known).lstrip("./") if known.strip("/. ") else ""
-        if asked and not own.endswith(f"/{asked}"):
+        if asked and not fnmatchcase(own, f"*/{asked}"):
             yield asked
 
 

@@ -12,7 +12,7 @@ from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.findings.rule import declare, rule
 from multibot_rewrite.lint.records import Subject
 
-# These four are reported where a file is read or expanded: see ``failures``.
+# These five are reported where a file is read or expanded: see ``failures``.
 not_xml = declare(
     "MB101",
     "not-xml",
@@ -45,11 +45,28 @@ xacro_failed = declare(
     "MB103",
     "xacro-failed",
     ERROR,
-    what="xacro cannot expand the file: an argument, property or macro is missing, or an expression is "
-    "wrong.",
+    what="xacro cannot expand the file: a property or macro is missing, or an expression is wrong.",
     why="There is no URDF: the Command substitution of the launch file fails and nothing starts.",
-    fix="Give every <xacro:arg> a default, or pass the arguments to urdf-lint; for other errors "
-    "see the message.",
+    fix="See the message; a property may have to come from a file that is included first.",
+    bad='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
+    '  <link name="${side}_arm"/>\n'
+    "</robot>\n",
+    good='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
+    '  <xacro:property name="side" value="left"/>\n'
+    '  <link name="${side}_arm"/>\n'
+    "</robot>\n",
+    line=2,
+)
+
+needs_argument = declare(
+    "MB145",
+    "needs-argument",
+    NOTE,
+    what="A xacro file has an argument without a default, and none was given: the file was not "
+    "expanded and not checked.",
+    why="Where the launch file does not give the argument either, xacro stops and nothing starts.",
+    fix="Give it, as NAME:=VALUE or in the configuration, or give the <xacro:arg> a default; where the "
+    "file has to expand without arguments, set the level to error.",
     bad='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
     '  <link name="$(arg side)_arm"/>\n'
     "</robot>\n",
@@ -59,7 +76,6 @@ xacro_failed = declare(
     "</robot>\n",
     line=2,
 )
-
 
 package_not_found = declare(
     "MB119",

@@ -1,5 +1,5 @@
 """MB7: mesh and texture files, and the packages they are in."""
 
-from multibot_rewrite.lint.rules.meshes import formats, lookup, paths
+from multibot_rewrite.lint.rules.meshes import boxes, formats, lookup, paths
 
-THEMES = (lookup, paths, formats)
+THEMES = (lookup, paths, formats, boxes)

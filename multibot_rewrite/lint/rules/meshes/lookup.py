@@ -28,7 +28,7 @@ class Lookup(NamedTuple):
 
 
 @memoized
-def _lookups(subject: Subject) -> tuple[Lookup, ...]:
+def lookups(subject: Subject) -> tuple[Lookup, ...]:
     """Each file that can be looked for once, by the first element that names it."""
     file, roots = subject.document.file.removesuffix(EXPANDED), subject.settings.roots
     first = {it.name: it for it in reversed(used_files(subject)) if it.scheme in ("package", "")}
@@ -96,7 +96,7 @@ def _may_be_the_package(names: frozenset[str], first: str) -> bool:
 def mesh_missing(subject: Subject) -> Iterator[Problem]:
     """Files of packages that were found, and relative ones."""
     lost: dict[tuple[str, ...], list[Lookup]] = {}
-    for it in _lookups(subject):
+    for it in lookups(subject):
         if it.folders and not it.found and not _elsewhere(subject, it):
             lost.setdefault(_missing_folder(it) or (it.path,), []).append(it)
     for first, *others in lost.values():
@@ -132,7 +132,7 @@ def _missing_folder(it: Lookup) -> tuple[str, ...]:
 )
 def mesh_elsewhere(subject: Subject) -> Iterator[Problem]:
     """Relative files that are in the package, but not where the path says."""
-    for it in _lookups(subject):
+    for it in lookups(subject):
         found = _elsewhere(subject, it) if it.folders and not it.found else ""
         if found:
             yield problem(it.used, f"{it.used.name!r} is not there from here", f"use {found}")
@@ -185,7 +185,7 @@ def _nearest(it: Lookup) -> str:
 )
 def package_not_found(subject: Subject) -> Iterator[Problem]:
     """Once for each package."""
-    lost = [it for it in _lookups(subject) if it.path and not it.folders]
+    lost = [it for it in lookups(subject) if it.path and not it.folders]
     for package, it in {_package(it): it for it in reversed(lost)}.items():
         yield problem(it.used, f"package {package!r} was not found", "give its folder with --roots")
 
@@ -211,7 +211,7 @@ def _package(it: Lookup) -> str:
 )
 def mesh_name_case(subject: Subject) -> Iterator[Problem]:
     """Paths that differ from the file only in upper and lower case."""
-    for it in _lookups(subject):
+    for it in lookups(subject):
         if it.found and it.found != os.path.normpath(it.path):
             message = f"{it.path!r} is {it.found!r} on the disk"
             yield problem(it.used, message, f"use {it.found!r}")

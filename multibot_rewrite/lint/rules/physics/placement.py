@@ -13,13 +13,14 @@ from multibot_rewrite.checks.pose import Pose
 from multibot_rewrite.checks.poses import length, minus, pose_in
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.checks.rotation import is_same
-from multibot_rewrite.checks.shapes import Extent, around, extent_of
+from multibot_rewrite.checks.shapes import Extent, around, extent_of, placed_box
 from multibot_rewrite.findings.finding import WARNING
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.memo import memoized
 from multibot_rewrite.lint.facts.parts import parts
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.examples import block
+from multibot_rewrite.lint.rules.meshes.boxes import box_of
 from multibot_rewrite.lint.rules.physics.shared import BOX, INERTIA, inertials, one_link, part_of
 
 # Metres between shapes that should be in one place, and between two places of one mesh; smaller shapes
@@ -39,7 +40,7 @@ def _placed(tag: str, xyz: str, shape: str = BOX) -> str:
     "collision-away",
     WARNING,
     what="The collision of a link is not where its visual is: the two do not touch, or are one "
-    "mesh at two places.",
+    "mesh at two places. Of meshes, STL and OBJ files of up to 4 MB are measured.",
     why="The robot bumps into what is not there, and drives and reaches through what is; planners keep "
     "a distance from empty space.",
     fix="Give <collision> and <visual> the same <origin>.",
@@ -93,16 +94,21 @@ def _pose(subject: Subject, element: _Element) -> Pose | None:
 
 def _around(subject: Subject, shapes: _Shapes) -> Extent | None:
     """The box around some shapes; None if one of them has no known size."""
-    if any(shape.tag == "mesh" for _, shape in shapes):
-        return None
     found = []
     for element, shape in shapes:
         own = _pose(subject, element)
-        extent = None if own is None else extent_of(shape, own)
+        extent = None if own is None else _extent(subject, shape, own)
         if extent is None:
             return None
         found.append(extent)
     return around(found)
+
+
+def _extent(subject: Subject, shape: _Element, pose: Pose) -> Extent | None:
+    if shape.tag != "mesh":
+        return extent_of(shape, pose)
+    box = box_of(subject, shape)
+    return placed_box(box, pose) if box else None
 
 
 def _gap(one: Extent, other: Extent | None) -> float:
@@ -167,7 +173,8 @@ def _outside(subject: Subject, link: Link, centre: Vector) -> float:
     """How far a centre is from the shapes of its link, if that is too far."""
     seen, hard = _shapes(subject)[link.element]
     shapes = seen + hard
-    box = _around(subject, shapes)
+    # A mesh may show less than what weighs: the shafts of an arm's wrist are within the link before.
+    box = None if any(it.tag == "mesh" for _, it in shapes) else _around(subject, shapes)
     if box is None:
         return _far_from_mesh(subject, link, shapes, centre)
     size = max(minus(box.high, box.low))
