@@ -18,7 +18,7 @@ _PLACE = lazy_compile(r"(?P<file>.*?)(?::(?P<line>\d+):(?P<column>\d+))?: (?P<te
 _CODES = (
     (lazy_compile("No such file|cannot be read|Is a directory|Permission denied"), "MB102"),
     (lazy_compile("xacro failed[^:]*: package '[^']*' is not found"), "MB119"),
-    (lazy_compile("xacro failed[^:]*: Undefined substitution argument"), "MB104"),
+    (lazy_compile("xacro failed[^:]*: Undefined substitution argument"), "MB145"),
     (lazy_compile("xacro failed"), "MB103"),
 )
 

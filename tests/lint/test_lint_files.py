@@ -160,7 +160,7 @@ TWICE = (
 @pytest.mark.parametrize(
     ("body", "code", "place", "said", "hint"),
     [
-        ('<link type="t"\n  name="$(arg side)_x"/>', "MB104", (3, 3), "side", "side:=VALUE"),
+        ('<link type="t"\n  name="$(arg side)_x"/>', "MB145", (3, 3), "side", "side:=VALUE"),
         ('<link name="${nope}"/>', "MB103", (2, 7), "'nope' is not defined", "define it"),
         ("<link name='a'><x>\n${1/0}</x></link>", "MB103", (2, 16), "division by zero", ""),
         ("<xacro:leg n='a'/>", "MB103", (2, 1), "unknown macro name: xacro:leg", "include"),

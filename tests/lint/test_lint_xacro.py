@@ -33,7 +33,7 @@ def write(folder: Path, files: Mapping[str, str | bytes]) -> None:
 
 
 # Notes, and the file was not checked.
-UNREAD = ("MB104", "MB119")
+UNREAD = ("MB145", "MB119")
 
 
 def linted(folder: Path, *paths: str, **settings: object) -> list[Finding]:
@@ -178,9 +178,9 @@ def test_what_all_of_them_have_is_told_once_and_without_arguments(tmp_path: Path
 @pytest.mark.parametrize(
     ("given", "expected"),
     [
-        ({}, [("MB104", "")]),
+        ({}, [("MB145", "")]),
         ({"side": "left"}, []),
-        ({"other": "left"}, [("MB104", "other:=left")]),
+        ({"other": "left"}, [("MB145", "other:=left")]),
     ],
 )
 def test_an_argument_without_default(
@@ -393,3 +393,23 @@ def test_a_configuration_lets_xacro_read_no_folder_but_its_own(
         assert "MB202" in capsys.readouterr().out
     assert main(["robot/urdf/next.xacro", *quiet]) == 1
     assert "MB202" in capsys.readouterr().out
+
+
+def test_controllers_that_cmake_installs_from_elsewhere_are_there(tmp_path: Path) -> None:
+    control = (
+        '<link name="a"/><gazebo><plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" '
+        'filename="gz_ros2_control-system"><parameters>$(find robot)/config/%s.yaml</parameters>'
+        "</plugin></gazebo>"
+    )
+    write(
+        tmp_path,
+        {
+            "robot/package.xml": MANIFEST % "robot",
+            "robot/config/other.yaml": "",
+            "robot/bringup/config/there.yaml": "",
+            "robot/urdf/a.xacro": xacro(control % "there"),
+            "robot/urdf/b.xacro": xacro(control % "gone"),
+        },
+    )
+    found = linted(tmp_path, "robot/urdf/a.xacro", "robot/urdf/b.xacro", select=("MB234",))
+    assert [(it.code, it.file) for it in found] == [("MB234", "robot/urdf/b.xacro")]

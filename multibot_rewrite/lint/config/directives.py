@@ -19,7 +19,7 @@ from multibot_rewrite.nearest import nearest
 IGNORE, IGNORE_FILE = "ignore", "ignore-file"
 # No comment can suppress these: a file was not checked, or a comment is wrong.
 ALWAYS_REPORTED = frozenset(
-    {"MB001", "MB002", "MB003", "MB004", "MB101", "MB102", "MB103", "MB104", "MB119"}
+    {"MB001", "MB002", "MB003", "MB004", "MB101", "MB102", "MB103", "MB145", "MB119"}
 )
 _OPEN, _EMPTY, _CLOSE, _COMMENT, _OTHER = "open", "empty", "close", "comment", "other"
 _PART = lazy_compile(

@@ -59,7 +59,7 @@ xacro_failed = declare(
 )
 
 needs_argument = declare(
-    "MB104",
+    "MB145",
     "needs-argument",
     NOTE,
     what="A xacro file has an argument without a default, and none was given: the file was not "
