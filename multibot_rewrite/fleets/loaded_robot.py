@@ -191,8 +191,9 @@ class LoadedRobot:
     def _own(self, file: str) -> str:
         """Where its version of a file is; of two with one name the folder counts."""
         *_, above, name = ("", *os.path.normpath(file).split(os.sep))
-        apart = f"{self.name}/{above}/{name}"
-        return apart if apart in self._fleet.files else f"{self.name}/{name}"
+        places = dict(self._robot.spec.places)
+        paths = [f"{self.name}/{places.get(it, it)}" for it in (f"{above}/{name}", name)]
+        return next((it for it in paths if it in self._fleet.files), paths[-1])
 
     @checked
     def frame(self, name: str) -> str:

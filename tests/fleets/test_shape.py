@@ -88,6 +88,10 @@ def test_clearpath_has_a_setup_folder(tmp_path: Path) -> None:
     # Whoever else names the files names them there.
     assert "robot2/robot.urdf.xacro" in made.text("fleet.launch.py")
     assert "robot2/platform/config/control.yaml" in made.text("fleet.launch.xml")
+    robot = made.robot("robot2")
+    text = made.text("robot2/platform/config/control.yaml")
+    assert robot.text("my controller_manager.yaml") == text
+    assert robot.node_text("my controller_manager.yaml") == text
     assert list(yaml.safe_load(made.text("robot2/platform/config/localization.yaml"))) == [
         "/robot2/ekf_node"
     ]

@@ -56,6 +56,8 @@ Each rule was run over the public files and those of Python packages that [the p
 judgements](lint-triage.md) has, with the facts of the newest long-term release unless it says
 otherwise. Ten of its findings or more were judged, all where there are fewer, by running or
 reading what consumes the value. A rule with less than 95 % true findings is a note.
+No public file has what a rule with 0 finds: that rule rests on the source that is named, and on its
+examples and the defects planted in `tests/lint/`, each of which it finds alone.
 
 | rule | level | found | judged | true | by |
 |---|---|--:|--:|--:|---|

@@ -73,7 +73,7 @@ def page(found: Outcome, revisions: Mapping[str, str], uses: list[str]) -> str:
     """The page of a robot."""
     it = found.recipe
     lines = [f"# {it.title}", "", MADE, "", it.about.strip(), "", "## The fleet file", ""]
-    lines += ["```yaml", plain_paths(found.text).rstrip(), "```", "", COMMANDS, ""]
+    lines += ["```yaml", plain_paths(found.text).rstrip(), "```", "", commands(it), ""]
     lines += ["Sources: " + ", ".join(revisions[use] for use in uses) + ".", ""]
     lines += ["## Against the vendor's two robots", "", verdict(found), ""]
     lines += [*_reasons(found), *_findings(found)]
@@ -83,6 +83,12 @@ def page(found: Outcome, revisions: Mapping[str, str], uses: list[str]) -> str:
 def plain_paths(text: str) -> str:
     """A fleet file with paths as a user has them."""
     return text.replace("{sources}/", "src/").replace("{work}/", "")
+
+
+def commands(it: Recipe) -> str:
+    """What to run; outputs are in the shape of the vendor, if there is one."""
+    option = f" --shape {it.shape}" if it.shape else ""
+    return COMMANDS.replace("-o fleet/", f"-o fleet/{option}")
 
 
 def verdict(found: Outcome) -> str:

@@ -40,7 +40,8 @@ class Recipe(NamedTuple):
     them), the ``window`` of RViz that the vendor opens, what its fleet file has besides, the layouts
     (the vendor's first), which differences are ``better``, and which findings are ``right``,
     each with the reason. ``wrong`` and ``false`` (of each build) are how many others there are;
-    ``before`` is what was false in the vendor's layout before the package knew these robots."""
+    ``before`` is what was false in the vendor's layout before the package knew these robots. ``shape``
+    is that of the vendor's launch files, if they take any."""
 
     title: str
     system: str
@@ -54,6 +55,7 @@ class Recipe(NamedTuple):
     right: tuple[Mapping[str, str], ...] = ()
     wrong: int = 0
     before: str = ""
+    shape: str = ""
     false: tuple[int, ...] = (0, 0, 0, 0)
 
 
