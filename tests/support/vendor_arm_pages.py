@@ -23,8 +23,8 @@ from multibot_rewrite.fleets.fleet_plan import plan_fleet
 
 ARMS = {"ur": "UR5e", "franka": "FR3", "xarm": "xArm 6", "kinova": "Gen3"}
 OTHER_LAYOUT = "frames-per-robot"
-# They say that each arm has an RViz of its own, or that the frame of one for all is another now.
-EVERYWHERE = {"MF201", "MF203"}
+# They say that each arm has an RViz of its own, or that its frame and view are others now.
+EVERYWHERE = {"MF201", "MF203", "MF213"}
 THIRD = "middle"
 _CODE = re.compile(r"M[BFGR]\d{3}")
 _PORT = re.compile(r"port")
