@@ -126,6 +126,7 @@ HOMES: tuple[Home, ...] = (
             "evidence.spawner_managers",
             "fleets.launched_files",
             "fleets.loaded_files",
+            "fleets.yarp_files",
             "fleets.launched_prefix",
             "fleets.filled_arguments",
             "fleets.simulators",

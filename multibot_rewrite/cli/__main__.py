@@ -11,7 +11,7 @@ from multibot_rewrite.cli.options import Command, Option
 HEAD = """\
 # Commands
 
-Made by `python -m multibot_rewrite.cli > docs/commands.md`: what `--help` of each command says. Where
+Made by `python share/make.py`: what `--help` of each command says. Where
 ROS is sourced, `ros2 multibot` is `multibot`.
 """
 # In a cell of a table they would end it, or be read as HTML.

@@ -40,6 +40,7 @@ from multibot_rewrite.fleets.shape_outputs import copied
 from multibot_rewrite.fleets.two_descriptions import differences
 from multibot_rewrite.fleets.with_start_pose_nodes import split_per_robot, with_start_pose_nodes
 from multibot_rewrite.fleets.world_file import world_file
+from multibot_rewrite.fleets.yarp_files import yarp_files
 from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.graph.enclaves import to_policy
 from multibot_rewrite.graph.plan_file import to_yaml
@@ -98,7 +99,10 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
         findings += [it for it in joined if isinstance(it, Finding)]
         cell = (it for it in joined if isinstance(it, OutputFile))
         more = (*_tables(plan, fleet), *moveit_parameters(plan, files), *world_file(plan))
-        files = sorted((*kept, *cell, *more, *copied(plan)))
+        yarp = list(yarp_files(plan.robots))
+        findings += [it for it in yarp if isinstance(it, Finding)]
+        own = (it for it in yarp if isinstance(it, OutputFile))
+        files = sorted((*kept, *cell, *own, *more, *copied(plan)))
         brought = {it.name for it in fleet.bridged if PUBLISHES in it.bridge}
         files = sorted((*files, *launch_files(plan, each, configs, files, brought)))
         _check_paths_differ(files)

@@ -15,6 +15,7 @@ from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.fleet_file import REAL
 from multibot_rewrite.fleets.output_file import path_for
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot, at_robot
+from multibot_rewrite.fleets.yarp_files import own_yarp_paths
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import Edit
 from multibot_rewrite.rewriters.insert import ESCAPES
@@ -82,7 +83,7 @@ def with_own_controllers(robot: RewrittenRobot, folder: str) -> tuple[bytes, tup
     source = robot.member.inventory.document.source
     file = robot.spec.simulated or robot.spec.description
     params = robot.spec.companions.get("params", ())
-    edits, findings = [], []
+    edits, findings = list(own_yarp_paths(robot, folder)), []
     for path, slot in loaded_files(robot) if params else ():
         same = [it for it in params if is_same(path, it, file)]
         if same and folder:
@@ -90,7 +91,7 @@ def with_own_controllers(robot: RewrittenRobot, folder: str) -> tuple[bytes, tup
             edits.append(Edit(*slot, made.encode(), None))
         elif not same and any(named_alike(path, it) for it in params):
             findings.append(_unsure(robot, path))
-    return b"".join(cut(source, edits)), tuple(findings)
+    return b"".join(cut(source, sorted(edits))), tuple(findings)
 
 
 def loaded_files(robot: RewrittenRobot) -> Iterator[tuple[str, tuple[int, int]]]:

@@ -15,7 +15,7 @@ from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.model import InputError
 from multibot_rewrite.proposal.looking import CLASSIC, GZ, NO_SIMULATOR, Looked
-from multibot_rewrite.proposal.searching import Found
+from multibot_rewrite.proposal.searching import Found, without_others
 from multibot_rewrite.sources.packages import package_of
 from multibot_rewrite.sources.read import read_file
 
@@ -63,6 +63,7 @@ class Companions(NamedTuple):
 def companions_of(robot: Looked, found: Found, release: str) -> Companions:
     """What goes with a description of these files."""
     left: dict[str, str] = {}
+    found = without_others(found, robot.path)
     files = {kind: tuple(_of_kind(kind, robot, found, left)) for kind in KINDS if kind != "params"}
     sections = dict(_sections(_nearest(robot, found.params), release, left))
     files["params"] = tuple(sections)

@@ -35,7 +35,10 @@ _MOVEIT = frozenset(
 
 
 class Found(NamedTuple):
-    """Files by what they are for, each sorted; ``srdf`` are xacros, too. ``folders`` were searched."""
+    """Files by what they are for, each sorted; ``srdf`` are xacros, too. ``folders`` were searched.
+
+    ``descriptions`` are those that were named, if any were; ``every`` are all that are there.
+    """
 
     descriptions: tuple[str, ...] = ()
     params: tuple[str, ...] = ()
@@ -46,6 +49,7 @@ class Found(NamedTuple):
     srdf: tuple[str, ...] = ()
     launch: tuple[str, ...] = ()
     folders: tuple[str, ...] = ()
+    every: tuple[str, ...] = ()
 
 
 def search(paths: Sequence[str]) -> Found:
@@ -65,6 +69,7 @@ def search(paths: Sequence[str]) -> Found:
     kinds: dict[str, list[str]] = {}
     for path, kind in _sorted(every):
         kinds.setdefault(kind, []).append(path)
+    kinds["every"] = kinds.get("descriptions", [])
     if files:
         kinds["descriptions"] = files
     named = {kind: tuple(its) for kind, its in kinds.items() if kind}
@@ -75,6 +80,22 @@ def without(found: Found, paths: Container[str]) -> Found:
     """The same without some files, of whatever kind."""
     kept = (tuple(it for it in its if it not in paths) for its in found)
     return Found(*kept)
+
+
+def without_others(found: Found, robot: str) -> Found:
+    """The same without files of the description's package that are nearer to another description: a
+    folder of examples has files of several robots."""
+    others = {os.path.dirname(it) for it in found.every}
+    own, base = os.path.dirname(robot), _home(robot)
+
+    def near(folder: str, file: str) -> int:
+        return len(os.path.commonpath((os.path.abspath(folder), os.path.abspath(file))))
+
+    def of_another(file: str) -> bool:
+        inside = near(base, file) == len(os.path.abspath(base))
+        return inside and any(near(it, file) > near(own, file) for it in others)
+
+    return without(found, {file for kind in found[1:] for file in kind if of_another(file)})
 
 
 def _home(file: str) -> str:

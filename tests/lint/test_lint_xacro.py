@@ -393,3 +393,23 @@ def test_a_configuration_lets_xacro_read_no_folder_but_its_own(
         assert "MB202" in capsys.readouterr().out
     assert main(["robot/urdf/next.xacro", *quiet]) == 1
     assert "MB202" in capsys.readouterr().out
+
+
+def test_controllers_that_cmake_installs_from_elsewhere_are_there(tmp_path: Path) -> None:
+    control = (
+        '<link name="a"/><gazebo><plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" '
+        'filename="gz_ros2_control-system"><parameters>$(find robot)/config/%s.yaml</parameters>'
+        "</plugin></gazebo>"
+    )
+    write(
+        tmp_path,
+        {
+            "robot/package.xml": MANIFEST % "robot",
+            "robot/config/other.yaml": "",
+            "robot/bringup/config/there.yaml": "",
+            "robot/urdf/a.xacro": xacro(control % "there"),
+            "robot/urdf/b.xacro": xacro(control % "gone"),
+        },
+    )
+    found = linted(tmp_path, "robot/urdf/a.xacro", "robot/urdf/b.xacro", select=("MB234",))
+    assert [(it.code, it.file) for it in found] == [("MB234", "robot/urdf/b.xacro")]

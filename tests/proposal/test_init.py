@@ -137,6 +137,34 @@ def test_companions_and_stacks_of_a_folder(tmp_path: Path) -> None:
     assert "#   source/nav2_params_other.yaml: nav2_params.yaml has parameters of" in text
 
 
+def test_files_of_another_robot_of_the_package_are_its_own(tmp_path: Path) -> None:
+    """A package with examples: each has a robot and files beside it; what is above them is for all."""
+    (tmp_path / "package.xml").write_text("<package><name>many</name></package>")
+    for name in ("left", "right"):
+        (tmp_path / name / "config").mkdir(parents=True)
+        shutil.copy(ROBOTS / "rover.urdf", tmp_path / name / f"{name}.urdf")
+        section = f"{name}_node: {{ros__parameters: {{rate: 1}}}}\n"
+        (tmp_path / name / "config" / f"{name}.yaml").write_text(section)
+    (tmp_path / "config").mkdir()
+    (tmp_path / "config" / "all.yaml").write_text("every_node: {ros__parameters: {rate: 1}}\n")
+    fleet = made(tmp_path, tmp_path / "left" / "left.urdf")
+    assert set(fleet["companions"]["params"]) == {"config/all.yaml", "left/config/left.yaml"}
+
+
+@pytest.mark.parametrize(
+    "name", ["launch_tutorial/rover.urdf", "two_robots_postfix/scout.urdf.xacro"]
+)
+def test_a_robot_of_the_examples_has_the_files_of_its_folder(name: str, tmp_path: Path) -> None:
+    fleet = made(tmp_path, ROOT / "examples" / name)
+    files = [
+        it
+        for its in fleet["companions"].values()
+        for it in ([its] if isinstance(its, str) else its)
+    ]
+    assert files and all(f"examples/{Path(name).parent}/" in it for it in files)
+    assert "srdf" not in fleet and "stack" not in fleet
+
+
 def test_ros2_control_and_a_real_robot(tmp_path: Path) -> None:
     shutil.copy(ROBOTS / "rover_gz.urdf", tmp_path)
     assert made(tmp_path, tmp_path)["stack"] == ["gz_ros2_control"]

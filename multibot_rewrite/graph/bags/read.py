@@ -62,7 +62,7 @@ def read_bag(path: str) -> Recording:
         with Reader(path) as reader:
             return _recording(reader)
     except Exception as error:  # a damaged bag fails in sqlite3, zstandard, PyYAML or struct
-        reason = one_line(str(error) or type(error).__name__)[:200]
+        reason = one_line(str(error) or type(error).__name__)[:200].rstrip(".")
         hint = "is the recording complete? ros2 bag reindex may mend it"
         raise InputError(f"{path}: not a readable bag: {reason}; {hint}") from None
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from multibot_rewrite.findings.finding import WARNING
+from multibot_rewrite.findings.finding import NOTE, WARNING
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.beside.kinds import BRIDGE, MOVEIT, PARAMS, RVIZ
 from multibot_rewrite.lint.rules.examples import a_joint, a_link
@@ -59,7 +59,7 @@ def misspelled_link(beside: Beside) -> Iterator[Remark]:
 @rule(
     "MB854",
     "undeclared-joint-beside",
-    WARNING,
+    NOTE,
     what="A parameter file or a file of MoveIt names a joint that no description of the package "
     "has, beside others that one has.",
     why="The controller is not activated: no hardware exports an interface of that joint. MoveIt "

@@ -40,7 +40,7 @@ def _placed(tag: str, xyz: str, shape: str = BOX) -> str:
     "collision-away",
     WARNING,
     what="The collision of a link is not where its visual is: the two do not touch, or are one "
-    "mesh at two places.",
+    "mesh at two places. Of meshes, STL and OBJ files of up to 4 MB are measured.",
     why="The robot bumps into what is not there, and drives and reaches through what is; planners keep "
     "a distance from empty space.",
     fix="Give <collision> and <visual> the same <origin>.",

@@ -32,6 +32,7 @@ from multibot_rewrite.lint.rules.references.shared import (
 from multibot_rewrite.nearest import slip_of
 from multibot_rewrite.outside import is_folder, is_there
 from multibot_rewrite.rewriters.text import text_of
+from multibot_rewrite.sources.packages import in_sources
 
 _GZ = "gz_ros2_control/GazeboSimSystem"
 _CLASSIC = "gazebo_ros2_control/GazeboSystem"
@@ -103,7 +104,7 @@ def no_controllers_file(subject: Subject) -> Iterator[Problem]:
             # Where xacro has expanded $(find), the folder of the package is there.
             home = os.path.dirname(os.path.dirname(path))
             is_here = subject.origins and os.path.isabs(path) and is_folder(home)
-            if is_here and not is_there(path):
+            if is_here and not is_there(path) and not in_sources(path):
                 yield Problem(it, f"there is no file {path}", "", "correct the path")
 
 
