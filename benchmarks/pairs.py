@@ -10,7 +10,6 @@ import gc
 import os
 import platform
 import subprocess
-import tempfile
 import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
@@ -67,22 +66,20 @@ def _used() -> float:
     return time.process_time() + ended.ru_utime + ended.ru_stime
 
 
-def child(arguments: list[str], *codes: int) -> None:
-    """Run a process to its end; ``codes`` are exit codes that are right beside 0."""
-    done = subprocess.run(
-        arguments, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False
-    )
+def child(arguments: list[str], *codes: int, folder: str | None = None) -> None:
+    """Run a process to its end, in a ``folder``; ``codes`` are exit codes that are right beside 0."""
+    null = subprocess.DEVNULL
+    done = subprocess.run(arguments, stdout=null, stderr=null, check=False, cwd=folder)
     if done.returncode not in (0, *codes):
         raise RuntimeError(f"{arguments} ended with {done.returncode}")
 
 
 @contextmanager
 def as_installed() -> Iterator[None]:
-    """Commands find their modules compiled, whatever the environment says."""
-    with tempfile.TemporaryDirectory() as folder:
-        os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
-        os.environ["PYTHONPYCACHEPREFIX"] = folder
-        yield
+    """Commands find their modules compiled and beside the sources, whatever the environment says."""
+    for name in ("PYTHONDONTWRITEBYTECODE", "PYTHONPYCACHEPREFIX"):
+        os.environ.pop(name, None)
+    yield
 
 
 def table(rows: Iterable[Row]) -> str:

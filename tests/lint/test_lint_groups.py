@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from importlib import import_module
+from pathlib import Path
 from pkgutil import walk_packages
 
 from multibot_rewrite.findings.rule import URDF, Rule
@@ -30,6 +33,24 @@ def test_no_rule_of_a_format_is_left_out() -> None:
     for format_ in formats:
         active = [it.code for it in active_rules(Settings(), format_)]
         assert active == [code for code, it in RULES.items() if format_ in it.formats]
+
+
+def test_a_lint_of_a_urdf_loads_nothing_for_other_files(tmp_path: Path) -> None:
+    file = tmp_path / "a.urdf"
+    file.write_bytes(MESHES)
+    program = (
+        "import sys; from multibot_rewrite.cli.urdf_lint import main; "
+        "main([sys.argv[1], '--no-cache']); print(*sys.modules)"
+    )
+    command = [sys.executable, "-c", program, str(file)]
+    run = subprocess.run(command, capture_output=True, text=True, check=True, cwd=tmp_path)
+    others = (
+        *("cli.declared.fleet", "lint.registry", "lint.rules.srdf", "lint.config.directives"),
+        *("sources.access", "rewriters.patterns", "remap.bridged_topics"),
+    )
+    loaded = set(run.stdout.split())
+    assert "multibot_rewrite.lint.rules.meshes" in loaded
+    assert loaded & {"tomllib", *(f"multibot_rewrite.{it}" for it in others)} == set()
 
 
 def test_no_file_of_rules_is_left_out_of_its_group() -> None:

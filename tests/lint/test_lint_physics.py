@@ -228,3 +228,11 @@ def test_every_rule_of_the_group_is_in_a_case() -> None:
     """Those from MB620 on are in test_lint_geometry.py."""
     codes = {it[:5] for case in CASES for it in str(case.values[1]).split()}
     assert codes | {"MB609", "MB610", "MB611"} == {it for it in RULES if "MB6" <= it < "MB620"}
+
+
+def test_of_two_geometries_the_first_is_read(tmp_path: Path) -> None:
+    """urdfdom takes FirstChildElement, whatever follows."""
+    empty = "<geometry/>"
+    first = found(f'<link name="a">\n<visual>{empty}{BOX}</visual></link>', tmp_path)
+    assert reported(first) == "MB615:2"
+    assert found(f'<link name="a"><visual>{BOX}{empty}</visual></link>', tmp_path) == []

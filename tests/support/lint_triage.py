@@ -56,6 +56,17 @@ Each rule was run over the public files and those of Python packages that [the p
 judgements](lint-triage.md) has, with the facts of the newest long-term release unless it says
 otherwise. Ten of its findings or more were judged, all where there are fewer, by running or
 reading what consumes the value. A rule with less than 95 % true findings is a note.
+
+Of defects planted in `tests/lint/`, one a file, so many gave a finding that the healthy file does not
+have. Of files that are odd and healthy none may have one:
+
+| what | defects | found before these rules | found | odd and healthy |
+|---|--:|--:|--:|--:|
+| below `<gazebo>`, parameters of plugins and hardware (`test_lint_gazebo.py`) | 71 | 28 | 71 | 45 |
+| ros2_control as a whole (`test_lint_systems.py`) | 19 | 10 | 19 | 15 |
+| geometry of a rover and an arm (`test_lint_geometry.py`) | 52 | 5 | 52 | 40 |
+| parameter, RViz, MoveIt and bridge files (`test_lint_beside.py`) | 39 | 0 | 39 | 29 |
+
 No public file has what a rule with 0 finds: that rule rests on the source that is named, and on its
 examples and the defects planted in `tests/lint/`, each of which it finds alone.
 

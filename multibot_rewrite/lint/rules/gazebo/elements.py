@@ -110,7 +110,8 @@ later_sdf_element = rule(
     NOTE,
     what="An element below <gazebo> came with a later version of SDF than Gazebo of this release "
     "reads.",
-    why="It has no effect in this release.",
+    why="It has no effect in this release: a sensor with <frame_id> publishes in the frame that it "
+    "has without.",
     fix="Leave it out, or name the release that the description is for: --distro.",
     bad=a_sensor("imu", "<frame_id>a</frame_id>"),
     good=a_sensor("imu", "<topic>imu</topic>"),

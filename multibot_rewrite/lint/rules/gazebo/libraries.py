@@ -79,7 +79,7 @@ def class_not_in_library(subject: Subject) -> Iterator[Problem]:
     "MB161",
     "misspelt-library",
     WARNING,
-    what="A plugin that is not known has almost the name of one that is.",
+    what="The library of a plugin is not known, and its name is almost that of a known one.",
     why="Gazebo reports that it cannot find the library and goes on without it.",
     fix="Correct the file name.",
     bad='<gazebo><plugin name="p" filename="gz-sim-dif-drive-system"/></gazebo>',
@@ -102,7 +102,7 @@ def misspelt_library(subject: Subject) -> Iterator[Problem]:
     "MB171",
     "misspelt-hardware",
     WARNING,
-    what="A ros2_control hardware class that is not known has almost the name of one that is.",
+    what="A ros2_control hardware class is not known, and its name is almost that of a known one.",
     why="The controller manager reports that the class does not exist, and has no hardware.",
     fix="Correct the name of the class.",
     bad=block(

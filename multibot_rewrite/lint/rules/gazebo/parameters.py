@@ -47,7 +47,8 @@ unread_parameter = rule(
     "unread-parameter",
     NOTE,
     what="A parameter that the code of a known plugin does not read.",
-    why="It has no effect.",
+    why="It has no effect: the plugin runs with what it has built in, whatever the value says. "
+    "<alwaysOn> and <updateRate> in a lidar's plugin are the sensor's own elements.",
     fix="Delete it.",
     bad=_drive("<use_sim_time>true</use_sim_time>"),
     good=_drive("<topic>cmd_vel</topic>"),
@@ -112,7 +113,8 @@ parameter_of_another_release = rule(
     "plugin-parameter-of-another-release",
     NOTE,
     what="A plugin reads a parameter in another release than this one.",
-    why="It has no effect in this release.",
+    why="It has no effect in this release: the plugin runs with what it has built in, as if the line "
+    "were not there.",
     fix="Leave it out, or name the release that the description is for: --distro.",
     bad=_motor("<actuator_number>0</actuator_number>"),
     good=_motor("<motorNumber>0</motorNumber>"),
@@ -137,7 +139,8 @@ parameter_in_degrees = rule(
     "parameter-in-degrees",
     WARNING,
     what="An angle of a plugin is more than a turn.",
-    why="Gazebo's angles are in radians: a steering limit of 30 is none.",
+    why="Gazebo's angles are in radians: a steering limit of 30 limits nothing, and the wheels turn "
+    "all the way round.",
     fix="Write radians; the hint has them.",
     bad=a_system("ackermann-steering", "AckermannSteering", "<steering_limit>30</steering_limit>"),
     good=a_system(

@@ -46,7 +46,7 @@ sensor_names_collide = rule(
     "robots have it under the same name.",
     why="gz_ros2_control takes the first IMU with that name; the realsense and kobuki plugins find "
     "none if two have it: the second robot reads the first one's data, or nothing.",
-    fix="Use the layout both, which renames sensors for each robot.",
+    fix="Use the layout called both (L3), which renames sensors for each robot.",
     bad='<link name="a"/>\n'
     '<gazebo reference="a"><sensor name="imu" type="imu"/></gazebo>\n'
     '<ros2_control name="h" type="system">\n'
