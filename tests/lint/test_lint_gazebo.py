@@ -157,6 +157,10 @@ PLANTED = {
         classic("gazebo_ros_p3d", f"{OF_ROS_1}<alwaysOn>true</alwaysOn>"),
         "MB164",
     ),
+    "an element of the sensor in a plugin of ROS 1": (
+        classic("gazebo_ros_imu", f"{OF_ROS_1}<imu/>"),
+        "MB164",
+    ),
     "no topic of p3d in ROS 1": (
         classic("gazebo_ros_p3d", "<robotNamespace>a</robotNamespace><bodyName>a</bodyName>"),
         "MB165",
@@ -281,6 +285,10 @@ HEALTHY = {
     ),
     "a namespace and no block": classic(
         "gazebo_ros_p3d", "<body_name>a</body_name><namespace>a</namespace>"
+    ),
+    "a block that is given away as a whole": system(
+        "advanced-lift-drag", "AdvancedLiftDrag",
+        "<link_name>a</link_name><control_surface><whatever>1</whatever></control_surface>",
     ),
     "a block of gazebo_ros": classic(
         "gazebo_ros_p3d",
