@@ -18,12 +18,14 @@ from multibot_rewrite.proposal.fleet_text import Proposal, text_of
 from multibot_rewrite.proposal.propose import Wanted, see
 from multibot_rewrite.proposal.trying import first_that_builds, that_builds
 from multibot_rewrite.releases import VARIABLE, release_here
+from multibot_rewrite.rosnames import check_robot_name
 
 
 def run(options: argparse.Namespace) -> int:
     """Look, ask, try, write; returns the exit code."""
     if options.count == 0:
         raise UsageError("--count 0: a fleet has at least one robot")
+    _check_names(options)
     _check_output(options)
     wanted = _wanted(options)
     seen = see(wanted)
@@ -52,6 +54,16 @@ def _wanted(options: argparse.Namespace) -> Wanted:
         options.trust,
         tuple(options.robots),
     )
+
+
+def _check_names(options: argparse.Namespace) -> None:
+    names = options.robots
+    if names and options.count:
+        raise UsageError("--robots and --count: give one of them")
+    for name in names:
+        check_robot_name(name)
+        if names.count(name) > 1:
+            raise UsageError(f"--robots: {name} is there twice; every robot needs its own name")
 
 
 def _check_output(options: argparse.Namespace) -> None:

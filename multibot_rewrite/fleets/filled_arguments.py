@@ -111,6 +111,8 @@ def _choice(it: Argument, naming: Naming, robot: RobotSpec) -> _Choice:
     uses = [use for use in it.uses if use.kind in ROS_KINDS or use.how != WHOLE]
     if not it.value or not uses or any(_makes_other_names(use, naming) for use in uses):
         return _Choice(it.name)
+    if it.missed:
+        return _Choice(it.name, reason=f"something still names {it.missed}, which it renames")
     words = {robot.namespace if use.kind in ROS_KINDS else robot.tag for use in uses}
     if len(words) > 1 or "/" in min(words):
         return _Choice(it.name, reason="its namespace is not what its frames get")

@@ -25,6 +25,7 @@ _NOTHING = ("", "None")
 # What arguments for a robot's own names are called.
 _NAMING = lazy_compile(r"prefix|namespace|^ns$|(robot|arm|model)_?(name|id|ns)$")
 _MARK = MARKS[0]
+PARTS = ("link", "joint")
 _SEPARATORS = "/_-."
 _ARGUMENT = "{*}arg"
 
@@ -48,7 +49,8 @@ class Argument(NamedTuple):
     """An argument, its value where none is given, and its uses in names.
 
     ``others`` are values with it that are no known name. ``fault`` is why a word is not taken: the
-    argument is a number, a switch, a file or one of some words.
+    argument is a number, a switch, a file or one of some words. ``missed`` is a link or joint that is
+    named as before though the argument gives it another name; empty if it misses none.
     """
 
     name: str
@@ -56,6 +58,7 @@ class Argument(NamedTuple):
     uses: tuple[Use, ...]
     others: int
     fault: str
+    missed: str = ""
 
     @property
     def value(self) -> str:
@@ -105,11 +108,12 @@ def find_arguments(
     end = clock() + SECONDS
     read = expand_traced(path, read_file(path), given, None, reach)
     declared = {**_declared(read.sources), **given}
+    plain = _parts(collect(read_document(read.data, path), tree))
     found: dict[str, Argument] = {}
     for name, default in [it for it in declared.items() if wanted(it[0])][:MOST]:
         if clock() > end:
             break
-        found[name] = _argument(path, given, name, default, tree, reach)
+        found[name] = _argument(path, given, name, default, tree, reach, plain)
     untried = tuple(it for it in declared if it not in found)
     return XacroArguments(path, tuple(found.values()), untried, read.read)
 
@@ -125,7 +129,13 @@ def _declared(sources: Mapping[str, bytes]) -> dict[str, str]:
 
 
 def _argument(
-    path: str, given: Mapping[str, str], name: str, default: str, tree: Tree, reach: Reach
+    path: str,
+    given: Mapping[str, str],
+    name: str,
+    default: str,
+    tree: Tree,
+    reach: Reach,
+    plain: frozenset[str],
 ) -> Argument:
     try:
         data = expand(path, {**given, name: _MARK}, reach=reach)
@@ -134,7 +144,15 @@ def _argument(
         return Argument(name, default, (), 0, _reason(error))
     values = [it for it in slot_values(inventory.document.root) if _MARK in it]
     claimed = sum(_MARK in claim.value for claim in inventory.claims)
-    return Argument(name, default, tuple(_uses(inventory)), max(len(values) - claimed, 0), "")
+    renamed = plain - _parts(inventory)
+    missed = (it.text for found in inventory.names for it in found if it.text in renamed)
+    others = max(len(values) - claimed, 0)
+    return Argument(name, default, tuple(_uses(inventory)), others, "", next(missed, ""))
+
+
+def _parts(inventory: Inventory) -> frozenset[str]:
+    """The links and joints that are declared."""
+    return frozenset(it for kind in PARTS for it in inventory.declared.get(kind, ()))
 
 
 def _reason(error: InputError) -> str:
@@ -179,4 +197,5 @@ def as_json(found: XacroArguments) -> dict[str, object]:
 
 
 def _argument_json(it: Argument) -> dict[str, object]:
-    return {**it._asdict(), "uses": [use._asdict() for use in it.uses], "for_robots": it.value}
+    told = {key: value for key, value in it._asdict().items() if key != "missed"}
+    return {**told, "uses": [use._asdict() for use in it.uses], "for_robots": it.value}

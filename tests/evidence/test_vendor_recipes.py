@@ -1,15 +1,17 @@
 """Vendors' robots are built from their own files, and equal what the vendors make of two, or better it.
 
-With MULTIBOT_SOURCES=FOLDER and with launch, as ``test_vendor_systems.py``; skipped without. The rest
-are tests of the judge.
+With MULTIBOT_SOURCES=FOLDER and with launch, as ``test_vendor_systems.py``; skipped without. With rclpy
+each is rehearsed, too. The rest are tests of the judge.
 """
 
 from __future__ import annotations
 
 import re
+from importlib.util import find_spec
 
 import pytest
-from vendor_recipes import false_findings, outcome, read_recipes
+from vendor_live import Looked, Said, said, told
+from vendor_recipes import false_findings, is_true, outcome, read_recipes
 from vendor_rows import (
     bridge_argument,
     bridge_rows,
@@ -21,6 +23,7 @@ from vendor_rows import (
 from vendor_sources import VARIABLE, WITHOUT, sources_folder
 from vendor_systems import missing, read_vendors
 
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.launch import missing as without_launch
 from multibot_rewrite.rosnames import bind
 from multibot_rewrite.rosnames.rules import parse_remap
@@ -37,12 +40,14 @@ def test_a_vendors_robot_is_built_as_it_ships(name: str) -> None:
     lacking = missing(vendors.systems[recipe.system], folder)
     if lacking:
         pytest.skip(f"{VARIABLE} lacks {', '.join(lacking)}")
-    found = outcome(recipe, vendors, folder)
+    found = outcome(recipe, vendors, folder, live=find_spec("rclpy") is not None)
     assert [it.refused for it in found.built] == [""] * 4
     wrong = [it for it in found.compared.differences if not it.reason]
     assert len(wrong) == recipe.wrong, wrong
     false = [false_findings(recipe, it) for it in found.built]
     assert [len(it) for it in false] == list(recipe.false), false
+    told = [it for looked in found.looked for part in looked for it in part]
+    assert [it for it in told if not is_true(recipe, it)] == []
     reasons = {it.reason for it in found.compared.differences}
     assert [it["where"] for it in recipe.better if it["reason"] not in reasons] == []
     assert found.compared.equal > 100
@@ -129,3 +134,11 @@ Visualization Manager:
     assert "/robot1/goal_pose" in one.values()
     assert all_ != rviz_rows(own, bind("rviz2", "/robot1", []), "robot1")
     assert all_ != rviz_rows(own.replace("map", "odom"), bind("rviz2", "/robot1", rules), "robot1")
+
+
+def test_what_is_said_counts_once_for_all_robots() -> None:
+    rows = [("MF1", "error", "a of robot1"), ("MF1", "error", "a of robot2"), ("MF2", "note", "b")]
+    found = said((Finding(*it) for it in rows), ("robot1", "robot2"))
+    assert found == (Said("MF1", "a of robot"),)
+    counted = told("both", found, Looked((), (Said("MG1", "c"),)), lambda it: it.code == "MF1")
+    assert counted == ("both", (1, 0, 1), 1)

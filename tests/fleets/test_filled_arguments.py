@@ -171,6 +171,17 @@ def test_what_is_not_for_robots_is_left(argument: str, default: str, tmp_path: P
     assert said(outputs) == []
 
 
+def test_a_prefix_that_misses_a_reference_is_not_filled(tmp_path: Path) -> None:
+    """Kinova's gripper_joint_name is an argument of its own, with a name without the prefix."""
+    hardware = """<ros2_control name="s" type="system"><hardware><plugin>a/B</plugin></hardware>
+      <joint name="elbow"><command_interface name="position"/></joint></ros2_control>"""
+    outputs = made(xacro(tmp_path, "tf_prefix", ARM + hardware), **WITH_PREFIX)
+    assert names(outputs, "robot1", "joint") == ["robot1_elbow", "robot1_elbow"]
+    assert nobodys(outputs, "robot1") == ""
+    (message,) = said(outputs)
+    assert message.endswith("not filled: something still names elbow, which it renames")
+
+
 def test_each_argument_gets_the_word_of_its_names(tmp_path: Path) -> None:
     robots = [{"name": "robot1", "namespace": "n1", "prefix": "p1"}]
     arm = made(xacro(tmp_path, "tf_prefix", ARM), robots, **WITH_PREFIX)

@@ -298,6 +298,9 @@ def test_names_of_the_robots_are_given(tmp_path: Path, capsys: Any) -> None:
         (["{folder}/part.xacro", "-o", "-"], "it has no link; give the file that has the robot"),
         (["{folder}/need.xacro", "-o", "-"], "give it as size:=VALUE"),
         (["-n", "0"], "a fleet has at least one robot"),
+        (["--robots", "a,a"], "a is there twice"),
+        (["--robots", "1bad"], "1bad"),
+        (["--robots", "a,b", "-n", "3"], "give one of them"),
         (["--layout", "L9"], "--layout"),
     ],
 )

@@ -11,7 +11,6 @@ import re
 import subprocess
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
@@ -20,7 +19,8 @@ from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.plan_file import from_yaml
 from multibot_rewrite.graph.rehearsal import substitute_type, with_substitutes
-from multibot_rewrite.graph.snapshot import from_json
+from multibot_rewrite.graph.snapshot import Snapshot, from_json
+from multibot_rewrite.remap.records import TOPIC
 
 PLAN = "plan.yaml"
 
@@ -63,8 +63,9 @@ def look(file: Path, built: Mapping[str, bytes], robots: Iterable[str]) -> Looke
     if done.returncode not in (0, 1):
         raise SystemExit(f"{file}: {done.stderr}")
     rehearsed = [_finding(it) for it in json.loads(done.stdout)["findings"]]
-    plan = _substituted(from_yaml(built[PLAN], PLAN)._replace(states=()))
-    found = check(plan, from_json(graph.read_bytes(), str(graph)))
+    seen = from_json(graph.read_bytes(), str(graph))
+    plan = _substituted(from_yaml(built[PLAN], PLAN)._replace(states=()), seen)
+    found = check(plan, seen)
     return Looked(said(rehearsed, names), said(found, names))
 
 
@@ -79,13 +80,14 @@ def _finding(row: Mapping[str, str]) -> Finding:
     return Finding(row["code"], row["level"], row["message"])
 
 
-def _substituted(plan: Expectation) -> Expectation:
-    """The plan with the types that a rehearsal has in place of those that are not installed."""
-    return with_substitutes(plan, dict(_substitutes(plan)))
+def _substituted(plan: Expectation, graph: Snapshot) -> Expectation:
+    """The plan with the types that the rehearsal has in place of those that are not installed: no
+    stand-in has these."""
+    there = {it.type for it in graph.endpoints}
+    return with_substitutes(plan, {t: new for t, new in _substitutes(plan) if t not in there})
 
 
 def _substitutes(plan: Expectation) -> Iterator[tuple[str, str]]:
     ends = [(it.kind, type_) for it in plan.endpoints for type_ in (it.type, *it.also)]
-    for kind, type_ in (*ends, *(("topic", it.type) for it in plan.topics)):
-        if type_ and find_spec(type_.partition("/")[0]) is None:
-            yield type_, substitute_type(kind, type_)
+    ends += [(TOPIC, it.type) for it in plan.topics]
+    yield from ((type_, substitute_type(kind, type_)) for kind, type_ in ends if type_)

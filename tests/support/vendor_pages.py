@@ -188,8 +188,8 @@ def main(words: list[str]) -> int:
         name: page(it, vendors.sources, vendors.systems[it.recipe.system]["uses"])
         for name, it in found.items()
     }
-    arms = told_of_arms(folder) if len(found) == len(recipes) else {}
-    pages |= {"README": readme(found, arms)}
+    if len(found) == len(recipes):
+        pages |= {"README": readme(found, told_of_arms(folder))}
     for name, text in pages.items():
         if "--write" in words:
             PAGES.mkdir(exist_ok=True)
