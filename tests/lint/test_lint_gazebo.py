@@ -411,3 +411,7 @@ def test_nothing_is_loaded_for_a_robot_without_gazebo() -> None:
     chunks.cache_clear()
     assert codes("") == []
     assert chunks.cache_info().currsize == 0
+
+
+def test_the_page_of_precision_has_these_counts() -> None:
+    assert (len(PLANTED), len(HEALTHY)) == (72, 46)
