@@ -157,6 +157,10 @@ PLANTED = {
         classic("gazebo_ros_p3d", f"{OF_ROS_1}<alwaysOn>true</alwaysOn>"),
         "MB164",
     ),
+    "an element of the sensor in a plugin of ROS 1": (
+        classic("gazebo_ros_imu", f"{OF_ROS_1}<imu/>"),
+        "MB164",
+    ),
     "no topic of p3d in ROS 1": (
         classic("gazebo_ros_p3d", "<robotNamespace>a</robotNamespace><bodyName>a</bodyName>"),
         "MB165",
@@ -282,6 +286,10 @@ HEALTHY = {
     "a namespace and no block": classic(
         "gazebo_ros_p3d", "<body_name>a</body_name><namespace>a</namespace>"
     ),
+    "a block that is given away as a whole": system(
+        "advanced-lift-drag", "AdvancedLiftDrag",
+        "<link_name>a</link_name><control_surface><whatever>1</whatever></control_surface>",
+    ),
     "a block of gazebo_ros": classic(
         "gazebo_ros_p3d",
         "<body_name>a</body_name><ros><namespace>a</namespace><remapping>a:=b</remapping>"
@@ -403,3 +411,7 @@ def test_nothing_is_loaded_for_a_robot_without_gazebo() -> None:
     chunks.cache_clear()
     assert codes("") == []
     assert chunks.cache_info().currsize == 0
+
+
+def test_the_page_of_precision_has_these_counts() -> None:
+    assert (len(PLANTED), len(HEALTHY)) == (72, 46)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from os import mkfifo
 from pathlib import Path
 from struct import pack
 
@@ -251,16 +252,25 @@ def test_a_mesh_in_millimetres(
     assert linted(workspace, f'file://{absolute}" {scale} x="', select="MB714") == expected
 
 
-@pytest.mark.parametrize(("x", "expected"), [("0", []), ("2", ["MB631"])])
-def test_a_collision_away_from_a_mesh(x: str, expected: list[str], workspace: Path) -> None:
+@pytest.mark.parametrize(
+    ("xyz", "expected"), [("0 0 0", []), ("-0.15 0.25 0.1", []), ("0.15 0 0", ["MB631"])]
+)
+def test_a_collision_away_from_a_mesh(xyz: str, expected: list[str], workspace: Path) -> None:
     (workspace / "src/arm/meshes/Base.stl").write_bytes(binary_stl(300, 200, 100))
     mesh = '<mesh filename="package://arm/meshes/Base.stl" scale="0.001 0.001 0.001"/>'
     turned = '<origin rpy="0 0 1.5708"/>'
     file = workspace / "src/arm/urdf/r.urdf"
     file.write_text(
         f'<robot name="r"><link name="a"><visual>{turned}<geometry>{mesh}</geometry></visual>'
-        f'<collision><origin xyz="{x} 0 0"/><geometry><box size="0.1 0.1 0.1"/></geometry>'
+        f'<collision><origin xyz="{xyz}"/><geometry><box size="0.1 0.1 0.1"/></geometry>'
         "</collision></link></robot>"
     )
     found = lint_file(str(file), Settings(select=("MB631",), roots=(str(workspace),)))
     assert [it.code for it in found] == expected
+
+
+def test_a_pipe_is_no_mesh(workspace: Path) -> None:
+    pipe = workspace / "src/arm/meshes/pipe.stl"
+    mkfifo(pipe)
+    names = (f"file://{pipe}", "package://arm/meshes/pipe.stl")
+    assert linted(workspace, *names, select="MB714") == []

@@ -164,3 +164,7 @@ HEALTHY = {
 @pytest.mark.parametrize("oddity", HEALTHY)
 def test_a_healthy_oddity_is_left_alone(oddity: str, tmp_path: Path) -> None:
     assert codes(HEALTHY[oddity], tmp_path) == []
+
+
+def test_the_page_of_precision_has_these_counts() -> None:
+    assert (len(PLANTED), len(HEALTHY)) == (19, 15)

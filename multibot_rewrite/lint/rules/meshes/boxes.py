@@ -43,7 +43,7 @@ def box_of(subject: Subject, mesh: _Element, whole: bool = True) -> Extent | Non
 def _paths(subject: Subject) -> Mapping[str, str]:
     """Where the meshes are on the disk, by the name in the description."""
     found = {it.used.name: _on_disk(it) for it in lookups(subject) if it.found}
-    direct = (it for it in used_files(subject) if it.scheme == "file")
+    direct = (it for it in used_files(subject) if it.scheme == "file" and is_file(it.path))
     return found | {it.name: it.path for it in direct}
 
 
