@@ -171,14 +171,21 @@ def test_the_tree_hangs_below_the_world(built: dict[str, Path]) -> None:
         assert re.search(sent, lines, re.MULTILINE)
 
 
-def test_the_fleet_file_of_the_readme_works_as_printed(tmp_path: Path) -> None:
-    (fleet,) = re.findall(r"```yaml\n(layout.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+def test_the_first_fleet_file_of_its_page_works_as_printed(tmp_path: Path) -> None:
+    page = (ROOT / "docs" / "fleet-file.md").read_text()
+    fleet, *_ = re.findall(r"```yaml\n(.*?)```", page, re.DOTALL)
     (tmp_path / "fleet.yaml").write_text(fleet)
-    there = page_commands.reader(tmp_path)
-    done = there.run("multibot build fleet.yaml -o out")
+    own = ROOT / "examples" / "namespace_and_prefix"
+    for file, name in (
+        (ROOT / "fixtures" / "robots" / "rover.urdf", "rover.urdf"),
+        (own / "nav2_params.yaml", "params.yaml"),
+        (own / "nav2.rviz", "one_robot.rviz"),
+    ):
+        (tmp_path / name).write_bytes(file.read_bytes())
+    done = page_commands.reader(tmp_path).run("multibot build fleet.yaml -o out")
     assert done.returncode == 0, done.stdout
-    assert "robot2/odom" in (tmp_path / "out" / "robot2" / "nav2_params.yaml").read_text()
-    assert "/robot2/goal_pose" in (tmp_path / "out" / "nav2.rviz").read_text()
+    assert "robot2/odom" in (tmp_path / "out" / "robot2" / "params.yaml").read_text()
+    assert "/robot2/goal_pose" in (tmp_path / "out" / "one_robot.rviz").read_text()
 
 
 def test_a_build_is_up_to_date_until_a_source_changes(tmp_path: Path) -> None:

@@ -170,7 +170,7 @@ CASES: dict[str, tuple[str | bytes, tuple[str, ...], int, str]] = {
         "<<: 1\n",
         (MULTIBOT, "build", "fleet.yaml", "-o", "out"),
         0,
-        "1 robot",
+        "next: ros2 launch out/fleet.launch.py",
     ),
     "dotted-keys": (
         f"a{'.a' * 100_000} = 1\n",
