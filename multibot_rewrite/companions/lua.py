@@ -20,7 +20,6 @@ from multibot_rewrite.companions.names.undeclared import (
     undeclared_message,
 )
 from multibot_rewrite.companions.template import (
-    TAG_SLOT,
     check_no_slots,
     make_template,
 )
@@ -70,13 +69,6 @@ class LuaOption(NamedTuple):
 
     name: Token
     value: Token | None
-
-
-def frames_to_edit(text: str, file: str, context: Context) -> tuple[Finding, ...]:
-    """The frames of a Lua file to edit by hand for a robot; ``rewrite_lua`` edits them instead."""
-    problems = (_change(context, it) for it in _options(list(tokens_of(text, file))))
-    found = [_finding(text, file, it) for it in problems if it]
-    return _in_order([*found, *rewrite_lua(text, file, context).findings])
 
 
 def rewrite_lua(text: str, file: str, context: Context) -> Companion:
@@ -146,40 +138,6 @@ class _Problem(NamedTuple):
     rule: Rule
     message: str
     hint: str
-
-
-FRAME_TO_EDIT = declare(
-    "MF455",
-    "lua-frame-same-for-all",
-    WARNING,
-    what="A frame is the same for all robots, and the file is not rewritten.",
-    why="Cartographer publishes transforms between these frames. Two robots would send them under "
-    "one name to /tf, and tf2 would jump between the two.",
-    fix="Write the name that the hint has, with the robot's prefix or postfix, or give the file "
-    "to the build under lua.",
-    bad="""\
-options = {
-  tracking_frame = "base_link",
-}
-""",
-    good="""\
-options = {
-  map_frame = "map",
-}
-""",
-    line=2,
-    formats=("lua by hand", "lua"),
-)
-
-
-def _change(context: Context, option: LuaOption) -> _Problem | None:
-    there = _splice(context, option.value) if option.value else None
-    if option.value is None or there is None:
-        return None
-    new = there.new.replace(TAG_SLOT, "ROBOT")
-    message = f"{option.name.text} = {option.value.text} is the same for all robots"
-    hint = f"write {new!r}, with the robot's prefix or postfix instead of ROBOT"
-    return _Problem(option.value.at, FRAME_TO_EDIT, message, hint)
 
 
 NOT_PLAIN = declare(

@@ -122,14 +122,6 @@ def line_of(node: yaml.Node) -> int:
     return int(node.start_mark.line) + 1
 
 
-def finding_at(
-    document: YamlText, node: yaml.Node, code: str, level: str, message: str, hint: str
-) -> Finding:
-    """A finding at the place of ``node``."""
-    mark = node.start_mark
-    return Finding(code, level, message, hint, document.file, mark.line + 1, mark.column + 1)
-
-
 def found_at(document: YamlText, node: yaml.Node, rule: Rule, message: str, hint: str) -> Finding:
     """A finding of ``rule`` at the place of ``node``."""
     mark = node.start_mark

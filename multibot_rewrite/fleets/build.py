@@ -72,41 +72,45 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
     with gc_paused():
         fleet, each = with_start_pose_nodes(plan), list(split_per_robot(plan))
         configs = list(rviz_outputs(plan, each))
-        made = [
+        files, findings = _sorted_out(
             *_descriptions(plan, plan.file.installed or folder),
             *companion_files(plan),
             *rviz_files(configs),
             *bridge_outputs(plan),
             *commands_file(plan, each, rviz_commands(plan, configs)),
-        ]
-        files = sorted(it for it in made if isinstance(it, OutputFile))
-        findings = [it for it in made if isinstance(it, Finding)]
-        for robot in plan.robots:
-            findings += without_started(robot.findings, fleet.table, [robot.member.robot])
-        findings += one_device(plan.robots)
-        for found in plan.evidence.values():
-            findings += found.findings
-        findings += (*too_near(plan), *launched_prefixes(plan), *moveit_frames(plan))
-        findings += differences(plan)
+        )
+        findings += _of_robots(plan, fleet)
         texts = texts_of(files)
         gaps = gaps_of(plan, fleet, texts, findings)
         findings += (*consistency(plan, fleet, texts, findings), *gaps)
         fleet = fleet._replace(gaps=gaps, bridged=bridged_by(demanded(plan, texts)))
-        styled = list(in_style(plan, files))
-        findings += [it for it in styled if isinstance(it, Finding)]
-        kept = (it for it in styled if isinstance(it, OutputFile))
-        joined = list(cell_outputs(plan, files))
-        findings += [it for it in joined if isinstance(it, Finding)]
-        cell = (it for it in joined if isinstance(it, OutputFile))
+        kept, told = _sorted_out(
+            *in_style(plan, files), *cell_outputs(plan, files), *yarp_files(plan.robots)
+        )
         more = (*_tables(plan, fleet), *moveit_parameters(plan, files), *world_file(plan))
-        yarp = list(yarp_files(plan.robots))
-        findings += [it for it in yarp if isinstance(it, Finding)]
-        own = (it for it in yarp if isinstance(it, OutputFile))
-        files = sorted((*kept, *cell, *own, *more, *copied(plan)))
+        files = sorted((*kept, *more, *copied(plan)))
         brought = {it.name for it in fleet.bridged if PUBLISHES in it.bridge}
         files = sorted((*files, *launch_files(plan, each, configs, files, brought)))
         _check_paths_differ(files)
-        return Outputs(tuple(files), tuple(said_once(plan, findings)))
+        return Outputs(tuple(files), tuple(said_once(plan, [*findings, *told])))
+
+
+def _sorted_out(*made: OutputFile | Finding) -> tuple[list[OutputFile], list[Finding]]:
+    files = sorted(it for it in made if isinstance(it, OutputFile))
+    return files, [it for it in made if isinstance(it, Finding)]
+
+
+def _of_robots(plan: FleetPlan, fleet: Fleet) -> Iterator[Finding]:
+    """What is wrong with the robots themselves, whatever files go with them."""
+    for robot in plan.robots:
+        yield from without_started(robot.findings, fleet.table, [robot.member.robot])
+    yield from one_device(plan.robots)
+    for found in plan.evidence.values():
+        yield from found.findings
+    yield from too_near(plan)
+    yield from launched_prefixes(plan)
+    yield from moveit_frames(plan)
+    yield from differences(plan)
 
 
 def _check_paths_differ(files: Sequence[OutputFile]) -> None:

@@ -142,14 +142,7 @@ def read_fleet(
     path = read.file
     data = read.data
     release = chosen_release(distro or data.get("distro", ""), environment)
-    policy = cast(
-        Policy,
-        {
-            key: tuple(listed(data[key])) if key in LISTS else data[key]
-            for key in POLICY
-            if key in data
-        },
-    )
+    policy = _policy(data)
     naming = _naming(read, policy)
     files = tuple(_files(read))
     robots = tuple(_robot(read, naming, at, release) for at in range(len(data["robots"])))
@@ -176,6 +169,12 @@ def read_fleet(
     )
 
 
+def _policy(data: Mapping[str, Any]) -> Policy:
+    given = {key: data[key] for key in POLICY if key in data}
+    lists = {key: tuple(listed(given[key])) for key in LISTS if key in given}
+    return cast(Policy, given | lists)
+
+
 def _files(read: FleetData) -> Iterator[str]:
     """The files of a fleet that are no robot's own."""
     data = read.data
@@ -191,10 +190,6 @@ def input_files(fleet: FleetFile) -> Iterator[str]:
         yield from filter(None, (robot.description, robot.srdf, robot.simulated))
         yield from (path for paths in robot.companions.values() for path in paths)
         yield from (it.file for it in robot.launch)
-
-
-def _policy(key: str, value: Any) -> Any:
-    return tuple(listed(value)) if key in LISTS else value
 
 
 def _naming(read: FleetData, policy: Policy) -> Naming:

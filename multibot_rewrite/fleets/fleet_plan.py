@@ -63,29 +63,35 @@ def plan_fleet(
             file, said = with_own_arguments(file, naming, trust)
         read = jobs or read_jobs(file.robots, naming, file.vocabulary, trust, file.distro)
         robots = [
-            with_loaded_files(it._replace(findings=(*it.findings, *said.get(it.spec.name, ()))))
+            placed(with_loaded_files(it._replace(findings=(*it.findings, *own))), file.shape)
             for it in rewrite_robots(file.robots, read)
+            for own in [said.get(it.spec.name, ())]
         ]
-        robots = [placed(it, file.shape) for it in robots]
         file = file._replace(robots=tuple(it.spec for it in robots))
-        specs = {node_sources(it): it for it in reversed(file.robots)}
-        members = {node_sources(it.spec): it.member for it in robots}
-        evidence = {
-            key: robot_nodes(spec, file, notes[spec.name], members[key])
-            for key, spec in specs.items()
-        }
-        check_shared(file, {node.name: node for it in evidence.values() for node in it.nodes})
-        real = [it for it in robots if may_be_real(it, evidence[node_sources(it.spec)])]
-        for it in real[:1]:
-            key = node_sources(it.spec)
-            found = evidence[key]
-            evidence[key] = found._replace(findings=(*found.findings, note(it)))
-        maybe = frozenset(it.spec.namespace for it in real)
+        evidence, maybe = _evidence(file, robots, notes)
         fleet = _fleet(file, robots, naming, evidence)._replace(maybe_real=maybe)
         told = ((it.spec.namespace, it.spec.use_sim_time) for it in robots)
         clocks = tuple((name, clock) for name, clock in told if clock is not None)
         fleet = with_relays(fleet._replace(clocks=clocks), file)
         return FleetPlan(file, tuple(robots), fleet, read, evidence)
+
+
+def _evidence(
+    file: FleetFile, robots: Sequence[RewrittenRobot], notes: Mapping[str, Sequence[Finding]]
+) -> tuple[dict[NodeSources, RobotEvidence], frozenset[str]]:
+    """What the files say of the nodes of each kind of robot, and the namespaces of those robots that
+    may be real ones, which is said once."""
+    specs = {node_sources(it): it for it in reversed(file.robots)}
+    members = {node_sources(it.spec): it.member for it in robots}
+    found = {
+        key: robot_nodes(spec, file, notes[spec.name], members[key]) for key, spec in specs.items()
+    }
+    check_shared(file, {node.name: node for it in found.values() for node in it.nodes})
+    real = [it for it in robots if may_be_real(it, found[node_sources(it.spec)])]
+    for it in real[:1]:
+        key = node_sources(it.spec)
+        found[key] = found[key]._replace(findings=(*found[key].findings, note(it)))
+    return found, frozenset(it.spec.namespace for it in real)
 
 
 def _trusted(file: FleetFile) -> FleetFile:

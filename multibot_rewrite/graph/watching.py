@@ -7,7 +7,7 @@ from enum import IntEnum
 from typing import NamedTuple
 
 from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, Finding
-from multibot_rewrite.graph.check import ABSENCE, check, doubts
+from multibot_rewrite.graph.check import ABSENCE, doubts
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.snapshot import CHANGING, Snapshot
 
@@ -74,15 +74,10 @@ def judge(found: Iterable[Finding], graph: Snapshot) -> Verdict:
     return Verdict.INCONCLUSIVE if INCONCLUSIVE in levels or doubts(graph) else Verdict.PLANNED
 
 
-def next_state(plan: Expectation, graph: Snapshot, before: WatchState | None) -> WatchState:
-    """Compare the graph with the plan, and with the state before."""
-    return with_found(plan, graph, check(plan, graph), before)
-
-
 def with_found(
     plan: Expectation, graph: Snapshot, findings: Iterable[Finding], before: WatchState | None
 ) -> WatchState:
-    """The state in which these are the findings."""
+    """The state of the graph in which these are the findings, after the state before."""
     found = tuple(findings)
     old = before.findings if before else ()
     robots = tuple(progress(plan, graph))

@@ -61,16 +61,9 @@ def has_xacro(data: bytes) -> bool:
     return any(b"<" + prefix + b":" in text for prefix in _SPACE.findall(text))
 
 
-def read_source(
-    source: Source, xacro_args: Mapping[str, str], trust: bool = False
-) -> tuple[bytes, str]:
-    """The bytes of a source and the name for messages; ``trust`` lets a xacro file do anything."""
-    found = read_whole(source, xacro_args, trust)
-    return found.data, found.file
-
-
 def read_whole(source: Source, xacro_args: Mapping[str, str], trust: bool = False) -> SourceText:
-    """The same with what is known of the files that were read."""
+    """The bytes of a source with what is known of the files that were read; ``trust`` lets a xacro file
+    do anything."""
     if isinstance(source, bytes):
         return SourceText(source, "<bytes>")
     if isinstance(source, str) and source.lstrip("\ufeff \t\r\n").startswith("<"):

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from multibot_rewrite.companions.context import Context, make_context
-from multibot_rewrite.companions.lua import OWN_FILES, frames_to_edit, rewrite_lua, tokens_of
+from multibot_rewrite.companions.lua import OWN_FILES, rewrite_lua, tokens_of
 from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import make_naming
@@ -105,13 +105,6 @@ def test_findings(text: str, found: list[tuple[str, int]]) -> None:
 
 def test_what_includes_of_cartographer_hold_needs_no_word() -> None:
     assert codes("".join(f'include "{name}"\n' for name in sorted(OWN_FILES))) == []
-
-
-def test_new_frames_are_listed_for_editing_by_hand() -> None:
-    found = frames_to_edit(OPTIONS, "a.lua", context())
-    assert [(it.code, it.line) for it in found] == [("MF455", line) for line in (5, 6, 7, 11)]
-    assert "tracking_frame = 'imu_link'" in found[0].message and "ROBOT/imu_link" in found[0].hint
-    assert frames_to_edit(OPTIONS, "a.lua", context("L1")) == ()
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, WARNING
 from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
 from multibot_rewrite.graph.snapshot import Caveat, GraphFrame, Snapshot
-from multibot_rewrite.graph.watching import Verdict, next_state
+from multibot_rewrite.graph.watching import Verdict, WatchState, with_found
 from multibot_rewrite.remap.records import PUBLISHES, TOPIC
 
 TEXT, TF = "std_msgs/msg/String", "tf2_msgs/msg/TFMessage"
@@ -230,13 +230,17 @@ def test_nothing_is_called_missing_in_an_incomplete_view(case: Case) -> None:
     assert [it.level for it in partial] == expected
 
 
+def _state(plan: Expectation, graph: Snapshot, before: WatchState | None) -> WatchState:
+    return with_found(plan, graph, check(plan, graph), before)
+
+
 def test_a_frame_without_the_robots_name_may_still_come_while_a_fleet_starts() -> None:
     """Before everything was there once it does not count as the worst that was seen."""
     plan = read_plan("both")
     broken = next(it for it in CASES if (it.layout, it.code) == ("both", "MG207"))
-    first = next_state(plan, broken.broken(planned("both")), None)
+    first = _state(plan, broken.broken(planned("both")), None)
     assert {it.code for it in first.findings} == {"MG207"}
     assert (first.complete, first.worst) == (False, Verdict.PLANNED)
-    later = next_state(plan, planned("both"), first)
-    again = next_state(plan, broken.broken(planned("both")), later)
+    later = _state(plan, planned("both"), first)
+    again = _state(plan, broken.broken(planned("both")), later)
     assert (later.complete, again.worst) == (True, Verdict.WRONG)

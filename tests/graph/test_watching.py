@@ -8,8 +8,9 @@ import pytest
 from graph_cases import environment, moved, without_node
 from small_fleet import healthy, plan
 
+from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.snapshot import CHANGING, Caveat, GraphEndpoint, GraphNode, Snapshot
-from multibot_rewrite.graph.watching import Progress, Verdict, WatchState, final, next_state
+from multibot_rewrite.graph.watching import Progress, Verdict, WatchState, final, with_found
 from multibot_rewrite.remap.records import PUBLISHES, TOPIC
 
 ROBOT2 = ("/robot2/driver", "/robot2/robot_state_publisher")
@@ -42,7 +43,9 @@ def clash() -> Snapshot:
 def watched(graphs: Iterable[Snapshot]) -> list[WatchState]:
     states: list[WatchState] = []
     for graph in graphs:
-        states.append(next_state(plan(), graph, states[-1] if states else None))
+        states.append(
+            with_found(plan(), graph, check(plan(), graph), states[-1] if states else None)
+        )
     return states
 
 

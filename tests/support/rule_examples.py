@@ -11,7 +11,6 @@ import yaml
 from graph_examples import read_danger, read_example
 
 from multibot_rewrite import RewriteRefused, rewrite_all, strip
-from multibot_rewrite.companions.lua import frames_to_edit
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.grouping import grouped
 from multibot_rewrite.findings.rule import SRDF, URDF, XACRO, Rule
@@ -19,7 +18,6 @@ from multibot_rewrite.fleets.build import make_outputs
 from multibot_rewrite.fleets.fleet import make_fleet
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import plan_fleet
-from multibot_rewrite.fleets.robot_groups import group_robots
 from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.dangers.find import find_dangers
 from multibot_rewrite.lint.beside.kinds import KINDS
@@ -131,13 +129,6 @@ def companion_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
     return _fleet(rule, {"companions": {**named, key: file}}, folder)
 
 
-def lua_by_hand_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
-    """The Lua file of a fleet that does not rewrite it."""
-    _write(folder, {"robot.urdf": DESCRIPTION, "fleet.yaml": yaml.safe_dump(FLEET)})
-    (group,) = group_robots(plan_fleet(read_fleet(str(folder / "fleet.yaml"), "", {})))
-    return list(frames_to_edit(example, str(folder / "example.lua"), group.context))
-
-
 def fleet_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
     """The example is the fleet file; what it leaves out is appended."""
     return _fleet(rule, {}, folder, example)
@@ -193,7 +184,6 @@ RUNNERS: dict[str, Callable[[Rule, str, Path], list[Finding]]] = {
     **dict.fromkeys((URDF, SRDF, XACRO), lint_example),
     **dict.fromkeys(COMPANIONS, companion_example),
     **dict.fromkeys(KINDS, beside_example),
-    "lua by hand": lua_by_hand_example,
     "rewrite": rewrite_example,
     "fleet": fleet_example,
     "fleet-urdf": description_example,
