@@ -18,7 +18,6 @@ from lxml.etree import _Element
 from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.findings.finding import NOTE
 from multibot_rewrite.findings.rule import declare
-from multibot_rewrite.fleets.fleet_file import REAL
 from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.model import Edit, InputError
@@ -101,9 +100,8 @@ def yarp_files(robots: Iterable[RewrittenRobot]) -> FilesAndFindings:
 
 
 def _named(robot: RewrittenRobot, tag: str) -> Iterator[_Element]:
-    if robot.spec.simulator != REAL:
-        root = robot.member.inventory.document.root
-        yield from (it for it in root.iter(tag) if text_of(it))
+    root = robot.member.inventory.document.root
+    yield from (it for it in root.iter(tag) if text_of(it))
 
 
 def _files(robot: RewrittenRobot) -> Iterator[YarpFile]:
@@ -173,12 +171,7 @@ def _rewritten(text: str, robot: RewrittenRobot) -> str:
         if key == _ROBOT_NAME:
             return f"{indent}{key}{space}{robot.spec.name}"
         kind = next((kind for word, kind in _KINDS if word in key.lower()), "")
-        own = _WORD.sub(lambda it: _own(robot, kind, it[0]), value) if kind else value
+        own = _WORD.sub(lambda it: spell(robot.names, kind, it[0]), value) if kind else value
         return f"{indent}{key}{space}{own}"
 
     return _LINE.sub(line, text)
-
-
-def _own(robot: RewrittenRobot, kind: str, name: str) -> str:
-    known = robot.names.declared.get(kind, ())
-    return spell(robot.names, kind, name) if name in known else name

@@ -35,15 +35,16 @@ neck 0 1
 """
 
 
-def built(folder: Path, path: str, *, layout: str = "both") -> Path:
+def built(folder: Path, path: str, *, layout: str = "both", more: str = "") -> Path:
     """A model ``bot`` whose description names ``path``."""
     conf = folder / "bot" / "conf" / "inner"
     conf.mkdir(parents=True)
     (conf / "head.ini").write_text(INI)
-    (conf.parent / "name.ini").write_text("gazeboYarpPluginsRobotName botSim\n")
+    name = '[include "inner/head.ini"]\ngazeboYarpPluginsRobotName botSim\n'
+    (conf.parent / "name.ini").write_text(name)
     (folder / "bot" / "robot.urdf").write_text(URDF.format(path))
     robots = "robots: [{name: robot1}, {name: robot2, pose: {y: 2}}]\n"
-    head = f"distro: jazzy\nlayout: {layout}\naffix: prefix\ndescription: bot/robot.urdf\n"
+    head = f"distro: jazzy\nlayout: {layout}\naffix: prefix\ndescription: bot/robot.urdf\n{more}"
     (folder / "fleet.yaml").write_text(head + robots)
     assert main(["build", str(folder / "fleet.yaml"), "-o", str(folder / "out")]) == 0
     return folder / "out"
@@ -64,7 +65,8 @@ def test_each_robot_loads_its_own(tmp_path: Path) -> None:
         ]
         assert lines[-2:] == ["[neck]", "neck 0 1"]
         name = (out / robot / "conf" / "name.ini").read_text()
-        assert name == f"gazeboYarpPluginsRobotName {robot}\n"
+        # The file includes the one that includes it.
+        assert name == f'[include "inner/head.ini"]\ngazeboYarpPluginsRobotName {robot}\n'
     assert (tmp_path / "bot" / "conf" / "inner" / "head.ini").read_text() == INI
 
 
@@ -86,3 +88,8 @@ def test_one_that_is_not_followed_is_told(
     assert said.count("note: MF842") == 1
     assert f"its description loads '{path}'" in said
     assert path in (out / "robot1" / "robot.urdf").read_text()
+
+
+def test_a_real_robot_loads_none(tmp_path: Path) -> None:
+    out = built(tmp_path, "model://bot/conf/inner/head.ini", more="simulator: none\n")
+    assert not (out / "robot1" / "conf").exists()

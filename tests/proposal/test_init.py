@@ -15,6 +15,7 @@ from paths import ROBOTS, ROOT
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.proposal import trying
 from multibot_rewrite.proposal.choosing import names_of, unlike
+from multibot_rewrite.proposal.needed_values import NeededValues
 
 ARM = """\
 <robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
@@ -258,6 +259,19 @@ def test_a_default_that_is_no_value_is_chosen(tmp_path: Path) -> None:
     (tmp_path / "small.xacro").write_text(TOOL)
     (tmp_path / "r.launch.py").write_text("DeclareLaunchArgument('kind', choices=['small'])\n")
     assert made(tmp_path, tmp_path)["arguments"] == {"kind": "small"}
+
+
+@pytest.mark.parametrize(
+    ("declared", "chosen"),
+    [("", {"kind": "small"}), ("default_value='large', ", {})],
+)
+def test_only_what_every_launch_has_to_choose_is_chosen(
+    declared: str, chosen: dict[str, str], tmp_path: Path
+) -> None:
+    xacro, launch = tmp_path / "r.urdf.xacro", tmp_path / "r.launch.py"
+    xacro.write_text(TOOL.replace("/>", '><xacro:arg name="kind" default="none"/></robot>'))
+    launch.write_text(f"DeclareLaunchArgument('kind', {declared}choices=['small', 'large'])\n")
+    assert NeededValues([str(launch)]).of_mandatory(str(xacro)) == chosen
 
 
 def test_classic_is_of_humble_and_its_plugin_has_the_manager(
