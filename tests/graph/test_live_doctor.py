@@ -112,6 +112,7 @@ def test_the_first_fault_live_and_no_fault(needed: Mapping[str, str]) -> None:
     assert all(word in wrong.said for word in fault.words), wrong.said
 
 
+@pytest.mark.deep
 def test_odometry_of_two_senders_live(needed: Mapping[str, str]) -> None:
     """Which of the nodes sent a transform is nowhere said, that two did is heard."""
     fault = next(it for it in FAULTS if it.code == "MG408")

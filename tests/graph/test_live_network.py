@@ -176,6 +176,7 @@ def assert_not_seen_from_here(done: CompletedProcess[str]) -> None:
     assert ONE_MACHINE in done.stdout
 
 
+@pytest.mark.deep
 def test_a_robot_that_keeps_to_its_machine_is_not_missing(plan: Path) -> None:
     with hosts(2) as (one, two):
         settings = (one, "robot1", SUBNET), (two, "robot2", LOCALHOST)

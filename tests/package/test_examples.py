@@ -32,8 +32,8 @@ PAGES = {
     for folder in FOLDERS
     for heading, commands in page_commands.sections((folder / "README.md").read_text()).items()
 }
-# Their nodes are those of the mixed fleet, or few.
-MORE = (*SMALL[:2], *LAUNCHED)
+# Their nodes are those of the others, or few.
+MORE = (*SMALL, *LAUNCHED)
 DEEP = [it for it in PAGES if it.startswith(MORE) and page_commands.is_live(PAGES[it])]
 USUAL = [it for it in PAGES if it not in DEEP]
 
