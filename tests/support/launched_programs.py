@@ -72,6 +72,8 @@ def launched(
     (folder / "tmp").mkdir()
     env = {
         **os.environ,
+        # Commands of the package are found where its Python is, in an environment that is not active.
+        "PATH": os.pathsep.join([os.path.dirname(sys.executable), os.environ.get("PATH", "")]),
         "AMENT_PREFIX_PATH": os.pathsep.join(
             [str(folder / "install"), os.environ.get("AMENT_PREFIX_PATH", "")]
         ),
