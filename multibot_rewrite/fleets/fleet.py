@@ -103,9 +103,8 @@ def make_fleet(
     """
     known = known_nodes(nodes, release, nodl).library.nodes
     facts = facts_of(stacks, nodes, release, nodl)
-    launched = launched_robot(
-        facts, launch, known, robots[:1], load_known_nodes("", release), release
-    )
+    usual = load_known_nodes("", release)
+    launched = launched_robot(facts, launch, known, robots[:1], usual, release)
     runs = nodes_with(launched, facts, given_with(launched, ()), known)
     found = rewrite_all(
         source,
@@ -117,9 +116,8 @@ def make_fleet(
         **policy,
     )
     members = [member(it, it.data, it.robot) for it in found]
-    read = members[0].source
     wired = under_plugins(runs.nodes, launched, members[0].handed_on, release)
-    every = with_hardware(wired, read.root, read.file, known)
+    every = with_hardware(wired, members[0].source.root, members[0].source.file, known)
     fleet = assemble(members, every, make_naming(**policy), release)
     return _with_bridge_and_findings(fleet, members, runs.findings)
 

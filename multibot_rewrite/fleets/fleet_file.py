@@ -139,7 +139,6 @@ def read_fleet(
     which robots there are, where that is decided later than the file.
     """
     read = with_cell(with_robots(read_data(source), choice))
-    path = read.file
     data = read.data
     release = chosen_release(distro or data.get("distro", ""), environment)
     policy = _policy(data)
@@ -149,7 +148,7 @@ def read_fleet(
     _check_robots_differ(robots)
     _check_world(read, naming)
     return FleetFile(
-        path,
+        read.file,
         policy,
         data.get("world", ""),
         release,

@@ -17,6 +17,7 @@ from multibot_rewrite.fleets.cell_file import MOVE_GROUP
 from multibot_rewrite.fleets.cell_outputs import parameters_path
 from multibot_rewrite.fleets.fleet_file import BRINGUP, REAL
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
+from multibot_rewrite.fleets.launch_records import Component, File, RobotStarts, Start, Text
 from multibot_rewrite.fleets.node_names import NodeNames, names_of
 from multibot_rewrite.fleets.output_file import expanded_name, path_for
 from multibot_rewrite.fleets.relays import Relay, relays
@@ -38,60 +39,6 @@ STATE, JOINT_STATES, BRIDGE = "robot_state_publisher", "joint_state_publisher", 
 # Started by hand, or once for all robots.
 _BY_HAND = ("teleop_twist_keyboard", "rviz2", "ros_gz_bridge", start_poses.NODE)
 _BRIDGE = Program("ros_gz_bridge", "parameter_bridge")
-
-
-class File(NamedTuple):
-    """The path of a file of the build."""
-
-    path: str
-
-
-class Text(NamedTuple):
-    """What a file of the build holds."""
-
-    path: str
-
-
-Value = str | int | float | bool | File | Text | list[str]
-
-
-class Component(NamedTuple):
-    """A node that is loaded into the process of another."""
-
-    package: str
-    plugin: str
-    namespace: str
-    name: str
-    parameters: tuple[File | Mapping[str, Any], ...]
-    remappings: tuple[tuple[str, str], ...]
-
-
-class Start(NamedTuple):
-    """A process: its program, its node's name and namespace (empty for those of its code), and what it
-    is given. ``components`` are loaded into it."""
-
-    package: str
-    executable: str
-    namespace: str = ""
-    name: str = ""
-    parameters: tuple[File | Mapping[str, Any], ...] = ()
-    remappings: tuple[tuple[str, str], ...] = ()
-    arguments: tuple[str | File, ...] = ()
-    components: tuple[Component, ...] = ()
-
-
-class RobotStarts(NamedTuple):
-    """What one robot runs; ``files`` are its parameter files, ``spawned`` is what brings it into the
-    simulator, ``left`` are nodes that are not started, each with the reason; ``commands`` are
-    lines of a shell that run beside."""
-
-    name: str
-    about: str
-    files: tuple[str, ...]
-    starts: tuple[Start, ...]
-    spawned: tuple[Start, ...]
-    left: tuple[tuple[str, str], ...]
-    commands: tuple[str, ...] = ()
 
 
 def of_robot(one: FleetPlan, files: Collection[str], bridged: Collection[str]) -> RobotStarts:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from multibot_rewrite.fleets.launch_actions import Component, File, RobotStarts, Start, Text
+from multibot_rewrite.fleets.launch_records import Component, File, RobotStarts, Start, Text
 
 CLASSIC, GZ = "classic", "gz"
 _Files = tuple[File, ...]

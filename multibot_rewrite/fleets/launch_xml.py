@@ -10,8 +10,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 from xml.sax.saxutils import quoteattr
 
-from multibot_rewrite.fleets.launch_actions import Component, File, Start, Text
 from multibot_rewrite.fleets.launch_python import CLASSIC, GZ, FleetStarts, launch_arguments
+from multibot_rewrite.fleets.launch_records import Component, File, Start, Text
 
 _HEADLESS = "$(eval '\\'%s\\' if \\'$(var headless)\\'.lower() == \\'true\\' else \\'%s\\'')"
 _SIMULATORS: Mapping[str, tuple[str, tuple[tuple[str, str], ...]]] = {

@@ -163,22 +163,18 @@ def expect(
     """
     plugins = {node.node for node in table.nodes if node.home.written and node.robot in maybe_real}
     usual = dict.fromkeys((*_defaults(facts), *USUAL_FRAMES))
-    may_run = _MayRun(
-        _nodes(table),
-        _private_nodes(table.names),
-        _private_nodes(it for it in table.names if not it.endpoint.when),
-        {node.name for node in facts if node.when},
-    )
-    robots = []
-    for name in dict.fromkeys((*frames, *filter(None, may_run.nodes))):
+    may_run = _may_run(table, facts)
+
+    def robot(name: str) -> PlannedRobot:
         word = words.get(name, name)
         others = (*named.get(name, ()), *(spelled(naming, word, "frame", frame) for frame in usual))
         optional = plugins if name in maybe_real else frozenset[str]()
-        robot = _robot(name, may_run, optional, tuple(frames.get(name, ())), others, naming)
-        robots.append(robot._replace(frame_tag=word if word != name else ""))
+        made = _robot(name, may_run, optional, tuple(frames.get(name, ())), others, naming)
+        return made._replace(frame_tag=word if word != name else "")
+
     return Expectation(
         table.layout,
-        tuple(robots),
+        tuple(map(robot, dict.fromkeys((*frames, *filter(None, may_run.nodes))))),
         tuple(full for _, full in may_run.nodes.get("", ())),
         tuple(sorted(f"/{topic}" for topic in naming.shared_topics)),
         tuple(sorted(naming.shared_frames)),
@@ -198,6 +194,15 @@ class _MayRun(NamedTuple):
     made: Mapping[str, Sequence[str]]
     always: Mapping[str, Sequence[str]]
     conditional: Set[str]
+
+
+def _may_run(table: Table, facts: Sequence[NodeFacts]) -> _MayRun:
+    return _MayRun(
+        _nodes(table),
+        _private_nodes(table.names),
+        _private_nodes(it for it in table.names if not it.endpoint.when),
+        {node.name for node in facts if node.when},
+    )
 
 
 def _robot(

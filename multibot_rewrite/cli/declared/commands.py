@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from multibot_rewrite.cli.declared.description import LINT, POSTFIX
-from multibot_rewrite.cli.declared.fleet import BUILD, INIT, PLAN, REHEARSE, REMAP, VIEW
+from multibot_rewrite.cli.declared.fleet import BUILD, INIT, PLAN, REHEARSE, REMAP
 from multibot_rewrite.cli.declared.graph import (
     CHECK,
     CHECK_LAUNCH,
@@ -22,6 +22,7 @@ from multibot_rewrite.cli.declared.knowledge import (
     HELP,
     VOCABULARY_LOOKUP,
 )
+from multibot_rewrite.cli.declared.view import VIEW
 from multibot_rewrite.cli.options import Command
 
 PROGRAMS = (POSTFIX, LINT)

@@ -17,7 +17,6 @@ from multibot_rewrite.cli.declared.shared import (
     PICTURES,
     RESULT_OUTPUT,
     ROBOTS,
-    SAVED,
     TRUST,
     VOCABULARY,
 )
@@ -236,39 +235,6 @@ PLAN = Command(
     ),
     _TABLE_CODES,
     more=_FLEET_FILE + _BESIDE,
-    fail_on=ERROR,
-)
-VIEW = Command(
-    "view",
-    "view",
-    "%(prog)s INPUT [ROBOT...] [NAME:=VALUE...] [options]",
-    "Show the rewritten robots in 3D, in one HTML file that needs no network.",
-    (
-        Example("multibot view fleet.yaml", "all robots at their poses, in view.html"),
-        Example("multibot view rover.urdf robot1 robot2 -o rover.html"),
-        Example("multibot view fleet.yaml --snapshot graph.json", "which frames are on tf?"),
-    ),
-    (
-        OptionGroup(
-            "input",
-            (
-                argument(
-                    "input", "INPUT", "the robot's description before any rewrite, or a fleet file"
-                ),
-                argument("words", "ROBOT", "names of robots; NAME:=VALUE is for xacro", "*"),
-                ROBOTS,
-                SAVED,
-                DISTRO,
-                TRUST,
-            ),
-        ),
-        output_group(output("the page; default: view.html; - prints it", default="view.html")),
-        NAMING,
-        FINDINGS,
-        GENERAL,
-    ),
-    "0 done; 1 the description is refused; 2 wrong use or unreadable input; 4 no yourdfpy",
-    more="It needs pip install 'multibot_rewrite[view]'. Meshes are put into the page.",
     fail_on=ERROR,
 )
 REHEARSE = Command(
