@@ -159,8 +159,7 @@ def launched_by(release: str) -> Iterator[tuple[str, str, str]]:
 
 def test_programs_are_those_of_launch_files_of_some_release() -> None:
     known = {row for release in RELEASES for row in launched_by(release)}
-    # topic_tools is not among the sources.
-    for name, it in ((name, it) for name, it in PROGRAMS.items() if it.package != "topic_tools"):
+    for name, it in PROGRAMS.items():
         words = {("node", it.package, it.executable), ("lifecycle_node", it.package, it.executable)}
         assert words & known, name
         assert not it.plugin or ("component", it.package, it.plugin) in known, name

@@ -180,8 +180,9 @@ def cells() -> Iterator[Cell]:
     for release in ("jazzy", "kilted"):
         for layout, composed, slam in product(("tf-per-robot", "both"), both, both):
             yield Cell(BRINGUP, release, layout, composed, slam)
-    for layout, composed, slam in product(LAYOUTS, both, both):
-        yield Cell(OWN, "jazzy", layout, composed, slam)
+    for release in ("jazzy", "kilted", "lyrical"):
+        for layout, composed, slam in product(LAYOUTS, both, both):
+            yield Cell(OWN, release, layout, composed, slam)
     for layout in ("both", "postfix"):
         yield Cell(OWN, "jazzy", layout, True, False, "relayed: true")
 
