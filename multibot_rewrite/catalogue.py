@@ -74,6 +74,7 @@ HOMES: tuple[Home, ...] = (
             "companions.params.slashes",
             "companions.params.release_checks",
             "companions.params.bringup_style",
+            "companions.params.calibrations",
         ),
     ),
     Home(
