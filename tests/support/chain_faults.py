@@ -67,7 +67,8 @@ def chain_rows() -> tuple[Fault, ...]:
         Fault(
             "the driver reads an input of twist_mux", idle_mux,
             renamed("/robot2/cmd_vel_out", "/robot2/joy_vel", "/robot2/diff_drive"),
-            "MG315", ("/robot2/diff_drive", "/robot2/twist_mux", "joy_vel:=cmd_vel_out"), ERROR, ("MG312",),
+            "MG315", ("/robot2/diff_drive", "/robot2/twist_mux", "joy_vel:=cmd_vel_out"), ERROR,
+            ("MG312",),
         ),
         Fault(
             "a start pose to initial_pose", nav,
