@@ -173,6 +173,7 @@ HOMES: tuple[Home, ...] = (
             "graph.dangers.names",
             "graph.dangers.matching",
             "graph.dangers.commands",
+            "graph.dangers.relays",
             "graph.dangers.sharing",
         ),
         DANGERS_INTRO,
