@@ -74,6 +74,7 @@ HOMES: tuple[Home, ...] = (
             "companions.params.slashes",
             "companions.params.release_checks",
             "companions.params.bringup_style",
+            "companions.params.calibrations",
         ),
     ),
     Home(
@@ -172,6 +173,7 @@ HOMES: tuple[Home, ...] = (
             "graph.dangers.names",
             "graph.dangers.matching",
             "graph.dangers.commands",
+            "graph.dangers.relays",
             "graph.dangers.sharing",
         ),
         DANGERS_INTRO,
