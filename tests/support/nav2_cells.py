@@ -37,6 +37,7 @@ from multibot_rewrite.graph.questions import questions
 from multibot_rewrite.graph.rehearsal import with_substitutes
 from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.states import NodeState
+from multibot_rewrite.releases import has_release
 from multibot_rewrite.remap.stacks import load_nodes
 
 HERE = Path(__file__).parent
@@ -281,10 +282,11 @@ def processes(fleet: LoadedFleet, rows: list[dict[str, Any]], folder: Path) -> l
 
     def with_hosted(name: str, code: str, words: list[str], parameters: Any) -> Iterator[Any]:
         yield node(name, code, words, parameters)
+        inside = _handed_on(words) if has_release("lyrical+", fleet.plan.file.distro) else []
         for it in facts.values():
             if it.host == name:
                 above, _, own = it.name.rpartition("/")
-                yield node(it.name, own, [], [], above)
+                yield node(it.name, own, inside, [], above)
 
     made = []
     for number, row in enumerate(rows):
@@ -307,6 +309,13 @@ def processes(fleet: LoadedFleet, rows: list[dict[str, Any]], folder: Path) -> l
             nodes += with_hosted(called, kind, own, it["parameters"])
         made.append({"program": row["executable"], "words": words, "nodes": nodes})
     return made
+
+
+def _handed_on(words: list[str]) -> list[str]:
+    """What a costmap gets of its parent's arguments: nav2_costmap_2d 1.5.1 costmap_2d_ros.cpp
+    (getChildNodeOptions) replaces name and namespace."""
+    rules = (it for it in words if it != "-r" and not it.startswith(("__node:=", "__ns:=")))
+    return [word for rule in rules for word in ("-r", rule)]
 
 
 def _full(row: Mapping[str, Any]) -> str:
