@@ -113,10 +113,13 @@ def _files(subject: Subject, system: _Element) -> Iterator[tuple[_Element, str, 
         if host.node.section and host.node.section.process_wide
         for element in host.element.iterchildren("parameters")
     ]
+    starts = starts_of(subject, named) if subject.origins else {}
     for element in named:
         path = _found(subject, text_of(element))
+        # What an argument of xacro names by default may be the file of another robot.
+        own = element not in starts or is_fixed(subject, starts[element], "")
         if path.endswith(_YAML) and is_file(path):
-            yield element, path, True
+            yield element, path, own
     if not named:
         folder = os.path.dirname(os.path.abspath(subject.document.file))
         beside = [it for it in entries(folder) if _BESIDE in it and it.endswith(_YAML)]
