@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterator
 
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING, Finding
@@ -27,12 +28,6 @@ PLAYER = "rosbag2_player"
 _OWN_SUBJECT = ("/clock", "/rosout", "/parameter_events")
 
 
-def _commands(seen: Seen) -> Iterator[Ends]:
-    for (kind, name), ends in seen.names.items():
-        if kind == TOPIC and words.moves(seen.plain(name), ends.type):
-            yield ends
-
-
 @danger_rule(
     "MG310",
     "command-for-several-robots",
@@ -54,10 +49,8 @@ running: /robot2/driver subscribes /robot2/cmd_vel geometry_msgs/msg/Twist
 )
 def command_for_several_robots(seen: Seen) -> Iterator[Finding]:
     """Whether or not anybody sends at the moment."""
-    for (kind, name), ends in seen.names.items():
-        plain = seen.plain(name)
-        order = words.moves(plain, ends.type) or words.is_pose_order(plain, ends.type)
-        nodes = nodes_of(at_work(ends.subscribers)) if kind == TOPIC and order else ()
+    for name, ends in seen.orders.items():
+        nodes = nodes_of(at_work(ends.subscribers))
         robots = robots_of(seen, nodes)
         if len(robots) > 1:
             message = f"{and_then(robots)} all obey {name}: {shorten(nodes)}"
@@ -89,21 +82,21 @@ running: /robot1/controller_server publishes /robot1/cmd_vel geometry_msgs/msg/T
 )
 def command_to_nobody(seen: Seen) -> Iterator[Finding]:
     """Where the other name has no sender, its reader is the finding; what RViz offers is a note."""
-    obeyed = {
-        name: ends
-        for (kind, name), ends in seen.names.items()
-        if kind == TOPIC and ends.publishers and at_work(ends.subscribers)
-    }
-    for (kind, name), ends in seen.names.items():
-        plain = seen.plain(name)
-        order = words.moves(plain, ends.type) or words.is_pose_order(plain, ends.type)
-        if kind != TOPIC or not order or not ends.publishers or at_work(ends.subscribers):
-            continue
-        same = [it for it, other in obeyed.items() if other.type == ends.type]
+    obeyed = defaultdict(list)
+    unread = {name: it for name, it in seen.orders.items() if it.publishers and not _obeyed(it)}
+    for (kind, name), ends in seen.names.items() if unread else ():
+        if kind == TOPIC and ends.publishers and _obeyed(ends):
+            obeyed[ends.type].append(name)
+    for name, ends in unread.items():
+        same = obeyed[ends.type]
         robots = [it for it in same if seen.plain(it) == name]
         meant = next(iter(robots), "") or alike(name, same, ends.type)
         if meant:
             yield _unread(seen, ends, meant, len(robots))
+
+
+def _obeyed(ends: Ends) -> bool:
+    return bool(at_work(ends.subscribers))
 
 
 def _unread(seen: Seen, ends: Ends, meant: str, robots: int) -> Finding:
@@ -141,11 +134,11 @@ running: /robot2/teleop publishes /robot2/cmd_vel geometry_msgs/msg/Twist
 def command_from_another_robot(seen: Seen) -> Iterator[Finding]:
     """Tools as well: a joystick of one robot is not for another."""
     for (kind, name), ends in seen.names.items():
-        owner, plain = seen.robot(name), seen.plain(name)
-        order = words.moves(plain, ends.type) or words.is_pose_order(plain, ends.type)
-        senders = ends.publishers if kind == TOPIC and order else ends.clients
-        served = kind == TOPIC or ends.servers
-        for node in nodes_of(senders) if owner and served else ():
+        senders = ends.clients if kind == TOPIC or ends.servers else ()
+        if kind == TOPIC and name in seen.orders:
+            senders = ends.publishers
+        owner = seen.robot(name) if senders else ""
+        for node in nodes_of(senders) if owner else ():
             robot = seen.robot(node)
             if robot in ("", owner) or not _mistaken(seen, node, robot, ends):
                 continue
@@ -199,7 +192,9 @@ running: /robot1/behavior_server publishes /robot1/cmd_vel geometry_msgs/msg/Twi
 )
 def several_command_senders(seen: Seen) -> Iterator[Finding]:
     """The nodes of Nav2, and those of MoveIt, send one after another: they are one sender."""
-    for ends in _commands(seen):
+    for ends in seen.orders.values():
+        if len(ends.publishers) < 2 or not words.moves(seen.plain(ends.name), ends.type):
+            continue
         readers = nodes_of(at_work(ends.subscribers))
         senders = nodes_of(at_work(ends.publishers))
         teams = {words.team(node): node for node in reversed(senders)}
@@ -240,11 +235,13 @@ running: /rosbag2_player publishes /recorded/scan sensor_msgs/msg/LaserScan
 def bag_beside_a_robot(seen: Seen) -> Iterator[Finding]:
     """A bag that is played to nodes which only read is what bags are for."""
     mixed: dict[str, list[str]] = {}
-    for ends in (it for (kind, _), it in seen.names.items() if kind == TOPIC):
+    played = {end.name for end in seen.graph.endpoints if PLAYER in end.node}
+    for ends in seen.names.values() if played else ():
+        if ends.kind != TOPIC or ends.name not in played:
+            continue
         players = [it for it in nodes_of(ends.publishers) if last_word(it).startswith(PLAYER)]
         others = [it for it in nodes_of(at_work(ends.publishers)) if it not in players]
-        order = words.moves(seen.plain(ends.name), ends.type)
-        obeyed = order and bool(at_work(ends.subscribers))
+        obeyed = words.moves(seen.plain(ends.name), ends.type) and _obeyed(ends)
         if players and ends.name not in _OWN_SUBJECT and (others or obeyed):
             mixed.setdefault(players[0], []).append(ends.name)
     for player, names in mixed.items():

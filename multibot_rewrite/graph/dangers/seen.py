@@ -6,11 +6,13 @@ import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fnmatch import translate
+from functools import lru_cache
 from typing import NamedTuple
 
+from multibot_rewrite.graph.dangers import words
 from multibot_rewrite.graph.rules.tf_trees import tree_topic
 from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphFrame, Snapshot
-from multibot_rewrite.remap.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
+from multibot_rewrite.remap.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES, TOPIC
 
 # They look, or pass on what a person asks for: no part of a robot, and no sender of their own.
 VIEWERS = (
@@ -18,6 +20,8 @@ VIEWERS = (
     "launch_ros_*", "_*_daemon_*", "*_rclcpp_node", "spawner_*",
 )  # fmt: skip
 _VIEWER = re.compile("|".join(map(translate, VIEWERS)))
+# In the order of the fields of Ends.
+_PLACE = {role: at for at, role in enumerate((PUBLISHES, SUBSCRIBES, SERVES, CALLS))}
 # Names that every node has or may have, whatever it does.
 TF = "tf2_msgs/msg/TFMessage"
 EVERYBODYS = ("/rosout", "/parameter_events", "/diagnostics", "/diagnostics_agg", "/bond", "/clock")
@@ -27,8 +31,8 @@ class Owners(NamedTuple):
     """The robots of a graph, and whose each name is.
 
     ``names`` has the robot of every node, topic, service and action, ``frames`` that of every frame;
-    empty where it is of no robot or of all. ``plain_names`` and ``plain_frames`` are the same without
-    the robot's name.
+    empty where it is of no robot or of all. ``plain_names``, of topics, services and actions, and
+    ``plain_frames`` are without the robot's name.
     """
 
     robots: tuple[str, ...]
@@ -39,20 +43,18 @@ class Owners(NamedTuple):
 
 
 class Ends(NamedTuple):
-    """The endpoints of one name and kind, by what their nodes do."""
+    """The endpoints of one name and kind, by what their nodes do.
+
+    ``type`` is that of the name, where its ends agree on one; else the type of the first end.
+    """
 
     kind: str
     name: str
+    type: str
     publishers: tuple[GraphEndpoint, ...]
     subscribers: tuple[GraphEndpoint, ...]
     servers: tuple[GraphEndpoint, ...]
     clients: tuple[GraphEndpoint, ...]
-
-    @property
-    def type(self) -> str:
-        """The type of the name, where its ends agree on one; else the type of the first end."""
-        ends = (*self.publishers, *self.subscribers, *self.servers, *self.clients)
-        return ends[0].type
 
 
 class Tree(NamedTuple):
@@ -69,11 +71,17 @@ class Tree(NamedTuple):
 
 
 class Seen(NamedTuple):
-    """A graph with its robots; ``names`` has the ends of each (kind, name), without hidden ones."""
+    """A graph with its robots; ``names`` has the ends of each (kind, name), without hidden ones.
+
+    ``topics`` are those of them that are topics, but tf and what every node has; ``orders`` the topics
+    by which a robot is moved or sent somewhere.
+    """
 
     graph: Snapshot
     owners: Owners
     names: Mapping[tuple[str, str], Ends]
+    topics: tuple[Ends, ...]
+    orders: Mapping[str, Ends]
     trees: tuple[Tree, ...]
 
     def robot(self, name: str) -> str:
@@ -88,17 +96,31 @@ class Seen(NamedTuple):
 def look_at(graph: Snapshot, owners: Owners) -> Seen:
     """The look-ups that the rules share, made once."""
     names = {(it.kind, it.name): it for it in _ends(graph.endpoints)}
-    return Seen(graph, owners, names, tuple(_trees(graph, names.values())))
+    topics = [it for it in names.values() if it.kind == TOPIC]
+    plain = owners.plain_names
+    return Seen(
+        graph,
+        owners,
+        names,
+        tuple(it for it in topics if it.name not in EVERYBODYS and it.type != TF),
+        {it.name: it for it in topics if words.is_order(plain.get(it.name, it.name), it.type)},
+        tuple(_trees(graph, names.values())),
+    )
 
 
 def _ends(endpoints: Iterable[GraphEndpoint]) -> Iterator[Ends]:
-    found: dict[tuple[str, str], dict[str, list[GraphEndpoint]]] = {}
+    found: dict[tuple[str, str], tuple[list[GraphEndpoint], ...]] = {}
     for end in endpoints:
-        if "/_" not in end.name:
-            found.setdefault((end.kind, end.name), defaultdict(list))[end.role].append(end)
-    for (kind, name), by_role in found.items():
-        roles = (PUBLISHES, SUBSCRIBES, SERVES, CALLS)
-        yield Ends(kind, name, *(tuple(by_role.get(role, ())) for role in roles))
+        key = (end.kind, end.name)
+        if "/_" in end.name:
+            continue
+        sides = found.get(key)
+        if sides is None:
+            sides = found[key] = ([], [], [], [])
+        sides[_PLACE[end.role]].append(end)
+    for (kind, name), sides in found.items():
+        first = next(filter(None, sides))[0]
+        yield Ends(kind, name, first.type, *map(tuple, sides))
 
 
 def _trees(graph: Snapshot, names: Iterable[Ends]) -> Iterator[Tree]:
@@ -129,7 +151,13 @@ def nodes_of(ends: Iterable[GraphEndpoint]) -> tuple[str, ...]:
 
 def is_viewer(node: str) -> bool:
     """Does the node only look, or pass on what a person asks for?"""
-    return bool(_VIEWER.fullmatch(last_word(node)))
+    return _only_looks(last_word(node))
+
+
+# A fleet has a handful of such words, each in many nodes.
+@lru_cache(maxsize=4096)
+def _only_looks(word: str) -> bool:
+    return bool(_VIEWER.fullmatch(word))
 
 
 def at_work(ends: Iterable[GraphEndpoint]) -> list[GraphEndpoint]:
