@@ -22,6 +22,7 @@ from multibot_rewrite.graph.json_values import (
     read_list,
     read_plain,
     read_seconds,
+    read_transform,
     read_word,
     shown,
     unexpected,
@@ -93,6 +94,7 @@ class GraphFrame(NamedTuple):
     """A transform received on ``topic``; ``publishers`` are all nodes that publish there.
 
     tf messages do not say which node sent them; ``several`` is whether more than one did.
+    ``transform`` is the last one: x, y, z in metres and a quaternion x, y, z, w; empty if not known.
     """
 
     child: str
@@ -101,6 +103,7 @@ class GraphFrame(NamedTuple):
     static: bool
     publishers: tuple[str, ...]
     several: bool = False
+    transform: tuple[float, ...] = ()
 
 
 class HeardFrame(NamedTuple):
@@ -165,7 +168,7 @@ _FULL_NAMES = {
     (HeardFrame, "topic"),
     (NodeState, "node"),
 }
-_KIND_WORDS, _ROLE_WORDS = frozenset(KINDS), frozenset(ROLES)
+_TRANSFORM = (GraphFrame, "transform")
 
 
 def incomplete(snapshot: Snapshot) -> tuple[Caveat, ...]:
@@ -228,10 +231,8 @@ def _record_or_object(value: dict[str, object]) -> object:
     A large fleet has hundreds of thousands, and records with shared texts need a fifth of the memory.
     """
     made = _FREQUENT.get(tuple(value))
-    if made is None:
-        return value
     try:
-        return made(*value.values())
+        return made(*value.values()) if made else value
     # A TypeError also for what is no text: it cannot be interned.
     except (TypeError, WrongValue):
         return value
@@ -247,17 +248,14 @@ def _node(*fields: Any) -> GraphNode:
 def _endpoint(*fields: Any) -> GraphEndpoint:
     *texts, qos, process = fields
     kind, role, name, type_, hash_, node = map(intern, texts)
-    usual = kind in _KIND_WORDS and role in _ROLE_WORDS
-    if not (usual and name.startswith("/") and node.startswith("/")):
-        raise TypeError
-    if not (qos is None or type(qos) is Qos):
+    known = kind in KINDS and role in ROLES and type(qos) in (Qos, NoneType)
+    if not (known and name.startswith("/") and node.startswith("/")):
         raise TypeError
     return GraphEndpoint(kind, role, name, type_, hash_, node, qos, intern(process))
 
 
 def _qos(*fields: Any) -> Qos:
-    record = _reader(Qos)(dict(zip(Qos._fields, fields, strict=True)))
-    return _one_of_equal(cast(Qos, record))
+    return _one_of_equal(cast(Qos, _reader(Qos)(dict(zip(Qos._fields, fields, strict=True)))))
 
 
 # By their keys.
@@ -316,6 +314,8 @@ def _field_reader(kind: type, name: str, hint: Any) -> Reader:
     words = _ALLOWED_WORDS.get((kind, name))
     if words:
         return partial(read_word, words)
+    if (kind, name) == _TRANSFORM:
+        return read_transform
     return read_full_name if (kind, name) in _FULL_NAMES else _reader(hint)
 
 
