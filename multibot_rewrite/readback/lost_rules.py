@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
 from multibot_rewrite.readback.nodes import ReadEndpoint, ReadNode, full_name, itself
 from multibot_rewrite.readback.reading import Reading
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rosnames import expand
 
 

@@ -9,12 +9,12 @@ that is absolute in the code stays.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import NamedTuple
 
 from lxml import etree
 
 from multibot_rewrite.model import Claim, UsageError
 from multibot_rewrite.naming import SHARED_TOPICS, TF_TOPICS, TOPIC_KINDS
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.forms import NamePart, remap
 from multibot_rewrite.rewriters.own_defaults import filled
 from multibot_rewrite.rewriters.spelling import Rules

@@ -487,6 +487,29 @@ def test_what_is_odd_and_healthy_is_left_alone(name: str) -> None:
     assert codes(planted(*HEALTHY[name])) == set()
 
 
+SIDE = '<joint name="j" type="fixed"><parent link="hip"/><child link="thigh"/>%s</joint>'
+HIP = """<robot name="r"><link name="hip">
+<visual><geometry><sphere radius="0.05"/></geometry></visual>
+<collision><origin xyz="0 0.2 0"/><geometry><sphere radius="0.05"/></geometry></collision>
+</link><link name="thigh"><visual><geometry><box size="%s"/></geometry></visual></link>%s</robot>
+"""
+
+
+@pytest.mark.parametrize(
+    ("size", "at", "found"),
+    [
+        ("0.1 0.1 0.1", '<origin xyz="0 0.2 0"/>', set()),
+        ("0.1 0.5 0.1", "", set()),
+        ("0.1 0.1 0.1", '<origin xyz="0 0.2 0.2"/>', {"MB631"}),
+        ("0.1 0.1 0.1", "", {"MB631"}),
+    ],
+)
+def test_a_collision_where_the_next_link_is_seen_is_meant(
+    size: str, at: str, found: set[str]
+) -> None:
+    assert codes(HIP % (size, SIDE % at)) == found
+
+
 def test_so_many_defects_and_oddities_were_tried() -> None:
     assert (len(PLANTED), len(HEALTHY)) == (52, 40)
 

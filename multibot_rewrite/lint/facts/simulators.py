@@ -8,12 +8,12 @@ the plugins ``lint/schema/plugins.schema``.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
 from lxml.etree import _Element
 
 from multibot_rewrite.lint.facts.memo import memoized
 from multibot_rewrite.lint.records import Subject
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.text import text_of
 from multibot_rewrite.rewriters.tree import library_key
 

@@ -5,11 +5,10 @@ Source: urdfdom 6.0.0, class ``URDFVersion`` in urdf_parser.h; without an attrib
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from lxml.etree import _Element
 
 from multibot_rewrite.lazy import lazy_compile
+from multibot_rewrite.record import NamedTuple
 
 # What strtol reads whole.
 _NUMBER = lazy_compile(r"[ \t\r\n\v\f]*([-+]?)([0-9]{1,9})")
