@@ -7,7 +7,7 @@ the plugins ``lint/schema/plugins.schema``.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from lxml.etree import _Element
@@ -63,7 +63,7 @@ DRIVES = {
 
 
 @memoized
-def simulator_plugins(subject: Subject) -> list[_Element]:
+def simulator_plugins(subject: Subject) -> Sequence[_Element]:
     """The plugins of Gazebo: in blocks of a robot that it reads, or anywhere in an SDF."""
     if subject.document.root.tag == "sdf":
         return subject.elements.every("plugin")
