@@ -6,19 +6,13 @@ in a folder without the file.
 """
 
 import sys
+from importlib import import_module
 from pathlib import Path
 
 from setuptools import Distribution, find_packages, setup
 
-try:
-    import tomllib
-except ModuleNotFoundError:
-    try:
-        import tomli as tomllib
-    except ModuleNotFoundError:
-        sys.exit(
-            "setup.py: Python 3.10 has no tomllib; install tomli: sudo apt install python3-tomli"
-        )
+# Reads TOML: of Python 3.11 and later, or for 3.10 of pip and of Ubuntu 22.04, whose key rosdep has.
+PARSERS = "tomllib", "tomli", "toml"
 
 
 class FromHere(Distribution):
@@ -35,10 +29,20 @@ def found(*patterns):
     return sorted(str(path.relative_to(here)) for path in paths)
 
 
+def parsed(text):
+    """What a TOML file says."""
+    for name in PARSERS:
+        try:
+            return import_module(name).loads(text)
+        except ModuleNotFoundError:
+            continue
+    sys.exit("setup.py: Python 3.10 has no tomllib; install another: sudo apt install python3-toml")
+
+
 def options():
     """What colcon has to be told."""
     text = Path(__file__).resolve().with_name("pyproject.toml").read_text("utf-8")
-    toml = tomllib.loads(text)
+    toml = parsed(text)
     project, packaging = toml["project"], toml["tool"]["setuptools"]
     name = project["name"]
     groups = {"console_scripts": project["scripts"], **project["entry-points"]}

@@ -10,10 +10,10 @@ import sys
 from collections.abc import Iterator, Mapping
 from functools import cache
 from importlib import import_module
-from typing import NamedTuple
 
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.findings.rule_docs import Group, page
+from multibot_rewrite.record import NamedTuple
 
 HEAD = """\
 # Findings
@@ -74,6 +74,7 @@ HOMES: tuple[Home, ...] = (
             "companions.params.slashes",
             "companions.params.release_checks",
             "companions.params.bringup_style",
+            "companions.params.calibrations",
         ),
     ),
     Home(
@@ -172,6 +173,7 @@ HOMES: tuple[Home, ...] = (
             "graph.dangers.names",
             "graph.dangers.matching",
             "graph.dangers.commands",
+            "graph.dangers.relays",
             "graph.dangers.sharing",
         ),
         DANGERS_INTRO,

@@ -7,8 +7,9 @@ vocabulary = ["vocabulary/acme.vocab"]
 from __future__ import annotations
 
 import os
-import sys
 from collections.abc import Iterator
+from importlib import import_module
+from typing import Any
 
 from multibot_rewrite.bounded import read_bytes
 from multibot_rewrite.lazy import lazy_compile
@@ -19,7 +20,9 @@ KEYS = ("vocabulary",)
 # Parsing costs more than the rest of a start: most projects hold neither spelling of the table.
 MARKS = (b"multibot-rewrite", b"tool.multibot_rewrite")
 _PARTS = 1000
-_PLACE = lazy_compile(r" \(at line (\d+), column (\d+)\)$")
+# Of Python 3.11 and later; for 3.10 what pip installs, or Ubuntu 22.04 by the key that rosdep has.
+_PARSERS = ("tomllib", "tomli", "toml")
+_PLACE = lazy_compile(r" \((?:at )?line (\d+),? column (\d+)[^)]*\)$")
 
 
 def configured_vocabulary(near: str) -> tuple[str, ...]:
@@ -77,26 +80,42 @@ def _table(project: str, data: bytes) -> dict[str, object]:
 
 def parse(path: str, data: bytes) -> dict[str, object]:
     """A TOML file's content; raises UsageError with the place of what is wrong."""
-    if sys.version_info >= (3, 11):
-        import tomllib
-    else:
-        import tomli as tomllib
+    toml = _parser(path)
     try:
         text = data.decode()
         _check_keys(path, text)
-        found: dict[str, object] = tomllib.loads(text)
+        found: dict[str, object] = toml.loads(text)
         return found
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
         raise UsageError(f"{path}:{line}: it is not UTF-8; save it as UTF-8") from None
-    except tomllib.TOMLDecodeError as error:
+    except _broken(toml) as error:
         at = _PLACE.search(str(error))
         place = f":{at[1]}:{at[2]}" if at else ""
         reason = _PLACE.sub("", str(error))
         raise UsageError(f"{path}{place}: broken TOML, correct it: {reason}") from None
-    except (RecursionError, ValueError) as error:
-        # Brackets in thousands, a number of thousands of digits: no parser's own error.
+    except (RecursionError, ValueError, LookupError, TypeError) as error:
+        # Brackets in thousands, a number of thousands of digits: no parser's own error. That of Python
+        # 3.10 fails in more ways.
         raise UsageError(f"{path}: TOML that cannot be read: {error}") from None
+
+
+def _parser(path: str) -> Any:
+    """The module that reads TOML; raises UsageError where Python 3.10 has none."""
+    for name in _PARSERS:
+        try:
+            return import_module(name)
+        except ModuleNotFoundError:
+            continue
+    hint = "pip install tomli, or sudo apt install python3-toml"
+    raise UsageError(f"{path}: Python 3.10 reads no TOML by itself: {hint}")
+
+
+def _broken(toml: Any) -> type[Exception]:
+    """The error of a parser for a text that is no TOML."""
+    name = "TOMLDecodeError" if hasattr(toml, "TOMLDecodeError") else "TomlDecodeError"
+    error: type[Exception] = getattr(toml, name)
+    return error
 
 
 def _check_keys(path: str, text: str) -> None:

@@ -5,8 +5,7 @@ Source: ros2_control ``controller_manager.cpp`` (``determine_controller_node_opt
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import has_release
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from multibot_rewrite import pipeline
 from multibot_rewrite.arguments import checked
@@ -14,6 +14,7 @@ from multibot_rewrite.checks.verdict import not_proved
 from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.model import Change, UsageError
 from multibot_rewrite.naming import DEFAULT_LAYOUT, SHARED_FRAMES, SHARED_TOPICS, make_naming
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import release_here
 from multibot_rewrite.reports.changes import list_changes
 from multibot_rewrite.rosnames import check_robot_name

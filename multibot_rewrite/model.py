@@ -5,7 +5,9 @@ Text positions are byte offsets into the source; lines and columns count from 1.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
+
+from multibot_rewrite.record import NamedTuple
 
 if TYPE_CHECKING:
     from lxml.etree import _Element

@@ -7,10 +7,11 @@ where to insert, and what is put before and after the robot's name.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import NamedTuple, TypedDict
+from typing import TypedDict
 
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.nearest import did_you_mean_one_of
+from multibot_rewrite.record import NamedTuple
 
 PREFIX, POSTFIX, NAMESPACE = "prefix", "postfix", "namespace"
 SHARED_FRAMES = ("world", "map")

@@ -13,7 +13,9 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import wraps
 from importlib import import_module
-from typing import Any, NamedTuple, ParamSpec, TypeVar
+from typing import Any, ParamSpec, TypeVar
+
+from multibot_rewrite.record import NamedTuple
 
 try:
     from _blake2 import blake2b  # hashlib loads OpenSSL, which takes longer than a short lint

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import NamedTuple, TypeVar
+from typing import TypeVar
 
 from lxml.etree import _Element
 
 from multibot_rewrite.checks.numbers import number, value_of
+from multibot_rewrite.record import NamedTuple
 
 MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 WORLD = "world"

@@ -6,7 +6,6 @@ import re
 from collections import Counter
 from collections.abc import Collection, Iterator
 from functools import lru_cache
-from typing import NamedTuple
 
 from lxml import etree
 
@@ -14,6 +13,7 @@ from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import Site
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.text import text_of
 from multibot_rewrite.rewriters.tree import Tree, TreeNode
 from multibot_rewrite.steps.collect import Inventory

@@ -1,5 +1,4 @@
-"""How large a mesh is: the box around the corners of an STL or OBJ file. Other formats are not read:
-a Collada file has units and transforms of its own."""
+"""How large a mesh is: the box around the corners of an STL, OBJ or Collada file."""
 
 from __future__ import annotations
 
@@ -20,6 +19,7 @@ MOST_BYTES, BEGINNING = 4 * 2**20, 64 * 2**10
 _HEAD, _TRIANGLE = 84, 50
 _CORNERS = "<12x9f2x"
 _WORD = rb"[ \t]+([-+.\deE]+)"
+COLLADA = ".dae"
 _CORNER = {
     ".stl": lazy_compile(rb"\bvertex" + _WORD * 3),
     ".obj": lazy_compile(rb"(?m)^[ \t]*v" + _WORD * 3),
@@ -28,8 +28,10 @@ _CORNER = {
 
 def mesh_box(path: str, whole: bool = True) -> Extent | None:
     """The box around a mesh; not ``whole``: around its beginning. None where it cannot be told."""
-    state = file_state(path)
-    known = state and os.path.splitext(path)[1].lower() in _CORNER
+    state, kind = file_state(path), os.path.splitext(path)[1].lower()
+    # The scene, which says what is shown and where, is at the end of a Collada file.
+    whole = whole or kind == COLLADA
+    known = state and (kind == COLLADA or kind in _CORNER)
     return _box(path, state, whole) if known else None
 
 
@@ -42,6 +44,12 @@ def _box(path: str, state: tuple[int, ...], whole: bool) -> Extent | None:
         data = kept_bytes(path, MOST_BYTES if whole else BEGINNING)
     except OSError:
         return None
+    if path.lower().endswith(COLLADA):
+        from multibot_rewrite.checks.collada import (
+            collada_box,
+        )  # few descriptions are near such a file
+
+        return collada_box(data)
     return _around(_corners(path, data, size))
 
 

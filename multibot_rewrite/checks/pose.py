@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from lxml.etree import _Element
 
 from multibot_rewrite.checks.numbers import Vector, numbers, vector
@@ -13,6 +11,7 @@ from multibot_rewrite.checks.rotation import (
     matrix_of_quaternion,
     quaternion_of_rpy,
 )
+from multibot_rewrite.record import NamedTuple
 
 ZERO = "0 0 0"
 ROTATIONS = ("rpy", "quat_xyzw")

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
 
 from lxml.etree import _Element
 
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.model import Claim, Edit
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.steps.document import Document, finding
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
-from typing import NamedTuple
 
 from lxml.etree import _Element
 
@@ -12,6 +11,7 @@ from multibot_rewrite.findings.place import locate
 from multibot_rewrite.model import Claim, Site
 from multibot_rewrite.naming import CLOSED_KINDS, is_keyword
 from multibot_rewrite.nearest import Guesses
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.forms import Declared, NamePart
 from multibot_rewrite.rewriters.spelling import kind_of, must_be_declared, names_in
 from multibot_rewrite.steps.collect import Inventory

@@ -5,13 +5,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from math import inf, sqrt
-from typing import NamedTuple
 
 from lxml.etree import _Element
 
 from multibot_rewrite.checks.numbers import Vector, numbers, vector
 from multibot_rewrite.checks.pose import Pose
 from multibot_rewrite.checks.poses import STRAIGHT, dot, minus, plus, point_in, scaled
+from multibot_rewrite.record import NamedTuple
 
 
 class Extent(NamedTuple):

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator
-from typing import NamedTuple
 
 from multibot_rewrite.checks.problem import Problem, about
 from multibot_rewrite.findings.place import locate
 from multibot_rewrite.model import Claim
 from multibot_rewrite.naming import FRAME_KINDS, NO_OWN_NAMES, SEPARATORS, TOPIC_KINDS, OwnNames
 from multibot_rewrite.plural import plural
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.inserted import markers
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import NamedTuple
 
 from multibot_rewrite.cli.output import deliver, say, watched
 from multibot_rewrite.cli.parser import UNUSABLE
@@ -16,6 +15,7 @@ from multibot_rewrite.cli.walk import check_target, find_files
 from multibot_rewrite.config import configured_vocabulary
 from multibot_rewrite.model import InputError
 from multibot_rewrite.plural import plural
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import facts_of_release, release_here
 from multibot_rewrite.reports.survey import (
     Explained,

@@ -10,7 +10,7 @@ from multibot_rewrite.cli.process import DONE
 
 def run(options: argparse.Namespace) -> int:
     """Print the help of a command, or the list of commands; returns the exit code."""
-    from multibot_rewrite.cli.multibot import find_command, overview
+    from multibot_rewrite.cli.dispatch import find_command, overview
     from multibot_rewrite.cli.parser import make_parser
 
     if not options.words:

@@ -1,4 +1,4 @@
-"""``multibot``: the commands around the rewrite. Only the one that is called is imported."""
+"""``multibot``: the commands around the rewrite; ``dispatch`` runs them."""
 
 from __future__ import annotations
 
@@ -6,73 +6,18 @@ import sys
 from collections.abc import Sequence
 from functools import partial
 
-from multibot_rewrite.cli.declared.commands import COMMANDS
-from multibot_rewrite.cli.options import Command
-from multibot_rewrite.cli.output import print_bytes
-from multibot_rewrite.cli.parser import painted
-from multibot_rewrite.cli.process import DONE, PROGRAM, guarded, start
-from multibot_rewrite.cli.terminal import AUTO, is_coloured
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.nearest import did_you_mean_one_of
-from multibot_rewrite.version import __version__
-
-HELP, VERSION = ("-h", "--help"), ("-V", "--version")
+from multibot_rewrite.cli.bundle import use_bundle
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command; returns the exit code."""
+    if arguments is None:
+        use_bundle()
+    from multibot_rewrite.cli.dispatch import run  # from the bundle
+    from multibot_rewrite.cli.process import PROGRAM, guarded
+
     words = sys.argv[1:] if arguments is None else arguments
-    return guarded(PROGRAM, partial(_run, words), own_process=arguments is None)
-
-
-def _run(words: Sequence[str]) -> int:
-    if not words:
-        raise UsageError(f"no COMMAND given, use one of {', '.join(COMMANDS)}")
-    first, *others = words
-    if first in HELP:
-        print_bytes(overview(AUTO).encode())
-        return DONE
-    if first in VERSION:
-        print_bytes(f"{PROGRAM} {__version__}\n".encode())
-        return DONE
-    command = find_command(first)
-    return start(command, others, f"{PROGRAM} {command.name}")
-
-
-def find_command(word: str) -> Command:
-    """The command of that name; UsageError with the nearest one."""
-    if word in COMMANDS:
-        return COMMANDS[word]
-    if word.startswith("-"):
-        raise UsageError(f"{word}: write the command first, for example: multibot check {word}")
-    near = did_you_mean_one_of(word, COMMANDS)
-    raise UsageError(f"unknown command {word!r}; {near or 'see multibot --help'}")
-
-
-def overview(colour: str) -> str:
-    """The help of ``multibot`` itself."""
-    rows = [f"  {it.name:<14}{it.about}" for it in COMMANDS.values()]
-    text = "\n".join(
-        (
-            "usage: multibot COMMAND [options]",
-            "",
-            "Many robots in one ROS 2 system: rewrite, plan, build and check a fleet.",
-            "",
-            "examples:",
-            "  multibot init rover.urdf",
-            "  multibot build fleet.yaml -o out/",
-            "  multibot remap rover.urdf robot1 robot2 --stack nav2",
-            "  multibot explain MG102",
-            "",
-            "commands:",
-            *rows,
-            "",
-            "multibot help COMMAND shows the options of each; urdf-postfix and urdf-lint are",
-            "commands of their own.",
-            "",
-        )
-    )
-    return painted(text, is_coloured(colour, sys.stdout))
+    return guarded(PROGRAM, partial(run, words), own_process=arguments is None)
 
 
 if __name__ == "__main__":

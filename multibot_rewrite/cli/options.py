@@ -7,9 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Any
 
 from multibot_rewrite.cli import values
+from multibot_rewrite.record import NamedTuple
 
 NOTHING: Mapping[str, Any] = MappingProxyType({})
 

@@ -6,7 +6,6 @@ import argparse
 import sys
 from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
-from typing import NamedTuple
 
 from multibot_rewrite.cli.output import deliver, print_bytes, prints_colour
 from multibot_rewrite.cli.terminal import is_coloured
@@ -17,6 +16,7 @@ from multibot_rewrite.findings.grouping import grouped
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.findings.selection import Selection, fails, selected
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.record import NamedTuple
 
 TEXT = "text"
 NO_ROBOTS: Mapping[str, str] = MappingProxyType({})

@@ -8,10 +8,10 @@ import re
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import zip_longest
-from typing import NamedTuple
 
 from multibot_rewrite.cli.output import deliver, goes_to_file, prints_colour
 from multibot_rewrite.printable import in_json, one_line
+from multibot_rewrite.record import NamedTuple
 
 JSON = "json"
 # Columns with these names are set to the right.

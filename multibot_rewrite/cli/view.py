@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from multibot_rewrite.cli.output import deliver, note, say
@@ -17,12 +18,14 @@ from multibot_rewrite.fleets.manifest import hash_of, inputs_of
 from multibot_rewrite.graph.pictures.page import Framed
 from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.snapshot_file import read_snapshots
+from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.model import MultibotError, UsageError
 from multibot_rewrite.plural import plural
 from multibot_rewrite.sources.read import read_file
+from multibot_rewrite.view.heard import moved
 from multibot_rewrite.view.models import ViewUnusable
 from multibot_rewrite.view.page import title_of, to_frame, to_html
-from multibot_rewrite.view.scene import scene_of
+from multibot_rewrite.view.scene import ViewedRobot, scene_of
 
 NO_VIEW = 4
 
@@ -34,22 +37,34 @@ def run(options: argparse.Namespace) -> int:
     graph = read_snapshots(options.snapshot) if options.snapshot else None
     try:
         scene = scene_of(plan, graph)
-        page = to_html(scene, title_of(scene, plan.fleet.naming.layout.name))
+        page = to_html(scene, title_of(scene.robots, plan.fleet.naming.layout.name))
     except ViewUnusable as error:
         say(str(error), PROGRAM)
         return NO_VIEW
-    missing = {
-        it.missing for one in scene for its in one.model.links.values() for it in its if it.missing
-    }
-    for it in sorted(missing):
-        note(options, f"note: {it}, it is shown as a box")
+    for it in _notes(scene.robots):
+        note(options, f"note: {it}")
     deliver(options, page)
     size = f"{len(page) / 1e6:.1f} MB"
     note(
         options,
-        f"wrote {options.output}: {plural(len(scene), 'robot')}, {size}; open it in a browser",
+        f"wrote {options.output}: {plural(len(scene.robots), 'robot')}, {size}; open it in a browser",
     )
     return DONE
+
+
+def _notes(robots: Sequence[ViewedRobot]) -> Iterator[str]:
+    """Meshes that are not there, and what tf has elsewhere."""
+    shapes = (it for one in robots for its in one.model.links.values() for it in its)
+    for missing in sorted({it.missing for it in shapes if it.missing}):
+        yield f"{missing}, it is shown as a box"
+    for robot in robots:
+        off = list(moved(robot.model.joints, robot.transforms))
+        if off:
+            yield (
+                f"{robot.name}: on tf, fixed joints are not as in the description"
+                f" ({shorten(off, SEVERAL)}): robot_state_publisher has another description, or another"
+                " node sends them"
+            )
 
 
 def framed(options: argparse.Namespace, graph: Snapshot) -> Framed | None:
@@ -64,7 +79,7 @@ def framed(options: argparse.Namespace, graph: Snapshot) -> Framed | None:
             return None
         plan = _fleet(options, file) if file else _plan(options)
         scene = scene_of(plan, graph)
-        return to_frame(scene, title_of(scene, plan.fleet.naming.layout.name))
+        return to_frame(scene, title_of(scene.robots, plan.fleet.naming.layout.name))
     except MultibotError as error:
         note(options, f"note: the report does not show the robots in 3D: {error}")
         return None

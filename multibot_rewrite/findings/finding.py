@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from multibot_rewrite.model import Edit, MultibotError
 from multibot_rewrite.printable import one_line
+from multibot_rewrite.record import NamedTuple
 
 ERROR, WARNING, NOTE, INCONCLUSIVE = "error", "warning", "note", "inconclusive"
 # From the worst on. Inconclusive is no level to ask for: the view of the graph was incomplete.

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, TypeVar
 
 from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.record import NamedTuple
 
 URDF, SRDF, XACRO = "urdf", "srdf", "xacro"
 NOTHING: Mapping[str, Any] = {}

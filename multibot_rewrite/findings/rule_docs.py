@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
 
 from multibot_rewrite.findings.rule import Rule
+from multibot_rewrite.record import NamedTuple
 
 # What an example is written in -> how a Markdown page colours it; XML where it is not here.
 _LANGUAGES = {

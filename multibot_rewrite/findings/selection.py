@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import NamedTuple, Protocol
+from typing import Protocol
 
 from multibot_rewrite.findings.finding import LEVELS, Finding
+from multibot_rewrite.record import NamedTuple
 
 # In the place of a level: the rule is off.
 OFF = "off"

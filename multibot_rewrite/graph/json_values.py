@@ -58,6 +58,14 @@ def read_seconds(value: object) -> object:
     return float(value)
 
 
+def read_transform(value: object) -> object:
+    """Three numbers and four, or nothing."""
+    numbers = cast("tuple[float, ...]", read_list(read_seconds, value))
+    if len(numbers) not in (0, 7) or not all(map(math.isfinite, numbers)):
+        raise unexpected("7 numbers: x, y, z and a quaternion x, y, z, w", value)
+    return numbers
+
+
 def read_list(reader: Reader, value: object) -> object:
     """A list of what ``reader`` reads."""
     # An empty tuple is the default of a key that is left out.

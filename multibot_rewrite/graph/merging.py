@@ -121,7 +121,10 @@ def _frames(frames: Iterable[GraphFrame]) -> Iterator[GraphFrame]:
         publishers = {node for frame in same for node in frame.publishers}
         static = any(frame.static for frame in same)
         several = any(frame.several for frame in same)
-        yield GraphFrame(child, parent, topic, static, tuple(sorted(publishers)), several)
+        transform = next((frame.transform for frame in same if frame.transform), ())
+        yield GraphFrame(
+            child, parent, topic, static, tuple(sorted(publishers)), several, transform
+        )
 
 
 def _states(states: Iterable[NodeState]) -> Iterator[NodeState]:

@@ -22,6 +22,7 @@ from multibot_rewrite.graph.json_values import (
     read_list,
     read_plain,
     read_seconds,
+    read_transform,
     read_word,
     shown,
     unexpected,
@@ -93,6 +94,7 @@ class GraphFrame(NamedTuple):
     """A transform received on ``topic``; ``publishers`` are all nodes that publish there.
 
     tf messages do not say which node sent them; ``several`` is whether more than one did.
+    ``transform`` is the last one: x, y, z in metres and a quaternion x, y, z, w; empty if not known.
     """
 
     child: str
@@ -101,6 +103,7 @@ class GraphFrame(NamedTuple):
     static: bool
     publishers: tuple[str, ...]
     several: bool = False
+    transform: tuple[float, ...] = ()
 
 
 class HeardFrame(NamedTuple):
@@ -165,6 +168,7 @@ _FULL_NAMES = {
     (HeardFrame, "topic"),
     (NodeState, "node"),
 }
+_TRANSFORM = (GraphFrame, "transform")
 # By their keys.
 _FREQUENT: Mapping[tuple[str, ...], Any] = {
     ("name", "process"): GraphNode,
@@ -289,6 +293,8 @@ def _field_reader(kind: type, name: str, hint: Any) -> Reader:
     words = _ALLOWED_WORDS.get((kind, name))
     if words:
         return partial(read_word, words)
+    if (kind, name) == _TRANSFORM:
+        return read_transform
     return read_full_name if (kind, name) in _FULL_NAMES else _reader(hint)
 
 

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 from lxml import etree
 
 from multibot_rewrite.interfaces.expressions import last, text_of
-from multibot_rewrite.interfaces.plugin_parameters import ANY, Parameter, is_conditional
+from multibot_rewrite.interfaces.plugin_demands import is_conditional
+from multibot_rewrite.interfaces.plugin_parameters import ANY, Parameter
 from multibot_rewrite.interfaces.syntax import nodes_of
 
 if TYPE_CHECKING:

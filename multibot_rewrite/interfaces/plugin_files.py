@@ -12,7 +12,14 @@ from pathlib import Path
 from typing import NamedTuple
 
 from multibot_rewrite.interfaces.hardware_parameters import read_hardware
-from multibot_rewrite.interfaces.plugin_parameters import Parameter, parameters_of, reads_any
+from multibot_rewrite.interfaces.helper_classes import by_prefix
+from multibot_rewrite.interfaces.plugin_parameters import (
+    ALL,
+    ANY,
+    Parameter,
+    parameters_of,
+    reads_any,
+)
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.releases import RELEASES
 
@@ -37,7 +44,11 @@ OF_RELEASES = (
     (("gz-sim10", "lyrical"), ("lyrical", "rolling")),
 )
 # What else a plugin reads, by what its code mentions: a file of the checkout, or a name.
-ALSO_FILES = {"ICommsModel": "src/comms/ICommsModel.cc"}
+ALSO_FILES = {
+    "ICommsModel": "src/comms/ICommsModel.cc",
+    "TrackedVehiclePlugin::Load(": "plugins/TrackedVehiclePlugin.cc",
+    "FlashLightPlugin::Load(": "plugins/FlashLightPlugin.cc",
+}
 ALSO_NAMES = {"gazebo_ros::SensorFrameID(": "frame_name"}
 _CAMERA = "gazebo_ros_camera_utils.cpp"
 _HELPERS = "include/gazebo_plugins/gazebo_ros_utils.h"
@@ -51,6 +62,10 @@ SHARED = (
 _CATKIN = "catkin_package("
 _SYSTEM = re.compile(r"(?:gz|ign)_add_system\(\s*([\w-]+)([^)]*)\)")
 _LIBRARY = re.compile(r"add_library\(\s*([\w${}-]+)\s+(?:SHARED |MODULE )?([^)]*)\)")
+_INCLUDED = re.compile(r"^\s*#\s*include\s*[<\"]([\w./-]+)[>\"]", re.MULTILINE)
+# A library for each word of a list.
+_EACH = re.compile(r"foreach\s*\(\s*(\w+)\s+([^)]*)\)(.*?)endforeach", re.DOTALL)
+_SET = re.compile(r"\bset\s*\(\s*(\w+)\s+([^)]*)\)")
 _PROJECT = re.compile(r"^\s*project\(\s*([\w-]+)", re.MULTILINE)
 _ALIAS = re.compile(r'ADD_PLUGIN_ALIAS\(\s*[\w:]+\s*,((?:\s*"[^"]+"\s*,?)+)\)')
 _REGISTERED = re.compile(r"ADD_PLUGIN\(\s*([\w:]+::[\w:]+)")
@@ -111,7 +126,7 @@ def _releases_of(folder: Path, tag: str) -> tuple[str, ...]:
 
 def _libraries(cmake: Path) -> Iterator[tuple[str, list[Path]]]:
     """The libraries of a CMakeLists.txt with their files."""
-    text = cmake.read_text(encoding="utf-8", errors="replace")
+    text = _with_lists(cmake.read_text(encoding="utf-8", errors="replace"))
     project = (_PROJECT.findall(text) or [""])[0]
     systems = _SYSTEM.findall(text)
     for name, rest in systems:
@@ -121,6 +136,32 @@ def _libraries(cmake: Path) -> Iterator[tuple[str, list[Path]]]:
     for name, rest in _LIBRARY.findall(text):
         files = [cmake.parent / it for it in rest.split() if it.endswith(_CODE)]
         yield name.replace("${PROJECT_NAME}", project), files
+
+
+def _with_lists(text: str) -> str:
+    """A CMakeLists.txt with its lists in place of their names, and what is done for each of them."""
+    lists: dict[str, str] = {}
+    for name, words in _SET.findall(text):
+        lists[name] = words.replace(f"${{{name}}}", lists.get(name, ""))
+    for name, words in lists.items():
+        text = text.replace(f"${{{name}}}", words)
+    for name, listed, body in _EACH.findall(text):
+        text += "".join(body.replace(f"${{{name}}}", it) for it in listed.split())
+    return text
+
+
+def _headers(code: dict[str, str], folder: Path) -> dict[str, str]:
+    """The headers of its own checkout that code includes."""
+    found: dict[str, str] = {}
+    for path, text in code.items():
+        homes = [it for it in (folder / path).parents if it.is_relative_to(folder)]
+        for name in _INCLUDED.findall(text):
+            places = (home / below / name for home in homes for below in ("", "include"))
+            header = next((it for it in places if it.is_file()), None)
+            if header:
+                key = header.relative_to(folder).as_posix()
+                found[key] = header.read_text(encoding="utf-8", errors="replace")
+    return found
 
 
 def _plugin(library: str, files: list[Path], folder: Path) -> Plugin | None:
@@ -139,15 +180,25 @@ def _plugin(library: str, files: list[Path], folder: Path) -> Plugin | None:
     known = [it.replace("ignition::gazebo::", "gz::sim::") for it in classes if it]
     own = _REGISTERED.findall(whole)
     names = tuple(dict.fromkeys([library, *known, *own]))
-    parameters = parameters_of(texts.items())
-    also = tuple(
-        Parameter(name, "any", *_place(texts, word))
-        for word, name in ALSO_NAMES.items()
-        if word in whole and all(it.name != name for it in parameters)
-    )
+    headers = _headers(texts, folder)
+    headers |= _headers(headers, folder)
+    parameters = _parameters(texts, headers)
+    is_open = reads_any(whole) or any(it.name == ALL for it in parameters)
     where = files[0].parent.relative_to(folder).as_posix()
     shared = tuple(name for name, word, _, _ in SHARED if word in whole)
-    return Plugin(names, "", "", (), where, reads_any(whole), (*parameters, *also), shared)
+    rows = tuple(it for it in parameters if it.name != ALL)
+    return Plugin(names, "", "", (), where, is_open, rows, shared)
+
+
+def _parameters(code: dict[str, str], headers: dict[str, str]) -> tuple[Parameter, ...]:
+    """What a plugin reads itself, what helpers read for it, and what its code mentions."""
+    helped, prefixes = by_prefix(code, headers)
+    own = parameters_of(code.items(), headers.values())
+    known = {it.name: it for it in helped} | {it.name: it for it in own if it.name not in prefixes}
+    for word, name in ALSO_NAMES.items():
+        if any(word in text for text in code.values()):
+            known.setdefault(name, Parameter(name, ANY, *_place(code, word)))
+    return tuple(known[name] for name in sorted(known))
 
 
 def _shared(folder: Path) -> Iterator[Plugin]:

@@ -10,10 +10,11 @@ library.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, Any, NamedTuple
+from collections.abc import Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING, NamedTuple
 
 from multibot_rewrite.interfaces.expressions import text_of
+from multibot_rewrite.interfaces.plugin_demands import required_in, words_in
 from multibot_rewrite.interfaces.syntax import nodes_of
 
 if TYPE_CHECKING:
@@ -47,11 +48,6 @@ TYPES = {
     "Pose3d": "pose",
 }
 ANY = "any"
-# What is inside of these may be left out.
-CONDITIONAL = (
-    *("if_statement", "for_statement", "while_statement", "for_range_loop"),
-    *("try_statement", "lambda_expression", "conditional_expression", "switch_statement"),
-)
 # A plugin that goes through its children reads what they are called, whatever that is.
 # So does the base class of some, which is in Gazebo Classic itself.
 _GOES_THROUGH = re.compile(
@@ -62,19 +58,18 @@ _GOES_THROUGH = re.compile(
 _CHILDREN = ("GetFirstElement", "GetAnyElement")
 # What a variable holds then is a value, no element.
 _GETS = re.compile(r"(?:->|\.)(?:template )?Get<")
-_NEXT, _ALL = "GetNextElement", "/*"
+_NEXT, ALL, _ALL = "GetNextElement", "*", "/*"
 _ELEMENT = re.compile(r"_?\w*[sS]df\w*|\w*[eE]lem\w*|params?")
 _CALLED = re.compile(r"(?:template )?(\w+)(?:<(.*)>)?")
-_MISSING = re.compile(
-    r"\(\s*!\s*[\w.>-]*->\s*(?:HasElement|FindElement|GetElement)\(\"(\w+)\"\)\s*\)"
-)
-_THERE = re.compile(r"\(\s*[\w.>-]*->\s*HasElement\(\"(\w+)\"\)\s*\)")
 _LITERAL = re.compile(r'-?[\d.]+(?:e-?\d+)?[fu]?|true|false|"[^"]*"')
 _NAME = re.compile(r"[A-Za-z_][\w-]*")
 _CONSTANT = re.compile(
     r"\b(?:std::string|auto|char)\b[\s*const]*\b(\w+)(?:\[\])?\s*(?:=\s*|\{\s*|\(\s*)\"([\w-]+)\""
 )
-_COMPLAINS = re.compile(r"err\b|ERROR|throw|FATAL|ASSERT|FailedToLoad")
+_DECLARATION = re.compile(
+    r"\b(double|float|(?:unsigned )?int|bool|std::string|(?:ignition::)?math::\w+)\s+(\w+)\s*[;=]"
+)
+_INTO = re.compile(r"->GetValue\(\)->Get(?:\((\w+)\)|AsString\(\))$")
 
 
 class Parameter(NamedTuple):
@@ -97,20 +92,34 @@ class _Read(NamedTuple):
     default: str
 
 
+class _Scope(NamedTuple):
+    """Where a call is: the parameter that each variable holds, constants and types by their names."""
+
+    variables: dict[str, str]
+    constants: Mapping[str, str]
+    types: Mapping[str, str]
+
+
 def reads_any(text: str) -> bool:
     """Does the plugin go through whatever children it has?"""
     return bool(_GOES_THROUGH.search(text))
 
 
-def parameters_of(files: Iterable[tuple[str, str]]) -> tuple[Parameter, ...]:
-    """The parameters that files read, each given as its path and text; by name."""
+def parameters_of(
+    files: Iterable[tuple[str, str]], headers: Iterable[str] = ()
+) -> tuple[Parameter, ...]:
+    """The parameters that files read, each given as its path and text; by name.
+
+    One that is called ``*`` says that there are more, whose names are computed.
+    """
     found: dict[str, Parameter] = {}
     texts = tuple(files)
     own = frozenset(it for _, text in texts for it in _functions(text))
+    types = declared_types("\n".join((*headers, *(text for _, text in texts))))
     for path, text in texts:
-        needed = set(_required(text))
-        reads, variables = _reads(text, own)
-        words = _words(text, variables)
+        needed = set(required_in(text))
+        reads, variables = _reads(text, own, types)
+        words = words_in(text, variables)
         for it in reads:
             new = Parameter(
                 *(it.name, it.type, path, it.line, it.default, it.name in needed),
@@ -147,7 +156,17 @@ def _merged(old: Parameter | None, new: Parameter) -> Parameter:
     )
 
 
-def _reads(text: str, own: frozenset[str]) -> tuple[list[_Read], dict[str, str]]:
+def declared_types(text: str) -> dict[str, str]:
+    """The types of variables, where all that have the name have the same."""
+    found: dict[str, set[str]] = {}
+    for type_, name in _DECLARATION.findall(text):
+        found.setdefault(name, set()).add(type_of(type_))
+    return {name: next(iter(types)) for name, types in found.items() if len(types) == 1}
+
+
+def _reads(
+    text: str, own: frozenset[str], types: Mapping[str, str]
+) -> tuple[list[_Read], dict[str, str]]:
     """What is read, in order, and the parameter that each variable holds."""
     found: list[_Read] = []
     scopes: dict[int, dict[str, str]] = {}
@@ -158,11 +177,11 @@ def _reads(text: str, own: frozenset[str]) -> tuple[list[_Read], dict[str, str]]
         variables = scopes.setdefault(_function_of(call), {})
         elements = {key: name for key, name in variables.items() if key not in values}
         found += _given_away(call, elements, own)
-        it = _read(call, variables, constants)
+        it = _read(call, _Scope(variables, constants, types))
         if it is None:
             continue
         found.append(it)
-        variable = _assigned(call)
+        variable = "" if it.name.endswith(ALL) else _assigned(call)
         if variable:
             variables[variable] = everywhere[variable] = it.name
             (values.add if _GETS.search(text_of(call)) else values.discard)(variable)
@@ -194,25 +213,56 @@ def _given_away(call: Node, elements: dict[str, str], own: frozenset[str]) -> It
             yield _Read(name + _ALL, ANY, line, "")
 
 
-def _read(call: Node, variables: dict[str, str], constants: dict[str, str]) -> _Read | None:
+def _read(call: Node, scope: _Scope) -> _Read | None:
     function, arguments = (call.child_by_field_name(it) for it in ("function", "arguments"))
     if function is None or arguments is None:
         return None
     given = [it for it in arguments.named_children if it.type != "comment"]
-    literals = [_literal(it, constants) for it in given]
+    literals = [_literal(it, scope.constants) for it in given]
     called = _CALLED.fullmatch(text_of(function.child_by_field_name("field")))
     if called is None or called[1] not in READS:
-        return _by_helper(function, given, literals, variables)
-    type_ = _type(called[2] or "") if called[1] == "Get" else ANY
-    owner = _owner(function.child_by_field_name("argument"), variables, constants)
+        return _by_helper(function, given, literals, scope.variables)
+    type_ = type_of(called[2] or "") if called[1] == "Get" else ANY
+    owner = _owner(function.child_by_field_name("argument"), scope)
+    line = call.start_point[0] + 1
+    if given and not literals[0] and _is_computed(given[0]) and _is_element(function):
+        return _Read(_below(owner, ALL), ANY, line, "")
     if not literals or not literals[0]:
-        line = call.start_point[0] + 1
         return _Read(owner, type_, line, "") if owner and called[1] == "Get" else None
     if not _NAME.fullmatch(literals[0]):
         return None
     above = owner.rpartition("/")[0] if called[1] == _NEXT else owner
     line = given[0].start_point[0] + 1
+    type_ = _filled(call, scope.types) if type_ == ANY else type_
     return _Read(_below(above, literals[0]), type_, line, _default(given[1:]))
+
+
+def _is_computed(name: Node) -> bool:
+    """A variable that the function makes itself: what it is given is seen where it is called."""
+    above: Node | None = name
+    while above is not None and above.type not in ("function_definition", "lambda_expression"):
+        above = above.parent
+    declared = above.child_by_field_name("declarator") if above is not None else None
+    given = re.findall(r"\w+", text_of(declared).partition("(")[2])
+    return name.type == "identifier" and text_of(name) not in given
+
+
+def _is_element(function: Node) -> bool:
+    """Is an element asked, by the name of its variable?"""
+    asked = re.split(r"\.|->", text_of(function.child_by_field_name("argument")))[-1]
+    return _ELEMENT.fullmatch(asked) is not None
+
+
+def _filled(call: Node, types: Mapping[str, str]) -> str:
+    """The type of what ``GetElement("a")->GetValue()->Get(variable)`` fills in."""
+    behind = ""
+    above = call.parent
+    while above is not None and above.type in ("field_expression", "call_expression"):
+        behind, above = text_of(above), above.parent
+    into = _INTO.search(behind)
+    if into is None:
+        return ANY
+    return types.get(into[1], ANY) if into[1] else "text"
 
 
 def _default(behind: list[Node]) -> str:
@@ -236,33 +286,37 @@ def _by_helper(
         return _Read(NAMED[called[1]], "text", line, "")
     if called and called[1] in FILLS and names:
         behind = given[literals.index(names[0]) + 1 :]
-        return _Read(names[0], _type(called[2] or FILLS[called[1]]), line, _default(behind))
+        return _Read(names[0], type_of(called[2] or FILLS[called[1]]), line, _default(behind))
     owners = [text_of(it) for it in given if it.type == "identifier"]
     takes = next((it for it in owners if _ELEMENT.fullmatch(it)), "")
     above = variables.get(takes, "")
-    return _Read(_below(above, names[0]), ANY, line, "") if takes and names else None
+    if takes and not names and any(it.type == "subscript_expression" for it in given):
+        return _Read(_below(above, ALL), ANY, line, "")
+    type_ = type_of(called[2] or "") if called else ANY
+    return _Read(_below(above, names[0]), type_, line, "") if takes and names else None
 
 
-def _type(type_: str) -> str:
+def type_of(type_: str) -> str:
+    """The word of a type of C++, ``any`` for all others."""
     bare = re.sub(r"^(?:gz|ignition|ignition::gazebo)::", "", type_.strip())
     return TYPES.get(bare, ANY)
 
 
-def _literal(node: Node, constants: dict[str, str]) -> str:
+def _literal(node: Node, constants: Mapping[str, str]) -> str:
     """The text that an argument is; empty where it is none."""
     if node.type == "string_literal":
         return text_of(node)[1:-1]
     return constants.get(text_of(node), "") if node.type == "identifier" else ""
 
 
-def _owner(node: Node | None, variables: dict[str, str], constants: dict[str, str]) -> str:
+def _owner(node: Node | None, scope: _Scope) -> str:
     """The parameter whose element is asked: by a variable, or by the call before it."""
     if node is None:
         return ""
     if node.type == "call_expression":
-        it = _read(node, variables, constants)
+        it = _read(node, scope)
         return it.name if it else ""
-    return variables.get(re.split(r"\.|->", text_of(node))[-1], "")
+    return scope.variables.get(re.split(r"\.|->", text_of(node))[-1], "")
 
 
 def _assigned(call: Node) -> str:
@@ -274,45 +328,3 @@ def _assigned(call: Node) -> str:
         return ""
     left = above.child_by_field_name("declarator") or above.child_by_field_name("left")
     return re.split(r"\.|->", text_of(left))[-1].lstrip("*&") if left and left != below else ""
-
-
-def _required(text: str) -> Iterator[str]:
-    """Names whose absence ends the function: ``if (!_sdf->HasElement("x")) return;``, or in the
-    else."""
-    for it in nodes_of(text, ("if_statement",)):
-        if is_conditional(it):
-            continue
-        condition = text_of(it.child_by_field_name("condition"))
-        missing, there = _MISSING.fullmatch(condition), _THERE.fullmatch(condition)
-        if missing and _ends(it.child_by_field_name("consequence")):
-            yield missing[1]
-        elif there and _ends(it.child_by_field_name("alternative")):
-            yield there[1]
-
-
-def _ends(branch: Any) -> bool:
-    if branch is None:
-        return False
-    statements = [branch, *branch.named_children]
-    statements += [below for it in branch.named_children for below in it.named_children]
-    ends = any(it.type in ("return_statement", "throw_statement") for it in statements)
-    return ends and _COMPLAINS.search(text_of(branch)) is not None
-
-
-def is_conditional(node: Node) -> bool:
-    """Is it in a part of its function that may be left out?"""
-    above = node.parent
-    while above is not None and above.type != "function_definition":
-        if above.type in CONDITIONAL:
-            return True
-        above = above.parent
-    return False
-
-
-def _words(text: str, variables: dict[str, str]) -> dict[str, tuple[str, ...]]:
-    """The words that the value of a parameter is compared with, where there are two or more."""
-    found: dict[str, dict[str, None]] = {}
-    for variable, name in variables.items():
-        for it in re.finditer(rf'\b{re.escape(variable)} == "(\w+)"', text):
-            found.setdefault(name, {})[it[1]] = None
-    return {name: tuple(words) for name, words in found.items() if len(words) > 1}

@@ -5,11 +5,11 @@ from __future__ import annotations
 from functools import lru_cache
 from importlib import import_module
 from types import ModuleType
-from typing import NamedTuple
 
 from multibot_rewrite.findings.rule import URDF, Rule
 from multibot_rewrite.findings.selection import is_on
 from multibot_rewrite.lint.config.settings import Settings
+from multibot_rewrite.record import NamedTuple
 
 
 class Group(NamedTuple):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from itertools import count
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from lxml.etree import _Element
 
@@ -15,6 +15,7 @@ from multibot_rewrite.findings.place import locate
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.records import Subject
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.steps.document import tag_end
 
 if TYPE_CHECKING:

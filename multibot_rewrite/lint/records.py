@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from multibot_rewrite.checks.links_and_joints import Robot
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.facts.elements import Elements
 from multibot_rewrite.lint.schema.faults import Fault
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.document import Document

@@ -13,9 +13,10 @@ import select
 import signal
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import BinaryIO, Generic, NamedTuple, NoReturn, TypeVar
+from typing import BinaryIO, Generic, NoReturn, TypeVar
 
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.record import NamedTuple
 
 _Item = TypeVar("_Item")
 _Made = TypeVar("_Made")

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import NamedTuple
 
 from multibot_rewrite.naming import Naming, is_keyword
 from multibot_rewrite.readback.nodes import SERVICE, TOPIC
 from multibot_rewrite.readback.reading import FRAME, Reading, RuntimeName
+from multibot_rewrite.record import NamedTuple
 
 
 class Meeting(NamedTuple):

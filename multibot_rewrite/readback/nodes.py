@@ -7,7 +7,6 @@ plugin's name is the node's, an empty namespace is the root), gz_ros2_control_pl
 from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator
-from typing import NamedTuple
 
 from lxml.etree import _Element
 
@@ -18,6 +17,7 @@ from multibot_rewrite.readback.model_namespaces import reads_it, scoped_namespac
 from multibot_rewrite.readback.parameters import sends_odometry, switched_off, values_of
 from multibot_rewrite.readback.wired import wired_of
 from multibot_rewrite.readback.xml import child_text, text_of
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.vocabulary import VocabularySection
 from multibot_rewrite.rosnames import BoundNode, RemapRule, bind, expand, parse_remap, resolve_bound
 

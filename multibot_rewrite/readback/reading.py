@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Container, Iterator
-from typing import NamedTuple
 
 from lxml.etree import _Element
 
@@ -13,6 +12,7 @@ from multibot_rewrite.readback.own_defaults import MODEL, around, is_nested
 from multibot_rewrite.readback.parameters import default_of, values_of
 from multibot_rewrite.readback.sections import hardware_section, plugin_section, sensor_sections
 from multibot_rewrite.readback.xml import read_xml, values_at
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.vocabulary import Vocabulary, VocabularySection
 
 NODE, FRAME = "node", "frame"

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
 from lxml import etree
 
 from multibot_rewrite.controller_ways import controller_way
 from multibot_rewrite.model import Site
 from multibot_rewrite.naming import FRAME_KINDS, NAMESPACE, Naming, spelled
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.own_defaults import (
     MODEL,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import NamedTuple
 
 from multibot_rewrite.model import Claim, Site
 from multibot_rewrite.naming import (
@@ -17,6 +16,7 @@ from multibot_rewrite.naming import (
     removal,
     spelled,
 )
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.forms import FORMS, IN_FRONT, Declared, Kinds, NamePart
 from multibot_rewrite.rewriters.scopes import in_scope, scope_of
 

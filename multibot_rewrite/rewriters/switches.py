@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.text import text_at
 
 if TYPE_CHECKING:

@@ -8,10 +8,10 @@ rcl ``validate_topic_name.c`` and ``expand_topic_name.c``; rmw ``validate_full_t
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import NamedTuple
 
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.record import NamedTuple
 
 # rmw: 255 less 8 for the rt/, rq/ and rr/ ... Reply of the wire; a namespace leaves room for "/x".
 MAX_TOPIC = 247

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
-from typing import NamedTuple
 
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rosnames.names import (
     NameFault,
     check_full_name,

@@ -6,11 +6,11 @@ import os
 import stat
 from collections.abc import Callable, Iterator
 from fnmatch import fnmatchcase
-from typing import NamedTuple
 
 from multibot_rewrite.bounded import MAX_BYTES
 from multibot_rewrite.model import InputError, MultibotError
 from multibot_rewrite.outside import outside, real_path, variable
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.sources.child.frames import FENCES
 from multibot_rewrite.sources.packages import in_sources, package_folder
 

@@ -8,11 +8,12 @@ import signal
 import struct
 from array import array
 from collections.abc import Callable, Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 from multibot_rewrite.bounded import MAX_BYTES, load_json
 from multibot_rewrite.model import InputError
 from multibot_rewrite.outside import unrepeatable
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.sources.access import Access, NotAllowedError
 from multibot_rewrite.sources.child.frames import (
     CALLS,

@@ -6,10 +6,10 @@ import os
 import re
 import sys
 from collections.abc import Mapping
-from typing import NamedTuple
 
 from multibot_rewrite.findings.place import locate
 from multibot_rewrite.model import InputError
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.sources.access import BOUNDED, Access, Find, Reach, check_file
 from multibot_rewrite.sources.conversation import Failure, Result, Sources, converse
 from multibot_rewrite.sources.trace import Origins, Trace, alike

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Sequence
 from contextlib import suppress
 from functools import cache
-from typing import NamedTuple
 
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.naming import Naming, OwnNames
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.tree import Tree

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import DECLARED_KINDS, TWIN, Affix, OwnNames
+from multibot_rewrite.record import NamedTuple
 
 if TYPE_CHECKING:
     from multibot_rewrite.steps.collect import Inventory

@@ -6,11 +6,12 @@ import os
 import re
 from collections.abc import Mapping
 from contextlib import suppress
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from multibot_rewrite.bounded import MAX_BYTES, read_bytes
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import InputError, UsageError
+from multibot_rewrite.record import NamedTuple
 
 if TYPE_CHECKING:
     from multibot_rewrite.sources.known_arguments import KnownArguments

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from typing import NamedTuple
 
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.sources.conversation import Result, Sources
 from multibot_rewrite.steps.document import start_offsets
 

@@ -3,13 +3,12 @@ plugin met."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from lxml import etree
 
 from multibot_rewrite.findings.place import locate
 from multibot_rewrite.model import Claim, InputError, Site
 from multibot_rewrite.naming import DECLARED_KINDS
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.model_namespaces import below_models
 from multibot_rewrite.rewriters.spelling import ResolvedName, resolved_names, takes_empty

@@ -11,7 +11,6 @@ import re
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from operator import sub
-from typing import NamedTuple
 
 from lxml import etree
 
@@ -20,6 +19,7 @@ from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.place import locate
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import Edit, InputError
+from multibot_rewrite.record import NamedTuple
 
 # No element of a robot has fifty.
 MAX_ATTRIBUTES = 1000

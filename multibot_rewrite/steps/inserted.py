@@ -15,11 +15,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import groupby
-from typing import NamedTuple
 
 from lxml import etree
 
 from multibot_rewrite.model import Edit, InputError
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.insert import ESCAPES, Insertion, query, without
 from multibot_rewrite.rewriters.own_defaults import MODEL
 from multibot_rewrite.rewriters.spelling import ROBOT_SLOT

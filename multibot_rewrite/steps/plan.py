@@ -6,12 +6,12 @@ A plan is for any robot: its edits have a slot for the robot's name.
 from __future__ import annotations
 
 from operator import itemgetter
-from typing import NamedTuple
 
 from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.model import Claim, Edit
 from multibot_rewrite.naming import Affix, Naming
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.contact import respell_collisions
 from multibot_rewrite.rewriters.insert import Insertion, insertions
 from multibot_rewrite.rewriters.spelling import ROBOT_SLOT

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple
 
 from multibot_rewrite.naming import Affix, Naming, affix
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.contact import Respell
 from multibot_rewrite.rewriters.spelling import (
     Renamed,

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.naming import Naming
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.steps.collect import Inventory

@@ -9,13 +9,13 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Iterator
 from operator import attrgetter
-from typing import NamedTuple
 
 from lxml import etree
 
 from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.model import Claim, Edit, InputError, ProofError
 from multibot_rewrite.naming import FRAME_KINDS, Naming, affix, removal, spelled
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.contact import respell_collisions
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.insert import insertions, query, without

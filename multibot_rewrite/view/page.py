@@ -12,18 +12,19 @@ from typing import Any
 from multibot_rewrite.graph.pictures.page import Framed, source_hash
 from multibot_rewrite.plural import plural
 from multibot_rewrite.printable import one_line
+from multibot_rewrite.view.heard import DEGREES, METRES
 from multibot_rewrite.view.models import Mesh, Shape, load_mesh, three
-from multibot_rewrite.view.scene import ViewedRobot
+from multibot_rewrite.view.scene import Scene, ViewedRobot
 
 
-def to_html(robots: Sequence[ViewedRobot], title: str) -> bytes:
+def to_html(scene: Scene, title: str) -> bytes:
     """The page; raises ViewUnusable without trimesh."""
-    return to_frame(robots, title).html.encode()
+    return to_frame(scene, title).html.encode()
 
 
-def to_frame(robots: Sequence[ViewedRobot], title: str) -> Framed:
+def to_frame(scene: Scene, title: str) -> Framed:
     """The page, to be put into another; raises ViewUnusable without trimesh."""
-    library, own = three(), _asset("viewer.js")
+    library, own = three(), _asset("viewer.js") + _asset("heard.js")
     style = _asset("viewer.css")
     scripts = f"{source_hash(library)} {source_hash(own)}"
     policy = (
@@ -31,7 +32,7 @@ def to_frame(robots: Sequence[ViewedRobot], title: str) -> Framed:
         f" script-src {scripts}; base-uri 'none'; form-action 'none'"
     )
     head = escape(one_line(title))
-    data = json.dumps(_data(robots), separators=(",", ":")).replace("<", "\\u003c")
+    data = json.dumps(_data(scene), separators=(",", ":")).replace("<", "\\u003c")
     page = (
         '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f'<meta http-equiv="Content-Security-Policy" content="{policy}">\n'
@@ -51,6 +52,7 @@ _BAR = (
     '<label>right <select id="right"></select></label>'
     '<label><input type="checkbox" id="frames" checked> frames</label>'
     '<label><input type="checkbox" id="labels"> names</label>'
+    '<label id="ghosts" hidden><input type="checkbox" id="tf" checked> tf as heard</label>'
     '<button id="fit" type="button">fit</button></span>'
 )
 
@@ -64,13 +66,15 @@ def _asset(name: str) -> str:
     return files(__package__).joinpath(name).read_text("utf-8")
 
 
-def _data(robots: Sequence[ViewedRobot]) -> dict[str, Any]:
-    shapes = (it for robot in robots for its in robot.model.links.values() for it in its)
+def _data(scene: Scene) -> dict[str, Any]:
+    shapes = (it for robot in scene.robots for its in robot.model.links.values() for it in its)
     meshes = {path: load_mesh(path) for path in dict.fromkeys(it.mesh for it in shapes) if path}
     numbers = {path: at for at, path in enumerate(meshes)}
     return {
         "meshes": [_mesh(it) for it in meshes.values()],
-        "robots": [_robot(it, numbers, meshes) for it in robots],
+        "robots": [_robot(it, numbers, meshes) for it in scene.robots],
+        "trees": scene.trees,
+        "same": [METRES, DEGREES],
     }
 
 
@@ -97,7 +101,10 @@ def _robot(it: ViewedRobot, numbers: dict[str, int], meshes: dict[str, Mesh | st
         },
         "joints": [list(one) for one in it.model.joints],
         "changes": list(_changes(it.changes)),
+        "topic": it.topic,
+        "prefix": it.prefix,
         "heard": it.heard,
+        "transforms": it.transforms,
     }
 
 

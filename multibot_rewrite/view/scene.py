@@ -10,10 +10,13 @@ from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.fleets.fleet_file import Sources
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.rewritten_robots import GRAPH_KINDS, RewrittenRobot
-from multibot_rewrite.graph.snapshot import Snapshot
+from multibot_rewrite.graph.expectation import tf_topic
+from multibot_rewrite.graph.rules.tf_trees import tree_topic
+from multibot_rewrite.graph.snapshot import GraphFrame, Snapshot
 from multibot_rewrite.library import Prepared
 from multibot_rewrite.model import Change
 from multibot_rewrite.reports.changes import list_changes
+from multibot_rewrite.view.heard import HeardTree, LinkFrames, heard_trees
 from multibot_rewrite.view.models import Model, load_model
 from multibot_rewrite.view.sdf_model import declared, line_of, load_sdf
 
@@ -33,7 +36,8 @@ class Name(NamedTuple):
 class ViewedRobot(NamedTuple):
     """A robot: where it stands (x, y, z, roll, pitch, yaw), its model, its names, what was changed.
 
-    ``heard`` says of each frame whether a snapshot of the graph has it.
+    ``heard`` says of each link whether a snapshot of the graph has it on ``topic``; ``transforms`` are
+    those of links that hang there as they do here. ``prefix`` is before a link's name there.
     """
 
     name: str
@@ -42,13 +46,30 @@ class ViewedRobot(NamedTuple):
     model: Model
     names: tuple[Name, ...]
     changes: tuple[Change, ...]
+    topic: str
+    prefix: str
     heard: Mapping[str, str]
+    transforms: Mapping[str, tuple[float, ...]]
 
 
-def scene_of(plan: FleetPlan, graph: Snapshot | None = None) -> tuple[ViewedRobot, ...]:
+class Scene(NamedTuple):
+    """The robots, and what a snapshot has of tf."""
+
+    robots: tuple[ViewedRobot, ...]
+    trees: tuple[HeardTree, ...]
+
+
+def scene_of(plan: FleetPlan, graph: Snapshot | None = None) -> Scene:
     """The robots; raises as ``load_model`` and ``load_sdf``."""
     changes = {sources: _changes(plan, sources) for sources in plan.jobs}
-    return tuple(_robot(it, changes[it.spec.sources], graph) for it in plan.robots)
+    robots = tuple(_robot(it, changes[it.spec.sources], graph) for it in plan.robots)
+    if graph is None:
+        return Scene(robots, ())
+    frames = [
+        LinkFrames(it.name, it.topic, frozenset(f"{it.prefix}{link}" for link in it.model.links))
+        for it in robots
+    ]
+    return Scene(robots, heard_trees(graph.frames, frames, plan.fleet.naming.shared_frames))
 
 
 def _changes(plan: FleetPlan, sources: Sources) -> _Changes:
@@ -62,7 +83,12 @@ def _robot(it: RewrittenRobot, changes: _Changes, graph: Snapshot | None) -> Vie
     # Frames have the tag of a robot, its topics the namespace.
     made = [*_of(changes(spec.tag), False), *_of(changes(spec.namespace), True)]
     names = tuple(_names(it, model))
-    heard = _heard(model, graph, it) if graph else {}
+    prefix, topic = it.frame_prefix, tf_topic(spec.namespace, it.names.naming)
+    sent = graph.frames if graph else ()
+    edges = {one.child: one for one in sent if tree_topic(one.topic) == topic}
+    heard = _heard(model, edges, prefix) if graph else {}
+    links = [one.child for one in model.joints if heard.get(one.child) == HEARD]
+    transforms = {link: edges[f"{prefix}{link}"].transform for link in links}
     file = (
         f"{spec.description} (expanded)"
         if spec.description.endswith(".xacro")
@@ -70,7 +96,7 @@ def _robot(it: RewrittenRobot, changes: _Changes, graph: Snapshot | None) -> Vie
     )
     return ViewedRobot(
         spec.name, file, tuple(spec.pose or (0.0,) * 6), model, names,
-        tuple(sorted(made)), heard,
+        tuple(sorted(made)), topic, prefix, heard, transforms,
     )  # fmt: skip
 
 
@@ -109,17 +135,17 @@ def _before(it: RewrittenRobot, model: Model) -> dict[tuple[str, str], tuple[str
     }
 
 
-def _heard(model: Model, graph: Snapshot, it: RewrittenRobot) -> dict[str, str]:
-    """Each link: is it a frame of the graph, below the parent that it has here?"""
-    parents = {frame.child: frame.parent for frame in graph.frames}
+def _heard(model: Model, edges: Mapping[str, GraphFrame], prefix: str) -> dict[str, str]:
+    """Each link: is it a frame of the robot's tf, below the parent that it has here?"""
+    parents = {child: edge.parent for child, edge in edges.items()}
     known = {*parents, *parents.values()}
     above = {one.child: one.parent for one in model.joints}
     found = {}
     for link in model.links:
-        frame = f"{it.frame_prefix}{link}"
+        frame = f"{prefix}{link}"
         if frame not in known:
             found[link] = SILENT
-        elif link in above and parents.get(frame) != f"{it.frame_prefix}{above[link]}":
+        elif link in above and parents.get(frame) != f"{prefix}{above[link]}":
             found[link] = ELSEWHERE
         else:
             found[link] = HEARD

@@ -122,6 +122,7 @@ for (const robot of data.robots) {
   views.set(`${robot.name} before the rewrite`, [before]);
 }
 views.set("all robots", data.robots.map((it) => it.built[0]));
+const ghosts = buildHeard();
 
 const renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true });
 renderer.setPixelRatio(window.devicePixelRatio);
@@ -140,7 +141,8 @@ for (const name of views.keys()) {
   if (name !== "all robots") left.append(make("option", { textContent: name }));
   right.append(make("option", { textContent: name }));
 }
-const toggles = { frames: document.getElementById("frames"), labels: document.getElementById("labels") };
+const toggles = { frames: document.getElementById("frames"), labels: document.getElementById("labels"),
+  tf: document.getElementById("tf") };
 
 function show(name) {
   const chosen = views.get(name) || [];
@@ -150,6 +152,7 @@ function show(name) {
       for (const one of it.axes) one.visible = toggles.frames.checked;
       for (const one of it.labels) one.visible = toggles.labels.checked;
     }
+  showHeard(chosen);
 }
 
 function draw() {
@@ -181,6 +184,7 @@ function fit() {
   show(left.value);
   const box = new THREE.Box3();
   for (const it of views.get(left.value)) box.expandByObject(it.root);
+  for (const it of ghosts) if (it.parts[0].visible) box.expandByObject(it.parts[0]);
   if (box.isEmpty()) box.setFromCenterAndSize(new THREE.Vector3(), new THREE.Vector3(1, 1, 1));
   const middle = box.getCenter(new THREE.Vector3());
   const reach = Math.max(0.3, box.getSize(new THREE.Vector3()).length() / 2) / Math.min(1, camera.aspect);
@@ -216,15 +220,15 @@ function describe(robot, name, kind) {
   about.append(make("h2", { textContent: name || robot.name }));
   if (!name) {
     about.append(make("p", {}, `${robot.file}: ${robot.changes.length} values are changed.`),
-      sliders(robot), table(robot.changes));
+      asHeard(robot), sliders(robot), table(robot.changes));
     return;
   }
   const [before, line] = robot.names[name] || [name, 0];
   const list = make("dl", {}, make("dt", {}, kind), make("dd", {}, name),
     make("dt", {}, "before"), make("dd", {}, before === name ? "the same" : before));
   if (line) list.append(make("dt", {}, "declared"), make("dd", {}, `${robot.file}:${line}`));
-  const words = { heard: "is heard on tf", silent: "is not on tf", elsewhere: "is below another frame on tf" };
-  if (robot.heard[name]) list.append(make("dt", {}, "tf"), make("dd", {}, words[robot.heard[name]]));
+  const words = { heard: "is heard", silent: "is not heard", elsewhere: "is heard below another frame" };
+  if (robot.heard[name]) list.append(make("dt", {}, robot.topic), make("dd", {}, words[robot.heard[name]]));
   about.append(list);
   for (const shape of robot.links[name] || [])
     if (shape[5]) about.append(make("p", { className: "missing", textContent: `${shape[5]}: shown as a box` }));
@@ -240,6 +244,7 @@ function sliders(robot, only) {
     slider.addEventListener("input", () => {
       (robot.at ??= {})[name] = Number(slider.value);
       move(robot, name, Number(slider.value));
+      compare(robot);
       draw();
     });
     list.append(make("label", {}, make("code", { textContent: name }), slider));
@@ -267,7 +272,7 @@ function entry(robot, name, kind) {
   const it = make("button", { type: "button", textContent: kind === "joint" ? `⤷ ${name}` : name,
     className: state, id: `${robot.name} ${kind} ${name}` });
   it.addEventListener("click", () => describe(robot, name, kind));
-  return it;
+  return kind === "link" ? withApart(robot, name, it) : it;
 }
 
 for (const robot of data.robots) {
@@ -301,6 +306,7 @@ document.getElementById("fit").addEventListener("click", fit);
 controls.addEventListener("change", draw);
 window.addEventListener("resize", resize);
 (function animate() { requestAnimationFrame(animate); controls.update(); })();
+data.robots.forEach(compare);
 resize();
 fit();
 describe(data.robots[0], "", "robot");

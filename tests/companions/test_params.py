@@ -797,9 +797,9 @@ def test_the_page_has_the_table_and_codes_that_exist() -> None:
     assert codes_named <= set(catalogue.rules())
 
 
-def test_the_32_codes_are_declared_in_the_room() -> None:
+def test_the_33_codes_are_declared_in_the_room() -> None:
     assert [it for it in catalogue.rules() if it.startswith("MF1")] == [
-        f"MF{number}" for number in range(101, 133)
+        f"MF{number}" for number in range(101, 134)
     ]
 
 
@@ -835,3 +835,40 @@ force:
     alone = text.replace("child_frame_id: flange", "child_frame_id: other")
     (missing,) = (it for it in made(alone)[1] if it.code == "MF112")
     assert (missing.line, "'flange'" in missing.message) == (8, True)
+
+
+# The forms and variables that camera_info_manager.cpp reads.
+@pytest.mark.parametrize(
+    ("url", "shared"),
+    [
+        ("package://my_robot/config/camera.yaml", True),
+        ("file:///opt/camera.yaml", True),
+        ("FILE:///opt/${NAME}.yaml", True),
+        ("file://${ROS_HOME}/camera_info/front.yaml", False),
+        ("package://my_robot/config/<robot_namespace>/camera.yaml", False),
+        ("''", False),
+        ("flash:///calibration1", False),
+    ],
+)
+@pytest.mark.parametrize("node", ["usb_cam", "/**", "v4l2_camera"])
+def test_a_calibration_is_said_to_be_of_all_robots(node: str, url: str, shared: bool) -> None:
+    text = section(node, f"camera_info_url: {url}")
+    found = [(it.code, it.line) for it in made(text)[1] if it.code == "MF133"]
+    assert found == ([("MF133", 3)] if shared else [])
+    assert not [it for it in made(text, own=("robot1",))[1] if it.code == "MF133"]
+
+
+def test_the_file_of_a_calibration_stays_and_may_be_in_the_robots_folder() -> None:
+    url = "camera_info_url: package://p/<robot_namespace>/camera.yaml"
+    for node in ("usb_cam", "v4l2_camera"):
+        assert '"package://p/robot1/camera.yaml"' in made(section(node, url))[0]
+    plain = "camera_info_url: package://base_link/camera.yaml"
+    assert plain in made(section("usb_cam", plain))[0]
+
+
+def test_a_calibration_below_a_camera_is_found() -> None:
+    """spinnaker_camera_driver's node for several cameras."""
+    text = section(
+        "driver", "cam_0: {camerainfo_url: 'file:///a.yaml'}", "cam_1.camerainfo_url: ''"
+    )
+    assert [it.line for it in made(text)[1] if it.code == "MF133"] == [3]

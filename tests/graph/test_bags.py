@@ -145,6 +145,10 @@ def test_a_healthy_bag_has_no_finding(tmp_path: Path, mcap: bool) -> None:
     edges_ = {(it.parent, it.child, it.static) for it in recording.transforms}
     assert ("robot1/odom", "robot1/base_link", False) in edges_
     assert ("robot2/base_link", "robot2/laser", True) in edges_
+    # The last of 100 messages, and the one of a tf_static.
+    last = {it.child: it.transform for it in recording.transforms}
+    assert last["robot1/base_link"] == (99, 2, 3, 0, 0, 0, 1)
+    assert last["robot2/laser"] == (0, 2, 3, 0, 0, 0, 1)
 
 
 @pytest.mark.parametrize("fault", FAULTS)

@@ -139,9 +139,9 @@ def test_one_robot_may_have_plain_frames_beside_robots_that_have_not() -> None:
     assert diagnose(graph._replace(frames=tuple(frames))).findings == ()
 
 
-def test_two_controllers_that_take_turns_are_one_sender() -> None:
+def test_two_servers_that_take_turns_are_one_sender() -> None:
     graph = nav2_with_tools()
-    for node in ("behavior_server", "controller_server", "docking_server"):
+    for node in ("behavior_server", "docking_server"):
         graph = with_ends(graph, f"/robot1/{node}", (PUBLISHES, "/robot1/cmd_vel", TWIST))
     assert diagnose(graph).findings == ()
 

@@ -439,7 +439,7 @@ def test_a_shared_node_is_no_surprise_and_missed_mildly() -> None:
         "/_ros2cli_daemon_0_1234", "/launch_ros_4711", "/robot1/transform_listener_impl_55e1",
         "/transform_listener_impl_55e1", "/rqt_gui_py_node_1", "/rviz2", "/robot1/rviz",
         "/rosbag2_recorder", "/foxglove_bridge", "/ros_gz_bridge", "/robot1/_hidden", "/gazebo",
-        "/teleop_twist_keyboard", "/teleop_twist_joy_node", "/joy_node", "/robot2/nav2_container",
+        "/teleop_twist_keyboard", "/teleop_twist_joy_node", "/joy_node",
         "/robot1/bt_navigator_navigate_to_pose_rclcpp_node", "/robot1/spawner_diff_drive",
     ],
 )  # fmt: skip
@@ -447,6 +447,13 @@ def test_tools_are_no_surprise(node: str) -> None:
     assert check(plan(), with_node(healthy(), node)) == []
     twice = with_node(with_node(healthy(), node), node)
     assert check(plan(), twice) == []
+
+
+def test_a_container_is_no_surprise_but_a_second_one_gets_its_components() -> None:
+    one = with_node(healthy(), "/robot2/nav2_container")
+    assert check(plan(), one) == []
+    (found,) = check(plan(), with_node(one, "/robot2/nav2_container"))
+    assert (found.code, found.node) == ("MG301", "/robot2/nav2_container")
 
 
 def test_a_tool_may_be_the_planned_one_without_its_namespace() -> None:

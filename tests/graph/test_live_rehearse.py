@@ -68,6 +68,8 @@ def test_every_layout_holds(
     graph = from_json(file.read_bytes(), "graph")
     # The tree is on the graph, too: from the map to every link of both robots.
     assert len({frame.child for frame in graph.frames}) == (9 if layout == "L1" else 18)
+    # Nodes that stand in for others do not know where a frame is.
+    assert {frame.transform for frame in graph.frames} == {()}
     assert not [node for node in graph.nodes if not _of_a_robot(node.name)]
     # 18 of each robot: with those of route_server and of following_server, which is new in Lyrical.
     assert len(actions(graph)) == 36

@@ -85,6 +85,15 @@ def test_frames_are_joined_with_all_their_publishers() -> None:
     assert frame == GraphFrame("base", "odom", "/tf", True, ("/robot1/drive", "/robot2/drive"))
 
 
+def test_a_transform_is_kept_from_the_look_that_has_it() -> None:
+    plain = GraphFrame("base", "odom", "/tf", False, ())
+    numbers = (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)
+    looks = [look(node("robot1", ONE))._replace(frames=(it,)) for it in (plain, plain)]
+    looks[1] = looks[1]._replace(frames=(plain._replace(transform=numbers),))
+    for first, second in permutations(looks):
+        assert [it.transform for it in join(first, second).frames] == [numbers]
+
+
 def test_two_domains_are_refused() -> None:
     with pytest.raises(UsageError, match=r"a\.json is of domain 0, b\.json of 7"):
         join(look(node("robot1")), look(node("robot2"), domain=7))

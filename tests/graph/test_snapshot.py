@@ -6,6 +6,7 @@ import json
 import math
 import re
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import pytest
@@ -35,6 +36,7 @@ from multibot_rewrite.graph.live.assemble import (
 )
 from multibot_rewrite.graph.live.queries import TopicQueries, with_topic_details
 from multibot_rewrite.graph.live.request import Request, from_text, to_text
+from multibot_rewrite.graph.live.tf_subscriptions import TfSubscriptions
 from multibot_rewrite.graph.snapshot import (
     EXPECTED,
     QUIET,
@@ -76,7 +78,10 @@ SNAPSHOT = Snapshot(
         end("/robot1/amcl", "/robot1/amcl/get_state", "serves"),
         end("/robot1/amcl", "/robot1/go", "serves", kind="action"),
     ),
-    (GraphFrame("base_link/ä", "odom", "/robot1/tf", False, ("/robot1/amcl",)),),
+    (
+        GraphFrame("base_link/ä", "odom", "/robot1/tf", False, ("/robot1/amcl",)),
+        GraphFrame("imu", "base_link", "/robot1/tf", True, (), False, (0.5, -1, 2e-9, 0, 0, 0, 1)),
+    ),
     AROUND,
 )
 
@@ -175,6 +180,15 @@ NODE_OBJECT = {"name": "/a", "process": ""}
         (changed("endpoints", 0, "qos", "deadline", to=math.nan), "deadline: expected a number"),
         (changed("frames", 0, "static", to=1), "frames[0].static: expected true or false, not 1"),
         (changed("frames", 0, "publishers", 0, to=1), "frames[0].publishers[0]: expected text"),
+        (
+            changed("frames", 1, "transform", to=[1, 2, 3]),
+            "frames[1].transform: expected 7 numbers",
+        ),
+        (
+            changed("frames", 1, "transform", to=[None] * 7),
+            "frames[1].transform: expected 7 numbers",
+        ),
+        (changed("frames", 1, "transform", 3, to="x"), "transform[3]: expected a number"),
         (changed("endpoints", 0, to=NODE_OBJECT), "g.json: endpoints[0].kind: missing"),
         (changed("frames", 0, to=NODE_OBJECT), "g.json: frames[0].child: missing"),
         (changed("environment", to=NODE_OBJECT), "g.json: environment.domain: missing"),
@@ -417,6 +431,34 @@ def test_a_transform_is_there_once_a_topic_and_static_if_latched() -> None:
         GraphFrame("base_link", "odom", "/tf", False, ("/a", "/b")),
         GraphFrame("lidar", "base_link", "/tf_static", True, ()),
     ]
+
+
+def test_a_transform_has_the_numbers_that_came_last() -> None:
+    session = TfSubscriptions(
+        lambda _topic, _type, _latched, callback: calls.append(callback) or bool
+    )
+    calls: list[Any] = []
+    qos = QOS._replace(durability="VOLATILE")
+    ends = [end("/a", "/tf", type="tf2_msgs/msg/TFMessage", qos=qos)]
+    session.update(ends, False)
+    for x in (1.0, 2.123456789123):
+        calls[0](SimpleNamespace(transforms=[stamped("odom", "base", x)]), None)
+    calls[0](SimpleNamespace(transforms=[stamped("base", "imu", math.nan)]), None)
+    found = frames(session.transforms(), ends, last=session.last)
+    assert {it.child: it.transform for it in found} == {
+        "base": (2.123456789, 0, 0, 0, 0, 0, 1),
+        "imu": (),
+    }
+
+
+def stamped(parent: str, child: str, x: float) -> SimpleNamespace:
+    """A transform as a message has it."""
+    at = SimpleNamespace(x=x, y=0.0, z=0.0)
+    turn = SimpleNamespace(x=0.0, y=0.0, z=0.0, w=1.0)
+    return SimpleNamespace(
+        header=SimpleNamespace(frame_id=parent), child_frame_id=child,
+        transform=SimpleNamespace(translation=at, rotation=turn),
+    )  # fmt: skip
 
 
 def test_a_request_survives_the_command_line() -> None:

@@ -34,6 +34,12 @@ def read(line: str, before: str = "") -> list[Parameter]:
         ('ros->getParameterBoolean(on, "on", true);', "on", "boolean", "true"),
         ('ns = GetRobotNamespace(_parent, _sdf, "Laser");', "robotNamespace", "text", ""),
         ('readLimit(_sdf, "limit", limit);', "limit", "any", ""),
+        ('fill<double>(_sdf, "limit", limit);', "limit", "number", ""),
+        ('double r = 0; _sdf->GetElement("rate")->GetValue()->Get(r);', "rate", "number", ""),
+        ('_sdf->GetElement("rate")->GetValue()->Get(other);', "rate", "any", ""),
+        ('ns = _sdf->GetElement("ns")->GetValue()->GetAsString();', "ns", "text", ""),
+        ('for (auto name : names) _sdf->HasElement(name);', "*", "any", ""),
+        ('joint(names[i], _sdf);', "*", "any", ""),
         ("t = _sdf->Get<double>(temperature);", "temperature", "number", ""),
     ],
 )  # fmt: skip
@@ -63,6 +69,71 @@ LOOP = 'for (auto e = _sdf->GetElement("w"); e; e = e->GetNextElement("w")) { %s
 def test_what_is_read_of_a_block_is_below_it(line: str, names: list[str]) -> None:
     own = "void Drive::Own(Element e) {}\n"
     assert [it.name for it in read(line, own)] == names
+
+
+def test_a_name_that_a_function_is_given_is_seen_where_it_is_called() -> None:
+    own = "double fill(E _sdf, S name) { return _sdf->Get<double>(name); }\n"
+    assert [it.name for it in read('fill(_sdf, "a");', own)] == ["a"]
+
+
+def test_what_is_in_a_parameter_without_a_known_name_is_nowhere() -> None:
+    line = 'auto e = _sdf->GetElement(name); x = e->Get<int>("a");'
+    assert [it.name for it in read(f"for (auto name : names) {{ {line} }}")] == ["*", "a"]
+
+
+HELPERS = """\
+template <typename T>
+class Model_ {
+  void Load(sdf::ElementPtr _sdf, const std::string& prefix = "") {
+    Read(_sdf, prefix + "Noise");
+  }
+};
+typedef Model_<double> Model;
+typedef Model_<math::Vector3d> Model3;
+"""
+TIMER = """\
+class Timer {
+  virtual void Load(W world, sdf::ElementPtr _sdf, const std::string& _prefix = "update") {
+    double rate = 0.0;
+    _sdf->GetElement(_prefix + "Rate")->GetValue()->Get(rate);
+  }
+};
+"""
+
+
+def test_helpers_read_by_a_prefix(tmp_path: Path) -> None:
+    folder = tmp_path / "acme+gps@main"
+    headers = folder / "include/acme"
+    headers.mkdir(parents=True)
+    (headers / "model.h").write_text(HELPERS)
+    (headers / "timer.h").write_text(TIMER)
+    (headers / "gps.h").write_text(
+        "#include <acme/model.h>\n#include <acme/timer.h>\nModel3 speed;\nModel height;\nTimer timer;\n"
+    )
+    (folder / "CMakeLists.txt").write_text("add_library(gps gps.cpp)\n")
+    (folder / "gps.cpp").write_text(
+        "#include <acme/gps.h>\nvoid Gps::Load(M m, sdf::ElementPtr _sdf) {\n"
+        '  speed.Load(_sdf, "speed"); height.Load(node, _sdf); timer.Load(world, _sdf);\n}\n'
+    )
+    rows = plugin_files.to_schema([folder]).rstrip().splitlines()[-3:]
+    assert rows == [
+        "noise number include/acme/model.h:4",
+        "speedNoise vector include/acme/model.h:4",
+        "updateRate number include/acme/timer.h:4",
+    ]
+
+
+def test_a_library_for_each_word_of_a_list(tmp_path: Path) -> None:
+    folder = tmp_path / "acme+classic@main"
+    folder.mkdir()
+    (folder / "CMakeLists.txt").write_text(
+        "set (plugins\n  Wing\n)\nset (plugins ${plugins}\n  Tail\n)\n"
+        "foreach (src ${plugins})\n  add_library(${src} SHARED ${src}.cc)\nendforeach ()\n"
+    )
+    for name in ("Wing", "Tail"):
+        (folder / f"{name}.cc").write_text("void Load(M m) {}\n")
+    heads = [it for it in plugin_files.to_schema([folder]).splitlines() if it.startswith("[")]
+    assert [it.split()[0] for it in heads] == ["[Tail]", "[Wing]"]
 
 
 def test_variables_are_those_of_their_function() -> None:

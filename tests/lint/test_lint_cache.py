@@ -41,6 +41,19 @@ PARTS = f"""<robot {XACRO}><xacro:macro name="part" params="name"><link name="${
   <visual><geometry><mesh filename="package://meshes/base.stl"/></geometry></visual>
 </link></xacro:macro></robot>
 """
+# A collision that is as far from the mesh as the mesh says.
+FAR_OFF = """<robot name="far"><link name="a">
+  <visual><geometry><mesh filename="package://meshes/cover.dae"/></geometry></visual>
+  <collision><geometry><box size="1 1 1"/></geometry></collision>
+</link></robot>
+"""
+COVER = """<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema"><library_geometries>
+<geometry id="g"><mesh><source id="at"><float_array>0 0 0 1 1 1</float_array></source>
+<vertices><input semantic="POSITION" source="#at"/></vertices></mesh></geometry>
+</library_geometries><library_visual_scenes><visual_scene id="s"><node>
+<translate>0 0 0</translate><instance_geometry url="#g"/></node></visual_scene>
+</library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>
+"""
 PLAIN = '<robot name="plain"><link name="a"/></robot>\n'
 MARKED = "\ufeff" + PLAIN
 GROUP = '<robot name="plain"><group name="g"><link name="a"/></group></robot>'
@@ -54,11 +67,13 @@ FILES = {
     "arm_description/urdf/arm.srdf": GROUP,
     "meshes/package.xml": "<package><name>meshes</name></package>",
     "meshes/base.stl": "solid",
+    "meshes/cover.dae": COVER,
+    "arm_description/urdf/far.urdf": FAR_OFF,
     "extra.vocab": "",
 }
 SOURCES = tuple(
     f"arm_description/urdf/{it}"
-    for it in ("arm.urdf.xacro", "parts.xacro", "plain.urdf", "arm.srdf")
+    for it in ("arm.urdf.xacro", "parts.xacro", "plain.urdf", "arm.srdf", "far.urdf")
 )
 SETTINGS = Settings(roots=("meshes", "arm_description"), readable=("meshes", "arm_description"))
 
@@ -126,6 +141,9 @@ CHANGES: dict[str, Callable[[Path], object]] = {
     "an include": lambda at: write(at / SOURCES[1], PARTS.replace("${name}", "x_${name}")),
     "an include is gone": lambda at: (at / SOURCES[1]).unlink(),
     "a mesh is gone": lambda at: (at / "meshes/base.stl").unlink(),
+    "a mesh is elsewhere": lambda at: write(
+        at / "meshes/cover.dae", COVER.replace("0 0 0</tr", "0 0 9</tr")
+    ),
     "a mesh is renamed": lambda at: (at / "meshes/base.stl").rename(at / "meshes/Base.STL"),
     "a package is gone": lambda at: write(at / "meshes/package.xml", LOST),
     "what load_yaml reads": lambda at: write(at / "arm_description/urdf/sizes.yaml", "hand: 2\n"),

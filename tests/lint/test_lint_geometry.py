@@ -5,6 +5,8 @@ What a defect breaks was taken from its consumer: gz-sim's DiffDrive, REP 103, g
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from pathlib import Path
 from typing import NamedTuple
 
 import pytest
@@ -287,6 +289,17 @@ def codes(robot: str) -> set[str]:
     return {it.code for it in lint_data("robot.urdf", robot.encode(), GEOMETRY)}
 
 
+def linted(robot: str, _folder: Path) -> set[str]:
+    """What all rules find in it."""
+    return {it.code for it in lint_data("robot.urdf", robot.encode(), Settings())}
+
+
+def defects() -> Iterator[tuple[str, str, str]]:
+    """Each planted defect, the robot without it, and its code."""
+    for robot, changes, code in PLANTED.values():
+        yield planted(robot, changes), robot, code
+
+
 @pytest.mark.parametrize("name", PLANTED)
 def test_a_planted_defect_is_found(name: str) -> None:
     robot, changes, code = PLANTED[name]
@@ -487,8 +500,27 @@ def test_what_is_odd_and_healthy_is_left_alone(name: str) -> None:
     assert codes(planted(*HEALTHY[name])) == set()
 
 
-def test_so_many_defects_and_oddities_were_tried() -> None:
-    assert (len(PLANTED), len(HEALTHY)) == (52, 40)
+SIDE = '<joint name="j" type="fixed"><parent link="hip"/><child link="thigh"/>%s</joint>'
+HIP = """<robot name="r"><link name="hip">
+<visual><geometry><sphere radius="0.05"/></geometry></visual>
+<collision><origin xyz="0 0.2 0"/><geometry><sphere radius="0.05"/></geometry></collision>
+</link><link name="thigh"><visual><geometry><box size="%s"/></geometry></visual></link>%s</robot>
+"""
+
+
+@pytest.mark.parametrize(
+    ("size", "at", "found"),
+    [
+        ("0.1 0.1 0.1", '<origin xyz="0 0.2 0"/>', set()),
+        ("0.1 0.5 0.1", "", set()),
+        ("0.1 0.1 0.1", '<origin xyz="0 0.2 0.2"/>', {"MB631"}),
+        ("0.1 0.1 0.1", "", {"MB631"}),
+    ],
+)
+def test_a_collision_where_the_next_link_is_seen_is_meant(
+    size: str, at: str, found: set[str]
+) -> None:
+    assert codes(HIP % (size, SIDE % at)) == found
 
 
 def test_the_message_has_the_value_that_would_pass() -> None:

@@ -40,7 +40,9 @@ def test_a_lint_of_a_urdf_loads_nothing_for_other_files(tmp_path: Path) -> None:
     file.write_bytes(MESHES)
     program = (
         "import sys; from multibot_rewrite.cli.urdf_lint import main; "
-        "main([sys.argv[1], '--no-cache']); print(*sys.modules)"
+        "main([sys.argv[1], '--no-cache']); print(*sys.modules); import typing; "
+        "print(*(it for it in sys.modules if it.startswith('multibot') and "
+        "vars(sys.modules[it]).get('NamedTuple') is typing.NamedTuple))"
     )
     command = [sys.executable, "-c", program, str(file)]
     run = subprocess.run(command, capture_output=True, text=True, check=True, cwd=tmp_path)
@@ -48,8 +50,11 @@ def test_a_lint_of_a_urdf_loads_nothing_for_other_files(tmp_path: Path) -> None:
         *("cli.declared.fleet", "lint.registry", "lint.rules.srdf", "lint.config.directives"),
         *("sources.access", "rewriters.patterns", "remap.bridged_topics"),
     )
-    loaded = set(run.stdout.split())
+    *_, modules, slow = run.stdout.split("\n")[:-1]
+    loaded = set(modules.split())
     assert "multibot_rewrite.lint.rules.meshes" in loaded
+    # Theirs are of multibot_rewrite.record.
+    assert slow == ""
     assert loaded & {"tomllib", *(f"multibot_rewrite.{it}" for it in others)} == set()
 
 

@@ -213,6 +213,114 @@ def test_what_cannot_be_measured_has_no_box(tmp_path: Path, name: str, data: byt
     assert mesh_box(str(tmp_path / name)) is None
 
 
+CUBE = """<geometry id="cube"><mesh>
+<source id="at"><float_array count="9">0 0 0 1 2 3 -1 0 0</float_array>
+<technique_common><accessor source="#array" stride="3"/></technique_common></source>
+<source id="normals"><float_array count="3">90 90 90</float_array></source>
+<vertices id="all"><input semantic="POSITION" source="#at"/></vertices></mesh></geometry>"""
+SHOWN = '<instance_geometry url="#cube"/>'
+NODES = f'<library_nodes><node id="far"><scale>2 2 2</scale>{SHOWN}</node></library_nodes>'
+
+
+def collada(scene: str = SHOWN, unit: str = "1", beside: str = "", above: str = "") -> bytes:
+    return f"""{above}<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit name="u" meter="{unit}"/><up_axis>Y_UP</up_axis></asset>
+<library_geometries>{CUBE}</library_geometries>{beside}
+<library_visual_scenes><visual_scene id="s"><node id="n">{scene}</node></visual_scene>
+</library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>""".encode()
+
+
+@pytest.mark.parametrize(
+    ("data", "low", "high"),
+    [
+        (collada(), (-1, 0, 0), (1, 2, 3)),
+        (collada(unit="0.001"), (-0.001, 0, 0), (0.001, 0.002, 0.003)),
+        (collada(f"<translate>1 0 0</translate>{SHOWN}", "0.1"), (0, 0, 0), (0.2, 0.2, 0.3)),
+        (collada(f"<scale>2 -1 1</scale>{SHOWN}"), (-2, -2, 0), (2, 0, 3)),
+        (collada(f"<rotate>0 0 2 90</rotate>{SHOWN}"), (-2, -1, 0), (0, 1, 3)),
+        (collada(f"<rotate>0 0 1 45</rotate>{SHOWN}"), (-0.7071, -0.7071, 0), (0, 2.1213, 3)),
+        (
+            collada(f"<translate>10 0 0</translate><rotate>0 0 1 90</rotate>{SHOWN}"),
+            (8, -1, 0),
+            (10, 1, 3),
+        ),
+        (
+            collada(f"<matrix>0 0 1 5 1 0 0 0 0 1 0 0 0 0 0 1</matrix>{SHOWN}"),
+            (5, -1, 0),
+            (8, 1, 2),
+        ),
+        (
+            collada(f'{SHOWN}<node><translate>0 0 7</translate>{SHOWN}</node>'),
+            (-1, 0, 0),
+            (1, 2, 10),
+        ),
+        (
+            collada(
+                '<translate>1 1 1</translate><instance_node url="#far"/>',
+                beside=NODES,
+            ),
+            (-1, 1, 1),
+            (3, 5, 7),
+        ),
+        (
+            collada(beside=NODES),
+            (-1, 0, 0),
+            (1, 2, 3),
+        ),
+    ],
+)  # fmt: skip
+def test_the_box_around_a_collada_scene(
+    tmp_path: Path, data: bytes, low: tuple[float, ...], high: tuple[float, ...]
+) -> None:
+    """Whatever the axis is that points up: RViz and Gazebo do not turn the scene."""
+    file = tmp_path / "a.dae"
+    file.write_bytes(data)
+    box = mesh_box(str(file), whole=False)
+    assert box is not None
+    assert (box.low, box.high) == (pytest.approx(low, abs=1e-4), pytest.approx(high, abs=1e-4))
+
+
+BOMB = '<!DOCTYPE a [<!ENTITY a "1 2 3 "><!ENTITY b "%s">]>' % ("&a;" * 10)
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        collada(""),
+        collada('<instance_geometry url="#other"/>'),
+        collada('<instance_geometry url="other.dae#cube"/>'),
+        collada('<instance_controller url="#skin"/>'),
+        collada(f"<lookat>0 0 0 1 0 0 0 0 1</lookat>{SHOWN}"),
+        collada(f"<translate>0 0</translate>{SHOWN}"),
+        collada(f"<matrix>1 0 0</matrix>{SHOWN}"),
+        collada(f"<rotate>0 0 1 nan</rotate>{SHOWN}"),
+        collada(f"{SHOWN}" + '<instance_node url="#n"/>'),
+        collada("<node>" * 400 + SHOWN + "</node>" * 400),
+        collada("".join(f'<node id="m{at}">' + f'<instance_node url="#m{at + 1}"/>' * 9 + "</node>"
+                        for at in range(9)) + f'<node id="m9">{SHOWN}</node>'),
+        collada(f"<scale>&b; 1 1</scale>{SHOWN}", above=BOMB),
+        collada(unit="one"),
+        collada().replace(b'url="#s"', b'url="#t"'),
+        collada().replace(b"1 2 3", b"1 two 3"),
+        collada().replace(b"1 2 3", b"1 2 inf"),
+        collada()[:-20],
+        b"version https://git-lfs.github.com/spec/v1\n",
+    ],
+)  # fmt: skip
+def test_a_collada_scene_that_cannot_be_measured_has_no_box(tmp_path: Path, data: bytes) -> None:
+    (tmp_path / "a.dae").write_bytes(data)
+    assert mesh_box(str(tmp_path / "a.dae")) is None
+
+
+def test_a_collada_file_over_the_limit_is_not_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "a.dae"
+    file.write_bytes(collada())
+    monkeypatch.setattr("multibot_rewrite.checks.mesh_box.MOST_BYTES", 100)
+    assert mesh_box(str(file), whole=False) is None
+
+
 def test_a_large_mesh_is_read_in_part_alone(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -267,6 +375,12 @@ def test_a_collision_away_from_a_mesh(xyz: str, expected: list[str], workspace: 
     )
     found = lint_file(str(file), Settings(select=("MB631",), roots=(str(workspace),)))
     assert [it.code for it in found] == expected
+
+
+@pytest.mark.parametrize(("unit", "expected"), [("100", ["MB714"]), ("0.01", [])])
+def test_a_collada_file_says_its_unit(unit: str, expected: list[str], workspace: Path) -> None:
+    (workspace / "src/arm/meshes/a.dae").write_bytes(collada(unit=unit))
+    assert linted(workspace, "package://arm/meshes/a.dae", select="MB714") == expected
 
 
 def test_a_pipe_is_no_mesh(workspace: Path) -> None:

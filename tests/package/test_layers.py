@@ -21,6 +21,7 @@ from multibot_rewrite.findings import finding
 PACKAGE = Path(multibot_rewrite.__file__).parent
 # The order of the floors: a module imports from floors below its own, or from its own folder.
 FLOORS = (
+    ("record",),
     ("outside",),
     ("bounded", "gc_pause", "lazy", "model", "nearest", "plural", "printable", "version"),
     ("findings", "rosnames", "naming", "config", "arguments", "releases"),

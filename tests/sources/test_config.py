@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -171,3 +172,39 @@ def test_a_project_without_the_table_pays_no_parser(tmp_path: Path, text: str | 
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "False\n"
+
+
+class TomlDecodeError(ValueError):
+    """That of toml 0.10.2, which Ubuntu 22.04 has for Python 3.10."""
+
+
+def without_parsers(monkeypatch: pytest.MonkeyPatch, other: object) -> None:
+    for name in ("tomllib", "tomli"):
+        monkeypatch.setitem(sys.modules, name, None)
+    monkeypatch.setitem(sys.modules, "toml", other)
+
+
+def test_the_parser_of_ubuntu_22_04_is_taken_where_python_has_none(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    def fails(_: str) -> None:
+        raise TomlDecodeError("Empty value is invalid (line 2 column 1 char 8)")
+
+    told = {"tool": {"multibot-rewrite": {"vocabulary": ["a.vocab"]}}}
+    (tmp_path / "pyproject.toml").write_text(TABLE)
+    (tmp_path / "a.vocab").write_text("")
+    parser = SimpleNamespace(loads=lambda _: told, TomlDecodeError=TomlDecodeError)
+    without_parsers(monkeypatch, parser)
+    assert configured_vocabulary(str(tmp_path)) == (str(tmp_path / "a.vocab"),)
+    parser.loads = fails
+    with pytest.raises(UsageError, match=r"toml:2:1: broken TOML, correct it: Empty value is"):
+        configured_vocabulary(str(tmp_path))
+
+
+def test_a_python_without_any_parser_is_told_what_to_install(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    (tmp_path / "pyproject.toml").write_text(TABLE)
+    without_parsers(monkeypatch, None)
+    with pytest.raises(UsageError, match=r"pip install tomli, or sudo apt install python3-toml"):
+        configured_vocabulary(str(tmp_path))

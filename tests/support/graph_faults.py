@@ -7,6 +7,7 @@ to it, the code that has to be found, and words that the finding must have: who 
 from __future__ import annotations
 
 from answered_faults import header_rows, state_rows
+from chain_faults import chain_rows
 from moving_faults import command_rows, tf_rows
 from naming_faults import clock_rows, data_rows, name_rows
 
@@ -18,6 +19,7 @@ FAULTS = (
     *clock_rows(),
     *header_rows(),
     *state_rows(),
+    *chain_rows(),
 )
 # Those whose types are on PyPI; a fault in an action needs nav2_msgs.
 LIVE = (

@@ -225,6 +225,26 @@ def with_mux() -> Snapshot:
     return graph
 
 
+def idle_mux() -> Snapshot:
+    """A twist_mux with an input that nobody sends yet, its output on a topic of its own."""
+    graph = with_mux()
+    for robot in TWO:
+        for node in ("twist_mux", "diff_drive"):
+            graph = moved(graph, f"/{robot}/cmd_vel", f"/{robot}/cmd_vel_out", f"/{robot}/{node}")
+        graph = with_ends(graph, f"/{robot}/twist_mux", (SUBSCRIBES, f"/{robot}/cmd_vel_ui", TWIST))
+    return with_tools(graph, TWO)
+
+
+def beside_the_root() -> Snapshot:
+    """A robot without a namespace, and another one with one; each has its own tf topic."""
+    graph = started(("nav2",))
+
+    def spelled(name: str) -> str:
+        return name.replace("/robot1", "", 1) or "/"
+
+    return with_tools(respelled(graph, spelled), ("robot2",))
+
+
 def one_map_for_all() -> Snapshot:
     """A map server for the fleet, and static frames of the world from nodes of their own."""
     graph = started(("navigation",), "L2")
@@ -263,6 +283,8 @@ SYSTEMS: Mapping[str, Callable[[], Snapshot]] = {
     "namespaces of two levels": two_levels,
     "one robot": single,
     "twist_mux": with_mux,
+    "twist_mux with an idle input": idle_mux,
+    "a robot without a namespace beside another": beside_the_root,
     "one map for all": one_map_for_all,
     "a follower and a convoy": follower,
 }

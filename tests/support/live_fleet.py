@@ -175,6 +175,7 @@ def _send_frames(node: Any, topic: str, static: bool, edges: list[list[str]]) ->
     for parent, child in edges:
         transform = TransformStamped(child_frame_id=child)
         transform.header.frame_id = parent
+        transform.transform.translation.x = 1.5
         message.transforms.append(transform)
     publisher = node.create_publisher(type_, topic, _qos(["latched"] if static else []))
     if static:

@@ -90,14 +90,14 @@ def _aligned(data: bytes, size: int) -> bytes:
     return data + b"\0" * (-len(data) % size)
 
 
-def message(made: Made) -> bytes:
-    """Its bytes in CDR, as far as its header goes, or all transforms."""
+def message(made: Made, at: int = 0) -> bytes:
+    """Its bytes in CDR, as far as its header goes, or all transforms, which are ``at`` metres ahead."""
     if made.type == TF:
         body = struct.pack("<I", len(made.edges))
         for parent, child in made.edges:
             body = _aligned(body, 4) + b"\0" * 8 + _text(parent)
             body = _aligned(body, 4) + _text(child)
-            body = _aligned(body, 8) + b"\0" * 56
+            body = _aligned(body, 8) + struct.pack("<7d", at, 2, 3, 0, 0, 0, 1)
         return b"\0\1\0\0" + body
     return b"\0\1\0\0" + (b"\0" * 8 + _text(made.frame) if made.frame else b"\0" * 48)
 
@@ -118,7 +118,7 @@ def write(path: Path, topics: Iterable[Made], mcap: bool = True) -> Path:
             connection = writer.add_connection(
                 made.name, made.type, typestore=STORE, offered_qos_profiles=profiles
             )
-            data = message(made)
             for at in range(made.count):
-                writer.write(connection, SECOND + at * 10 * SECOND // max(made.count - 1, 1), data)
+                when = SECOND + at * 10 * SECOND // max(made.count - 1, 1)
+                writer.write(connection, when, message(made, at))
     return path

@@ -8,10 +8,10 @@ import re
 import struct
 import sys
 from pathlib import Path
-from typing import Any
 
 import pytest
 from paths import FIXTURES, ROBOTS
+from view_pages import page
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.view import models
@@ -37,18 +37,6 @@ ROBOT = """\
     <parent link="arm"/><child link="slide"/></joint>
 </robot>
 """
-
-
-def page(folder: Path, *words: object, code: int = 0) -> dict[str, Any]:
-    """The data of the page for these words."""
-    out = folder / "view.html"
-    assert main(["view", *map(str, words), "-o", str(out), "-q"]) == code
-    text = out.read_text()
-    found = re.search(r'<script type="application/json" id="data">(.*?)</script>', text, re.DOTALL)
-    assert found
-    made = json.loads(found[1])
-    assert isinstance(made, dict)
-    return made
 
 
 @pytest.fixture

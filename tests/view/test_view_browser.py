@@ -13,6 +13,7 @@ from selenium import webdriver
 from selenium.webdriver.common.by import By
 from selenium.webdriver.support.select import Select
 from selenium.webdriver.support.wait import WebDriverWait
+from view_pages import with_places
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.graph.snapshot import to_json
@@ -75,6 +76,42 @@ def test_the_page_draws_and_tells(chromium: webdriver.Chrome, tmp_path: Path) ->
         "return data.robots[0].built[0].moving['left_wheel_joint_robot1'].turn.quaternion.y"
     )
     assert before != after
+    assert [it for it in chromium.get_log("browser") if it["level"] == "SEVERE"] == []
+
+
+def test_what_tf_has_is_over_the_robots(chromium: webdriver.Chrome, tmp_path: Path) -> None:
+    graph, out = tmp_path / "graph.json", tmp_path / "view.html"
+    graph.write_bytes(to_json(with_places(healthy("postfix"))))
+    words = [str(ROBOTS / "rover.urdf"), "robot1", "robot2", "--snapshot", str(graph)]
+    assert main(["view", *words, "-o", str(out), "-q"]) == 0
+    chromium.get(out.as_uri())
+    WebDriverWait(chromium, 30).until(
+        lambda it: it.find_element(By.TAG_NAME, "body").get_attribute("data-ready")
+    )
+
+    def apart(link: str) -> str:
+        robot = link.rpartition("/")[2]
+        place = chromium.find_element(By.ID, f"{robot} apart {link}")
+        return str(place.get_attribute("textContent"))
+
+    assert apart("camera_optical_frame/robot1") == apart("lidar_link/robot1") == "tf: the same"
+    assert apart("lidar_link/robot2") == "tf: 0.030 m, 0.0° off, and fixed"
+    assert apart("left_wheel/robot2") == "tf: 0.000 m, 40.1° off"
+    chromium.find_element(By.XPATH, "//summary[text()='robot2']").click()
+    chromium.find_element(By.ID, "as-heard").click()
+    assert apart("left_wheel/robot2") == "tf: the same"
+    # robot2 is planned at y 1.5; its base was heard 1 m ahead of odom.
+    at = "const at = new THREE.Vector3(), it = ghosts.find((it) => it.name === arguments[0]);"
+    at += "it.group.updateWorldMatrix(true, false); at.setFromMatrixPosition(it.group.matrixWorld);"
+    at += "return at.toArray()"
+    found = chromium.execute_script(at, "lidar_link/robot2")
+    assert found == pytest.approx([1.1, 1.5, 0.14], abs=1e-6)
+    seen = "draw(); return ghosts.filter((it) => it.parts[0].visible).length"
+    assert chromium.execute_script(seen) == 18
+    Select(chromium.find_element(By.ID, "left")).select_by_visible_text("robot1")
+    assert chromium.execute_script(seen) == 9
+    chromium.find_element(By.ID, "tf").click()
+    assert chromium.execute_script(seen) == 0
     assert [it for it in chromium.get_log("browser") if it["level"] == "SEVERE"] == []
 
 

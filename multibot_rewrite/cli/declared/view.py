@@ -29,7 +29,7 @@ VIEW = Command(
     (
         Example("multibot view fleet.yaml", "all robots at their poses, in view.html"),
         Example("multibot view rover.urdf robot1 robot2 -o rover.html"),
-        Example("multibot view fleet.yaml --snapshot graph.json", "which frames are on tf?"),
+        Example("multibot view fleet.yaml --snapshot graph.json", "what is on tf, and where?"),
     ),
     (
         OptionGroup(

@@ -56,7 +56,8 @@ class NameSite(NamedTuple):
 
 class SectionNames(NamedTuple):
     """What a section holds: names, known parameters by path, scalars of unknown parameters, keys
-    without a value, keys that are twice in one mapping, and keys of unknown parameters.
+    without a value, keys that are twice in one mapping, keys of unknown parameters, and scalars of
+    parameters that hold no names.
     """
 
     sites: list[NameSite]
@@ -65,6 +66,7 @@ class SectionNames(NamedTuple):
     empty: list[yaml.ScalarNode]
     twice: list[yaml.ScalarNode]
     keys: list[yaml.ScalarNode]
+    kept: list[yaml.ScalarNode]
 
 
 # The branch that the path so far leads to, and the names in its keys: key, segment and kind.
@@ -74,7 +76,7 @@ _State = tuple[Branch, tuple[_Mark, ...]]
 
 def find_names(document: YamlText, section: ParamSection, known: KnownNodes) -> SectionNames:
     """Look at every parameter of a section; InputError for keys that are not scalars."""
-    names = SectionNames([], set(), [], [], [], [])
+    names = SectionNames([], set(), [], [], [], [], [])
     tree = section.node.tree if section.node else known.anywhere
     _walk(document, section.body, [(tree, ())], known, names)
     return names
@@ -149,6 +151,8 @@ def _claim(
             break
     if param is None or param.kind != "keep":
         _values(key, items(value), param, layer, known, names)
+    else:
+        names.kept.extend(it for it in items(value) if isinstance(it, yaml.ScalarNode))
 
 
 def _values(

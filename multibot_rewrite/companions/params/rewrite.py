@@ -11,6 +11,7 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 
 from multibot_rewrite.companions.context import Companion, Context
 from multibot_rewrite.companions.names.node_topics import facts_by_name
+from multibot_rewrite.companions.params.calibrations import shared_calibrations
 from multibot_rewrite.companions.params.controller_sections import (
     controller_sections,
     takes_sections,
@@ -155,6 +156,7 @@ def _about_names(job: ParamsJob, section: ParamSection, names: SectionNames) -> 
     yield from guessed_names(job, section, names)
     yield from sources_without_topic(job, section)
     yield from release_findings(job, section)
+    yield from shared_calibrations(job, section)
 
 
 def _once(findings: Iterable[Finding]) -> tuple[Finding, ...]:

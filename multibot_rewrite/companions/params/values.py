@@ -117,7 +117,7 @@ def _as_robot(job: ParamsJob, site: NameSite) -> str:
 
 def _filled(job: ParamsJob, names: SectionNames) -> Iterator[Splice]:
     """Values that are not known to be names, with what stands for the robot in them filled in."""
-    for scalar in names.unclaimed:
+    for scalar in (*names.unclaimed, *names.kept):
         text = filled(str(scalar.value), NAMESPACE_SLOT)
         if text != scalar.value and scalar.style not in ("|", ">"):
             yield replaced(scalar, text)

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from importlib import import_module
-from typing import NamedTuple
 
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import Rule
+from multibot_rewrite.record import NamedTuple
 
 # What --format takes, and the module beside this one that renders it.
 FORMATS = {

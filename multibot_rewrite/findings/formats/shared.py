@@ -6,12 +6,12 @@ import os
 import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import NamedTuple
 
 from multibot_rewrite.findings.finding import LEVELS, Finding, same_for
 from multibot_rewrite.findings.formats import Report
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.printable import in_json, one_line
+from multibot_rewrite.record import NamedTuple
 
 _SURROGATE = lazy_compile("[\ud800-\udfff]")
 _CALL = lazy_compile(r"(?P<file>.*):(?P<line>\d+): (?P<macro>.*)", re.DOTALL)

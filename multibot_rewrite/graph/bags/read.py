@@ -8,14 +8,14 @@ from __future__ import annotations
 import os
 import re
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from itertools import islice
 from math import inf
 from typing import TYPE_CHECKING, Any
 
 from multibot_rewrite.bounded import load_yaml, read_text
 from multibot_rewrite.graph.bags.recording import RECORDER, RecordedTopic, Recording
-from multibot_rewrite.graph.live.assemble import TF_TYPES
+from multibot_rewrite.graph.live.assemble import TF_TYPES, numbers_of
 from multibot_rewrite.graph.snapshot import Caveat, GraphFrame, Qos
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.graph.zenoh.cdr import read_header_frame, read_tf
@@ -79,12 +79,12 @@ def _recording(reader: Reader) -> Recording:
         name = str(connection.topic)
         by_topic[name if name.startswith("/") else f"/{name}"].append(connection)
     topics = tuple(_topic(reader, name, by_topic[name]) for name in sorted(by_topic))
-    transforms: dict[GraphFrame, None] = {}
+    transforms: list[GraphFrame] = []
     caveats: list[Caveat] = []
     for name, connections in sorted(by_topic.items()):
         if connections[0].msgtype == TF_TYPES[0]:
             found, unread = _transforms(reader, name, connections)
-            transforms.update(found)
+            transforms += found
             caveats += [_unread(name)] * unread
     empty = [it.name for it in topics if not it.messages]
     if len(empty) == len(topics):
@@ -123,18 +123,19 @@ def _first(reader: Reader, connections: list[Connection], many: int) -> Iterator
 
 def _transforms(
     reader: Reader, topic: str, connections: list[Connection]
-) -> tuple[dict[GraphFrame, None], bool]:
-    """The transforms on a tf topic, and whether some could not be read."""
-    found: dict[GraphFrame, None] = {}
+) -> tuple[Collection[GraphFrame], bool]:
+    """The transforms on a tf topic as they were at last, and whether some could not be read."""
+    found: dict[tuple[str, str], GraphFrame] = {}
     static = topic.rpartition("/")[2] == "tf_static" or "/tf_static/" in topic
     for read, data in enumerate(_first(reader, connections, TRANSFORMS + 1)):
         message = read_tf(data) if read < TRANSFORMS else None
         if message is None:
-            return found, True
+            return found.values(), True
         for it in message.transforms:
             edge = (it.child_frame_id, it.header.frame_id)
-            found[GraphFrame(*edge, topic, static, (RECORDER,))] = None
-    return found, False
+            last = numbers_of(it.transform)
+            found[edge] = GraphFrame(*edge, topic, static, (RECORDER,), transform=last)
+    return found.values(), False
 
 
 def _profiles(connection: Connection) -> Iterable[Any]:

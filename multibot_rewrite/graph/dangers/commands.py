@@ -6,12 +6,15 @@ from collections.abc import Iterator
 
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.graph.dangers import words
-from multibot_rewrite.graph.dangers.names import alike
+from multibot_rewrite.graph.dangers.names import ABSENT, alike, nobody_in
 from multibot_rewrite.graph.dangers.seen import (
+    EVERYBODYS,
+    TF,
     Ends,
     Seen,
     and_then,
     at_work,
+    is_hidden,
     is_viewer,
     last_word,
     nodes_of,
@@ -23,7 +26,6 @@ from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.remap.records import ACTION, TOPIC
 
-PLAYER = "rosbag2_player"
 _OWN_SUBJECT = ("/clock", "/rosout", "/parameter_events")
 
 
@@ -40,7 +42,7 @@ def _commands(seen: Seen) -> Iterator[Ends]:
     drawn="leak",
     planned="MG103",
     what="Nodes of several robots subscribe to one topic with velocities, trajectories, a goal or a"
-    " start pose.",
+    " start pose. For a joystick it is a warning: its buttons may choose the robot.",
     why="One command moves all of them.",
     fix="Use relative topics, or a remap rule, so that each robot has its own.",
     bad="""\
@@ -56,13 +58,20 @@ def command_for_several_robots(seen: Seen) -> Iterator[Finding]:
     """Whether or not anybody sends at the moment."""
     for (kind, name), ends in seen.names.items():
         plain = seen.plain(name)
-        order = words.moves(plain, ends.type) or words.is_pose_order(plain, ends.type)
+        joystick = ends.type == words.JOYSTICK and not seen.robot(name)
+        order = words.moves(plain, ends.type) or words.is_pose_order(plain, ends.type) or joystick
         nodes = nodes_of(at_work(ends.subscribers)) if kind == TOPIC and order else ()
         robots = robots_of(seen, nodes)
         if len(robots) > 1:
             message = f"{and_then(robots)} all obey {name}: {shorten(nodes)}"
             cause = own_namespace(seen, name, robots[0])
-            yield command_for_several_robots.finding(message, cause, node=nodes[0], names=(name,))
+            yield command_for_several_robots.finding(
+                message,
+                f"{cause}; or give each its own enable_button" if joystick else cause,
+                level=WARNING if joystick else ERROR,
+                node=nodes[0],
+                names=(name,),
+            )
 
 
 @danger_rule(
@@ -104,6 +113,16 @@ def command_to_nobody(seen: Seen) -> Iterator[Finding]:
         meant = next(iter(robots), "") or alike(name, same, ends.type)
         if meant:
             yield _unread(seen, ends, meant, len(robots))
+            continue
+        absent = nobody_in(seen, name, same)
+        for node in nodes_of(at_work(ends.publishers)) if absent else ():
+            yield command_to_nobody.finding(
+                f"publishes {name}, which nobody reads; {absent}",
+                ABSENT,
+                level=WARNING,
+                node=node,
+                names=(name,),
+            )
 
 
 def _unread(seen: Seen, ends: Ends, meant: str, robots: int) -> Finding:
@@ -112,7 +131,7 @@ def _unread(seen: Seen, ends: Ends, meant: str, robots: int) -> Finding:
     message = f"publishes {ends.name}, which nobody reads; {reader} reads {meant}"
     several = f" (or that of another of the {robots} robots)" if robots > 1 else ""
     cause = f"start it in the robot's namespace, or pass the rule {ends.name}:={meant}{several}"
-    level = NOTE if is_viewer(node) else ERROR
+    level = NOTE if is_viewer(node) and not is_hidden(node) else ERROR
     return command_to_nobody.finding(
         message, cause, level=level, robot=seen.robot(node), node=node, names=(ends.name, meant)
     )
@@ -124,9 +143,9 @@ def _unread(seen: Seen, ends: Ends, meant: str, robots: int) -> Finding:
     ERROR,
     drawn="cross-talk",
     planned="MG104",
-    what="A robot's node sends commands to another robot: velocities, trajectories, goals, or requests"
-    " to its services.",
-    why="Who drives the one robot moves the other.",
+    what="A robot's node sends commands to another robot: velocities, trajectories, goals, requests to"
+    " its services, or a topic for which its own robot waits.",
+    why="Who drives, or stops, the one robot moves the other.",
     fix="Correct the remap rule, namespace or parameter that has the other robot's name.",
     bad="""\
 running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
@@ -143,6 +162,7 @@ def command_from_another_robot(seen: Seen) -> Iterator[Finding]:
     for (kind, name), ends in seen.names.items():
         owner, plain = seen.robot(name), seen.plain(name)
         order = words.moves(plain, ends.type) or words.is_pose_order(plain, ends.type)
+        order = order or _is_waited_for(seen, ends)
         senders = ends.publishers if kind == TOPIC and order else ends.clients
         served = kind == TOPIC or ends.servers
         for node in nodes_of(senders) if owner and served else ():
@@ -157,19 +177,20 @@ def command_from_another_robot(seen: Seen) -> Iterator[Finding]:
             )
 
 
+def _is_waited_for(seen: Seen, ends: Ends) -> bool:
+    """Has the robot of a sender the same topic, with readers and nobody who sends? As an emergency stop
+    with the other robot's name."""
+    plain = seen.plain(ends.name)
+    if ends.kind != TOPIC or ends.name in EVERYBODYS or ends.type == TF:
+        return False
+    own = (seen.of_robot(it, ends.kind, plain) for it in robots_of(seen, nodes_of(ends.publishers)))
+    return any(it and at_work(it.subscribers) and not it.publishers for it in own)
+
+
 def _mistaken(seen: Seen, node: str, robot: str, ends: Ends) -> bool:
     """Is it the other robot's name in place of its own? Who has both coordinates the two; a service
     that its own robot does not have is for others."""
-    own = next(
-        (
-            it
-            for (kind, name), it in seen.names.items()
-            if kind == ends.kind
-            and seen.robot(name) == robot
-            and seen.plain(name) == seen.plain(ends.name)
-        ),
-        None,
-    )
+    own = seen.of_robot(robot, ends.kind, seen.plain(ends.name))
     if own is None:
         return ends.kind == TOPIC
     return node not in nodes_of((*own.publishers, *own.clients))
@@ -201,9 +222,10 @@ def several_command_senders(seen: Seen) -> Iterator[Finding]:
     """The nodes of Nav2, and those of MoveIt, send one after another: they are one sender."""
     for ends in _commands(seen):
         readers = nodes_of(at_work(ends.subscribers))
-        senders = nodes_of(at_work(ends.publishers))
+        # A program to look with that sends velocities is a joystick.
+        senders = nodes_of(ends.publishers)
         teams = {words.team(node): node for node in reversed(senders)}
-        played = any(last_word(node).startswith(PLAYER) for node in senders)
+        played = any(last_word(node).startswith(words.PLAYER) for node in senders)
         if not readers or len(teams) < 2 or played or all(map(words.chooses, readers)):
             continue
         # A sender of another robot is a rule of its own.
@@ -241,7 +263,7 @@ def bag_beside_a_robot(seen: Seen) -> Iterator[Finding]:
     """A bag that is played to nodes which only read is what bags are for."""
     mixed: dict[str, list[str]] = {}
     for ends in (it for (kind, _), it in seen.names.items() if kind == TOPIC):
-        players = [it for it in nodes_of(ends.publishers) if last_word(it).startswith(PLAYER)]
+        players = [it for it in nodes_of(ends.publishers) if last_word(it).startswith(words.PLAYER)]
         others = [it for it in nodes_of(at_work(ends.publishers)) if it not in players]
         order = words.moves(seen.plain(ends.name), ends.type)
         obeyed = order and bool(at_work(ends.subscribers))

@@ -16,6 +16,7 @@ from multibot_rewrite.graph.dangers import (
     matching,
     names,
     nodes,
+    relays,
     sharing,
     tf_topics,
     transforms,
@@ -27,7 +28,8 @@ from multibot_rewrite.graph.dangers.seen import Owners, Seen, look_at
 from multibot_rewrite.graph.snapshot import Snapshot
 
 _MODULES = (
-    nodes, names, matching, commands, sharing, transforms, tf_topics, frame_ids, clocks, states_,
+    nodes, names, matching, commands, relays, sharing, transforms, tf_topics, frame_ids, clocks,
+    states_,
 )  # fmt: skip
 _FOUND = [it for module in _MODULES for it in vars(module).values() if isinstance(it, Rule)]
 DANGERS = {it.code: it for it in sorted(_FOUND, key=lambda it: it.code)}

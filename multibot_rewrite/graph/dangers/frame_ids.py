@@ -19,7 +19,7 @@ from multibot_rewrite.graph.dangers.seen import (
 )
 from multibot_rewrite.graph.rules.declaration import danger_rule
 from multibot_rewrite.graph.wording import SEVERAL, shorten
-from multibot_rewrite.nearest import nearest
+from multibot_rewrite.nearest import MISTYPED, nearest
 from multibot_rewrite.remap.records import TOPIC
 
 # What a robot measures is in its own frames. A pose, a path or a marker may be in another robot's.
@@ -128,7 +128,7 @@ def _remedy(senders: Sequence[str], meant: Sequence[str], elsewhere: Sequence[st
         word = meant[0] if len(meant) == 1 else f"one of {shorten(meant, SEVERAL)}"
         return f"set the frame of {_who(senders)} to {word}"
     if elsewhere:
-        return f"it is on {and_then(elsewhere)}: has {_who(senders)} the frames of another robot?"
+        return f"it is on {and_then(elsewhere)}: who sends it there is to send it here, too"
     return f"send a transform for it, or set the frame of {_who(senders)} to one that is in tf"
 
 
@@ -140,7 +140,7 @@ def _meant(seen: Seen, frame: str, own: Sequence[str]) -> list[str]:
 
 
 def _alike(frame: str, own: Sequence[str]) -> list[str]:
-    found = nearest(frame, sorted(own))
+    found = nearest(frame, sorted(own), MISTYPED)
     return [found] if found else []
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.dangers.seen import EVERYBODYS, Ends, Seen, is_viewer, nodes_of
@@ -18,7 +18,7 @@ from multibot_rewrite.remap.records import TOPIC
     "types-differ",
     ERROR,
     planned="MG106",
-    what="Both sides of a topic, service or action have different types.",
+    what="Both sides of a topic, service or action have different types, or two versions of one type.",
     why="No message arrives, and there is no error message.",
     fix="Use the same type on both sides; for velocities set `enable_stamped_cmd_vel`,"
     " `use_stamped_vel` or `stamped` alike on both.",
@@ -38,23 +38,44 @@ def types_differ(seen: Seen) -> Iterator[Finding]:
         givers, takers = (ends.publishers, ends.subscribers)
         if ends.kind != TOPIC:
             givers, takers = ends.servers, ends.clients
-        given = {end.type for end in givers if end.type}
+        given = {(end.type, end.type_hash) for end in givers if end.type}
         for node in nodes_of(takers) if given else ():
-            asked = {end.type for end in takers if end.node == node}
-            if asked & given or not all(asked):
+            asked = {(end.type, end.type_hash) for end in takers if end.node == node}
+            if not all(type_ for type_, _ in asked) or _meet(asked, given):
                 continue
-            message = (
-                f"uses {ends.name} as {', '.join(sorted(asked))}, but {nodes_of(givers)[0]} has it as"
-                f" {', '.join(sorted(given))}"
-            )
-            cause = "no message ever arrives; use the same type on both sides"
-            if {it + STAMPED for it in asked} & given or {it + STAMPED for it in given} & asked:
-                cause += ": enable_stamped_cmd_vel, use_stamped_vel or stamped is set on one side"
+            message, cause = _difference(ends.name, nodes_of(givers)[0], dict(asked), dict(given))
             level = WARNING if is_viewer(node) else ERROR
             robot = seen.robot(node) or seen.robot(ends.name)
             yield types_differ.finding(
                 message, cause, level=level, robot=robot, node=node, names=(ends.name,)
             )
+
+
+def _meet(asked: Iterable[tuple[str, str]], given: set[tuple[str, str]]) -> bool:
+    """Have both sides a version of a type? One without a hash may be any."""
+    return any(
+        one == other and (hash_ == its or not (hash_ and its))
+        for one, hash_ in asked
+        for other, its in given
+    )
+
+
+def _difference(
+    name: str, giver: str, asked: Mapping[str, str], given: Mapping[str, str]
+) -> tuple[str, str]:
+    """What is different, and what to do; of each type one hash."""
+    wanted, there = (", ".join(sorted(it)) for it in (asked, given))
+    if asked.keys() & given.keys():
+        return (
+            f"uses another version of {wanted} on {name} than {giver}",
+            "their packages of messages were built from different versions: build both from one",
+        )
+    cause = "no message ever arrives; use the same type on both sides"
+    if {it + STAMPED for it in asked} & given.keys() or {
+        it + STAMPED for it in given
+    } & asked.keys():
+        cause += ": enable_stamped_cmd_vel, use_stamped_vel or stamped is set on one side"
+    return f"uses {name} as {wanted}, but {giver} has it as {there}", cause
 
 
 @danger_rule(

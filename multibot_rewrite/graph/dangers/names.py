@@ -5,25 +5,30 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from itertools import islice
+from itertools import islice, zip_longest
 
-from multibot_rewrite.findings.finding import ERROR, NOTE, Finding
+from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING, Finding
+from multibot_rewrite.graph.dangers import words
 from multibot_rewrite.graph.dangers.seen import (
     EVERYBODYS,
     TF,
     Ends,
     Seen,
     and_then,
+    at_work,
+    is_spawner,
     is_viewer,
+    last_word,
     nodes_of,
     robots_of,
 )
 from multibot_rewrite.graph.rules.causes import in_namespaces_above
 from multibot_rewrite.graph.rules.declaration import danger_rule
 from multibot_rewrite.graph.snapshot import GraphEndpoint
-from multibot_rewrite.nearest import COMPARED, MISTYPED, nearest
+from multibot_rewrite.nearest import CHOICE, COMPARED, MISTYPED, nearest
 from multibot_rewrite.remap.records import ACTION, SERVICE, TOPIC
 
+ABSENT = "is that robot started, and is its name right?"
 _DIGITS = re.compile(r"_?\d+")
 # Every node serves them, or many do: another one of such a type says nothing.
 _COMMON = (
@@ -59,14 +64,16 @@ def topic_names_miss(seen: Seen) -> Iterator[Finding]:
     published = {
         name: it for (kind, name), it in seen.names.items() if kind == TOPIC and it.publishers
     }
-    unheard = {name: it for name, it in published.items() if not it.subscribers}
+    unheard = {name: it for name, it in published.items() if not at_work(it.subscribers)}
     for (kind, name), ends in seen.names.items():
         if kind != TOPIC or ends.publishers or name in EVERYBODYS or ends.type == TF:
             continue
         for end in _each_node(ends.subscribers):
             if is_viewer(end.node):
                 continue
-            other = _published_instead(seen, end, published, unheard)
+            # What chooses between several inputs seldom has all of them.
+            offered = unheard if words.chooses(end.node) else published
+            other = _published_instead(seen, end, offered, unheard)
             if other:
                 yield _missed_topic(seen, end, published[other])
 
@@ -79,7 +86,7 @@ def _published_instead(
     seen: Seen, end: GraphEndpoint, published: dict[str, Ends], unheard: dict[str, Ends]
 ) -> str:
     """The published topic that was probably meant; empty for none."""
-    above = (it for it in in_namespaces_above(end.node, end.name) if it in published)
+    above = (it for it in _written_out(end.node, end.name) if it in published)
     captured = next((it for it in above if published[it].type == end.type), "")
     if captured:
         return captured
@@ -88,10 +95,40 @@ def _published_instead(
         # Its own robot has it: whether or not others read it as well.
         own = [it for it in published if seen.robot(it) == robot and seen.plain(it) == end.name]
         return next((it for it in own if published[it].type == end.type), "")
-    same = [name for name, it in published.items() if it.type == end.type]
+    same = [
+        name
+        for name, it in published.items()
+        if it.type == end.type and nodes_of(it.publishers) != (end.node,)
+    ]
+    hidden = next((it for it in same if it in unheard and _hides(published[it], end.name)), "")
+    if hidden:
+        return hidden
     bare = (it for it in same if owner and not seen.robot(it) and it == seen.plain(end.name))
     unread = (it for it in bare if it in unheard)
     return next(unread, "") or alike(end.name, same, end.type)
+
+
+def _written_out(node: str, name: str) -> Iterator[str]:
+    """What a relative name may have been meant as: one of a namespace above, or one with its namespace
+    written out: ``/robot1/costmap/robot1/scan`` of ``robot1/scan``."""
+    yield from in_namespaces_above(node, name)
+    space = node
+    while space := space.rpartition("/")[0]:
+        if name.startswith(f"{space}/"):
+            yield name.removeprefix(space)
+
+
+def _hides(ends: Ends, meant: str) -> bool:
+    """Is it the other name below its publisher's own name, or with its namespace twice?"""
+    space, _, last = meant.rpartition("/")
+    own = (f"{space}/{last_word(node)}/{last}" for node in nodes_of(ends.publishers))
+    return ends.name in own or _is_doubled(ends.name, meant)
+
+
+def _is_doubled(name: str, meant: str) -> bool:
+    """Is it the other name with a namespace of it once more in front?"""
+    front = name.removesuffix(meant)
+    return front != name and meant.startswith(f"{front}/")
 
 
 def alike(name: str, known: Iterable[str], type_: str) -> str:
@@ -108,7 +145,8 @@ def alike(name: str, known: Iterable[str], type_: str) -> str:
     for at in (1, len(parts) - 1):
         near = dict(_with_other_word(parts, at, names))
         swapped = (it for it in near if sorted(it) == sorted(parts[at]))
-        found = next(swapped, "") or nearest(parts[at], near, MISTYPED)
+        slips = [it for it in near if _is_slip(it, parts[at])]
+        found = next(swapped, "") or nearest(parts[at], slips, MISTYPED)
         if found:
             return near[found]
     return ""
@@ -124,6 +162,13 @@ def _with_other_word(parts: list[str], at: int, names: Iterable[str]) -> Iterato
             yield other[at], name
 
 
+def _is_slip(one: str, other: str) -> bool:
+    """Is no part between underscores another word? `cmd_vel_out` is no slip of `cmd_vel_ui`, nor is
+    `lidar_l` of `lidar_r`."""
+    parts = list(zip_longest(one.split("_"), other.split("_"), fillvalue=""))
+    return all(here == there or nearest(here, (there,), CHOICE) for here, there in parts)
+
+
 def _letters(name: str) -> str:
     """Its letters, digits and slashes, in lower case."""
     return "".join(it for it in name.lower() if it.isalnum() or it == "/")
@@ -137,7 +182,9 @@ def _missed_topic(seen: Seen, end: GraphEndpoint, other: Ends) -> Finding:
     sender = nodes_of(other.publishers)[0]
     message = f"subscribes to {end.name}, which nobody publishes; {sender} publishes {other.name}"
     # The side in the wrong place is the one whose name has no robot, or is below the node.
-    if seen.robot(end.name) and not seen.robot(other.name):
+    if _is_doubled(other.name, end.name):
+        cause = f"its namespace is there twice: name it {last_word(other.name)} in {sender}"
+    elif seen.robot(end.name) and not seen.robot(other.name):
         cause = f"pass the rule {other.name}:={end.name} to {sender}, or start it in the namespace"
     else:
         cause = f"pass the rule {end.name}:={other.name}, or write {other.name} in its parameters"
@@ -155,7 +202,8 @@ def _missed_topic(seen: Seen, end: GraphEndpoint, other: Ends) -> Finding:
     ERROR,
     absence=True,
     what="A node calls a service or action that nobody serves, while nearly the same name is served:"
-    " with or without the robot's namespace, or misspelled.",
+    " with or without the robot's namespace, or misspelled. In a namespace without any node it is a"
+    " warning.",
     why="The client waits for ever: no goal arrives, no node is activated.",
     fix="Write the name as the server has it, or start the client in the robot's namespace.",
     bad="""\
@@ -178,14 +226,24 @@ def server_names_miss(seen: Seen) -> Iterator[Finding]:
             continue
         for end in _each_node(ends.clients):
             other = _served_instead(seen, end, served[kind, end.type])
+            does = "sends goals to" if kind == ACTION else "calls"
+            absent = (
+                not other
+                and not is_viewer(end.node)
+                and nobody_in(seen, name, served[kind, end.type])
+            )
+            if absent:
+                yield server_names_miss.finding(
+                    f"{does} {name}, which nobody serves; {absent}",
+                    ABSENT, level=WARNING, node=end.node, names=(name,),
+                )  # fmt: skip
             if not other:
                 continue
-            does = "sends goals to" if kind == ACTION else "calls"
             server = nodes_of(seen.names[kind, other].servers)[0]
             message = f"{does} {name}, which nobody serves; {server} serves {other}"
             cause = f"pass the rule {name}:={other}, or start it in the namespace of the robot"
             robot = seen.robot(end.node) or seen.robot(other)
-            level = NOTE if is_viewer(end.node) else ERROR
+            level = NOTE if is_viewer(end.node) and not is_spawner(end.node) else ERROR
             yield server_names_miss.finding(
                 message, cause, level=level, robot=robot, node=end.node, names=(name, other)
             )
@@ -198,8 +256,21 @@ def _served_instead(seen: Seen, end: GraphEndpoint, served: Sequence[str]) -> st
     near = [it for it in same if not owner or not seen.robot(it)]
     own = [it for it in near if seen.robot(it) == robot]
     captured: Callable[[str], bool] = served.__contains__
-    above = next(filter(captured, in_namespaces_above(end.node, end.name)), "")
+    above = next(filter(captured, _written_out(end.node, end.name)), "")
     return next(iter(own), "") or next(iter(near), "") or above or alike(end.name, served, end.type)
+
+
+def nobody_in(seen: Seen, name: str, known: Iterable[str]) -> str:
+    """Words for a name in a namespace without any node, where robots have it in theirs; else ""."""
+    if seen.robot(name):
+        return ""
+    ends = {seen.plain(it): it for it in known if seen.robot(it)}
+    rests = (at for at in range(2, len(name)) if name[at] == "/")
+    for at in rests:
+        other, space = ends.get(name[at:]), name[:at]
+        if other and not any(it.name.startswith(f"{space}/") for it in seen.graph.nodes):
+            return f"no node is in {space}, and {seen.robot(other)} has {other}"
+    return ""
 
 
 @danger_rule(

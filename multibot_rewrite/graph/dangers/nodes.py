@@ -40,7 +40,7 @@ running: /robot2/driver
 def nodes_of_one_name(seen: Seen) -> Iterator[Finding]:
     """Many of them are one finding: two robots."""
     times = Counter(node.name for node in seen.graph.nodes)
-    twins = [name for name, count in times.items() if count > 1 and not is_tool(name)]
+    twins = [name for name, count in times.items() if count > 1 and _counts(name)]
     by_robot: dict[str, list[str]] = defaultdict(list)
     for name in twins:
         by_robot[seen.robot(name)].append(name)
@@ -55,6 +55,11 @@ def nodes_of_one_name(seen: Seen) -> Iterator[Finding]:
                 " killed stays visible for 20 s"
             )
             yield nodes_of_one_name.finding(message, cause, robot=robot, node=name)
+
+
+def _counts(node: str) -> bool:
+    """Tools may run twice. Of two containers each gets the components of the other."""
+    return not is_tool(node) or node.endswith("_container")
 
 
 def _two_robots(robot: str, names: Sequence[str]) -> Finding:

@@ -15,11 +15,12 @@ from multibot_rewrite.remap.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
 # They look, or pass on what a person asks for: no part of a robot, and no sender of their own.
 VIEWERS = (
     "rviz*", "rqt*", "foxglove_*", "rosbridge*", "rosapi*", "rosbag2_recorder*", "tf2_*", "view_frames",
-    "launch_ros_*", "_*_daemon_*", "*_rclcpp_node", "spawner_*",
+    "launch_ros_*", "_*_daemon_*", "_ros2cli_*", "*_rclcpp_node", "spawner_*",
 )  # fmt: skip
 _VIEWER = re.compile("|".join(map(translate, VIEWERS)))
 # Names that every node has or may have, whatever it does.
 TF = "tf2_msgs/msg/TFMessage"
+NO_NAMESPACE = "the robot without a namespace"
 EVERYBODYS = ("/rosout", "/parameter_events", "/diagnostics", "/diagnostics_agg", "/bond", "/clock")
 
 
@@ -69,12 +70,18 @@ class Tree(NamedTuple):
 
 
 class Seen(NamedTuple):
-    """A graph with its robots; ``names`` has the ends of each (kind, name), without hidden ones."""
+    """A graph with its robots; ``names`` has the ends of each (kind, name), without hidden ones,
+    ``by_robot`` those of each (robot, kind, name without the robot's)."""
 
     graph: Snapshot
     owners: Owners
     names: Mapping[tuple[str, str], Ends]
     trees: tuple[Tree, ...]
+    by_robot: Mapping[tuple[str, str, str], Ends]
+
+    def of_robot(self, robot: str, kind: str, plain: str) -> Ends | None:
+        """The ends of a robot's name, by the name without the robot's."""
+        return self.by_robot.get((robot, kind, plain))
 
     def robot(self, name: str) -> str:
         """The robot of a node or name; empty for none."""
@@ -88,7 +95,11 @@ class Seen(NamedTuple):
 def look_at(graph: Snapshot, owners: Owners) -> Seen:
     """The look-ups that the rules share, made once."""
     names = {(it.kind, it.name): it for it in _ends(graph.endpoints)}
-    return Seen(graph, owners, names, tuple(_trees(graph, names.values())))
+    by_robot = {
+        (owners.names.get(name, ""), kind, owners.plain_names.get(name, name)): ends
+        for (kind, name), ends in names.items()
+    }
+    return Seen(graph, owners, names, tuple(_trees(graph, names.values())), by_robot)
 
 
 def _ends(endpoints: Iterable[GraphEndpoint]) -> Iterator[Ends]:
@@ -132,6 +143,16 @@ def is_viewer(node: str) -> bool:
     return bool(_VIEWER.fullmatch(last_word(node)))
 
 
+def is_hidden(node: str) -> bool:
+    """Is it a node of the ``ros2`` command, or another that hides itself?"""
+    return last_word(node).startswith("_")
+
+
+def is_spawner(node: str) -> bool:
+    """Does the node load controllers, and wait for a manager until then?"""
+    return last_word(node).startswith("spawner_")
+
+
 def at_work(ends: Iterable[GraphEndpoint]) -> list[GraphEndpoint]:
     """The endpoints of nodes that do more than look."""
     return [end for end in ends if not is_viewer(end.node)]
@@ -143,8 +164,15 @@ def last_word(name: str) -> str:
 
 
 def robots_of(seen: Seen, nodes: Iterable[str]) -> tuple[str, ...]:
-    """The robots that some nodes belong to, each once."""
-    return unique(filter(None, map(seen.robot, nodes)))
+    """The robots that some nodes belong to, each once.
+
+    A node outside of all that is called as one of theirs is of one more robot, which has no namespace.
+    """
+    known = unique(nodes)
+    robots = unique(filter(None, map(seen.robot, known)))
+    theirs = {seen.plain(it) for it in known if seen.robot(it)}
+    twins = any(it in theirs for it in known if not seen.robot(it))
+    return (*robots, NO_NAMESPACE) if twins else robots
 
 
 def and_then(words: Sequence[str]) -> str:

@@ -216,3 +216,40 @@ def joint_states_twice(seen: Seen) -> Iterator[Finding]:
             yield joint_states_twice.finding(
                 message, cause, robot=seen.robot(ends.name), node=made_up[0], names=(ends.name,)
             )
+
+
+@danger_rule(
+    "MG325",
+    "odometry-twice",
+    ERROR,
+    what="Two nodes publish the odometry of one robot, or its description, on the same topic. For a"
+    " description it is a warning.",
+    why="Who reads it gets both by turns: the odometry of two filters jumps from one to the other, a"
+    " controller takes the description that comes last.",
+    fix="Give each its own topic: `odometry/filtered:=odometry/local` for the first of two filters.",
+    bad="""\
+running: /robot1/ekf_local publishes /robot1/odometry/filtered nav_msgs/msg/Odometry
+running: /robot1/ekf_global publishes /robot1/odometry/filtered nav_msgs/msg/Odometry
+""",
+    good="""\
+running: /robot1/ekf_local publishes /robot1/odometry/local nav_msgs/msg/Odometry
+running: /robot1/ekf_global publishes /robot1/odometry/filtered nav_msgs/msg/Odometry
+""",
+)
+def odometry_twice(seen: Seen) -> Iterator[Finding]:
+    """A bag that is played is one as well, and so are relays: they are findings of their own."""
+    for ends in _topics(seen):
+        described = last_word(ends.name) == words.DESCRIPTION
+        nodes = nodes_of(at_work(ends.publishers))
+        twice = len(nodes) > 1 and (described or ends.type == words.ODOMETRY)
+        played = any(last_word(node).startswith(words.PLAYER) for node in nodes)
+        if not twice or played or len(robots_of(seen, nodes)) > 1:
+            continue
+        yield odometry_twice.finding(
+            f"{and_then(nodes)} both publish {ends.name}",
+            "give each its own topic, or stop one",
+            level=WARNING if described else ERROR,
+            robot=seen.robot(ends.name),
+            node=nodes[0],
+            names=(ends.name,),
+        )

@@ -17,16 +17,24 @@ _BY_NAME = (
 _NAMED = re.compile(r"cmd|vel|command|setpoint|speed")
 # Where to go, and where a robot is: a person or program sends it to one robot.
 _POSES = ("geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/PoseWithCovarianceStamped")
-_POSE_NAMES = ("goal_pose", "initialpose", "goal", "move_base_simple/goal")
+# Without underscores.
+_POSE_NAMES = ("goalpose", "initialpose", "goal", "movebasesimple/goal")
 # What one robot's own body measures: never that of two robots.
 _BODY = (
     "nav_msgs/msg/Odometry", "sensor_msgs/msg/JointState", "sensor_msgs/msg/LaserScan",
     "sensor_msgs/msg/Imu",
 )  # fmt: skip
-_SENSOR_PACKAGES = ("sensor_msgs/", "nav_msgs/", "trajectory_msgs/", "control_msgs/")
+_SENSOR_PACKAGES = (
+    "sensor_msgs/", "nav_msgs/", "trajectory_msgs/", "control_msgs/", "moveit_msgs/msg/PlanningScene",
+    "stereo_msgs/", "radar_msgs/", "can_msgs/", "velodyne_msgs/", "ouster_sensor_msgs/",
+    "livox_ros_driver2/",
+)  # fmt: skip
 MAP = "nav_msgs/msg/OccupancyGrid"
+JOYSTICK = "sensor_msgs/msg/Joy"
 ODOMETRY, JOINTS = "nav_msgs/msg/Odometry", "sensor_msgs/msg/JointState"
 DESCRIPTION = "robot_description"
+# The node of `ros2 bag play`.
+PLAYER = "rosbag2_player"
 # Nodes that send one after another, by an order among themselves: as many as one sender.
 _TEAMS = {
     "Nav2": (
@@ -51,7 +59,7 @@ def moves(name: str, type_: str) -> bool:
 
 def is_pose_order(plain: str, type_: str) -> bool:
     """Does the topic (without its robot's name) send a robot somewhere, or say where it is?"""
-    return type_ in _POSES and plain.strip("/") in _POSE_NAMES
+    return type_ in _POSES and plain.strip("/").replace("_", "") in _POSE_NAMES
 
 
 def is_of_a_body(type_: str) -> bool:

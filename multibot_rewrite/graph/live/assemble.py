@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from multibot_rewrite.graph.snapshot import (
     EXPECTED,
@@ -30,6 +30,8 @@ TF_TYPES = ("tf2_msgs/msg/TFMessage", "geometry_msgs/msg/TransformStamped")
 # Almost every node publishes one of these, so few queries show which nodes share a process.
 COMMON_TOPICS = ("/parameter_events", "/rosout")
 NO_ENCLAVES: Mapping[str, str] = {}
+# As a file keeps transforms: below a micrometre, and what no robot reaches.
+_DIGITS, _FARTHEST = 9, 1e12
 
 
 class ReceivedTransform(NamedTuple):
@@ -39,6 +41,9 @@ class ReceivedTransform(NamedTuple):
     latched: bool
     parent: str
     child: str
+
+
+NO_TRANSFORMS: Mapping[ReceivedTransform, tuple[float, ...]] = {}
 
 
 class LastChange(NamedTuple):
@@ -176,14 +181,25 @@ def _order(end: GraphEndpoint) -> tuple[str, ...]:
     return (end.kind, end.name, end.role, end.node, end.process, end.type, repr(end.qos))
 
 
+def numbers_of(transform: Any) -> tuple[float, ...]:
+    """A geometry_msgs/Transform as a snapshot keeps it; empty where it is no finite transform."""
+    at, turn = transform.translation, transform.rotation
+    numbers = at.x, at.y, at.z, turn.x, turn.y, turn.z, turn.w
+    # Not a number is not below, either.
+    if not all(abs(it) < _FARTHEST for it in numbers):
+        return ()
+    return tuple(round(it, _DIGITS) for it in numbers)
+
+
 def frames(
     received: Iterable[ReceivedTransform],
     endpoints: Iterable[GraphEndpoint],
     of_several: Collection[ReceivedTransform] = (),
+    last: Mapping[ReceivedTransform, tuple[float, ...]] = NO_TRANSFORMS,
 ) -> Iterator[GraphFrame]:
     """The transforms received, each once a topic; static if it came from a latched subscription.
 
-    ``of_several`` are those that more than one publisher sends.
+    ``of_several`` are those that more than one publisher sends, ``last`` what each was at last.
     """
     publishers = defaultdict(set)
     for end in endpoints:
@@ -194,7 +210,9 @@ def frames(
         edge = (topic, parent, child)
         latched[edge] = is_latched or latched.get(edge, False)
     several = {(it.topic, it.parent, it.child) for it in of_several}
+    numbers = {(it.topic, it.parent, it.child): own for it, own in last.items()}
     for edge, static in sorted(latched.items()):
         topic, parent, child = edge
         senders = tuple(sorted(publishers[topic]))
-        yield GraphFrame(child, parent, topic, static, senders, edge in several)
+        transform = numbers.get(edge, ())
+        yield GraphFrame(child, parent, topic, static, senders, edge in several, transform)

@@ -303,7 +303,7 @@ def _snapshot(
     return Snapshot(
         tuple(nodes),
         placed,
-        tuple(assemble.frames(ears.tf.transforms(), placed, ears.tf.of_several())),
+        tuple(assemble.frames(ears.tf.transforms(), placed, ears.tf.of_several(), ears.tf.last)),
         around,
         ears.headers.heard(),
     )

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
-from multibot_rewrite.graph.live.assemble import TF_TYPES, ReceivedTransform
+from multibot_rewrite.graph.live.assemble import TF_TYPES, ReceivedTransform, numbers_of
 from multibot_rewrite.graph.live.voices import Mark, Voices
 from multibot_rewrite.graph.snapshot import Caveat, GraphEndpoint
 from multibot_rewrite.graph.wording import SEVERAL, shorten
@@ -22,7 +22,8 @@ Subscribe = Callable[[str, str, bool, Callback], "Callable[[], None] | str"]
 
 
 class TfSubscriptions:
-    """Subscriptions to all tf topics, and the transforms received on them."""
+    """Subscriptions to all tf topics, and the transforms received on them; ``last`` is the last message
+    of each."""
 
     def __init__(self, subscribe: Subscribe) -> None:
         self._subscribe = subscribe
@@ -30,6 +31,7 @@ class TfSubscriptions:
         self._failed: dict[str, str] = {}
         self._received: dict[ReceivedTransform, float] = {}
         self._voices: dict[ReceivedTransform, Voices] = {}
+        self.last: dict[ReceivedTransform, tuple[float, ...]] = {}
         self._began = time.monotonic()
 
     def update(self, endpoints: Iterable[GraphEndpoint], substitutes: bool) -> None:
@@ -68,6 +70,7 @@ class TfSubscriptions:
             parent, child = transform.header.frame_id, transform.child_frame_id
             edge = ReceivedTransform(topic, latched, parent, child)
             self._received[edge] = now
+            self.last[edge] = numbers_of(transform.transform)
             self._voices[edge] = self._voices.get(edge, Voices()).after(mark)
 
     def transforms(self) -> tuple[ReceivedTransform, ...]:

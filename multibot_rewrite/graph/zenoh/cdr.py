@@ -2,7 +2,7 @@
 
 Source: the plain CDR of DDS, which rmw_zenoh serializes with (``cdr.cpp``): four bytes of
 encapsulation, then each number at a multiple of its size. TFMessage is a list of TransformStamped:
-stamp (int32, uint32), frame_id, child_frame_id, and seven doubles.
+stamp (int32, uint32), frame_id, child_frame_id, and seven doubles, translation and rotation.
 """
 
 from __future__ import annotations
@@ -13,22 +13,41 @@ from typing import NamedTuple
 _HEADER = 4
 # CDR_BE and CDR_LE; other encapsulations have other alignment.
 _ENDS = {b"\x00\x00": ">", b"\x00\x01": "<"}
-_STAMP, _DOUBLES = 8, 7 * 8
+_STAMP = 8
 
 
 class _Header(NamedTuple):
     frame_id: str
 
 
+class _Vector(NamedTuple):
+    x: float
+    y: float
+    z: float
+
+
+class _Quaternion(NamedTuple):
+    x: float
+    y: float
+    z: float
+    w: float
+
+
 class _Transform(NamedTuple):
+    translation: _Vector
+    rotation: _Quaternion
+
+
+class _Stamped(NamedTuple):
     header: _Header
     child_frame_id: str
+    transform: _Transform
 
 
 class TfMessage(NamedTuple):
-    """As much of a TFMessage as says which frame hangs on which; fields as in tf2_msgs."""
+    """A TFMessage without its times; fields as in tf2_msgs."""
 
-    transforms: tuple[_Transform, ...]
+    transforms: tuple[_Stamped, ...]
 
 
 def read_tf(data: bytes) -> TfMessage | None:
@@ -62,8 +81,8 @@ def _read(reader: _Reader) -> TfMessage:
         reader.skip(_STAMP)
         parent, child = reader.text(), reader.text()
         reader.align(8)
-        reader.skip(_DOUBLES)
-        found.append(_Transform(_Header(parent), child))
+        transform = _Transform(_Vector(*reader.doubles(3)), _Quaternion(*reader.doubles(4)))
+        found.append(_Stamped(_Header(parent), child, transform))
     return TfMessage(tuple(found))
 
 
@@ -72,7 +91,7 @@ class _Reader:
 
     def __init__(self, data: bytes, mark: str) -> None:
         self._data = data
-        self._number = struct.Struct(f"{mark}I")
+        self._mark, self._number = mark, struct.Struct(f"{mark}I")
         self._at = 0
 
     def align(self, size: int) -> None:
@@ -83,6 +102,12 @@ class _Reader:
         self._at += size
         if self._at > len(self._data):
             raise IndexError
+
+    def doubles(self, many: int) -> tuple[float, ...]:
+        """So many doubles; raises struct.error behind the end."""
+        values = struct.unpack_from(f"{self._mark}{many}d", self._data, self._at)
+        self._at += 8 * many
+        return values
 
     def number(self) -> int:
         """The next uint32; raises struct.error behind the end."""

@@ -182,7 +182,7 @@ def _lost(router: Router) -> Caveat:
 def _snapshot(router: Router, seen: _Seen, seconds: float, caveats: Iterable[Caveat]) -> Snapshot:
     nodes = tuple(tokens.nodes(seen.tokens))
     ends = tuple(tokens.endpoints(seen.tokens))
-    heard = seen.tf.transforms() if seen.tf else ()
+    heard = frames(seen.tf.transforms(), ends, last=seen.tf.last) if seen.tf else ()
     around = Environment(
         router.domain,
         "",
@@ -195,7 +195,7 @@ def _snapshot(router: Router, seen: _Seen, seconds: float, caveats: Iterable[Cav
         round(seconds, 2),
         (*caveats, *_not_tokens(seen.strange), *_twins(node.name for node in nodes)),
     )
-    return Snapshot(nodes, ends, tuple(frames(heard, ends)), around)
+    return Snapshot(nodes, ends, tuple(heard), around)
 
 
 def _not_tokens(keys: tuple[str, ...]) -> Iterator[Caveat]:

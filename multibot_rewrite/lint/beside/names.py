@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
 import yaml
 
@@ -22,6 +21,7 @@ from multibot_rewrite.lint.facts.typos import meant_name
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.nearest import HINTED
+from multibot_rewrite.record import NamedTuple
 
 FRAME_WORDS, JOINT_WORDS = ("frame", "link"), ("joint",)
 AT_RUN_TIME = frozenset(("odom", "map", "world", "earth", "utm"))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
 
 import yaml
 
@@ -25,6 +24,7 @@ from multibot_rewrite.lint.beside.records import Beside, Remark
 from multibot_rewrite.lint.facts.typos import meant_name
 from multibot_rewrite.model import InputError
 from multibot_rewrite.nearest import MISTYPED, Guesses
+from multibot_rewrite.record import NamedTuple
 
 # What every node has, or every controller and plugin; prefixes end in a dot.
 _EVERYWHERE = re.compile(

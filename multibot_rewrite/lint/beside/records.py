@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from multibot_rewrite.lint.config.settings import Settings
+from multibot_rewrite.record import NamedTuple
 
 if TYPE_CHECKING:
     import yaml

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
 
 from multibot_rewrite.lint.beside.records import Beside
 from multibot_rewrite.lint.config.settings import Settings
@@ -13,6 +12,7 @@ from multibot_rewrite.lint.files.pairing import described
 from multibot_rewrite.lint.files.subjects import make_subject
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.model import Claim, InputError
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.sources.packages import entries, package_of
 from multibot_rewrite.steps.document import read_document

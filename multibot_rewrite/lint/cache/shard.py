@@ -6,10 +6,11 @@ import os
 from _thread import get_ident  # threading is slow to import
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
-from typing import Any, NamedTuple
+from typing import Any
 
 from multibot_rewrite.bounded import load_json
 from multibot_rewrite.outside import Asked, Question, digest
+from multibot_rewrite.record import NamedTuple
 
 # Of one file, and of all files of the cache; the oldest ones go.
 MOST_BYTES, MOST_IN_ALL, MOST_FILES = 16 * 2**20, 256 * 2**20, 4096

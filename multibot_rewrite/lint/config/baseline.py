@@ -10,12 +10,12 @@ import os
 import re
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from typing import NamedTuple
 
 from multibot_rewrite.bounded import load_json
 from multibot_rewrite.config import read
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.record import NamedTuple
 
 FORMAT = "urdf-lint-baseline"
 VERSION = 1

@@ -7,10 +7,10 @@ import re
 import subprocess
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
-from typing import NamedTuple
 
 from multibot_rewrite.bounded import read_bytes
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.record import NamedTuple
 
 _INCLUDE = re.compile(
     rb"<xacro:include\s(?:[^<>\"']|\"[^<\"]*\"|'[^<']*')*?filename\s*=\s*(\"[^<\"]*\"|'[^<']*')"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple
 
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.place import locate
@@ -19,6 +18,7 @@ from multibot_rewrite.lint.config.directives import (
 from multibot_rewrite.lint.config.settings import MARK, Settings, file_of, is_silent
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.model import Edit
+from multibot_rewrite.record import NamedTuple
 
 UNUSED, BROKEN = "MB002", "MB003"
 _CALL = lazy_compile(r"(.*):(\d+): ")

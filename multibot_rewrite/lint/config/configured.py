@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 from multibot_rewrite.config import (
     configured_vocabulary,
@@ -27,6 +27,7 @@ from multibot_rewrite.lint.config.values import (
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.nearest import nearest
+from multibot_rewrite.record import NamedTuple
 
 __all__ = ["Configured", "check_codes", "configured", "is_excluded", "with_options"]
 OWN, PROJECT, TABLE = "urdf-lint.toml", "pyproject.toml", "urdf-lint"

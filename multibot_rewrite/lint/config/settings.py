@@ -5,11 +5,12 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from fnmatch import fnmatchcase
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.selection import NO_LEVELS, matched
 from multibot_rewrite.naming import Naming, make_naming
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import NEWEST_LTS
 
 if TYPE_CHECKING:

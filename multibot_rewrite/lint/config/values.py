@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import NamedTuple
 
 from multibot_rewrite.config import listed_files, type_name
 from multibot_rewrite.findings.codes import known_beginnings, no_rule
@@ -13,6 +12,7 @@ from multibot_rewrite.findings.selection import OFF
 from multibot_rewrite.lint.config.patterns import anchored, with_folders
 from multibot_rewrite.lint.config.settings import EVERY_FILE, TARGETS, ArgumentSet
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import RELEASES
 from multibot_rewrite.rosnames.names import check_robot_name
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain
-from typing import NamedTuple
 
 from lxml.etree import _Element
 
@@ -15,6 +14,7 @@ from multibot_rewrite.checks.numbers import number
 from multibot_rewrite.checks.pose import ROTATIONS, pose_of
 from multibot_rewrite.checks.rotation import NO_ROTATION, SAME, matrix_of_quaternion
 from multibot_rewrite.lint.convert.capsules import capsules, ends_of
+from multibot_rewrite.record import NamedTuple
 
 _IDENTITY = matrix_of_quaternion(NO_ROTATION)
 _UNREAD = {"origin": ("xyz", *ROTATIONS), "robot": ("version",)}

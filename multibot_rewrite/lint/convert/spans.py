@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
 
 from lxml.etree import _Element
 
 from multibot_rewrite.model import Edit
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.steps.document import Document, attribute_slot, tag_end
 
 

@@ -9,7 +9,7 @@ gazebo_plugins/src/gazebo_ros_diff_drive.cpp (ros2: the same), gazebo_ros_skid_s
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 from lxml.etree import _Element
 
@@ -22,6 +22,7 @@ from multibot_rewrite.checks.shapes import Extent, around, extent_of, shapes_of
 from multibot_rewrite.lint.facts.memo import memoized
 from multibot_rewrite.lint.facts.poses import link_poses
 from multibot_rewrite.lint.records import Subject
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.text import text_of
 
 # Axes that point the same way, as a cosine.

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from lxml.etree import _Element
 
 from multibot_rewrite.lint.facts.memo import memoized
 from multibot_rewrite.lint.records import Subject
+from multibot_rewrite.record import NamedTuple
 
 
 class Part(NamedTuple):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from lxml.etree import _Element
 
 from multibot_rewrite.checks.links_and_joints import Link
@@ -12,6 +10,7 @@ from multibot_rewrite.checks.pose import Pose
 from multibot_rewrite.checks.poses import sdf_pose
 from multibot_rewrite.lint.facts.memo import memoized
 from multibot_rewrite.lint.records import Subject
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.text import text_at
 
 # Types that render what is in front of them, along x of their pose.

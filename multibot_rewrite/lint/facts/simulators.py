@@ -7,13 +7,13 @@ the plugins ``lint/schema/plugins.schema``.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from collections.abc import Iterator
 
 from lxml.etree import _Element
 
 from multibot_rewrite.lint.facts.memo import memoized
 from multibot_rewrite.lint.records import Subject
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.text import text_of
 from multibot_rewrite.rewriters.tree import library_key
 
@@ -63,10 +63,12 @@ DRIVES = {
 
 
 @memoized
-def simulator_plugins(subject: Subject) -> Sequence[_Element]:
+def simulator_plugins(subject: Subject) -> list[_Element]:
     """The plugins of Gazebo: in blocks of a robot that it reads, or anywhere in an SDF."""
     if subject.document.root.tag == "sdf":
-        return subject.elements.every("plugin")
+        # A model may have its <ros2_control> in it, where <plugin> is a class.
+        plugins = subject.elements.every("plugin")
+        return [it for it in plugins if next(it.iterancestors("ros2_control"), None) is None]
     if not subject.elements.every("plugin"):
         return []
     blocks = subject.elements.tops("gazebo")

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
 
 from multibot_rewrite.checks.numbers import Vector
 from multibot_rewrite.checks.poses import plus, point_in, pose_in, scaled
 from multibot_rewrite.lint.facts.memo import memoized
 from multibot_rewrite.lint.facts.poses import link_poses
 from multibot_rewrite.lint.records import Subject
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.text import text_at
 
 

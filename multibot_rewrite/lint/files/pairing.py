@@ -8,7 +8,6 @@ from contextlib import redirect_stderr
 from functools import partial
 from glob import escape
 from io import StringIO
-from typing import NamedTuple
 
 from multibot_rewrite.checks.links_and_joints import Robot, read_robot
 from multibot_rewrite.lint.beside.kinds import is_beside
@@ -16,6 +15,7 @@ from multibot_rewrite.lint.config.settings import Settings, matches
 from multibot_rewrite.lint.files.named import SRDF_MARK, files_like, robot_name
 from multibot_rewrite.model import InputError
 from multibot_rewrite.outside import is_file
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.sources.access import Reach

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from contextlib import redirect_stderr
 from functools import partial
 from io import StringIO
-from typing import NamedTuple
 
 from lxml.etree import _Element
 
@@ -19,6 +18,7 @@ from multibot_rewrite.lint.files.named import SRDF_MARK
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.schema.faults import read_faults
 from multibot_rewrite.model import InputError
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.sources.packages import package_folder

@@ -10,9 +10,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
 from pathlib import Path
-from typing import NamedTuple
 
 from multibot_rewrite.lazy import lazy_compile
+from multibot_rewrite.record import NamedTuple
 
 _FOLDER = Path(__file__).parent
 SDF, PLUGINS, UNITS = "sdf.schema", "plugins.schema", "units.schema"

@@ -5,7 +5,6 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Iterator, Sequence
-from typing import NamedTuple
 
 from lxml import etree
 
@@ -25,6 +24,7 @@ from multibot_rewrite.lint.schema.sections import (
 from multibot_rewrite.lint.schema.values import COUNTS, is_fine, shortened, wrong_numbers
 from multibot_rewrite.lint.schema.versions import is_known, version_of
 from multibot_rewrite.nearest import MISTYPED, nearest
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.steps.document import Document, tag_end
 
 # What a child of <robot> can be a misspelling of: anything else there is an extension.

@@ -23,6 +23,8 @@ from multibot_rewrite.rewriters.text import text_at, text_of
 from multibot_rewrite.rewriters.tree import plugin_keys
 
 GZ, GAZEBO_ROS, ROS_1 = "gz-sim-", "gazebo_ros_", "ros1 "
+# How the libraries end that come with Gazebo Classic itself.
+CLASSIC = "Plugin"
 HARDWARE = "hardware "
 
 
@@ -174,16 +176,21 @@ def _counterparts(kind: str, library: str) -> tuple[str, ...]:
     """Those of the same name or subject: in the other ROS, in Gazebo for one of Classic, and the
     reverse."""
     own = _subject(library)
-    starts = (GAZEBO_ROS, ROS_1 + GAZEBO_ROS) if library.startswith(GZ) else (GZ,)
-    found = [it for it in chunks(PLUGINS) if it.startswith(starts) and "::" not in it]
+    of_gz = library.startswith(GZ)
+    starts = (GAZEBO_ROS, ROS_1 + GAZEBO_ROS) if of_gz else (GZ,)
+    found = [
+        it
+        for it in chunks(PLUGINS)
+        if (it.startswith(starts) or (of_gz and it.endswith(CLASSIC))) and "::" not in it
+    ]
     same = sorted(it for it in found if own and _subject(it.removeprefix(ROS_1)) == own)
     return (library if kind else ROS_1 + library, *same)
 
 
 def _subject(library: str) -> str:
     """What a plugin is about by the words of its library."""
-    bare = library.removeprefix(GZ).removeprefix(GAZEBO_ROS).removesuffix("-system")
-    return fold(bare).removesuffix("_sensor")
+    bare = fold(library.removeprefix(GZ).removeprefix(GAZEBO_ROS).removesuffix("-system"))
+    return bare.removesuffix(CLASSIC.casefold()).removesuffix("_sensor").replace("_", "")
 
 
 def _missing(

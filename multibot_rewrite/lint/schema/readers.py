@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from functools import lru_cache
 from pathlib import Path
-from typing import NamedTuple
 
 from multibot_rewrite.lint.schema.versions import OLDEST, Version, read_version
+from multibot_rewrite.record import NamedTuple
 
 _FILE = Path(__file__).parent / "readers.schema"
 URDFDOM, RVIZ, SDFORMAT, CAPSULE = "urdfdom", "RViz", "sdformat", "capsule"

@@ -11,12 +11,12 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
-from typing import NamedTuple
 
 from lxml import etree
 
 from multibot_rewrite.lint.schema.values import FINE
 from multibot_rewrite.lint.schema.versions import OLDEST, Version, read_version
+from multibot_rewrite.record import NamedTuple
 
 _FILE = Path(__file__).parent / "urdf.schema"
 ROBOT = "robot"

@@ -6,11 +6,11 @@ Source: urdfdom 6.0.0, class ``URDFVersion`` in urdf_parser.h; without an attrib
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import NamedTuple
 
 from lxml.etree import _Element
 
 from multibot_rewrite.lazy import lazy_compile
+from multibot_rewrite.record import NamedTuple
 
 # What strtol reads whole.
 _NUMBER = lazy_compile(r"[ \t\r\n\v\f]*([-+]?)([0-9]{1,9})")

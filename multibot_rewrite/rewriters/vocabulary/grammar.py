@@ -7,11 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
-from typing import NamedTuple
 
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import Site, VocabularyError
 from multibot_rewrite.naming import SEPARATORS
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import RELEASES as KNOWN
 from multibot_rewrite.releases import is_release_words, share_release
 from multibot_rewrite.rewriters.vocabulary.wired import ROLES as WIRES

@@ -10,9 +10,9 @@ import re
 import sys
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
-from typing import NamedTuple
 
 from multibot_rewrite.model import VocabularyError
+from multibot_rewrite.record import NamedTuple
 
 GROUP = "multibot_rewrite.vocabulary"
 _METADATA = (".dist-info", ".egg-info")

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple
 
 from multibot_rewrite.model import VocabularyError
+from multibot_rewrite.record import NamedTuple
 
 ROLES = ("publishes", "subscribes", "serves")
 

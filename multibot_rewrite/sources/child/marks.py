@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 from xml.dom import UserDataHandler
 
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.sources.child.frames import NUMBER
 
 MARK = "multibot_mark"

@@ -7,9 +7,10 @@ import sys
 from array import array
 from collections.abc import Iterator, Mapping
 from types import FrameType
-from typing import Any, NamedTuple
+from typing import Any
 from xml.parsers.expat import ExpatError, errors
 
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.sources.child.asking import Ask, connect
 from multibot_rewrite.sources.child.frames import MOST_TEXT, NUMBER
 from multibot_rewrite.sources.child.marks import MARK, NOWHERE, Mark, Marks, marking

@@ -13,8 +13,8 @@ import os
 import struct
 from collections.abc import Mapping
 from functools import cache
-from typing import NamedTuple
 
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.sources.child.system import control, no_new_privileges
 
 _SET_SECCOMP, _MODE_FILTER = 22, 2

@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from zenoh_robots import tf_message
 
+from multibot_rewrite.graph.live.assemble import numbers_of
 from multibot_rewrite.graph.zenoh.cdr import read_tf
 
 # One transform, odom -> base: count, stamp, "odom" with its zero, "base" with its zero, then
@@ -31,6 +32,13 @@ def edges(data: bytes) -> list[tuple[str, str]] | None:
 
 def test_one_transform() -> None:
     assert edges(ONE) == [("odom", "base")]
+
+
+@pytest.mark.parametrize("mark", ["<", ">"])
+def test_where_frames_are(mark: str) -> None:
+    message = read_tf(tf_message(("odom", "base"), ("base", "scan"), mark=mark))
+    assert message
+    assert [numbers_of(it.transform) for it in message.transforms] == [(1, 2, 3, 0, 0, 0, 1)] * 2
 
 
 @pytest.mark.parametrize("mark", ["<", ">"])

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 
 from lxml.etree import _Element
 
-from multibot_rewrite.checks.mesh_box import mesh_box
+from multibot_rewrite.checks.mesh_box import COLLADA, mesh_box
 from multibot_rewrite.checks.numbers import vector
 from multibot_rewrite.checks.poses import minus
 from multibot_rewrite.checks.problem import Problem
@@ -23,6 +23,7 @@ from multibot_rewrite.outside import is_file
 # Metres: the longest side, and the one after it; a long and thin mesh may be a rail.
 LONG, WIDE = 50.0, 10.0
 HINT = 'are these millimetres? add scale="0.001 0.001 0.001"'
+HINT_OF_UNIT = 'correct <unit meter> in the file, or add scale="0.001 0.001 0.001"'
 
 
 def box_of(subject: Subject, mesh: _Element, whole: bool = True) -> Extent | None:
@@ -56,9 +57,11 @@ def _on_disk(it: Lookup) -> str:
     "MB714",
     "mesh-units",
     WARNING,
-    what="A mesh is larger than a house: an STL or OBJ file without a scale that makes metres of it.",
-    why="Both formats have no units, and every program takes metres: RViz shows the robot as a dot "
-    "inside of it, and as a collision the robot hits everything in the world.",
+    what="A mesh is larger than a house: an STL or OBJ file without a scale that makes metres of it, "
+    "or a Collada file with a wrong unit.",
+    why="STL and OBJ have no units, and every program takes metres; of Collada, every program takes "
+    "what the file says. RViz shows the robot as a dot inside of the mesh, and as a collision the "
+    "robot hits everything in the world.",
     fix='Add scale="0.001 0.001 0.001" to a mesh in millimetres, or export it in metres.',
     bad=MESH % "package://arm_description/meshes/base.obj",
     good=MESH % 'package://arm_description/meshes/base.obj" scale="0.001 0.001 0.001',
@@ -77,4 +80,5 @@ def mesh_units(subject: Subject) -> Iterator[Problem]:
         sides = sorted(minus(box.high, box.low)) if box else (0.0,) * 3
         if sides[2] >= LONG and sides[1] >= WIDE:
             message = f"{key[0]!r} is {sides[2]:.3g} m long"
-            yield Problem(mesh, message, "filename", HINT)
+            of_unit = key[0].strip().lower().endswith(COLLADA)
+            yield Problem(mesh, message, "filename", HINT_OF_UNIT if of_unit else HINT)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator
 from functools import cache
-from typing import NamedTuple
 
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import ERROR, NOTE
@@ -14,6 +13,7 @@ from multibot_rewrite.lint.facts.memo import memoized
 from multibot_rewrite.lint.files.subjects import EXPANDED
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.meshes.shared import MESH, Used, problem, used_files
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.sources.packages import entries, find_in, package_folders, package_of
 
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from lxml.etree import _Element
 
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.facts.memo import memoized
 from multibot_rewrite.lint.records import Subject
+from multibot_rewrite.record import NamedTuple
 
 _SCHEME = lazy_compile(r"([A-Za-z][A-Za-z0-9+.-]+)://")
 # A letter and a colon is a drive of Windows.

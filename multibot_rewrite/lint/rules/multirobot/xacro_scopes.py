@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple
 
 from lxml.etree import _Element
 
 from multibot_rewrite.lazy import lazy_compile
+from multibot_rewrite.record import NamedTuple
 
 # What people call the parameter that is put in front of a robot's names.
 PREFIX = lazy_compile(r"(?:\w+_)?(?:prefix|namespace)|ns|robot_ns|robot_name")

@@ -40,7 +40,7 @@ def _placed(tag: str, xyz: str, shape: str = BOX) -> str:
     "collision-away",
     WARNING,
     what="The collision of a link is not where its visual is: the two do not touch, or are one "
-    "mesh at two places. Of meshes, STL and OBJ files of up to 4 MB are measured.",
+    "mesh at two places. Of meshes, STL, OBJ and Collada files of up to 4 MB are measured.",
     why="The robot bumps into what is not there, and drives and reaches through what is; planners keep "
     "a distance from empty space.",
     fix="Give <collision> and <visual> the same <origin>.",
@@ -56,6 +56,7 @@ def collision_away(subject: Subject) -> Iterator[Problem]:
             continue
         box = _around(subject, seen)
         gap = 0.0 if box is None else _gap(box, _around(subject, hard))
+        gap = 0.0 if gap and _covers_next(subject, link, hard) else gap
         gap = gap or _moved(subject, seen, hard)
         if gap:
             message = f"the collision of link {link.name!r} is {gap:.3g} m away from its visual"
@@ -117,9 +118,26 @@ def _gap(one: Extent, other: Extent | None) -> float:
         return 0.0
     if min(max(minus(it.high, it.low)) for it in (one, other)) < MARKER:
         return 0.0
-    ways = zip(one.low, one.high, other.low, other.high, strict=True)
-    gap = max(max(low - b, a - high) for low, high, a, b in ways)
+    gap = _apart(one, other)
     return gap if gap > AWAY else 0.0
+
+
+def _apart(one: Extent, other: Extent) -> float:
+    """How far two boxes are apart; below 0 where one is in the other."""
+    ways = zip(one.low, one.high, other.low, other.high, strict=True)
+    return max(max(low - b, a - high) for low, high, a, b in ways)
+
+
+def _covers_next(subject: Subject, link: Link, hard: _Shapes) -> bool:
+    """Is the collision where a link below is seen? A cylinder of a leg's hip is around the motor that
+    the thigh shows."""
+    own = _around(subject, hard)
+    for joint in subject.robot.below.get(link.name, ()):
+        child, pose = subject.robot.link.get(joint.child), _pose(subject, joint.element)
+        box = _around(subject, _shapes(subject)[child.element][0]) if child else None
+        if box and own and pose and _apart(placed_box(box, pose), own) <= 0:
+            return True
+    return False
 
 
 def _moved(subject: Subject, seen: _Shapes, hard: _Shapes) -> float:

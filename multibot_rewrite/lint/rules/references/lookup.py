@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple
 
 from multibot_rewrite.checks.audit import uses_xacro
 from multibot_rewrite.checks.problem import Problem
@@ -12,6 +11,7 @@ from multibot_rewrite.checks.references import Loose, doubtful, loose_ends, unde
 from multibot_rewrite.lint.facts.memo import memoized
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.model import Claim
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.text import text_at
 from multibot_rewrite.steps.collect import Inventory
 

@@ -1,0 +1,69 @@
+"""``multibot`` takes a word: which command it names, and the help of all. Only that one is imported."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+
+from multibot_rewrite.cli.declared.commands import COMMANDS
+from multibot_rewrite.cli.options import Command
+from multibot_rewrite.cli.output import print_bytes
+from multibot_rewrite.cli.parser import painted
+from multibot_rewrite.cli.process import DONE, PROGRAM, start
+from multibot_rewrite.cli.terminal import AUTO, is_coloured
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.nearest import did_you_mean_one_of
+from multibot_rewrite.version import __version__
+
+HELP, VERSION = ("-h", "--help"), ("-V", "--version")
+
+
+def run(words: Sequence[str]) -> int:
+    """Run the command of the first word; returns the exit code, raises UsageError."""
+    if not words:
+        raise UsageError(f"no COMMAND given, use one of {', '.join(COMMANDS)}")
+    first, *others = words
+    if first in HELP:
+        print_bytes(overview(AUTO).encode())
+        return DONE
+    if first in VERSION:
+        print_bytes(f"{PROGRAM} {__version__}\n".encode())
+        return DONE
+    command = find_command(first)
+    return start(command, others, f"{PROGRAM} {command.name}")
+
+
+def find_command(word: str) -> Command:
+    """The command of that name; UsageError with the nearest one."""
+    if word in COMMANDS:
+        return COMMANDS[word]
+    if word.startswith("-"):
+        raise UsageError(f"{word}: write the command first, for example: multibot check {word}")
+    near = did_you_mean_one_of(word, COMMANDS)
+    raise UsageError(f"unknown command {word!r}; {near or 'see multibot --help'}")
+
+
+def overview(colour: str) -> str:
+    """The help of ``multibot`` itself."""
+    rows = [f"  {it.name:<14}{it.about}" for it in COMMANDS.values()]
+    text = "\n".join(
+        (
+            "usage: multibot COMMAND [options]",
+            "",
+            "Many robots in one ROS 2 system: rewrite, plan, build and check a fleet.",
+            "",
+            "examples:",
+            "  multibot init rover.urdf",
+            "  multibot build fleet.yaml -o out/",
+            "  multibot remap rover.urdf robot1 robot2 --stack nav2",
+            "  multibot explain MG102",
+            "",
+            "commands:",
+            *rows,
+            "",
+            "multibot help COMMAND shows the options of each; urdf-postfix and urdf-lint are",
+            "commands of their own.",
+            "",
+        )
+    )
+    return painted(text, is_coloured(colour, sys.stdout))

@@ -1,0 +1,175 @@
+"""Seeded faults between a sender and a robot: relays, limits left out, names twice, two senders."""
+
+from __future__ import annotations
+
+from fault_changes import DESCRIPTION, Fault, added, both, nav, renamed
+from healthy_systems import (
+    JOINTS,
+    NAVIGATE,
+    ODOMETRY,
+    SCAN,
+    START,
+    TWIST,
+    TWO,
+    beside_the_root,
+    idle_mux,
+)
+
+from multibot_rewrite.findings.finding import ERROR, WARNING
+from multibot_rewrite.graph.snapshot import GraphNode, Snapshot
+from multibot_rewrite.remap.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
+
+JOY, BOOL = "sensor_msgs/msg/Joy", "std_msgs/msg/Bool"
+LISTED = "/controller_manager/list_controllers"
+CONTROLLERS = "controller_manager_msgs/srv/ListControllers"
+
+
+def chain_rows() -> tuple[Fault, ...]:
+    return (
+        Fault(
+            "one joystick for both teleops", nav,
+            both(
+                added("/joy_node", (PUBLISHES, "/joy", JOY)),
+                *(added(f"/{it}/teleop_node", (SUBSCRIBES, "/joy", JOY)) for it in TWO),
+            ),
+            "MG310", ("robot1 and robot2", "/joy", "enable_button"), WARNING,
+        ),
+        Fault(
+            "a relay of robot1's commands to robot2", nav,
+            added(
+                "/relay", (SUBSCRIBES, "/robot1/cmd_vel", TWIST), (PUBLISHES, "/robot2/cmd_vel", TWIST)
+            ),
+            "MG314", ("/relay", "/robot1/cmd_vel of robot1", "/robot2/cmd_vel"), ERROR, ("MG312",),
+        ),
+        Fault(
+            "a relay of robot1's scan to robot2", nav,
+            added("/relay", (SUBSCRIBES, "/robot1/scan", SCAN), (PUBLISHES, "/robot2/scan", SCAN)),
+            "MG314", ("/relay", "/robot2/scan of robot2"),
+        ),
+        Fault(
+            "rqt_robot_steering against Nav2", nav,
+            added("/rqt_gui_py_node_99", (PUBLISHES, "/robot1/cmd_vel", TWIST)),
+            "MG312", ("/rqt_gui_py_node_99", "twist_mux"), WARNING,
+        ),
+        Fault(
+            "robot1's stop button stops robot2", nav,
+            both(
+                added("/robot1/button", (PUBLISHES, "/robot2/stop", BOOL)),
+                *(added(f"/{it}/base", (SUBSCRIBES, f"/{it}/stop", BOOL)) for it in TWO),
+            ),
+            "MG311", ("/robot1/button", "belongs to robot2"),
+        ),
+        Fault(
+            "the controller sends past collision_monitor", nav,
+            renamed("/robot2/cmd_vel_nav", "/robot2/cmd_vel", "/robot2/controller_server"),
+            "MG315", ("/robot2/controller_server", "collision_monitor", "cmd_vel:=cmd_vel_nav"),
+        ),
+        Fault(
+            "the driver reads an input of twist_mux", idle_mux,
+            renamed("/robot2/cmd_vel_out", "/robot2/joy_vel", "/robot2/diff_drive"),
+            "MG315", ("/robot2/diff_drive", "/robot2/twist_mux", "joy_vel:=cmd_vel_out"), ERROR,
+            ("MG312",),
+        ),
+        Fault(
+            "a start pose to initial_pose", nav,
+            added("/starter", (PUBLISHES, "/robot2/initial_pose", START)),
+            "MG308", ("/starter", "/robot2/initialpose"),
+        ),
+        Fault(
+            "goals for a robot that is not there", nav,
+            added("/fleet_manager", (CALLS, "/robot3/navigate_to_pose", NAVIGATE)),
+            "MG304", ("no node is in /robot3", "started"), WARNING,
+        ),
+        Fault(
+            "commands for a robot that is not there", nav,
+            added("/fleet_manager", (PUBLISHES, "/robot3/cmd_vel", TWIST)),
+            "MG308", ("no node is in /robot3", "started"), WARNING,
+        ),
+        Fault(
+            "a spawner without a manager", nav,
+            both(
+                added("/robot2/spawner_drive", (CALLS, LISTED, CONTROLLERS)),
+                *(
+                    added(
+                        f"/{it}/controller_manager",
+                        (SERVES, f"/{it}{LISTED}", CONTROLLERS),
+                    )
+                    for it in TWO
+                ),
+            ),
+            "MG304", ("/robot2/spawner_drive", "/robot2/controller_manager serves"),
+        ),
+        Fault(
+            "the namespace twice: /robot2/robot2/scan", nav,
+            renamed("/robot2/scan", "/robot2/robot2/scan", "/robot2/lidar_driver"),
+            "MG303", ("/robot2/lidar_driver", "twice"),
+        ),
+        Fault(
+            "the namespace twice in a costmap", nav,
+            added(
+                "/robot2/local_costmap/local_costmap",
+                (SUBSCRIBES, "/robot2/local_costmap/robot2/scan", SCAN),
+            ),
+            "MG303", ("write /robot2/scan in its parameters",),
+        ),
+        Fault(
+            "joint states below the name of their broadcaster", nav,
+            lambda g: _sent_by(g, "/robot2/joint_states", "/robot2/broadcaster", JOINTS),
+            "MG303", ("/robot2/robot_state_publisher", "/robot2/broadcaster/joint_states"),
+        ),
+        Fault(
+            "two containers of one name", nav,
+            lambda g: g._replace(nodes=(*g.nodes, *(GraphNode("/nav2_container", it) for it in "ab"))),
+            "MG301", ("/nav2_container", "20 s"),
+        ),
+        Fault(
+            "two versions of a message", nav, _two_versions,
+            "MG306", ("/robot2/amcl", "another version of sensor_msgs/msg/LaserScan"),
+        ),
+        Fault(
+            "two filters on odometry/filtered", nav,
+            both(
+                *(
+                    added(f"/robot1/{it}", (PUBLISHES, "/robot1/odometry/filtered", ODOMETRY))
+                    for it in ("ekf_local", "ekf_global")
+                )
+            ),
+            "MG325", ("/robot1/ekf_global and /robot1/ekf_local", "/robot1/odometry/filtered"),
+        ),
+        Fault(
+            "two descriptions of a robot", nav,
+            added("/robot1/arm_description", (PUBLISHES, "/robot1/robot_description", DESCRIPTION)),
+            "MG325", ("/robot1/arm_description", "/robot1/robot_description"), WARNING,
+        ),
+        Fault(
+            "a robot without a namespace and robot2 on /tf", beside_the_root,
+            both(renamed("/robot2/tf", "/tf"), renamed("/robot2/tf_static", "/tf_static")),
+            "MG402", ("robot2 and the robot without a namespace", "/tf:=tf"),
+        ),
+        Fault(
+            "robot2's driver obeys the robot without a namespace", beside_the_root,
+            renamed("/robot2/cmd_vel", "/cmd_vel", "/robot2/diff_drive"),
+            "MG310", ("robot2 and the robot without a namespace", "/cmd_vel"),
+        ),
+        Fault(
+            "robot2's amcl reads the scan of the robot without a namespace", beside_the_root,
+            renamed("/robot2/scan", "/scan", "/robot2/amcl"),
+            "MG322", ("/robot2/amcl", "/scan"),
+        ),
+    )  # fmt: skip
+
+
+def _sent_by(graph: Snapshot, name: str, node: str, type_: str) -> Snapshot:
+    """Nobody publishes the topic but this node, and that below its own name."""
+    kept = (it for it in graph.endpoints if not (it.name == name and it.role == PUBLISHES))
+    own = f"{node}/{name.rpartition('/')[2]}"
+    return added(node, (PUBLISHES, own, type_))(graph._replace(endpoints=tuple(kept)))
+
+
+def _two_versions(graph: Snapshot) -> Snapshot:
+    """The lidar's computer has other messages than that of its robot."""
+    ends = (
+        it._replace(type_hash=f"RIHS01_{it.role}") if it.name == "/robot2/scan" else it
+        for it in graph.endpoints
+    )
+    return graph._replace(endpoints=tuple(ends))
