@@ -11,6 +11,7 @@ from multibot_rewrite.naming import DECLARED_KINDS
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.model_namespaces import below_models
+from multibot_rewrite.rewriters.remap_rules import names_in_rules
 from multibot_rewrite.rewriters.spelling import ResolvedName, resolved_names, takes_empty
 from multibot_rewrite.rewriters.text import text_at, text_of
 from multibot_rewrite.rewriters.tree import Tree, TreeNode
@@ -85,9 +86,10 @@ def collect(
             claims += _text_claim(found.text, element, start)
     claims = below_models(claims, document.source, tree.vocabulary.release)
     declared = _declared(claims, urdf_declarations)
-    names = resolved_names(claims, declared, apart)
     release = tree.vocabulary.release
-    return Inventory(document, claims, hosts, declared, format_, names, release)
+    inventory = Inventory(document, claims, hosts, declared, format_, [], release)
+    rules = names_in_rules(claims, inventory.served)
+    return inventory._replace(names=resolved_names(claims, declared, apart, rules))
 
 
 def _format(document: Document, tree: Tree, likely: str) -> str:

@@ -6,6 +6,9 @@ What libsdformat makes of a value was tried with libsdformat 12.3 (``sdf::Root::
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from pathlib import Path
+
 import pytest
 
 from multibot_rewrite.lint.check import lint_data
@@ -26,6 +29,17 @@ def codes(inside: str, distro: str = "jazzy") -> list[str]:
     text = f'<robot name="r">{LINK}{inside}</robot>'
     found = lint_data("r.urdf", text.encode(), NEW._replace(distro=distro))
     return [it.code for it in found]
+
+
+def linted(inside: str, _folder: Path) -> set[str]:
+    """What all rules find in it."""
+    text = f'<robot name="r">{LINK}{inside}</robot>'
+    return {it.code for it in lint_data("r.urdf", text.encode(), Settings(distro="jazzy"))}
+
+
+def defects() -> Iterator[tuple[str, str, str]]:
+    """Each planted defect, the same without it, and its code."""
+    return ((text, "", code) for text, code in PLANTED.values())
 
 
 def in_link(inside: str) -> str:
@@ -453,6 +467,12 @@ def test_a_value_is_read_as_libsdformat_reads_it(type_: str, text: str, fails: b
     assert (found.fails if found else None) == fails
 
 
+def test_a_class_of_hardware_in_a_model_is_no_plugin_of_gazebo() -> None:
+    inside = hardware("gz_ros2_control/GazeboSimSystem")
+    text = f'<sdf version="1.9"><model name="m"><link name="l"/>{inside}</model></sdf>'
+    assert [it.code for it in lint_data("model.sdf", text.encode(), NEW)] == ["MB156"]
+
+
 @pytest.mark.parametrize("file", [SDF, PLUGINS, UNITS])
 def test_every_row_has_a_source(file: str) -> None:
     for name in chunks(file):
@@ -478,7 +498,3 @@ def test_nothing_is_loaded_for_a_robot_without_gazebo() -> None:
     chunks.cache_clear()
     assert codes("") == []
     assert chunks.cache_info().currsize == 0
-
-
-def test_the_page_of_precision_has_these_counts() -> None:
-    assert (len(PLANTED), len(HEALTHY)) == (84, 53)

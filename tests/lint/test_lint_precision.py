@@ -3,13 +3,22 @@
 from __future__ import annotations
 
 import pytest
-from lint_triage import Precision, precision_page, precisions
-from paths import ROOT
+from lint_precision import (
+    IN_PACKAGES,
+    PLANTED,
+    Precision,
+    hits,
+    planted,
+    precision_page,
+    precisions,
+)
+from paths import CORPUS, ROOT
 
 from multibot_rewrite.findings.finding import NOTE
 from multibot_rewrite.lint.registry import RULES
 
 JUDGED, RIGHT = 10, 0.95
+LEAST_DEFECTS, LEAST_ODDITIES = 100, 60
 TABLE = precisions()
 
 
@@ -27,4 +36,23 @@ def test_enough_was_judged_and_enough_is_true(row: Precision) -> None:
 
 
 def test_the_page_is_up_to_date() -> None:
+    """It has the planted defects and healthy oddities as the lint finds them now."""
     assert (ROOT / "docs/lint-precision.md").read_text() == precision_page()
+
+
+def test_enough_defects_are_planted_and_found() -> None:
+    counts = [planted(it) for it in PLANTED]
+    assert sum(it.found for it in counts) >= LEAST_DEFECTS
+    assert sum(it.found for it in counts) >= RIGHT * sum(it.defects for it in counts)
+    assert sum(it.healthy for it in counts) >= LEAST_ODDITIES
+
+
+@pytest.mark.deep
+def test_the_hits_are_those_of_today() -> None:
+    """After a change that is meant judge what is new: python tests/support/lint_precision.py counts."""
+    if not CORPUS.exists():
+        pytest.skip(f"no public files in {CORPUS}")
+    now = hits()
+    assert {it.code: it.hits for it in TABLE if it.code not in IN_PACKAGES} == {
+        it.code: now[it.code] for it in TABLE if it.code not in IN_PACKAGES
+    }

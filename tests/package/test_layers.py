@@ -24,7 +24,7 @@ FLOORS = (
     ("record",),
     ("outside",),
     ("bounded", "gc_pause", "lazy", "model", "nearest", "plural", "printable", "version"),
-    ("findings", "rosnames", "naming", "config", "arguments", "releases"),
+    ("findings", "rosnames", "naming", "policy", "config", "arguments", "releases"),
     ("controller_ways",),
     ("rewriters",),
     ("readback", "steps"),

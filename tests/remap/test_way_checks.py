@@ -7,7 +7,7 @@ import re
 import pytest
 
 from multibot_rewrite.fleets.fleet import make_fleet, merge
-from multibot_rewrite.naming import Policy
+from multibot_rewrite.policy import Policy
 
 LAYOUT: Policy = {"layout": "tf-per-robot"}
 NEITHER: Policy = {"layout": "postfix"}

@@ -2,7 +2,6 @@
 
 python tests/support/lint_triage.py counts > fixtures/lint_triage_counts.tsv
 python tests/support/lint_triage.py page > docs/lint-triage.md
-python tests/support/lint_triage.py precision > docs/lint-precision.md
 """
 
 from __future__ import annotations
@@ -43,46 +42,6 @@ checks them.
 | rule | public files | packages | judged | false |
 |---|--:|--:|--:|--:|
 """
-
-
-PRECISION = FIXTURES / "lint_precision.tsv"
-_PRECISION_HEAD = """\
-# How often the newest rules of urdf-lint are right
-
-Made by `python tests/support/lint_triage.py precision > docs/lint-precision.md` from
-`fixtures/lint_precision.tsv`.
-
-Each rule was run over the public files and those of Python packages that [the page of
-judgements](lint-triage.md) has, with the facts of the newest long-term release unless it says
-otherwise. Ten of its findings or more were judged, all where there are fewer, by running or
-reading what consumes the value. A rule with less than 95 % true findings is a note.
-
-Of defects planted in `tests/lint/`, one a file, so many gave a finding that the healthy file does not
-have. Of files that are odd and healthy none may have one:
-
-| what | defects | found before these rules | found | odd and healthy |
-|---|--:|--:|--:|--:|
-| below `<gazebo>`, parameters of plugins and hardware (`test_lint_gazebo.py`) | 84 | 29 | 84 | 53 |
-| ros2_control as a whole (`test_lint_systems.py`) | 19 | 10 | 19 | 15 |
-| geometry of a rover and an arm (`test_lint_geometry.py`) | 52 | 5 | 52 | 40 |
-| parameter, RViz, MoveIt and bridge files (`test_lint_beside.py`) | 39 | 0 | 39 | 29 |
-
-No public file has what a rule with 0 finds: that rule rests on the source that is named, and on its
-examples and the defects planted in `tests/lint/`, each of which it finds alone.
-
-| rule | level | found | judged | true | by |
-|---|---|--:|--:|--:|---|
-"""
-
-
-class Precision(NamedTuple):
-    """How many findings of a rule there are in public files, were judged, are true, and by whom."""
-
-    code: str
-    hits: int
-    judged: int
-    true: int
-    referee: str
 
 
 class Judged(NamedTuple):
@@ -195,28 +154,10 @@ def _section(code: str, judged: list[Judged]) -> Iterator[str]:
         yield f"- `{it.file}:{it.line}` {verdict}: {it.reason}\n"
 
 
-def precisions() -> list[Precision]:
-    """The table of precision."""
-    rows = (line.split("\t") for line in PRECISION.read_text().splitlines()[1:])
-    return [Precision(code, *map(int, numbers), referee) for code, *numbers, referee in rows]
-
-
-def precision_page() -> str:
-    """The page of precision, Markdown."""
-    rows = (
-        f"| {it.code} {RULES[it.code].name} | {RULES[it.code].level} | {it.hits} | {it.judged} "
-        f"| {it.true} | {it.referee} |\n"
-        for it in precisions()
-    )
-    return _PRECISION_HEAD + "".join(rows)
-
-
 if __name__ == "__main__":
     if sys.argv[1:] == ["counts"]:
         corpus, wheels = linted_corpus(), linted_wheels()
         sizes = len(corpus), len(wheels)
         sys.stdout.write(counts_table(errors(corpus), errors(wheels), sizes))
-    elif sys.argv[1:] == ["precision"]:
-        sys.stdout.write(precision_page())
     else:
         sys.stdout.write(page())

@@ -66,7 +66,9 @@ DRIVES = {
 def simulator_plugins(subject: Subject) -> list[_Element]:
     """The plugins of Gazebo: in blocks of a robot that it reads, or anywhere in an SDF."""
     if subject.document.root.tag == "sdf":
-        return subject.elements.every("plugin")
+        # A model may have its <ros2_control> in it, where <plugin> is a class.
+        plugins = subject.elements.every("plugin")
+        return [it for it in plugins if next(it.iterancestors("ros2_control"), None) is None]
     if not subject.elements.every("plugin"):
         return []
     blocks = subject.elements.tops("gazebo")
