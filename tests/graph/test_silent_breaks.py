@@ -19,6 +19,7 @@ from graph_cases import (
     with_type,
     without_node,
 )
+from graph_examples import read_example
 
 from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.graph.check import check
@@ -332,3 +333,51 @@ def test_a_second_sensor_is_no_prefix() -> None:
     )
     graph = reframed(lambda it: it, *more)(healthy("postfix"))
     assert {it.code for it in check(read_plan("postfix"), graph)} == {"MG204"}
+
+
+ONE_TF = """\
+planned: frames of robot1 on /tf: robot1_base_link, robot1_arm, robot1_hand
+planned: frames of robot2 on /tf: robot2_base_link, robot2_arm, robot2_hand
+as planned: /robot1/robot_state_publisher publishes /tf
+as planned: /robot2/robot_state_publisher publishes /tf
+running: transform robot1_base_link -> robot1_arm on /tf
+running: transform robot1_arm -> robot1_hand on /tf
+"""
+
+
+def said(lines: str) -> dict[str, str]:
+    """The hint of each code."""
+    return {it.code: it.hint for it in check(*read_example(lines))}
+
+
+def test_a_prefix_before_names_that_have_the_robots_inside() -> None:
+    """By its name alone `foo_robot2_arm` is of no robot: the word is neither first nor last."""
+    found = said(
+        ONE_TF
+        + "running: transform foo_robot2_base_link -> foo_robot2_arm on /tf\n"
+        + "running: transform foo_robot2_arm -> foo_robot2_hand on /tf\n"
+    )
+    assert "frame_prefix of /robot2/robot_state_publisher is 'foo_'" in found["MG206"]
+    assert "MG208" not in found
+
+
+def test_another_robots_description_beside_the_own_odometry() -> None:
+    """The root of the description comes with the odometry, so not all of its frames are missing."""
+    found = said(
+        ONE_TF
+        + "running: transform robot2_odom -> robot2_base_link on /tf\n"
+        + "running: transform robot1_base_link -> robot1_sensor on /tf_static twice\n"
+    )
+    assert "has the description of robot1" in found["MG208"]
+
+
+def test_the_odometry_of_a_simulated_robot_names_its_bridge() -> None:
+    found = said(
+        ONE_TF.replace("on /tf: robot1_", "on /tf: robot1_odom, robot1_")
+        + "planned: topic /tf over a bridge that publishes tf2_msgs/msg/TFMessage\n"
+        + "running: /ros_gz_bridge publishes /tf tf2_msgs/msg/TFMessage\n"
+        + "running: transform map -> robot1_odom on /tf\n"
+        + "running: transform robot2_base_link -> robot2_arm on /tf\n"
+        + "running: transform robot2_arm -> robot2_hand on /tf\n"
+    )
+    assert "comes over /ros_gz_bridge" in found["MG203"]

@@ -10,7 +10,7 @@ from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.graph.rules.causes import Cause, caused, tf_rule
 from multibot_rewrite.graph.rules.comparison import View
 from multibot_rewrite.graph.rules.declaration import graph_rule
-from multibot_rewrite.graph.rules.frame_prefixes import added_prefixes
+from multibot_rewrite.graph.rules.frame_prefixes import added_prefixes, robot_behind_prefix
 from multibot_rewrite.graph.rules.ownership import SEPARATORS, without_tag_once
 from multibot_rewrite.graph.rules.similar_names import similar
 from multibot_rewrite.graph.rules.tf_senders import sent_by_robot, state_publisher, where_set
@@ -233,7 +233,10 @@ def robot_name_twice(view: View) -> Iterator[Finding]:
     """Parents and children."""
     for tree in view.trees:
         children = {edge.child: edge for edge in tree.edges}
-        for name, names in _not_in_a_description(view, tree, children).items():
+        found = _not_in_a_description(view, tree, children)
+        for frame, of in _behind_prefixes(view, tree):
+            found[of].append(frame)
+        for name, names in found.items():
             robot = view.robots[name]
             twice = [it for it in names if _has_name_twice(view, robot, it)]
             if twice:
@@ -242,6 +245,16 @@ def robot_name_twice(view: View) -> Iterator[Finding]:
             others = [it for it in prefixed if it not in twice]
             if others:
                 yield _prefixed(robot, others, prefixed[others[0]])
+
+
+def _behind_prefixes(view: View, tree: TfTree) -> Iterator[tuple[str, str]]:
+    """Frames on a shared topic that say no robot and are of one but for a prefix, each with it."""
+    ownership = view.frame_ownership
+    for frame in frames_in(tree) if len(tree.home) != 1 else ():
+        if frame not in view.plan.shared_frames and not ownership.robot(frame):
+            robot = robot_behind_prefix(ownership, frame)
+            if robot:
+                yield frame, robot
 
 
 def _not_in_a_description(

@@ -10,6 +10,7 @@ from collections import Counter
 from collections.abc import Iterable
 
 from multibot_rewrite.graph.expectation import PlannedRobot
+from multibot_rewrite.graph.rules.ownership import NameOwnership
 
 
 def added_prefixes(robot: PlannedRobot, names: Iterable[str]) -> dict[str, str]:
@@ -26,6 +27,14 @@ def added_prefixes(robot: PlannedRobot, names: Iterable[str]) -> dict[str, str]:
         for name, prefix in found.items()
         if prefix and often[prefix] >= (2 if prefix.endswith("/") else least)
     }
+
+
+def robot_behind_prefix(ownership: NameOwnership, name: str) -> str:
+    """The robot of whom a frame is but for a prefix: ``foo_left_tool`` of ``left_tool``; else ""."""
+    if name in ownership.exact:
+        return ""
+    ends = (name[at:] for at in range(1, len(name)))
+    return next((ownership.exact[it] for it in ends if it in ownership.exact), "")
 
 
 def _prefix(robot: PlannedRobot, name: str) -> str:

@@ -6,10 +6,10 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence, Set
 
 from multibot_rewrite.findings.finding import ERROR, Finding
-from multibot_rewrite.graph.expectation import PlannedRobot
+from multibot_rewrite.graph.expectation import USUAL_FRAMES, PlannedRobot
 from multibot_rewrite.graph.rules.comparison import View
 from multibot_rewrite.graph.rules.declaration import graph_rule
-from multibot_rewrite.graph.rules.frame_prefixes import added_prefixes
+from multibot_rewrite.graph.rules.frame_prefixes import added_prefixes, robot_behind_prefix
 from multibot_rewrite.graph.rules.name_variants import name_variants
 from multibot_rewrite.graph.rules.silent_topics import silent_topics
 from multibot_rewrite.graph.rules.tf_causes import JOINT_STATES
@@ -94,7 +94,8 @@ def _strays(view: View) -> Mapping[str, list[str]]:
         home = tree.home[0] if len(tree.home) == 1 else ""
         for name in frames_in(tree):
             if name not in ownership.exact:
-                found[ownership.robot(name) or home].append(name)
+                own = ownership.robot(name) or home or robot_behind_prefix(ownership, name)
+                found[own].append(name)
     return found
 
 
@@ -108,7 +109,7 @@ def _is_heard(
     """Under its name, or under a wrong one, which has a finding of its own."""
     if any(frame in frames for frames in heard):
         return True
-    plain = view.frame_ownership.without_robot(frame, robot.name)
+    plain = _plain(view, robot, frame)
     variants = [*name_variants(plain, frame, view.frame_ownership.tag(robot.name))]
     variants += [f"{prefix}{frame}" for prefix in prefixes]
     return any(not frames.isdisjoint(variants) for frames in heard)
@@ -122,6 +123,10 @@ def _not_received(view: View, robot: PlannedRobot, missing: Sequence[str]) -> Fi
     return frame_not_received.finding(message, hint, robot=robot.name, names=tuple(missing))
 
 
+def _plain(view: View, robot: PlannedRobot, frame: str) -> str:
+    return view.frame_ownership.without_robot(frame, robot.name)
+
+
 def _why_not_received(view: View, robot: PlannedRobot, missing: Sequence[str]) -> str:
     silent = min(silent_topics(view, robot, JOINT_STATES), default="")
     if silent:
@@ -129,6 +134,8 @@ def _why_not_received(view: View, robot: PlannedRobot, missing: Sequence[str]) -
         return f"nothing publishes {silent}: is {source} started for {robot.name}?"
     sent = sent_by_robot(view, robot)
     described = set(robot.frames).difference(*(it[1:] for it in sent))
+    # The root of a description comes with the odometry, too.
+    described = {it for it in described if _plain(view, robot, it) not in USUAL_FRAMES}
     if described and described.issubset(missing):
         publisher = state_publisher(robot) or STATE_PUBLISHER
         whose = next(described_robots(view, robot), "")

@@ -18,6 +18,8 @@ from multibot_rewrite.graph.rules.tf_senders import (
 )
 from multibot_rewrite.graph.rules.tf_trees import TfTree, tree_topic
 from multibot_rewrite.graph.snapshot import GraphFrame
+from multibot_rewrite.graph.wording import shorten
+from multibot_rewrite.remap.records import PUBLISHES
 
 JOINT_STATES, TF = "sensor_msgs/msg/JointState", "tf2_msgs/msg/TFMessage"
 
@@ -30,6 +32,7 @@ def why_disconnected(view: View, robot: PlannedRobot, roots: Sequence[str]) -> C
         _two_names(view, robot, roots, edges),
         *(_not_sent(view, robot, it) for it in unsent),
         *(_silent(view, robot, type_) for type_ in (TF, JOINT_STATES)),
+        _bridged(view, robot),
     )
     general = "a transform between them is missing: joint states of a moving joint, odometry or"
     return next(filter(None, causes), Cause(f"{general} localization"))
@@ -91,6 +94,19 @@ def _whose(view: View, robot: PlannedRobot, planned: Sent) -> Iterator[str]:
 
 def _plain(view: View, parent: str, child: str, robot: str) -> tuple[str, ...]:
     return tuple(view.frame_ownership.without_robot(it, robot) for it in (parent, child))
+
+
+def _bridged(view: View, robot: PlannedRobot) -> Cause | None:
+    """The odometry of a simulated robot, which a bridge carries beside the transforms of others."""
+    carried = [it for it in view.plan.topics if it.bridge and it.name == robot.tf]
+    ends = view.by_name.get(robot.tf, ()) if carried else ()
+    bridges = sorted({it.node for it in ends if it.role == PUBLISHES and "bridge" in it.node})
+    if not bridges:
+        return None
+    return Cause(
+        f"the simulator's odometry comes over {shorten(bridges)}: has its file a row for the tf of"
+        f" {robot.name}, and is its plugin loaded? Else joint states of a moving joint are missing"
+    )
 
 
 def _silent(view: View, robot: PlannedRobot, type_: str) -> Cause | None:
