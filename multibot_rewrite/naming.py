@@ -7,7 +7,6 @@ where to insert, and what is put before and after the robot's name.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import TypedDict
 
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.nearest import did_you_mean_one_of
@@ -122,18 +121,6 @@ class Naming(NamedTuple):
     own: OwnNames = NO_OWN_NAMES
 
 
-class Policy(TypedDict, total=False):
-    """The options of ``make_naming`` as one value, for what is passed on to it."""
-
-    layout: str
-    affix: str
-    topics: str | None
-    separators: Mapping[str, str] | None
-    shared_frames: Iterable[str]
-    shared_topics: Iterable[str]
-    groups: str
-
-
 def make_naming(
     layout: str = DEFAULT_LAYOUT,
     affix: str | None = None,
@@ -245,8 +232,10 @@ def _ros_affix(
 ) -> Affix | None:
     if kind == "namespace":
         return _namespace_affix(separator, text)
+    if kind == "stem" and in_namespace:
+        return _namespace_affix("/", text) if text.startswith("/") else None
     if kind == "stem":
-        return None if in_namespace else _name_affix(naming.affix, separator, text)
+        return _name_affix(naming.affix, separator, text)
     return _topic_affix(naming, separator, text, kind == "subtopic" or in_namespace)
 
 
@@ -321,7 +310,7 @@ def _affix_places(side: str, separator: str, robot: str, text: str) -> Iterator[
     if side == POSTFIX and text.endswith(end):
         yield len(text) - len(end), len(text)
     lead = 1 if text.startswith("/") else 0
-    for inserted in (robot + separator, robot):
+    for inserted in (robot + separator, f"{robot}/", robot):
         if text.startswith(inserted, lead):
             yield lead, lead + len(inserted)
 

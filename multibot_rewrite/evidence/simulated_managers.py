@@ -57,7 +57,8 @@ def _is_manager(node: ReadNode) -> bool:
 
 
 def _manager(node: ReadNode, texts: Iterable[ParameterText], place: Place) -> LaunchedNode:
-    rules = ((f"{it.node}:{it.source}".lstrip(":"), it.target) for it, _ in node.rules)
+    read_rules = (it.rule for it in node.rules)
+    rules = ((f"{it.node}:{it.source}".lstrip(":"), it.target) for it in read_rules)
     given = (*texts, _CLOCK)
     home = node.namespace or "/"
     return LaunchedNode(*_PROGRAM, node.name, home, tuple(rules), given, "", (), "", place)

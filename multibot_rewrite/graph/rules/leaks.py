@@ -73,8 +73,8 @@ def _missing_by_name_without_rules(view: View) -> dict[tuple[str, str], PlannedE
     """The planned endpoints that are missing, by node and the name they have without a rule."""
     return {
         (planned.node, name): planned
-        for key, planned in view.planned.items()
-        if key not in view.types and planned.node in view.robot_of
+        for planned in view.missing.values()
+        if planned.node in view.robot_of
         for name in names_without_rules(view, planned)
     }
 
@@ -96,9 +96,11 @@ def _planned_leaks(view: View) -> Iterator[Finding]:
     shared = {*view.plan.shared_topics, *EVERYWHERE, *_shared_tf(view)}
     nodes: dict[str, dict[str, None]] = defaultdict(dict)
     relays = copying_nodes(view.plan)
-    for node, kind, role, name in view.planned:
-        own = node in view.robot_of and name not in shared and not view.ownership.robot(name)
-        if own and (node, kind, role, name) in view.types and node not in relays:
+    for key in view.planned:
+        node, _, _, name = key
+        if name in view.ownership.exact or name in shared or node not in view.robot_of:
+            continue
+        if not view.ownership.robot(name) and key in view.types and node not in relays:
             nodes[name][node] = None
     for name, users in nodes.items():
         robots = dict.fromkeys(view.robot_of[node] for node in users)

@@ -10,21 +10,26 @@ from multibot_rewrite.graph.rules.tf_trees import tree_topic
 from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES
 
-_TF = "/tf"
+_TF, _GLOBAL = "/tf", ("/tf", "/tf_static")
 
 
 def copying_nodes(plan: Expectation) -> Mapping[str, str]:
     """The nodes that, by the plan, do nothing but send their robot's tf on ``/tf`` as well, or send a
     transform beside such a node; by each its robot."""
+    home = {it.name: tree_topic(it.tf) for it in plan.robots if tree_topic(it.tf) != _TF}
+    if not home:
+        return {}
+    senders = {it.node for it in plan.endpoints if it.role == PUBLISHES and it.name in _GLOBAL}
     trees: dict[str, set[tuple[str, str]]] = defaultdict(set)
-    for end in plan.endpoints:
-        trees[end.node].add((end.role, tree_topic(end.name)))
+    for end in plan.endpoints if senders else ():
+        if end.node in senders:
+            trees[end.node].add((end.role, tree_topic(end.name)))
     writes = {(PUBLISHES, _TF)}
     found: dict[str, str] = {}
-    for robot in plan.robots:
-        copies = {(SUBSCRIBES, tree_topic(robot.tf)), *writes}
-        if tree_topic(robot.tf) != _TF and any(trees[node] == copies for node in robot.nodes):
-            own = (node for node in robot.nodes if trees[node] in (copies, writes))
+    for robot in plan.robots if senders else ():
+        copies = {(SUBSCRIBES, home.get(robot.name, "")), *writes}
+        own = [node for node in robot.nodes if trees.get(node) in (copies, writes)]
+        if any(trees[node] == copies for node in own):
             found |= dict.fromkeys(own, robot.name)
     return found
 

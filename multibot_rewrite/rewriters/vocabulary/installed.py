@@ -83,10 +83,15 @@ def _key(name: str) -> str:
 
 def _entry_points(folder: str) -> bytes:
     try:
-        with open(f"{folder}/entry_points.txt", "rb", buffering=0) as file:
-            return file.read()
+        file = os.open(f"{folder}/entry_points.txt", os.O_RDONLY)  # half of the time of open()
     except OSError:  # most packages have none
         return b""
+    try:
+        return os.read(file, os.fstat(file).st_size)
+    except OSError:  # a folder
+        return b""
+    finally:
+        os.close(file)
 
 
 def _files(folder: str) -> Iterator[Installed]:
