@@ -232,8 +232,10 @@ def _ros_affix(
 ) -> Affix | None:
     if kind == "namespace":
         return _namespace_affix(separator, text)
+    if kind == "stem" and in_namespace:
+        return _namespace_affix("/", text) if text.startswith("/") else None
     if kind == "stem":
-        return None if in_namespace else _name_affix(naming.affix, separator, text)
+        return _name_affix(naming.affix, separator, text)
     return _topic_affix(naming, separator, text, kind == "subtopic" or in_namespace)
 
 
@@ -308,7 +310,7 @@ def _affix_places(side: str, separator: str, robot: str, text: str) -> Iterator[
     if side == POSTFIX and text.endswith(end):
         yield len(text) - len(end), len(text)
     lead = 1 if text.startswith("/") else 0
-    for inserted in (robot + separator, robot):
+    for inserted in (robot + separator, f"{robot}/", robot):
         if text.startswith(inserted, lead):
             yield lead, lead + len(inserted)
 

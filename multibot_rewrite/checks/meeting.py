@@ -10,14 +10,15 @@ from lxml.etree import _Element
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.model import InputError, ProofError
 from multibot_rewrite.naming import NAMESPACE, TOPIC_KINDS, TWIN, Naming, spelled
+from multibot_rewrite.readback.lost_rules import lost_rules
 from multibot_rewrite.readback.meeting import meetings, same_for_all
-from multibot_rewrite.readback.reading import FRAME, NODE, RuntimeName, read
+from multibot_rewrite.readback.reading import FRAME, NODE, Reading, RuntimeName, read
 from multibot_rewrite.rewriters.vocabulary import Vocabulary
 from multibot_rewrite.steps.apply import fill
 from multibot_rewrite.steps.document import Document
 
 SHARED_TOPIC, SHARED_NODE, SHARED_FRAME, SHARED_LOOKUP = "MB430", "MB431", "MB432", "MB425"
-CONTROLLERS = "MB435"
+CONTROLLERS, LOST_RULE = "MB435", "MB436"
 # Stands for the name of a robot in a hint.
 ROBOT = "ROBOT"
 SHARED_CODES = frozenset({SHARED_TOPIC, SHARED_NODE, SHARED_FRAME, SHARED_LOOKUP, CONTROLLERS})
@@ -74,6 +75,7 @@ def shared_with(
         raise ProofError(
             f"{document.file}: {it.name!r} ({it.path}) is a frame that tf does not have"
         )
+    yield from _lost(document, reading, naming, vocabulary)
     of_plugins: dict[int, list[RuntimeName]] = {}
     for it in same_for_all(reading, robot, naming):
         if it.of_controllers:
@@ -84,6 +86,21 @@ def shared_with(
             )
     for names in of_plugins.values():
         yield _of_controllers(_element(document, names[0]), names, naming, vocabulary.release)
+
+
+def _lost(
+    document: Document, reading: Reading, naming: Naming, vocabulary: Vocabulary
+) -> Iterator[Problem]:
+    """Rules of the file that match no name any more."""
+    before = (
+        read(document.source, document.file, vocabulary) if b":=" in document.source else reading
+    )
+    for it in lost_rules(before, reading):
+        if it.name.strip("/") not in naming.shared_topics:
+            plugin = next(islice(document.root.iter("plugin"), it.number, None), document.root)
+            message = f"{it.rule!r} is for {it.name}, and matches nothing after the rewrite"
+            hint = "write the topic and the left side of its rule the same way"
+            yield Problem(plugin, message, None, hint, (), LOST_RULE)
 
 
 def _element(document: Document, name: RuntimeName) -> _Element:

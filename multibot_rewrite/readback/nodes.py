@@ -45,10 +45,11 @@ class ReadEndpoint(NamedTuple):
 
 
 class ReadRule(NamedTuple):
-    """A remap rule of a plugin, and its line in the description that was read."""
+    """A remap rule of a plugin, its line in the description that was read, and the tag it is in."""
 
     rule: RemapRule
     line: int
+    tag: str
 
 
 class ReadNode(NamedTuple):
@@ -111,6 +112,12 @@ def node_of(
     )
 
 
+def itself(node: ReadNode) -> BoundNode:
+    """The node under those of its rules that are for its name and namespace."""
+    rules = (it.rule for it in node.rules if it.rule.source.startswith("__"))
+    return _bound(node.name, node.namespace, rules)
+
+
 def _node_name(plugin: _Element, section: VocabularySection) -> str:
     """A Gazebo Classic plugin's own name, or that of the controller manager it loads."""
     if any(site.path == "@name" for site in section.sites if site.role == "declares"):
@@ -132,7 +139,7 @@ def _rules(home: _Element) -> Iterator[ReadRule]:
         rule = parse_remap(text_of(element))
         if rule is not None:
             line: int = element.sourceline or 0  # type: ignore[assignment]
-            yield ReadRule(rule, line)
+            yield ReadRule(rule, line, str(element.tag))
 
 
 def _remap_arguments(home: _Element) -> Iterator[_Element]:
@@ -155,7 +162,7 @@ def _bound(name: str, namespace: str, rules: Iterable[RemapRule]) -> BoundNode:
         return BoundNode(name, namespace, {}, {})
 
 
-def _full(name: str, kind: str, bound: BoundNode) -> str:
+def full_name(name: str, kind: str, bound: BoundNode) -> str:
     """The full name, as text where rcl refuses it: a placeholder may be filled before it runs."""
     try:
         return resolve_bound(name, kind, bound)
@@ -170,21 +177,25 @@ def _endpoints(
     rules: tuple[ReadRule, ...],
 ) -> Iterator[ReadEndpoint]:
     off = switched_off(plugin, section)
+    for_all = [it.rule for it in rules if not it.rule.node]
+    of_others = _bound(bound.node, bound.namespace, for_all) if section.process_wide else bound
     wired = list(wired_of(plugin, section))
     named = {it.name for it, _ in wired}
     for it, path in wired:
         kind = SERVICE if it.role == SERVES else TOPIC
-        own = (kind, it.role, it.name, _full(it.name, kind, bound))
+        # Controllers publish, by names of their own: a rule for the manager's node is none for them.
+        under = of_others if it.role == PUBLISHES else bound
+        own = (kind, it.role, it.name, full_name(it.name, kind, under))
         yield ReadEndpoint(*own, path, off.get(it.name, ""), type=it.type)
     for site in filter(_holds_topic, section.sites):
         kind = SERVICE if site.kinds[0] == SERVICE else TOPIC
         for name in (it for it in values_of(plugin, site) if site.does or it not in named):
-            own = (kind, site.does, name, _full(name, kind, bound))
+            own = (kind, site.does, name, full_name(name, kind, bound))
             yield ReadEndpoint(*own, site.path, type=site.type)
     # Other topics below the plugin's own name are not in the vocabulary, but in its remap rules.
     for source in (it.rule.source for it in rules):
         if source.startswith("~") and source not in named:
-            yield ReadEndpoint(TOPIC, "", source, _full(source, TOPIC, bound))
+            yield ReadEndpoint(TOPIC, "", source, full_name(source, TOPIC, bound))
 
 
 def _by_themselves(
@@ -195,7 +206,7 @@ def _by_themselves(
     apart = section.process_wide and not controller_way(release).of_manager
     for it in endpoints:
         if apart and it.role == PUBLISHES:
-            yield it._replace(full=_full(it.name, it.kind, bare), of_controllers=True)
+            yield it._replace(full=full_name(it.name, it.kind, bare), of_controllers=True)
         else:
             yield it
 
@@ -220,7 +231,7 @@ def _stems(
     for site in section.sites:
         if site.form == "whole" and site.kinds[:1] == ("stem",):
             for value in values_of(plugin, site):
-                yield site.path, _full(value, TOPIC, bound)
+                yield site.path, full_name(value, TOPIC, bound)
 
 
 def _sends(

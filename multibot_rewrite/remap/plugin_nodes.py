@@ -38,7 +38,7 @@ def _facts(node: ReadNode) -> NodeFacts:
 
 
 def _rules(node: ReadNode, robot: str) -> Iterator[NodeRule]:
-    for rule, line in node.rules:
+    for rule, line, _ in node.rules:
         why = f"in the description, line {line}"
         lead = f"{rule.node}:" if rule.node else ""
         yield NodeRule(robot, node.name, f"{lead}{rule.source}", rule.target, "", why)

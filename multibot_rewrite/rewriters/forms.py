@@ -213,21 +213,14 @@ def transport(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, .
 
 
 def remap(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
-    """``[node:]from:=to``: ``from`` is the consumer's own word, ``to`` is the name in the graph.
-
-    With the kind stem ``from`` is below a word of a parameter, ``front`` of ``front/image_raw``.
-    """
+    """``[node:]from:=to``: ``to`` is the name in the graph; ``remap_rules`` has what ``from`` is."""
     lead = len(value) - len(value.lstrip())
     rule = split_remap(value.strip())
     if rule is None:
         return ()
     parts = [NamePart(lead, rule.node, ("node",))] if rule.node else []
     special = {"__node": ("node",), "__name": ("node",), "__ns": ("namespace",)}
-    head, below, _ = rule.source.partition("/")
-    if "stem" in kinds and head and below and not head.startswith("~"):
-        parts.append(NamePart(lead + rule.source_at, head, ("stem",)))
-    names = tuple(it for it in kinds if it != "stem")
-    parts.append(NamePart(lead + rule.target_at, rule.target, special.get(rule.source, names)))
+    parts.append(NamePart(lead + rule.target_at, rule.target, special.get(rule.source, kinds)))
     return tuple(parts)
 
 

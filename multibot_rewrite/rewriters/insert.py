@@ -19,14 +19,14 @@ from multibot_rewrite.rewriters.own_defaults import (
     filled,
     second_senders,
 )
+from multibot_rewrite.rewriters.remap_rules import named, ros_home, rules_in
 from multibot_rewrite.rewriters.spelling import ROBOT_SLOT, respelled, spell_default
-from multibot_rewrite.rewriters.text import text_at, text_of
+from multibot_rewrite.rewriters.text import text_of
 from multibot_rewrite.rewriters.vocabulary import VocabularySection, split_path, split_step
-from multibot_rewrite.rosnames import expand, split_remap
+from multibot_rewrite.rewriters.vocabulary.wired import WiredTopic
+from multibot_rewrite.rosnames import SERVICE_SCHEME, TOPIC_SCHEME, RemapRule, expand
 
 ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;"})
-# Read from the plugin itself where it has no <ros>; a <ros> would hide them (gazebo_ros node.cpp).
-ROS_CHILDREN = ("namespace", "remapping", "argument", "parameter", "qos")
 
 
 class Insertion(NamedTuple):
@@ -69,11 +69,27 @@ def insertions(hosts: Hosts, declared: Declared, naming: Naming) -> list[Inserti
 def _insertions(
     host: etree._Element, section: VocabularySection, declared: Declared, naming: Naming
 ) -> list[Insertion]:
-    home = _ros_home(host, section)
-    found = list(_defaults(host, section, declared, naming, "ros/" if home is host else ""))
+    home = ros_home(host, section)
+    found = list(_defaults(host, section, declared, naming, _hidden(host, home)))
     if any(site.path == "ros/remapping" for site in section.sites):
         found += _remaps(host, section, naming, home)
     return found
+
+
+def lacks_namespace(
+    host: etree._Element, section: VocabularySection, declared: Declared, naming: Naming
+) -> bool:
+    """Is a namespace among what a host needs beyond what it says itself?"""
+    sites = tuple([it for it in section.sites if "namespace" in it.kinds])
+    if not sites or not section.inserts:
+        return False
+    hidden, asked = _hidden(host, ros_home(host, section)), section._replace(sites=sites)
+    return any(it.kind == "namespace" for it in _defaults(host, asked, declared, naming, hidden))
+
+
+def _hidden(host: etree._Element, home: etree._Element | None) -> str:
+    """What the paths of a host leave out whose ROS settings stand in itself."""
+    return "ros/" if home is host else ""
 
 
 def without(item: Insertion, release: str) -> str:
@@ -83,15 +99,6 @@ def without(item: Insertion, release: str) -> str:
     if item.shared:
         return "all robots would share"
     return "tf would not have" if item.kind in FRAME_KINDS else "topics would move with the sensor"
-
-
-def _ros_home(host: etree._Element, section: VocabularySection) -> etree._Element | None:
-    """Where ROS settings of a plugin go; None where a ``<ros>`` must be made first."""
-    ros = host.find("ros")
-    if ros is not None:
-        return ros
-    bare = any(site.path == "remapping" for site in section.sites)
-    return host if bare and any(host.find(tag) is not None for tag in ROS_CHILDREN) else None
 
 
 def _defaults(
@@ -174,19 +181,37 @@ def _remaps(
     host: etree._Element, section: VocabularySection, naming: Naming, home: etree._Element | None
 ) -> Iterator[Insertion]:
     """A rule for each topic that only a remap can move, unless the file has one."""
-    texts = [] if home is None else map(text_of, home.iterchildren("remapping", "argument"))
-    rules = [split_remap(text) for text in texts]
-    namespace = "" if home is None else text_at(home, "namespace")
-    node = host.get("name", "")
-    taken = {expand(rule.source, namespace, node) for rule in rules if rule is not None}
-    for topic in section.topics:
-        target = _remap_target(topic, naming)
-        if target and expand(topic, namespace, node) not in taken:
-            parent, wrap = (host, "ros") if home is None else (home, "")
-            xml = f"<remapping>{topic}:={target}</remapping>"
-            of_controllers = section.process_wide and topic in section.publishes
-            made = Insertion(parent, wrap, xml, "topic", topic, target)
-            yield made._replace(of_controllers=of_controllers)
+    rules = rules_in(home)
+    node, namespace = named(host, section)
+    for wired in (it for it in section.wired if not it.is_moved):
+        topic, target = wired.name, _remap_target(wired.name, naming)
+        full = expand(topic, namespace, node)
+        there = [
+            it
+            for it in rules
+            if expand(it.source, namespace, node) == full and _is_for(it, wired, section, node)
+        ]
+        if not target or any(_stays(it, naming) for it in there):
+            continue
+        if there:
+            target = spelled(naming, ROBOT_SLOT, "topic", there[0].target, True)
+        parent, wrap = (host, "ros") if home is None else (home, "")
+        xml = f"<remapping>{topic}:={target}</remapping>"
+        of_controllers = section.process_wide and topic in section.publishes
+        made = Insertion(parent, wrap, xml, "topic", topic, target)
+        yield made._replace(of_controllers=of_controllers)
+
+
+def _is_for(rule: RemapRule, wired: WiredTopic, section: VocabularySection, node: str) -> bool:
+    """Does rcl ask this rule for the topic or service? One for another node it does not."""
+    other = TOPIC_SCHEME if wired.role == "serves" else SERVICE_SCHEME
+    of_node = "" if section.process_wide else node
+    return rule.scheme != other and rule.node in ("", of_node)
+
+
+def _stays(rule: RemapRule, naming: Naming) -> bool:
+    """Does it match the same name after the rewrite? A relative left side moves with the namespace."""
+    return naming.topics != NAMESPACE or rule.source.startswith("/")
 
 
 def _remap_target(topic: str, naming: Naming) -> str:

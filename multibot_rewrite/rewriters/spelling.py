@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from multibot_rewrite.model import Claim, Site
 from multibot_rewrite.naming import (
@@ -21,6 +21,9 @@ from multibot_rewrite.rewriters.forms import FORMS, IN_FRONT, Declared, Kinds, N
 from multibot_rewrite.rewriters.scopes import in_scope, scope_of
 
 ROBOT_SLOT = "\0"
+# Number of a claim -> the names in the remap rule that it holds.
+Rules = Mapping[int, tuple[NamePart, ...]]
+NO_RULES: Rules = {}
 
 
 class ResolvedName(NamedTuple):
@@ -47,14 +50,17 @@ Spelling = tuple[Renamed, ...]
 
 
 def resolved_names(
-    claims: Iterable[Claim], declared: Declared, apart: bool = False
+    claims: Iterable[Claim], declared: Declared, apart: bool = False, rules: Rules = NO_RULES
 ) -> list[tuple[ResolvedName, ...]]:
     """The names in each claimed value, resolved; claims of equal values share theirs. ``apart`` as
-    for ``resolve``."""
+    for ``resolve``; ``rules`` are the names in remap rules of plugins."""
     known: dict[tuple[object, str], tuple[ResolvedName, ...]] = {}
     result = []
-    for claim in claims:
+    for at, claim in enumerate(claims):
         site = claim.site
+        if at in rules:
+            result.append(_of_parts(rules[at], site.role, declared, apart))
+            continue
         # A link or joint is the same at every site, others at each site.
         of: object = site.whole_value_kind or id(site)
         key = (of, scope_of(claim.element)) if site.form == "scoped" else of, claim.value
@@ -71,9 +77,15 @@ def _resolved(claim: Claim, declared: Declared, apart: bool) -> tuple[ResolvedNa
         return (ResolvedName(0, value, site.whole_value_kind, site.kinds),)
     if site.role == "declares" and site.form == "whole" and value and value == value.strip():
         return (ResolvedName(0, value, site.kinds[0], site.kinds),)
+    return _of_parts(names_in(claim, declared), site.role, declared, apart)
+
+
+def _of_parts(
+    parts: Iterable[NamePart], role: str, declared: Declared, apart: bool
+) -> tuple[ResolvedName, ...]:
     return tuple(
-        ResolvedName(part.at, part.text, kind_of(part, site.role, declared, apart), part.kinds)
-        for part in names_in(claim, declared)
+        ResolvedName(part.at, part.text, kind_of(part, role, declared, apart), part.kinds)
+        for part in parts
     )
 
 

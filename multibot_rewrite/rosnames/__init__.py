@@ -14,6 +14,8 @@ from multibot_rewrite.rosnames.names import (
     propose_token,
 )
 from multibot_rewrite.rosnames.rules import (
+    SERVICE_SCHEME,
+    TOPIC_SCHEME,
     BoundNode,
     RemapRule,
     bind,
@@ -27,6 +29,8 @@ from multibot_rewrite.rosnames.rules import (
 
 __all__ = [
     "MAX_TOKEN",
+    "SERVICE_SCHEME",
+    "TOPIC_SCHEME",
     "BoundNode",
     "NameFault",
     "RemapRule",

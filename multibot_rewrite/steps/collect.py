@@ -11,6 +11,7 @@ from multibot_rewrite.naming import DECLARED_KINDS
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.model_namespaces import below_models
+from multibot_rewrite.rewriters.remap_rules import names_in_rules
 from multibot_rewrite.rewriters.spelling import ResolvedName, resolved_names, takes_empty
 from multibot_rewrite.rewriters.text import text_at, text_of
 from multibot_rewrite.rewriters.tree import Tree, TreeNode
@@ -71,23 +72,26 @@ def collect(
         found = below.get(element.getparent(), nothing).get(tag)
         if found is None:
             continue
-        if found.select is not None:
-            found = found.select(element)
+        select, active, attributes, text = found.visit
+        if select is not None:
+            found = select(element)
             if found.section is not None:
                 hosts.append(Host(element, start, found))
-        if found.active:
-            below[element] = found.active
-        for attribute, site in found.attributes:
+            _, active, attributes, text = found.visit
+        if active:
+            below[element] = active
+        for attribute, site in attributes:
             value = element.get(attribute)
             if value is not None:
                 claims.append(Claim(site, element, start, attribute, value))
-        if found.text is not None:
-            claims += _text_claim(found.text, element, start)
+        if text is not None:
+            claims += _text_claim(text, element, start)
     claims = below_models(claims, document.source, tree.vocabulary.release)
     declared = _declared(claims, urdf_declarations)
-    names = resolved_names(claims, declared, apart)
     release = tree.vocabulary.release
-    return Inventory(document, claims, hosts, declared, format_, names, release)
+    inventory = Inventory(document, claims, hosts, declared, format_, [], release)
+    rules = names_in_rules(claims, inventory.served)
+    return inventory._replace(names=resolved_names(claims, declared, apart, rules))
 
 
 def _format(document: Document, tree: Tree, likely: str) -> str:
@@ -123,8 +127,10 @@ def _declared(claims: list[Claim], urdf_declarations: Declared) -> dict[str, dic
     declared = {kind: dict(urdf_declarations.get(kind, {})) for kind in DECLARED_KINDS}
     for claim in claims:
         site = claim.site
+        if site.role != "declares" or site.kinds[0] not in declared:
+            continue
         name = claim.value.strip()
-        if name and site.role == "declares" and site.kinds[0] in declared:
+        if name:
             declared[site.kinds[0]].setdefault(name, claim)
     return declared
 

@@ -138,7 +138,9 @@ def _named(claim: Claim, names: Names, naming: Naming) -> str:
         return spelled(naming, ROBOT_SLOT, names[0].kind, value, namespaced)
     for name in reversed(names):
         new = spelled(naming, ROBOT_SLOT, name.kind, name.text, namespaced)
-        value = value[: name.at] + new + value[name.at + len(name.text) :]
+        # Names may be inside one another; of these at most one changes.
+        if new != name.text:
+            value = value[: name.at] + new + value[name.at + len(name.text) :]
     return value
 
 

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import pytest
 
 from multibot_rewrite import naming, rewrite
-from multibot_rewrite.rewriters import insert, spelling, tree
+from multibot_rewrite.rewriters import insert, remap_rules, tree
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.tree import TreeNode
 from multibot_rewrite.steps import collect, plan, verify
@@ -189,9 +189,9 @@ FAULTS = (
     Fault("links stay", naming, "_active", without("link"), "", "both", "frame 'base'"),
     Fault(
         "a rule is not read",
-        spelling,
-        "FORMS",
-        spelling.FORMS | {"remap": nothing},
+        remap_rules,
+        "remap",
+        nothing,
         DRIVE % "<ros><remapping>cmd_vel:=/cmd</remapping></ros>",
         "both",
         "topic '/cmd'",

@@ -15,6 +15,8 @@ from multibot_rewrite.naming import SHARED_TOPICS, make_naming
 
 ODOMETRY_APART = make_naming("tf-per-robot", shared_topics=[*SHARED_TOPICS, "tf_static"])
 
+IN_FRONT = make_naming("postfix", affix="prefix")
+
 
 @memoized
 def _shared(subject: Subject) -> tuple[Problem, ...]:
@@ -113,6 +115,30 @@ controllers_apart = rule(
     line=3,
     options={"robots": TWO, "naming": ODOMETRY_APART},
 )(partial(_of_code, "MB435"))
+
+lost_rule = rule(
+    "MB436",
+    "lost-remap-rule",
+    WARNING,
+    what="A remap rule of a plugin would match no name after the rewrite that it matched before.",
+    why="rcl compares the left side with the full name of a topic: where both get the robot's name "
+    "in other places the rule does nothing, and the topic has the name of the plugin's code.",
+    fix="Write the topic and the left side of its rule the same way, best without a slash in front.",
+    bad="<gazebo>\n"
+    '  <plugin name="imu" filename="libhector_gazebo_ros_imu.so">\n'
+    "    <ros><namespace>a</namespace><remapping>imu:=imu/raw</remapping></ros>\n"
+    "    <topicName>/a/imu</topicName>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    good="<gazebo>\n"
+    '  <plugin name="imu" filename="libhector_gazebo_ros_imu.so">\n'
+    "    <ros><namespace>a</namespace><remapping>imu:=imu/raw</remapping></ros>\n"
+    "    <topicName>imu</topicName>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    line=2,
+    options={"robots": TWO, "naming": IN_FRONT},
+)(partial(_of_code, "MB436"))
 
 shared_node = rule(
     "MB431",
