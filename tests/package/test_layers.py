@@ -139,6 +139,14 @@ def test_a_start_loads_no_more_than_it_needs() -> None:
     assert sorted(there & set(LATE)) == []
 
 
+def test_a_check_pays_for_no_source_that_it_does_not_look_at() -> None:
+    there = loaded("import multibot_rewrite.cli.check")
+    assert "multibot_rewrite.graph.check" in there
+    sources = ("live.child", "snapshot_file", "zenoh.observe", "zenoh.session")
+    late = {*LATE, "lxml", "subprocess", "urllib.request"}
+    assert there & {*late, *(f"multibot_rewrite.graph.{it}" for it in sources)} == set()
+
+
 def test_the_package_alone_loads_nothing() -> None:
     there = {name for name in loaded("import multibot_rewrite") if name.startswith(PACKAGE.name)}
     assert there == {PACKAGE.name, f"{PACKAGE.name}.version"}
