@@ -77,10 +77,10 @@ hundred files takes longer than to read their code; a module whose source change
 records that are made without compiling their annotations (a fifteenth of the instructions); a typed
 dictionary that only fleets load (a fiftieth); of the folders above a description their package.xml
 alone, as a list of all temporary files took 3 ms; no error for each package without entry points; no
-module for a path, a byte order mark or a text without odd characters. Tried and left out, each about a
-hundredth or two: a parser of the options beside argparse, which with its translations takes 4 ms; the
-index of the vocabulary in a file of its own, which is one more thing that can be out of date; imports
-in functions, where a module is seldom used.
+module for a path, a byte order mark or a text without odd characters. Left out: a parser of the options
+beside argparse, which with its translations takes a twentieth; the index of the vocabulary in a file
+of its own (a fortieth), which is one more thing that can be out of date; imports in functions, where a
+module is seldom used.
 
 The files for the peers hold no transmissions, which urdf_validate refuses unread; simcheck simulates
 each robot. check_urdf, ign sdf -k and urdf_validate take one file a process. The peers look for less:
