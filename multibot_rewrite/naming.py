@@ -7,7 +7,6 @@ where to insert, and what is put before and after the robot's name.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import TypedDict
 
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.nearest import did_you_mean_one_of
@@ -120,18 +119,6 @@ class Naming(NamedTuple):
     shared_frames: frozenset[str]
     shared_topics: frozenset[str]
     own: OwnNames = NO_OWN_NAMES
-
-
-class Policy(TypedDict, total=False):
-    """The options of ``make_naming`` as one value, for what is passed on to it."""
-
-    layout: str
-    affix: str
-    topics: str | None
-    separators: Mapping[str, str] | None
-    shared_frames: Iterable[str]
-    shared_topics: Iterable[str]
-    groups: str
 
 
 def make_naming(

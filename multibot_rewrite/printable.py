@@ -22,11 +22,15 @@ def one_line(text: str) -> str:
     long one the middle is left out."""
     if len(text) > LONGEST:
         text = f"{text[: LONGEST // 2]} … {text[-LONGEST // 2 :]}"
+    if text.isprintable():
+        return text  # as most are: the pattern takes longer to compile than a report to write
     return re.sub(_IN_A_LINE, _escaped, text)
 
 
 def for_terminal(text: str) -> str:
     """The same for several lines, which may be coloured."""
+    if text.replace("\n", "").isprintable():
+        return text
     return re.sub(_IN_A_TEXT, _escaped, text)
 
 

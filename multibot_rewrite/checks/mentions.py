@@ -165,6 +165,8 @@ def _unclaimed(
     claimed = {(claim.start, claim.attribute) for claim in inventory.claims}
     document = inventory.document
     for element, start in zip(document.elements, document.starts, strict=True):
+        if not _has_one(element, suspects):
+            continue
         slots = [(str(key), str(value)) for key, value in element.items()]
         slots.append(("", text := text_of(element)))
         slots = [slot for slot in slots if (start, slot[0]) not in claimed]
@@ -176,6 +178,14 @@ def _unclaimed(
         for attribute, value in slots:
             if value in suspects:
                 yield element, start, attribute, value
+
+
+def _has_one(element: etree._Element, suspects: set[str]) -> bool:
+    """A quick look at an element: is one of its values or texts suspect?"""
+    if not suspects.isdisjoint(element.values()):
+        return True
+    texts = [element.text, *[it.tail for it in element]] if len(element) else [element.text]
+    return any(it.strip() in suspects for it in texts if it)
 
 
 def kept(element: etree._Element, attribute: str, tree: Tree, known: Nodes) -> Site | None:

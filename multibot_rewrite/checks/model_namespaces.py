@@ -22,8 +22,7 @@ GAZEBO = {"humble": "Fortress", "jazzy": "Harmonic", "kilted": "Ionic", "lyrical
 def ignored_namespaces(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
     """Namespaces of models that the release's Gazebo does not read."""
     release = tree.vocabulary.release
-    models = _with_namespace(inventory)
-    for model in [] if _are_read(tree) else models:
+    for model in [] if _are_read(tree) else _with_namespace(inventory):
         who = f"Gazebo {GAZEBO.get(release, 'of main')} ({release})"
         message = f"{who} does not read the namespace {namespace_of(model)!r} of {_named(model)}"
         yield Problem(model, message, None, "set the topics of its plugins", (), IGNORED)
@@ -31,8 +30,8 @@ def ignored_namespaces(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
 
 def used_namespaces(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
     """Namespaces of models that plugins of theirs put in front of their relative topics."""
-    models = _with_namespace(inventory)
-    below = _below(inventory, tree) if models and _are_read(tree) else []
+    models = _with_namespace(inventory) if _are_read(tree) else []
+    below = _below(inventory, tree) if models else []
     for model in models:
         count = sum(model in plugin.iterancestors() for plugin in below)
         if count:

@@ -144,7 +144,8 @@ def _made(loader: SourceFileLoader) -> _Entry:
 
 
 def _state(source: str) -> _State:
-    with suppress(OSError):
+    try:
         it = os.stat(source)
-        return it.st_mtime_ns, it.st_size
-    return 0, 0
+    except OSError:  # it is gone
+        return 0, 0
+    return it.st_mtime_ns, it.st_size

@@ -21,7 +21,7 @@ from multibot_rewrite.graph.bags.recording import as_snapshot
 from multibot_rewrite.graph.bags.rules import compare
 from multibot_rewrite.graph.check import check, doubts
 from multibot_rewrite.graph.expectation import Expectation, robot_words
-from multibot_rewrite.graph.live.child import RosUnusable
+from multibot_rewrite.graph.live.request import RosUnusable
 from multibot_rewrite.graph.plan_file import is_json, read_plan
 from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.watching import WORDS, Outcome, Verdict, final

@@ -28,7 +28,7 @@ from multibot_rewrite.graph.doctor.diagnose import Diagnosis, diagnose, survey
 from multibot_rewrite.graph.doctor.seen_plan import seen_plan
 from multibot_rewrite.graph.doctor.suggestion import FILES, suggestion
 from multibot_rewrite.graph.expectation import Expectation
-from multibot_rewrite.graph.live.child import RosUnusable
+from multibot_rewrite.graph.live.request import RosUnusable
 from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.watching import Outcome, Verdict, final

@@ -15,7 +15,7 @@ from multibot_rewrite.graph.learning.choosing import choose_nodes, helpers_witho
 from multibot_rewrite.graph.learning.learn import LearnedNode, learn
 from multibot_rewrite.graph.learning.nodes_file import to_yaml
 from multibot_rewrite.graph.learning.nodl_file import to_nodl
-from multibot_rewrite.graph.live.child import RosUnusable
+from multibot_rewrite.graph.live.request import RosUnusable
 from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural

@@ -1,6 +1,7 @@
 """Where the commands get a graph from: saved snapshots, a Zenoh router, or the live graph of ROS.
 
-The options are those of ``SOURCE`` in ``declared/shared.py``.
+The options are those of ``SOURCE`` in ``declared/shared.py``. What reads a source is imported when that
+one is asked for.
 """
 
 from __future__ import annotations
@@ -9,19 +10,18 @@ import argparse
 import os
 from collections.abc import Collection, Generator, Mapping
 from math import inf
+from typing import TYPE_CHECKING
 
 from multibot_rewrite.cli.output import note
-from multibot_rewrite.graph.bags.read import read_bag
-from multibot_rewrite.graph.bags.recording import as_snapshot
 from multibot_rewrite.graph.environment import settings
-from multibot_rewrite.graph.live import child
 from multibot_rewrite.graph.live.request import Request
 from multibot_rewrite.graph.questions import NO_MORE, questions
 from multibot_rewrite.graph.snapshot import Snapshot
-from multibot_rewrite.graph.snapshot_file import read_snapshots
-from multibot_rewrite.graph.zenoh import observe
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
+
+if TYPE_CHECKING:
+    from multibot_rewrite.graph.zenoh.observe import Router
 
 INCONCLUSIVE, NO_ROS = 3, 4
 # How long a single look takes at most.
@@ -58,14 +58,23 @@ def graph(options: argparse.Namespace, request: Request | None = None) -> Snapsh
     name or a leak may come after the planned nodes.
     """
     if options.snapshot:
+        from multibot_rewrite.graph.snapshot_file import read_snapshots
+
         return read_snapshots(options.snapshot)
     if getattr(options, "bag", None):
+        from multibot_rewrite.graph.bags.read import read_bag
+        from multibot_rewrite.graph.bags.recording import as_snapshot
+
         return as_snapshot(read_bag(options.bag))
     asked = request or Request(options.timeout or LOOK_SECONDS)
     asked = asked._replace(headers=vars(options).get("no_frame_ids") is False)
     if options.zenoh:
-        return observe.look(asked, _router(options))
-    return child.observe(asked, environ(options.domain))
+        from multibot_rewrite.graph.zenoh.observe import look
+
+        return look(asked, _router(options))
+    from multibot_rewrite.graph.live.child import observe
+
+    return observe(asked, environ(options.domain))
 
 
 def with_states(
@@ -77,8 +86,10 @@ def with_states(
     the graph as it is. ``parameters`` are asked of the nodes besides."""
     if not options.state:
         return seen
+    from multibot_rewrite.graph.live.child import ask
+
     asked = list(questions(seen, parameters))
-    found = child.ask(asked, ASK_SECONDS, environ(options.domain))
+    found = ask(asked, ASK_SECONDS, environ(options.domain))
     nodes = plural(len({it.node for it in asked}), "node")
     note(options, f"{len(found)} of {nodes} answered --state")
     return seen._replace(states=found)
@@ -88,13 +99,19 @@ def watched(options: argparse.Namespace) -> Generator[Snapshot, None, None]:
     """Snapshots of the live graph that the options name, one after each change."""
     asked = Request(options.timeout or inf, watch=True)
     if options.zenoh:
+        from multibot_rewrite.graph.zenoh import observe
+
         return observe.watch(asked, _router(options))
+    from multibot_rewrite.graph.live import child
+
     return child.watch(asked, environ(options.domain))
 
 
-def _router(options: argparse.Namespace) -> observe.Router:
+def _router(options: argparse.Namespace) -> Router:
     """The domain is that of the option, else of ROS_DOMAIN_ID; it is a part of every key."""
-    return observe.Router(options.zenoh, settings(environ(options.domain)).domain)
+    from multibot_rewrite.graph.zenoh.observe import Router
+
+    return Router(options.zenoh, settings(environ(options.domain)).domain)
 
 
 def environ(domain: int | None = None) -> dict[str, str]:

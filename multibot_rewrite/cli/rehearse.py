@@ -16,8 +16,8 @@ from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.fleets.fleet import Fleet, expected
 from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.expectation import Expectation
-from multibot_rewrite.graph.live.child import RUN_STUBS, RosUnusable, observe, running
-from multibot_rewrite.graph.live.request import Request, to_text
+from multibot_rewrite.graph.live.child import RUN_STUBS, observe, running
+from multibot_rewrite.graph.live.request import Request, RosUnusable, to_text
 from multibot_rewrite.graph.rehearsal import (
     StubNode,
     bridge_stub,

@@ -11,8 +11,7 @@ from multibot_rewrite.cli.output import STANDARD, deliver, note, say
 from multibot_rewrite.cli.process import DONE, PROGRAM
 from multibot_rewrite.cli.tables import Grid, deliver_report
 from multibot_rewrite.cli.walk import check_folder, check_target
-from multibot_rewrite.graph.live.child import RosUnusable
-from multibot_rewrite.graph.live.request import Request
+from multibot_rewrite.graph.live.request import Request, RosUnusable
 from multibot_rewrite.graph.reach import machines
 from multibot_rewrite.graph.rosgraph.writing import to_yaml
 from multibot_rewrite.graph.snapshot import (

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from multibot_rewrite.model import UsageError
-from multibot_rewrite.naming import ROS_SEPARATORS, SEPARATORS, Policy
+from multibot_rewrite.naming import ROS_SEPARATORS, SEPARATORS
 from multibot_rewrite.sources.read import is_xacro
+
+if TYPE_CHECKING:
+    from multibot_rewrite.policy import Policy
 
 # Kinds that ``--separator SEP`` without a kind is for.
 OF_DESCRIPTION = tuple(kind for kind in SEPARATORS if kind not in ROS_SEPARATORS)

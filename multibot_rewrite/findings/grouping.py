@@ -57,6 +57,11 @@ def _without(finding: Finding, robot: str, names: Mapping[str, str]) -> Finding:
     )
 
 
+def said_of(text: str, finding: Finding, robot: str) -> str:
+    """A text of a finding as it is of one of the ``others``; of any other robot the text itself."""
+    return _pattern(finding.robot).sub(robot, text) if robot in finding.others else text
+
+
 def _pattern(word: str, *, escaped: bool = False) -> re.Pattern[str]:
     inner = word if escaped else re.escape(word)
     return re.compile(rf"(?<![A-Za-z0-9])(?:{inner})(?![A-Za-z0-9])")

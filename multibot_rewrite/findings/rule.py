@@ -50,6 +50,7 @@ def declare(
     code: str,
     name: str,
     level: str,
+    check: Callable[..., Any] | None = None,
     *,
     what: str,
     why: str,
@@ -62,15 +63,11 @@ def declare(
     beside: Mapping[str, str] = NOTHING,
     options: Mapping[str, object] = NOTHING,
 ) -> Rule:
-    """A rule without a function of its own: for what a step or several functions find."""
+    """A rule; without a function of its own it is for what a step or several functions find."""
     words = (code, name, level, what, why, fix, bad, good, line, fixed)
-    return Rule(*words, None, formats, beside, options)
+    return Rule(*words, check, formats, beside, options)
 
 
 def rule(code: str, name: str, level: str, **words: Any) -> Callable[[_Check], Rule]:
     """Makes the function that looks for it a ``Rule``; ``words`` are those of ``declare``."""
-    return partial(_with_check, declare(code, name, level, **words))
-
-
-def _with_check(declared: Rule, check: _Check) -> Rule:
-    return declared._replace(check=check)
+    return partial(declare, code, name, level, **words)

@@ -34,7 +34,8 @@ from multibot_rewrite.graph.states import parameter_text
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER, Edge, Edges, edges_of, frames_of
 from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.model import UsageError
-from multibot_rewrite.naming import Naming, Policy, make_naming
+from multibot_rewrite.naming import Naming, make_naming
+from multibot_rewrite.policy import Policy
 from multibot_rewrite.remap.bridged_topics import bridged_topics
 from multibot_rewrite.remap.node_library import with_included
 from multibot_rewrite.remap.nodl.facts import KnownNodes, nodes_of

@@ -17,7 +17,8 @@ from multibot_rewrite.fleets.fleet_paths import listed, nodl_files
 from multibot_rewrite.fleets.given_arguments import given_arguments
 from multibot_rewrite.fleets.robot_choice import ALL, Choice, with_robots
 from multibot_rewrite.model import InputError, UsageError
-from multibot_rewrite.naming import NAMESPACE, Naming, Policy, make_naming
+from multibot_rewrite.naming import NAMESPACE, Naming, make_naming
+from multibot_rewrite.policy import Policy
 from multibot_rewrite.releases import chosen_release
 from multibot_rewrite.sources.own_names import filled, name_robot
 

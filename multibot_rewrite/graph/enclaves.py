@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
-from xml.sax.saxutils import escape, quoteattr
 
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint
 from multibot_rewrite.graph.tool_nodes import TOOL_NODES
@@ -112,6 +111,8 @@ def _tools(ends: Iterable[PlannedEndpoint]) -> Iterator[Profile]:
 
 
 def _enclave(path: str, found: Iterable[Profile]) -> Iterator[str]:
+    from xml.sax.saxutils import escape, quoteattr  # takes half as long to import as a check does
+
     yield f"    <enclave path={quoteattr(path)}>"
     yield "      <profiles>"
     for profile in found:

@@ -37,6 +37,8 @@ OPTIONAL_ROBOT_KEYS = {
     "spelled": "frame_tag",
 }
 FIELDS = 5
+_TEXTS = {str}
+_ROLE_WORDS, _KIND_WORDS = frozenset(ROLES), frozenset(KINDS)
 # Between several types of an endpoint.
 OR = " | "
 REMEDY = "use the file that multibot plan wrote"
@@ -252,16 +254,19 @@ def _read_endpoints(node: str, rows: object, place: str) -> Iterator[PlannedEndp
             raise InputError(f"{place}[{at}]: {wrong}")
         # Many nodes have the same names, types and words.
         role, kind, name, types, code_name = map(intern, row)
-        type_, *also = types.split(OR) if OR in types else (types,)
-        yield PlannedEndpoint(node, kind, role, name, type_, code_name, tuple(also))
+        also: tuple[str, ...] = ()
+        if OR in types:
+            types, *others = types.split(OR)
+            also = (*others,)
+        yield PlannedEndpoint(node, kind, role, name, types, code_name, also)
 
 
 def _wrong_row(row: object) -> str:
     """What is wrong with a row of the plan; empty for an endpoint."""
-    if not isinstance(row, list) or len(row) != FIELDS or {*map(type, row)} != {str}:
+    if type(row) is not list or len(row) != FIELDS or {*map(type, row)} != _TEXTS:
         return "write [role, kind, name, type, name in the node's code]"
     role, kind, name, _, _ = row
-    if role not in ROLES or kind not in KINDS:
+    if role not in _ROLE_WORDS or kind not in _KIND_WORDS:
         allowed = f"a role ({', '.join(ROLES)}) and a kind ({', '.join(KINDS)})"
         return f"{role!r}, {kind!r}: write {allowed}"
     return "" if name.startswith("/") else _not_full(name)

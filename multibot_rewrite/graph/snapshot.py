@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cache, lru_cache, partial
 from sys import intern
 from types import NoneType
@@ -169,11 +169,6 @@ _FULL_NAMES = {
     (NodeState, "node"),
 }
 _TRANSFORM = (GraphFrame, "transform")
-# By their keys.
-_FREQUENT: Mapping[tuple[str, ...], Any] = {
-    ("name", "process"): GraphNode,
-    **{it._fields: it for it in (GraphNode, GraphEndpoint, Qos)},
-}
 
 
 def incomplete(snapshot: Snapshot) -> tuple[Caveat, ...]:
@@ -235,15 +230,41 @@ def _record_or_object(value: dict[str, object]) -> object:
 
     A large fleet has hundreds of thousands, and records with shared texts need a fifth of the memory.
     """
-    kind = _FREQUENT.get(tuple(value))
-    if kind is None:
-        return value
+    made = _FREQUENT.get(tuple(value))
     try:
-        record: Any = _reader(kind)(value)
-    except WrongValue:
+        return made(*value.values()) if made else value
+    # A TypeError also for what is no text: it cannot be interned.
+    except (TypeError, WrongValue):
         return value
-    shared = kind._make(intern(it) if type(it) is str else it for it in record)
-    return _one_of_equal(shared) if kind is Qos else shared
+
+
+def _node(*fields: Any) -> GraphNode:
+    record = GraphNode(*map(intern, fields))
+    if not record.name.startswith("/"):
+        raise TypeError
+    return record
+
+
+def _endpoint(*fields: Any) -> GraphEndpoint:
+    *texts, qos, process = fields
+    kind, role, name, type_, hash_, node = map(intern, texts)
+    known = kind in KINDS and role in ROLES and type(qos) in (Qos, NoneType)
+    if not (known and name.startswith("/") and node.startswith("/")):
+        raise TypeError
+    return GraphEndpoint(kind, role, name, type_, hash_, node, qos, intern(process))
+
+
+def _qos(*fields: Any) -> Qos:
+    return _one_of_equal(cast(Qos, _reader(Qos)(dict(zip(Qos._fields, fields, strict=True)))))
+
+
+# By their keys.
+_FREQUENT: Mapping[tuple[str, ...], Callable[..., object]] = {
+    ("name", "process"): _node,
+    GraphNode._fields: _node,
+    GraphEndpoint._fields: _endpoint,
+    Qos._fields: _qos,
+}
 
 
 @lru_cache(1000)
@@ -301,7 +322,7 @@ def _field_reader(kind: type, name: str, hint: Any) -> Reader:
 def _read_record(kind: Any, readers: Mapping[str, Reader], value: object) -> object:
     if type(value) is kind:
         return value
-    if type(value) in _FREQUENT.values():
+    if type(value) in (GraphNode, GraphEndpoint, Qos):
         value = cast(Any, value)._asdict()
     if not isinstance(value, dict):
         raise unexpected("an object", value)

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
-from typing import NamedTuple
-
-from lxml.etree import _Element
+from typing import TYPE_CHECKING, NamedTuple
 
 from multibot_rewrite.naming import Naming, spelled
 from multibot_rewrite.remap.conditions import holds
 from multibot_rewrite.remap.records import PUBLISHES, NodeFacts
-from multibot_rewrite.steps.collect import Inventory
+
+if TYPE_CHECKING:
+    from lxml.etree import _Element
+
+    from multibot_rewrite.steps.collect import Inventory
 
 STATE_PUBLISHER = "robot_state_publisher"
 NO_PLAIN: Mapping[tuple[str, str], str] = {}

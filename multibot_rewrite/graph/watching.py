@@ -77,9 +77,12 @@ def judge(found: Iterable[Finding], graph: Snapshot) -> Verdict:
 def with_found(
     plan: Expectation, graph: Snapshot, findings: Iterable[Finding], before: WatchState | None
 ) -> WatchState:
-    """The state of the graph in which these are the findings, after the state before."""
+    """The state of the graph in which these are the findings, after the state before.
+
+    What was missing while the fleet started was never announced, so it is not solved either.
+    """
     found = tuple(findings)
-    old = before.findings if before else ()
+    old = before.findings if before and before.complete else ()
     robots = tuple(progress(plan, graph))
     absent = any(finding.code in ABSENCE for finding in found)
     complete = (before is not None and before.complete) or not absent

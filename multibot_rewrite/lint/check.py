@@ -97,7 +97,7 @@ def lint_subject(subject: Subject) -> list[Finding]:
             found.append((known, problems))
     if not found:
         return crashes
-    numbers = numbered(subject)
+    numbers = numbered(subject, [it for _, its in found for it in its])
     return crashes + [placed(subject, numbers, it, rule) for rule, its in found for it in its]
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from itertools import count
 from typing import TYPE_CHECKING
@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from multibot_rewrite.sources.trace import Call
 
 Numbers = Mapping[_Element, int]
+# To look for so many elements is quicker than to number all.
+FEW = 5
 _BLANK = lazy_compile(rb"\s*")
 _ATTRIBUTE = lazy_compile(rb"\s((?:[^\s=:/>\"']+:)?([^\s=:/>\"']+))\s*=\s*(?:\"[^\"]*\"|'[^']*')")
 
@@ -53,9 +55,12 @@ def placed(subject: Subject, numbers: Numbers, problem: Problem, rule: Rule) -> 
     )
 
 
-def numbered(subject: Subject) -> Numbers:
-    """The elements of a document and their numbers in document order."""
-    return dict(zip(subject.document.elements, count()))
+def numbered(subject: Subject, problems: Iterable[Problem]) -> Numbers:
+    """The elements that problems are about, and their numbers in document order."""
+    elements, asked = subject.document.elements, {it.element for it in problems}
+    if len(asked) > FEW:
+        return dict(zip(elements, count()))
+    return {it: elements.index(it) for it in asked}
 
 
 def _place(subject: Subject, number: int, attribute: str | None) -> Place:

@@ -14,8 +14,9 @@ from multibot_rewrite.companions.params.known_nodes import load_known_nodes
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.model import InputError
+from multibot_rewrite.proposal.belonging import moveit_of_others, of_others
 from multibot_rewrite.proposal.looking import CLASSIC, GZ, NO_SIMULATOR, Looked
-from multibot_rewrite.proposal.searching import Found, without_others
+from multibot_rewrite.proposal.searching import Found, without
 from multibot_rewrite.sources.packages import package_of
 from multibot_rewrite.sources.read import read_file
 
@@ -62,15 +63,16 @@ class Companions(NamedTuple):
 
 def companions_of(robot: Looked, found: Found, release: str) -> Companions:
     """What goes with a description of these files."""
-    left: dict[str, str] = {}
-    found = without_others(found, robot.path)
+    left = of_others(robot, found)
+    found = without(found, left)
     files = {kind: tuple(_of_kind(kind, robot, found, left)) for kind in KINDS if kind != "params"}
     sections = dict(_sections(_nearest(robot, found.params), release, left))
     files["params"] = tuple(sections)
     srdf = _nearest(robot, found.srdf)[:1]
     left |= {it: "another SRDF was taken" for it in found.srdf if it not in srdf}
-    if not srdf:
-        files["moveit"] = ()
+    others = moveit_of_others(srdf[0], found) if srdf else {}
+    left |= others
+    files["moveit"] = tuple(it for it in files["moveit"] if srdf and it not in others)
     nodes = {name: path for path, names in sections.items() for name in names}
     chosen = {kind: its for kind, its in files.items() if its}
     return Companions(chosen, "".join(srdf), dict(_stacks(robot, nodes, "".join(srdf))), left)
@@ -123,8 +125,8 @@ def _nearest(robot: Looked, paths: Sequence[str]) -> list[str]:
 def _stacks(robot: Looked, nodes: Mapping[str, str], srdf: str) -> Iterator[tuple[str, str]]:
     """The stacks that a robot runs, each with what says so."""
     bare = {name.rpartition("/")[2]: path for name, path in nodes.items()}
-    for stack, with_, without in _STACKS:
-        if set(with_) <= bare.keys() and not set(without) & bare.keys():
+    for stack, with_, lacking in _STACKS:
+        if set(with_) <= bare.keys() and not set(lacking) & bare.keys():
             first = with_[0]
             yield stack, f"{os.path.basename(bare[first])} has parameters of {' and '.join(with_)}"
     if robot.control:

@@ -63,7 +63,11 @@ def _lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
     if left:
         yield ""
         yield "# Found beside them and not taken:"
-        rows = sorted(left.items(), key=lambda row: (row[0] not in refused, row))
+        home = os.path.relpath(it.members[0].looked.path, folder)
+        rows = sorted(
+            left.items(),
+            key=lambda row: (row[0] not in refused, os.path.relpath(row[0], home).count(".."), row),
+        )
         yield from (f"#   {path}: {' '.join(why.split())}" for path, why in rows[:MOST])
         if rows[MOST:]:
             yield f"#   and {len(rows) - MOST} more"

@@ -134,12 +134,18 @@ def holds_the_world(it: Looked) -> bool:
 
 
 def ranked(found: Sequence[Looked]) -> list[Looked]:
-    """Those first that have several links, are no part by their name, have something for a simulator,
-    ``<ros2_control>``, the shortest path."""
+    """Those first that have several links, are no part by their name, can move, have something for a
+    simulator, ``<ros2_control>``, the shortest path."""
 
-    def rank(it: Looked) -> tuple[bool, bool, bool, bool, int, str]:
+    def rank(it: Looked) -> tuple[bool, bool, bool, bool, bool, int, str]:
         part = _PART.search(os.path.basename(it.path).lower()) is not None
         without = it.simulator == NO_SIMULATOR, not it.control
-        return it.links < 2, part, *without, len(it.path), it.path
+        return it.links < 2, part, not _moves(it), *without, len(it.path), it.path
 
     return sorted(found, key=rank)
+
+
+def _moves(it: Looked) -> bool:
+    """Has it a joint that is not fixed? A house or a shelf has none."""
+    joints = it.root.iter("joint") if it.root is not None else ()
+    return any(joint.get("type", "fixed") != "fixed" for joint in joints)

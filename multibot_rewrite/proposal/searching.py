@@ -64,7 +64,7 @@ def search(paths: Sequence[str]) -> Found:
             )
     files = [os.path.normpath(it) for it in paths if not os.path.isdir(it)]
     folders = [os.path.normpath(it) for it in paths if os.path.isdir(it)]
-    homes = dict.fromkeys((*folders, *(_home(it) for it in files)))
+    homes = dict.fromkeys((*folders, *(home_of(it) for it in files)))
     every = dict.fromkeys(path for home in homes for path in _files(home))
     kinds: dict[str, list[str]] = {}
     for path, kind in _sorted(every):
@@ -82,23 +82,7 @@ def without(found: Found, paths: Container[str]) -> Found:
     return Found(*kept)
 
 
-def without_others(found: Found, robot: str) -> Found:
-    """The same without files of the description's package that are nearer to another description: a
-    folder of examples has files of several robots."""
-    others = {os.path.dirname(it) for it in found.every}
-    own, base = os.path.dirname(robot), _home(robot)
-
-    def near(folder: str, file: str) -> int:
-        return len(os.path.commonpath((os.path.abspath(folder), os.path.abspath(file))))
-
-    def of_another(file: str) -> bool:
-        inside = near(base, file) == len(os.path.abspath(base))
-        return inside and any(near(it, file) > near(own, file) for it in others)
-
-    return without(found, {file for kind in found[1:] for file in kind if of_another(file)})
-
-
-def _home(file: str) -> str:
+def home_of(file: str) -> str:
     """The package of a file, as a path like the file's; its folder where it is in none."""
     package = package_of(file)
     return os.path.relpath(package[1]) if package else os.path.dirname(file) or os.curdir

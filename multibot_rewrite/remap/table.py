@@ -138,10 +138,11 @@ def joined(table: Table, other: Table, naming: Naming) -> Table:
     return made._replace(problems=tuple(dict.fromkeys(found)))
 
 
-def _renamed(names: Iterable[EndpointName], robot: str) -> list[EndpointName]:
+def _renamed(names: Sequence[EndpointName], robot: str) -> list[EndpointName]:
     """The probe's names, renamed for another robot."""
+    nodes = {node: node.replace(PROBE, robot) for node in {it.node for it in names}}
     return [
-        EndpointName(robot, node.replace(PROBE, robot), endpoint, name.replace(PROBE, robot))
+        EndpointName(robot, nodes[node], endpoint, name.replace(PROBE, robot))
         for _, node, endpoint, name in names
     ]
 

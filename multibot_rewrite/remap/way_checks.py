@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Set
+from functools import cache, partial
 
 from multibot_rewrite.controller_ways import controller_way
 from multibot_rewrite.findings.finding import WARNING, Finding
@@ -62,13 +63,13 @@ def not_taken(table: Table) -> Iterator[Finding]:
     description, who says it where no stack names them (MB435).
     """
     of_manager = controller_way(table.release).of_manager
+    some = _of_robots(table, _robots_worth_a_look(table))
     names: dict[tuple[str, str], list[EndpointName]] = {}
-    owners: dict[str, set[str]] = {}
-    for it in table.names:
-        owners.setdefault(it.name, set()).add(it.robot)
+    for it in some.names:
         if not (it.endpoint.fixed or it.endpoint.when):
             names.setdefault((it.robot, it.node), []).append(it)
-    for running in _worth_a_look(table):
+    owners = cache(partial(_owners, table))
+    for running in _worth_a_look(some):
         plain = tuple((it.source, it.target) for it in running.node.rules)
         if running.node.home.process_wide or running.rules != plain:
             own = names.get((running.node.robot, running.node.full_name), ())
@@ -77,6 +78,33 @@ def not_taken(table: Table) -> Iterator[Finding]:
             wrong = dict.fromkeys(_wrong(own, running, owners))
             if wrong:
                 yield _finding(running, list(wrong), table.release)
+
+
+def _robots_worth_a_look(table: Table) -> set[str]:
+    """Those of which descriptions decide something, and the first with each of the stack's nodes."""
+    first: dict[str, set[str]] = {}
+    found = {""}
+    for it in table.nodes:
+        robots = first.setdefault(it.node, set())
+        if len(robots) < ENOUGH or it.home.plugin or it.home.is_controller:
+            robots.add(it.robot)
+            found.add(it.robot)
+    return found
+
+
+def _of_robots(table: Table, robots: Set[str]) -> Table:
+    return table._replace(
+        nodes=tuple(it for it in table.nodes if it.robot in robots),
+        names=tuple(it for it in table.names if it.robot in robots),
+    )
+
+
+def _owners(table: Table) -> dict[str, set[str]]:
+    """The robots that have each name."""
+    owners: dict[str, set[str]] = {}
+    for it in table.names:
+        owners.setdefault(it.name, set()).add(it.robot)
+    return owners
 
 
 def _worth_a_look(table: Table) -> Iterator[RunningNode]:
@@ -89,7 +117,9 @@ def _worth_a_look(table: Table) -> Iterator[RunningNode]:
 
 
 def _wrong(
-    names: Iterable[EndpointName], running: RunningNode, owners: Mapping[str, set[str]]
+    names: Iterable[EndpointName],
+    running: RunningNode,
+    owners: Callable[[], Mapping[str, set[str]]],
 ) -> Iterator[str]:
     """Those called otherwise than the table says: as in the code, or like something of a robot."""
     node = running.node
@@ -101,7 +131,7 @@ def _wrong(
         if found == it.name:
             continue
         is_bare = found == resolve_bound(it.endpoint.name, kind, bare)
-        if is_bare or node.robot not in owners.get(found, {node.robot}):
+        if is_bare or node.robot not in owners().get(found, {node.robot}):
             yield it.endpoint.name
 
 

@@ -70,10 +70,26 @@ def _insertions(
     host: etree._Element, section: VocabularySection, declared: Declared, naming: Naming
 ) -> list[Insertion]:
     home = ros_home(host, section)
-    found = list(_defaults(host, section, declared, naming, "ros/" if home is host else ""))
+    found = list(_defaults(host, section, declared, naming, _hidden(host, home)))
     if any(site.path == "ros/remapping" for site in section.sites):
         found += _remaps(host, section, naming, home)
     return found
+
+
+def lacks_namespace(
+    host: etree._Element, section: VocabularySection, declared: Declared, naming: Naming
+) -> bool:
+    """Is a namespace among what a host needs beyond what it says itself?"""
+    sites = tuple([it for it in section.sites if "namespace" in it.kinds])
+    if not sites or not section.inserts:
+        return False
+    hidden, asked = _hidden(host, ros_home(host, section)), section._replace(sites=sites)
+    return any(it.kind == "namespace" for it in _defaults(host, asked, declared, naming, hidden))
+
+
+def _hidden(host: etree._Element, home: etree._Element | None) -> str:
+    """What the paths of a host leave out whose ROS settings stand in itself."""
+    return "ros/" if home is host else ""
 
 
 def without(item: Insertion, release: str) -> str:

@@ -64,10 +64,11 @@ class TreeNode:
 
     ``select`` is set where the element itself decides which node serves it. ``active`` are the
     children worth a visit: those with more below them than values to keep. ``element_name``
-    is that of an element's section, whose node is made when something first asks for it.
+    is that of an element's section, whose node is made when something first asks for it. ``visit``
+    is what a walk asks of each element, in one look: select, active, attributes and text.
     """
 
-    __slots__ = ("_make", "element_name", *_CONTENT)
+    __slots__ = ("_make", "element_name", "visit", *_CONTENT)
 
     def __init__(
         self, section: VocabularySection | None = None, sites: tuple[Site, ...] = ()
@@ -95,6 +96,9 @@ class TreeNode:
 
     def __getattr__(self, name: str) -> Any:
         # Called for slots without a value only: a node made later that is not made yet.
+        if name == "visit":
+            self.visit = self.select, self.active, self.attributes, self.text
+            return self.visit
         if self._make is None:
             raise AttributeError(name)
         whole = self._make(self.element_name)

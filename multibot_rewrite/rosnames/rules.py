@@ -25,10 +25,11 @@ from multibot_rewrite.rosnames.names import (
 TOPIC_SCHEME, SERVICE_SCHEME = SCHEMES = ("rostopic://", "rosservice://")
 NAMESPACE_KEY, NODE_KEYS = "__ns", ("__node", "__name")
 # lexer.c S3, S9, S10: two underscores in a row end a token, so no rule can hold such a name.
-_TOKEN = lazy_compile(r"(?:[A-Za-z]|_(?!_))(?:[A-Za-z0-9]|_(?!_))*")
+_ONE = r"(?:[A-Za-z]|_(?!_))(?:[A-Za-z0-9]|_(?!_))*"
+_TOKEN = lazy_compile(_ONE)
 # Braces are not in the lexer's alphabet: a rule cannot hold {node} or {ns}.
-_PATH = lazy_compile(rf"(?:~?/)?{_TOKEN.pattern}(?:/{_TOKEN.pattern})*")
-_NAMESPACE = lazy_compile(rf"/(?:{_TOKEN.pattern}(?:/{_TOKEN.pattern})*/?)?")
+_PATH = lazy_compile(rf"(?:~?/)?{_ONE}(?:/{_ONE})*")
+_NAMESPACE = lazy_compile(rf"/(?:{_ONE}(?:/{_ONE})*/?)?")
 _FORMS = {_PATH: "a name", _TOKEN: "a node's name", _NAMESPACE: "a namespace that starts with '/'"}
 _HINTS = {
     "*": "a wildcard, which rcl does not have",

@@ -72,18 +72,20 @@ def collect(
         found = below.get(element.getparent(), nothing).get(tag)
         if found is None:
             continue
-        if found.select is not None:
-            found = found.select(element)
+        select, active, attributes, text = found.visit
+        if select is not None:
+            found = select(element)
             if found.section is not None:
                 hosts.append(Host(element, start, found))
-        if found.active:
-            below[element] = found.active
-        for attribute, site in found.attributes:
+            _, active, attributes, text = found.visit
+        if active:
+            below[element] = active
+        for attribute, site in attributes:
             value = element.get(attribute)
             if value is not None:
                 claims.append(Claim(site, element, start, attribute, value))
-        if found.text is not None:
-            claims += _text_claim(found.text, element, start)
+        if text is not None:
+            claims += _text_claim(text, element, start)
     claims = below_models(claims, document.source, tree.vocabulary.release)
     declared = _declared(claims, urdf_declarations)
     release = tree.vocabulary.release
@@ -125,8 +127,10 @@ def _declared(claims: list[Claim], urdf_declarations: Declared) -> dict[str, dic
     declared = {kind: dict(urdf_declarations.get(kind, {})) for kind in DECLARED_KINDS}
     for claim in claims:
         site = claim.site
+        if site.role != "declares" or site.kinds[0] not in declared:
+            continue
         name = claim.value.strip()
-        if name and site.role == "declares" and site.kinds[0] in declared:
+        if name:
             declared[site.kinds[0]].setdefault(name, claim)
     return declared
 

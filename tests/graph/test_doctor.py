@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from fault_changes import Fault, nav
+from fault_changes import Fault, nav, shared_tf
 from graph_cases import environment, sent
 from graph_faults import FAULTS
 from graph_faults_page import lines
@@ -253,6 +253,26 @@ def test_what_is_suggested_is_taken(
     assert multibot.main(["check", str(folder / "plan.yaml"), "--snapshot", graph]) == 0
     fleet, planned = str(folder / "fleet.yaml"), str(tmp_path / "plan.yaml")
     assert multibot.main(["plan", fleet, "-o", planned]) == 0, capsys.readouterr().err
+
+
+def test_what_separates_a_robots_word_from_frames_is_suggested(tmp_path: Path) -> None:
+    """`robot1_base_link`, where a fleet file has `robot1/base_link` by itself."""
+
+    def spelled(name: str) -> str:
+        plain, _, robot = name.rpartition("/")
+        return f"{robot}_{plain}" if plain else name
+
+    graph = shared_tf()
+    frames = (
+        it._replace(child=spelled(it.child), parent=spelled(it.parent)) for it in graph.frames
+    )
+    graph, folder = graph._replace(frames=tuple(frames)), tmp_path / "first"
+    given = ["doctor", "--snapshot", saved(tmp_path, graph), "--suggest", str(folder)]
+    assert multibot.main(given) == 0
+    planned = str(tmp_path / "plan.yaml")
+    assert multibot.main(["plan", str(folder / "fleet.yaml"), "-o", planned]) == 0
+    robot, _ = from_yaml(Path(planned).read_bytes(), planned).robots
+    assert "robot1_base_link" in robot.frames
 
 
 def test_a_suggestion_replaces_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

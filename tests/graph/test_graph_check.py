@@ -28,6 +28,8 @@ from small_fleet import LINKS, NODES, ROBOTS, healthy, plan
 from multibot_rewrite.findings.finding import INCONCLUSIVE
 from multibot_rewrite.graph.check import ABSENCE, ALL_RULES, check
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, expect, spelled
+from multibot_rewrite.graph.rules.comparison import make_view
+from multibot_rewrite.graph.rules.in_enclaves import without_enclave
 from multibot_rewrite.graph.rules.ownership import name_ownership
 from multibot_rewrite.graph.snapshot import (
     Caveat,
@@ -914,6 +916,19 @@ def test_the_cost_grows_with_the_fleet_and_not_faster() -> None:
         graph = moved(as_planned(wanted), "/robot1/cmd_vel", "/cmd_vel")
         assert [f.code for f in check(wanted, graph)] == ["MG102", "MG103"]
         return lambda: check(wanted, graph)
+
+    assert growth(prepared, 50, 200) < 1.5
+
+
+def test_robots_outside_their_enclaves_cost_no_more_each_in_a_large_fleet() -> None:
+    def prepared(count: int) -> Callable[[], object]:
+        wanted = robots_called(*(f"robot{at}" for at in range(count)))
+        seen = as_planned(wanted)
+        first, *others = seen.nodes
+        graph = seen._replace(nodes=(first._replace(enclave="/robot0"), *others))
+        found = [it.robot for it in check(wanted, graph) if it.code == "MG113"]
+        assert found[-1] == f"robot{count - 1}"
+        return lambda: list(without_enclave.check(make_view(wanted, graph)))
 
     assert growth(prepared, 50, 200) < 1.5
 

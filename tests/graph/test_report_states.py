@@ -118,6 +118,19 @@ def test_both_robots_of_cross_talk_are_concerned() -> None:
     assert cards(report_pages.spoiled()) == {"robot1": "bad", "robot2": "bad"}
 
 
+def test_a_card_of_its_own_says_the_robots_own_names() -> None:
+    """robot2 has the fault of all, and one more: the fault of all is not said of robot1 there."""
+    plan = nav2_graphs.fleet(3, 2)
+    graph = nav2_graphs.healthy(plan)
+    for robot in ("robot1", "robot2", "robot3"):
+        graph = nav2_graphs.moved(graph, f"/{robot}/topic1", "/topic1")
+    graph = nav2_graphs.moved(graph, "/robot2/topic0", "/topic0")
+    first, second = page(nav2_graphs.scene(plan, graph)).find_class("card")[:2]
+    texts = [it.text_content() for it in (first, second)]
+    own = next(it for it in texts if it.startswith("robot2"))
+    assert "/robot2/topic1" in own and "/robot1" not in own
+
+
 def test_a_robot_is_not_concerned_by_a_robot_with_a_longer_name() -> None:
     plan = nav2_graphs.fleet(11, 2)
     graph = nav2_graphs.moved(nav2_graphs.healthy(plan), "/robot11/topic1", "/topic1")

@@ -93,6 +93,15 @@ def test_changes_come_and_go() -> None:
     assert (third.appeared, set(third.solved)) == ((), set(second.appeared))
 
 
+def test_what_is_wrong_from_the_start_is_announced_when_all_has_come() -> None:
+    early = half()._replace(endpoints=(*half().endpoints, clash().endpoints[-1]))
+    first, second = watched([moving(early), clash()])
+    assert [it.complete for it in (first, second)] == [False, True]
+    assert {it.code for it in second.appeared} == {it.code for it in second.findings} == {"MG106"}
+    # That robot2 was missing has never been said.
+    assert second.solved == ()
+
+
 @pytest.mark.parametrize(
     ("graph", "robot2"), [(healthy(), ((2, 2), (5, 5))), (half(), ((0, 2), (0, 5)))]
 )

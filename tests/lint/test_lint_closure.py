@@ -65,6 +65,56 @@ def test_the_file_that_the_description_names(named: str, file: str, tmp_path: Pa
     assert it.message.startswith(f"{Path(file).name}:6: arm claims command interface j/velocity")
 
 
+CHOSEN = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
+<xacro:arg name="way" default="position"/>
+<xacro:macro name="driven" params="way"><ros2_control name="s" type="system"><joint name="j">
+<command_interface name="%s"/><state_interface name="position"/></joint></ros2_control></xacro:macro>
+<link name="a"/><link name="b"/>{}<xacro:driven way="%s"/>{}</robot>""".format(
+    JOINT, LOADS.format("controllers.yaml")
+)
+
+
+@pytest.mark.parametrize(
+    ("interface", "given", "state", "found"),
+    [
+        ("${way}", "$(arg way)", "position", []),
+        ("$(arg way)", "", "position", []),
+        ("${way}", "position", "position", ["MB229"]),
+        ("position", "$(arg way)", "position", ["MB229"]),
+        ("${way}", "$(arg way)", "velocity", ["MB229"]),
+    ],
+)
+def test_an_interface_that_an_argument_chooses_may_be_another_one(
+    interface: str, given: str, state: str, found: list[str], tmp_path: Path
+) -> None:
+    text = CONTROLLERS.replace("JOINT", "j").replace("COMMAND", "velocity")
+    text = text.replace("state_interfaces: [position]", f"state_interfaces: [{state}]")
+    (tmp_path / "controllers.yaml").write_text(text)
+    file = tmp_path / "arm.urdf.xacro"
+    file.write_text(CHOSEN % (interface, given))
+    settings = Settings(select=("MB229",), roots=(str(tmp_path),))
+    assert [it.code for it in lint_file(str(file), settings)] == found
+
+
+FILED = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
+<xacro:arg name="file" default="controllers.yaml"/>
+<link name="a"/><link name="b"/>{}{}{}</robot>""".format(
+    JOINT.replace('"j"', '"R_j"'), SYSTEM.replace('"j"', '"R_j"'), LOADS
+)
+
+
+@pytest.mark.parametrize(("file", "found"), [("$(arg file)", []), ("controllers.yaml", ["MB229"])])
+def test_a_file_that_an_argument_names_may_be_of_another_robot(
+    file: str, found: list[str], tmp_path: Path
+) -> None:
+    text = CONTROLLERS.replace("JOINT", "j").replace("COMMAND", "position")
+    (tmp_path / "controllers.yaml").write_text(text)
+    path = tmp_path / "arm.urdf.xacro"
+    path.write_text(FILED.format(file))
+    settings = Settings(select=("MB229",), roots=(str(tmp_path),))
+    assert [it.code for it in lint_file(str(path), settings)] == found
+
+
 def test_both_lines_are_named(tmp_path: Path) -> None:
     (it,) = lint(tmp_path, SYSTEM + LOADS.format("controllers.yaml"), COMMAND="positon")
     assert it.hint == "did you mean j/position (line 4)?"

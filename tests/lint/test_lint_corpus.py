@@ -6,6 +6,7 @@ from collections import Counter
 from functools import cache
 
 import pytest
+import upstream_page
 from lint_triage import (
     LEAST,
     Judged,
@@ -96,6 +97,30 @@ def test_what_is_judged_true_is_found_and_what_is_false_is_not(code: str) -> Non
             )
             wrong += [] if there == it.true else [it]
     assert wrong == []
+
+
+# What the lint says of a description alone; the others need a package's meshes or its xacro files.
+ERRORS_HERE = [
+    it for it in upstream_page.errors() if it.rule in ("MB205", "MB501", "MB606", "MB607")
+]
+
+
+def test_enough_errors_for_maintainers_are_in_the_public_files() -> None:
+    assert len(ERRORS_HERE) >= 15
+
+
+@pytest.mark.parametrize(
+    "error", ERRORS_HERE, ids=lambda it: f"{it.file.rpartition('/')[2]}:{it.line}"
+)
+def test_an_error_for_its_maintainers_is_still_found(error: upstream_page.Error) -> None:
+    owner = error.repository.replace("/", "+")
+    found = {
+        (it.code, it.level, it.message)
+        for file, its in linted().items()
+        if file.startswith(f"{owner}/")
+        for it in its
+    }
+    assert (error.rule, ERROR, error.finding) in found
 
 
 def test_the_page_of_judgements_is_current() -> None:

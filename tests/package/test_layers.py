@@ -24,7 +24,7 @@ FLOORS = (
     ("record",),
     ("outside",),
     ("bounded", "gc_pause", "lazy", "model", "nearest", "plural", "printable", "version"),
-    ("findings", "rosnames", "naming", "config", "arguments", "releases"),
+    ("findings", "rosnames", "naming", "policy", "config", "arguments", "releases"),
     ("controller_ways",),
     ("rewriters",),
     ("readback", "steps"),
@@ -137,6 +137,14 @@ def test_a_start_loads_no_more_than_it_needs() -> None:
     there = loaded("import multibot_rewrite as m; m.rewrite('<robot name=\"r\"/>', 'r1')")
     assert "multibot_rewrite.library" in there
     assert sorted(there & set(LATE)) == []
+
+
+def test_a_check_pays_for_no_source_that_it_does_not_look_at() -> None:
+    there = loaded("import multibot_rewrite.cli.check")
+    assert "multibot_rewrite.graph.check" in there
+    sources = ("live.child", "snapshot_file", "zenoh.observe", "zenoh.session")
+    late = {*LATE, "lxml", "subprocess", "urllib.request"}
+    assert there & {*late, *(f"multibot_rewrite.graph.{it}" for it in sources)} == set()
 
 
 def test_the_package_alone_loads_nothing() -> None:

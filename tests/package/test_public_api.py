@@ -26,7 +26,8 @@ from multibot_rewrite import (
 )
 from multibot_rewrite.arguments import checked
 from multibot_rewrite.fleets.node_names import NodeNames
-from multibot_rewrite.naming import Policy, make_naming
+from multibot_rewrite.naming import make_naming
+from multibot_rewrite.policy import Policy
 
 ROVER = FIXTURES / "robots" / "rover.urdf"
 SMALL = '<robot name="rover"><link name="base"/></robot>'

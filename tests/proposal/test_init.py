@@ -342,3 +342,81 @@ def test_names_of_robots() -> None:
     assert names_of(["rover"], 2) == [("robot1", "robot2")]
     assert names_of(["Arm-7", "arm-7"], 1) == [("arm_1",), ("arm__1_1",)]
     assert len(set(unlike(["a", "A", "7", "-"]))) == 4
+
+
+CRANE = """\
+<robot name="crane">
+  <link name="mast"/><link name="crane_hook"/><link name="crane_rope"/><link name="mast_top"/>
+  <joint name="lift_joint" type="prismatic"><parent link="mast"/><child link="crane_hook"/>
+    <limit lower="0" upper="1" effort="1" velocity="1"/></joint>
+  <joint name="rope_joint" type="fixed"><parent link="mast"/><child link="crane_rope"/></joint>
+  <joint name="top_joint" type="fixed"><parent link="mast"/><child link="mast_top"/></joint>
+</robot>
+"""
+
+
+@pytest.fixture
+def yard(tmp_path: Path) -> Path:
+    """A rover and a crane in one folder, with files for each in another one."""
+    (tmp_path / "package.xml").write_text("<package><name>yard</name></package>")
+    (tmp_path / "urdf").mkdir()
+    (tmp_path / "config").mkdir()
+    shutil.copy(ROBOTS / "rover.urdf", tmp_path / "urdf")
+    (tmp_path / "urdf" / "crane.urdf").write_text(CRANE)
+    return tmp_path
+
+
+def params_of(yard: Path, **values: object) -> list[str]:
+    """Which of these files, a section with these values each, go with the rover."""
+    for name, value in values.items():
+        text = yaml.safe_dump({f"{name}_node": {"ros__parameters": {"it": value}}})
+        (yard / "config" / f"{name}.yaml").write_text(text)
+    taken = made(yard, yard / "urdf" / "rover.urdf").get("companions", {}).get("params", [])
+    return [Path(it).stem for it in taken]
+
+
+def test_files_that_name_joints_of_another_robot_are_its_own(yard: Path) -> None:
+    rover, crane = ["lidar_link", "imu_link"], ["lift_joint", "crane_hook"]
+    assert params_of(yard, wheels=rover, hook=crane) == ["wheels"]
+    text = (yard / "fleet.yaml").read_text()
+    assert "#   config/hook.yaml: it is for crane.urdf, which has crane_hook, lift_joint" in text
+
+
+@pytest.mark.parametrize(
+    "named",
+    [
+        # What a copied file names, or names of all robots; a word that is a name, as a key.
+        ["lift_joint"], ["map", "odom", "world"], {"mast": 1, "hook": 2}, 5,
+        # A robot of both parts has more than the rover: the rover's part is the rover's.
+        ["lidar_link", "imu_link", "crane_hook", "lift_joint", "mast_top", "crane_rope"],
+    ],
+)  # fmt: skip
+def test_files_that_are_not_surely_of_another_robot_stay(yard: Path, named: object) -> None:
+    assert params_of(yard, some=named) == ["some"]
+
+
+def test_files_in_the_folder_of_the_robot_are_its_own(yard: Path) -> None:
+    """Those are nearer to it than to the crane, whatever they name."""
+    (yard / "crane").mkdir()
+    (yard / "urdf" / "crane.urdf").rename(yard / "crane" / "crane.urdf")
+    text = yaml.safe_dump({"a": {"ros__parameters": {"it": ["lift_joint", "crane_hook"]}}})
+    (yard / "urdf" / "a.yaml").write_text(text)
+    assert params_of(yard) == ["a"]
+
+
+def test_files_of_moveit_go_with_the_nearest_srdf(yard: Path) -> None:
+    shutil.copy(ROBOTS / "rover.srdf", yard / "urdf")
+    (yard / "crane_config").mkdir()
+    group = '<group name="lift"><joint name="lift_joint"/></group>'
+    (yard / "crane_config" / "crane.srdf").write_text(f'<robot name="crane">{group}</robot>')
+    limits = "joint_limits: {lift_joint: {has_velocity_limits: true, max_velocity: 1.0}}\n"
+    (yard / "crane_config" / "joint_limits.yaml").write_text(limits)
+    fleet = made(yard, yard / "urdf" / "rover.urdf")
+    assert (fleet["srdf"], fleet.get("companions", {})) == ("urdf/rover.srdf", {})
+
+
+def test_a_house_is_not_the_robot_of_a_folder(tmp_path: Path) -> None:
+    walls = "".join(f'<link name="wall_{at}"/>' for at in range(3))
+    (tmp_path / "a.sdf").write_text(f'<sdf version="1.9"><model name="a">{walls}</model></sdf>')
+    (tmp_path / "the_crane.urdf").write_text(CRANE)
+    assert made(tmp_path, tmp_path)["description"] == "the_crane.urdf"

@@ -12,7 +12,7 @@ import yaml
 from paths import ROBOTS
 
 from multibot_rewrite.fleets.fleet import make_fleet
-from multibot_rewrite.naming import Policy
+from multibot_rewrite.policy import Policy
 from multibot_rewrite.remap.records import Table
 from multibot_rewrite.remap.started import arguments, started
 from multibot_rewrite.remap.table_formats import FORMS

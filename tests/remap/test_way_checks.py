@@ -7,7 +7,7 @@ import re
 import pytest
 
 from multibot_rewrite.fleets.fleet import make_fleet, merge
-from multibot_rewrite.naming import Policy
+from multibot_rewrite.policy import Policy
 
 LAYOUT: Policy = {"layout": "tf-per-robot"}
 NEITHER: Policy = {"layout": "postfix"}
@@ -89,3 +89,11 @@ def test_robots_of_different_stacks_are_looked_at_together() -> None:
     assert not [it for made in alone for it in made.table.problems if it.robot == "robot2"]
     found = merge(alone).table.problems
     assert {it.robot for it in found if it.code == "MR105"} == {"robot2"}
+
+
+def test_each_robot_of_a_description_is_looked_at() -> None:
+    robots = [f"robot{at}" for at in range(1, 6)]
+    stacks = ["gz_ros2_control"]
+    made = make_fleet(description(), robots, stacks, NEITHER, release="humble")
+    found = {it.robot for it in made.table.problems if it.code == "MR105"}
+    assert found - {"robot1"} == {*robots[1:]}

@@ -18,7 +18,8 @@ from multibot_rewrite.checks.meeting import SHARED_CODES, SHARED_LOOKUP
 from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.model import Site
-from multibot_rewrite.naming import POSTFIX, Policy, make_naming
+from multibot_rewrite.naming import POSTFIX, make_naming
+from multibot_rewrite.policy import Policy
 from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared

@@ -19,7 +19,8 @@ from proof_faults import SOURCES
 from random_robots import LAYOUTS, Robot, random_robots
 
 from multibot_rewrite import ProofError, RewriteRefused, pipeline, rewrite, rewrite_all
-from multibot_rewrite.naming import Policy, make_naming
+from multibot_rewrite.naming import make_naming
+from multibot_rewrite.policy import Policy
 from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.steps.apply import cut, fill

@@ -49,4 +49,9 @@ LIVE = (
     "the EKF sends the controller's odometry as well",
     "a node sends base_link -> map",
     "frame_prefix on top of a rewritten description",
+    "one joystick for both teleops",
+    "a relay of robot1's scan to robot2",
+    "the namespace twice: /robot2/robot2/scan",
+    "two filters on odometry/filtered",
+    "a robot without a namespace and robot2 on /tf",
 )

@@ -40,7 +40,7 @@ Each rule was run over the public files and those of Python packages that [the p
 judgements](lint-triage.md) has, with the facts of the newest long-term release unless it says
 otherwise. Ten of its findings or more were judged, all where there are fewer, by running or
 reading what consumes the value. A rule with less than 95 % true findings is a note.
-{in_packages} need what lies beside a file, and were run over checkouts of 42 public packages.
+{in_packages} need what lies beside a file, and were run over checkouts of public packages.
 
 Of defects planted in `tests/lint/`, one a file, so many gave a finding that the healthy file does not
 have: with all rules but those of this page, and with all. Of files that are odd and healthy none may

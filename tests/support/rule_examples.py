@@ -23,7 +23,7 @@ from multibot_rewrite.graph.dangers.find import find_dangers
 from multibot_rewrite.lint.beside.kinds import KINDS
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.config.settings import Settings
-from multibot_rewrite.naming import Policy
+from multibot_rewrite.policy import Policy
 from multibot_rewrite.releases import NEWEST_LTS
 
 # What every companion file of an example stands beside, unless ``beside`` has another robot.urdf.

@@ -7,7 +7,7 @@ from fnmatch import fnmatchcase
 
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.graph.dangers.find import DANGERS, find_dangers
-from multibot_rewrite.graph.dangers.seen import Owners, unique
+from multibot_rewrite.graph.dangers.seen import Owners
 from multibot_rewrite.graph.expectation import PlannedState
 from multibot_rewrite.graph.questions import SIM_TIME
 from multibot_rewrite.graph.rules.comparison import View
@@ -22,9 +22,12 @@ _ACTING = (PUBLISHES, CALLS)
 
 def dangers_beside(view: View, found: Sequence[Finding]) -> Iterator[Finding]:
     """The dangers of a graph that are neither meant by the plan nor among the findings of its rules."""
+    dangers = find_dangers(_without_planned(view), _owners(view))
+    if not dangers:
+        return
     said = {(it.code, name) for it in found for name in (*it.names, it.node)}
     names = {*_names_of_missing(view), *(name for it in found for name in it.names)}
-    for danger in find_dangers(_without_planned(view), _owners(view)):
+    for danger in dangers:
         planned = DANGERS[danger.code].options["planned"]
         about = (*danger.names, danger.node)
         if any((planned, it) in said for it in about if it) or not names.isdisjoint(danger.names):
@@ -52,28 +55,25 @@ def _not_planned(seen: NodeState, planned: PlannedState | None) -> NodeState:
 
 def _names_of_missing(view: View) -> Iterator[str]:
     """What the nodes have that are in the plan and not in the graph: their absence is said already."""
-    return (name for node, _, _, name in view.planned if node not in view.seen)
+    return (name for node, _, _, name in view.missing if node not in view.seen)
 
 
 def _owners(view: View) -> Owners:
     """Whose each name is, by the plan."""
     graph, whose, frames_of = view.graph, view.ownership, view.frame_ownership
-    ends = (name for end in graph.endpoints for name in (end.name, end.node))
-    senders = (it for edge in graph.frames for it in (*edge.publishers, edge.topic))
-    names = {it: _robot(view, it) for it in unique((*view.seen, *ends, *senders))}
+    used = dict.fromkeys((*view.by_name, *(edge.topic for edge in graph.frames)))
+    senders = (it for edge in graph.frames for it in edge.publishers)
+    nodes = dict.fromkeys((*view.seen, *view.by_node, *senders))
+    shared = {*view.plan.shared_nodes, *view.plan.shared_topics}
+    names = {it: "" if it in shared else whose.robot(it) for it in (*nodes, *used)}
     frames = {it: frames_of.robot(it) for edge in graph.frames for it in (edge.child, edge.parent)}
     return Owners(
         tuple(sorted(it.name for it in view.plan.robots)),
         names,
         frames,
-        {it: whose.without_robot(it, robot) for it, robot in names.items()},
+        {it: whose.without_robot(it, names[it]) for it in used},
         {it: frames_of.without_robot(it, robot) for it, robot in frames.items()},
     )
-
-
-def _robot(view: View, name: str) -> str:
-    shared = name in view.plan.shared_nodes or name in view.plan.shared_topics
-    return "" if shared else view.ownership.robot(name)
 
 
 def _is_meant(view: View, danger: Finding) -> bool:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
 
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.graph.dangers import words
@@ -22,17 +23,12 @@ from multibot_rewrite.graph.dangers.seen import (
 )
 from multibot_rewrite.graph.dangers.sharing import own_namespace
 from multibot_rewrite.graph.rules.declaration import danger_rule
+from multibot_rewrite.graph.snapshot import GraphEndpoint
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.remap.records import ACTION, TOPIC
 
 _OWN_SUBJECT = ("/clock", "/rosout", "/parameter_events")
-
-
-def _commands(seen: Seen) -> Iterator[Ends]:
-    for (kind, name), ends in seen.names.items():
-        if kind == TOPIC and words.moves(seen.plain(name), ends.type):
-            yield ends
 
 
 @danger_rule(
@@ -57,10 +53,9 @@ running: /robot2/driver subscribes /robot2/cmd_vel geometry_msgs/msg/Twist
 def command_for_several_robots(seen: Seen) -> Iterator[Finding]:
     """Whether or not anybody sends at the moment."""
     for (kind, name), ends in seen.names.items():
-        plain = seen.plain(name)
         joystick = ends.type == words.JOYSTICK and not seen.robot(name)
-        order = words.moves(plain, ends.type) or words.is_pose_order(plain, ends.type) or joystick
-        nodes = nodes_of(at_work(ends.subscribers)) if kind == TOPIC and order else ()
+        order = kind == TOPIC and (joystick or name in seen.orders)
+        nodes = nodes_of(at_work(ends.subscribers)) if order else ()
         robots = robots_of(seen, nodes)
         if len(robots) > 1:
             message = f"{and_then(robots)} all obey {name}: {shorten(nodes)}"
@@ -98,17 +93,13 @@ running: /robot1/controller_server publishes /robot1/cmd_vel geometry_msgs/msg/T
 )
 def command_to_nobody(seen: Seen) -> Iterator[Finding]:
     """Where the other name has no sender, its reader is the finding; what RViz offers is a note."""
-    obeyed = {
-        name: ends
-        for (kind, name), ends in seen.names.items()
-        if kind == TOPIC and ends.publishers and at_work(ends.subscribers)
-    }
-    for (kind, name), ends in seen.names.items():
-        plain = seen.plain(name)
-        order = words.moves(plain, ends.type) or words.is_pose_order(plain, ends.type)
-        if kind != TOPIC or not order or not ends.publishers or at_work(ends.subscribers):
-            continue
-        same = [it for it, other in obeyed.items() if other.type == ends.type]
+    obeyed = defaultdict(list)
+    unread = {name: it for name, it in seen.orders.items() if it.publishers and not _obeyed(it)}
+    for (kind, name), ends in seen.names.items() if unread else ():
+        if kind == TOPIC and ends.publishers and _obeyed(ends):
+            obeyed[ends.type].append(name)
+    for name, ends in unread.items():
+        same = obeyed[ends.type]
         robots = [it for it in same if seen.plain(it) == name]
         meant = next(iter(robots), "") or alike(name, same, ends.type)
         if meant:
@@ -123,6 +114,10 @@ def command_to_nobody(seen: Seen) -> Iterator[Finding]:
                 node=node,
                 names=(name,),
             )
+
+
+def _obeyed(ends: Ends) -> bool:
+    return bool(at_work(ends.subscribers))
 
 
 def _unread(seen: Seen, ends: Ends, meant: str, robots: int) -> Finding:
@@ -160,14 +155,16 @@ running: /robot2/teleop publishes /robot2/cmd_vel geometry_msgs/msg/Twist
 def command_from_another_robot(seen: Seen) -> Iterator[Finding]:
     """Tools as well: a joystick of one robot is not for another."""
     for (kind, name), ends in seen.names.items():
-        owner, plain = seen.robot(name), seen.plain(name)
-        order = words.moves(plain, ends.type) or words.is_pose_order(plain, ends.type)
-        order = order or _is_waited_for(seen, ends)
-        senders = ends.publishers if kind == TOPIC and order else ends.clients
+        owner = seen.robot(name)
+        crossing = _of_others(seen, owner, (*ends.publishers, *ends.clients)) if owner else ()
+        if not crossing:
+            continue
+        order = kind == TOPIC and (name in seen.orders or _is_waited_for(seen, ends))
+        senders = ends.publishers if order else ends.clients
         served = kind == TOPIC or ends.servers
-        for node in nodes_of(senders) if owner and served else ():
+        for node in nodes_of(_of_others(seen, owner, senders)) if served else ():
             robot = seen.robot(node)
-            if robot in ("", owner) or not _mistaken(seen, node, robot, ends):
+            if not _mistaken(seen, node, robot, ends):
                 continue
             does = "publishes" if kind == TOPIC else "sends goals to" if kind == ACTION else "calls"
             message = f"{does} {name}, which belongs to {owner}"
@@ -175,6 +172,11 @@ def command_from_another_robot(seen: Seen) -> Iterator[Finding]:
             yield command_from_another_robot.finding(
                 message, cause, robot=robot, node=node, names=(name,)
             )
+
+
+def _of_others(seen: Seen, owner: str, ends: Iterable[GraphEndpoint]) -> list[GraphEndpoint]:
+    """The ends of other robots' nodes."""
+    return [it for it in ends if seen.robot(it.node) not in ("", owner)]
 
 
 def _is_waited_for(seen: Seen, ends: Ends) -> bool:
@@ -220,7 +222,9 @@ running: /robot1/behavior_server publishes /robot1/cmd_vel geometry_msgs/msg/Twi
 )
 def several_command_senders(seen: Seen) -> Iterator[Finding]:
     """The nodes of Nav2, and those of MoveIt, send one after another: they are one sender."""
-    for ends in _commands(seen):
+    for ends in seen.orders.values():
+        if len(ends.publishers) < 2 or not words.moves(seen.plain(ends.name), ends.type):
+            continue
         readers = nodes_of(at_work(ends.subscribers))
         # A program to look with that sends velocities is a joystick.
         senders = nodes_of(ends.publishers)
@@ -262,11 +266,13 @@ running: /rosbag2_player publishes /recorded/scan sensor_msgs/msg/LaserScan
 def bag_beside_a_robot(seen: Seen) -> Iterator[Finding]:
     """A bag that is played to nodes which only read is what bags are for."""
     mixed: dict[str, list[str]] = {}
-    for ends in (it for (kind, _), it in seen.names.items() if kind == TOPIC):
+    played = {end.name for end in seen.graph.endpoints if words.PLAYER in end.node}
+    for ends in seen.names.values() if played else ():
+        if ends.kind != TOPIC or ends.name not in played:
+            continue
         players = [it for it in nodes_of(ends.publishers) if last_word(it).startswith(words.PLAYER)]
         others = [it for it in nodes_of(at_work(ends.publishers)) if it not in players]
-        order = words.moves(seen.plain(ends.name), ends.type)
-        obeyed = order and bool(at_work(ends.subscribers))
+        obeyed = words.moves(seen.plain(ends.name), ends.type) and _obeyed(ends)
         if players and ends.name not in _OWN_SUBJECT and (others or obeyed):
             mixed.setdefault(players[0], []).append(ends.name)
     for player, names in mixed.items():

@@ -38,6 +38,8 @@ def types_differ(seen: Seen) -> Iterator[Finding]:
         givers, takers = (ends.publishers, ends.subscribers)
         if ends.kind != TOPIC:
             givers, takers = ends.servers, ends.clients
+        if len({(end.type, end.type_hash) for end in (*givers, *takers)}) < 2:
+            continue
         given = {(end.type, end.type_hash) for end in givers if end.type}
         for node in nodes_of(takers) if given else ():
             asked = {(end.type, end.type_hash) for end in takers if end.node == node}

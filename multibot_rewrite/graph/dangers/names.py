@@ -293,7 +293,7 @@ def service_of_two_nodes(seen: Seen) -> Iterator[Finding]:
     """Of two nodes with one name the nodes are the finding; two filters of robot_localization in one
     robot both serve `set_pose`, which is how they are made."""
     for (kind, name), ends in seen.names.items():
-        nodes = nodes_of(ends.servers)
+        nodes = nodes_of(ends.servers) if ends.servers else ()
         if len(nodes) > 1 and (kind == ACTION or len(robots_of(seen, nodes)) > 1):
             what = "action" if kind == ACTION else SERVICE
             message = f"{and_then(nodes)} both serve the {what} {name}"

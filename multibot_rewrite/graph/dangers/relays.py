@@ -125,6 +125,4 @@ def _mux_left_out(seen: Seen) -> Iterator[Finding]:
 
 
 def _velocities(seen: Seen) -> Iterator[Ends]:
-    for (kind, name), ends in seen.names.items():
-        if kind == TOPIC and words.moves(seen.plain(name), ends.type):
-            yield ends
+    return (it for it in seen.orders.values() if words.moves(seen.plain(it.name), it.type))

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fnmatch import translate
+from functools import cache, lru_cache, partial
 from typing import NamedTuple
 
+from multibot_rewrite.graph.dangers import words
 from multibot_rewrite.graph.rules.tf_trees import tree_topic
 from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphFrame, Snapshot
-from multibot_rewrite.remap.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
+from multibot_rewrite.remap.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES, TOPIC
 
 # They look, or pass on what a person asks for: no part of a robot, and no sender of their own.
 VIEWERS = (
@@ -18,6 +20,8 @@ VIEWERS = (
     "launch_ros_*", "_*_daemon_*", "_ros2cli_*", "*_rclcpp_node", "spawner_*",
 )  # fmt: skip
 _VIEWER = re.compile("|".join(map(translate, VIEWERS)))
+# In the order of the fields of Ends.
+_PLACE = {role: at for at, role in enumerate((PUBLISHES, SUBSCRIBES, SERVES, CALLS))}
 # Names that every node has or may have, whatever it does.
 TF = "tf2_msgs/msg/TFMessage"
 NO_NAMESPACE = "the robot without a namespace"
@@ -28,8 +32,8 @@ class Owners(NamedTuple):
     """The robots of a graph, and whose each name is.
 
     ``names`` has the robot of every node, topic, service and action, ``frames`` that of every frame;
-    empty where it is of no robot or of all. ``plain_names`` and ``plain_frames`` are the same without
-    the robot's name.
+    empty where it is of no robot or of all. ``plain_names``, of topics, services and actions, and
+    ``plain_frames`` are without the robot's name.
     """
 
     robots: tuple[str, ...]
@@ -40,20 +44,18 @@ class Owners(NamedTuple):
 
 
 class Ends(NamedTuple):
-    """The endpoints of one name and kind, by what their nodes do."""
+    """The endpoints of one name and kind, by what their nodes do.
+
+    ``type`` is that of the name, where its ends agree on one; else the type of the first end.
+    """
 
     kind: str
     name: str
+    type: str
     publishers: tuple[GraphEndpoint, ...]
     subscribers: tuple[GraphEndpoint, ...]
     servers: tuple[GraphEndpoint, ...]
     clients: tuple[GraphEndpoint, ...]
-
-    @property
-    def type(self) -> str:
-        """The type of the name, where its ends agree on one; else the type of the first end."""
-        ends = (*self.publishers, *self.subscribers, *self.servers, *self.clients)
-        return ends[0].type
 
 
 class Tree(NamedTuple):
@@ -70,18 +72,24 @@ class Tree(NamedTuple):
 
 
 class Seen(NamedTuple):
-    """A graph with its robots; ``names`` has the ends of each (kind, name), without hidden ones,
-    ``by_robot`` those of each (robot, kind, name without the robot's)."""
+    """A graph with its robots; ``names`` has the ends of each (kind, name), without hidden ones.
+
+    ``topics`` are those of them that are topics, but tf and what every node has; ``orders`` the topics
+    by which a robot is moved or sent somewhere. ``by_robot`` makes, when it is first asked, the ends of
+    each (robot, kind, name without the robot's).
+    """
 
     graph: Snapshot
     owners: Owners
     names: Mapping[tuple[str, str], Ends]
+    topics: tuple[Ends, ...]
+    orders: Mapping[str, Ends]
     trees: tuple[Tree, ...]
-    by_robot: Mapping[tuple[str, str, str], Ends]
+    by_robot: Callable[[], Mapping[tuple[str, str, str], Ends]]
 
     def of_robot(self, robot: str, kind: str, plain: str) -> Ends | None:
         """The ends of a robot's name, by the name without the robot's."""
-        return self.by_robot.get((robot, kind, plain))
+        return self.by_robot().get((robot, kind, plain))
 
     def robot(self, name: str) -> str:
         """The robot of a node or name; empty for none."""
@@ -95,21 +103,41 @@ class Seen(NamedTuple):
 def look_at(graph: Snapshot, owners: Owners) -> Seen:
     """The look-ups that the rules share, made once."""
     names = {(it.kind, it.name): it for it in _ends(graph.endpoints)}
-    by_robot = {
+    topics = [it for it in names.values() if it.kind == TOPIC]
+    plain = owners.plain_names
+    return Seen(
+        graph,
+        owners,
+        names,
+        tuple(it for it in topics if it.name not in EVERYBODYS and it.type != TF),
+        {it.name: it for it in topics if words.is_order(plain.get(it.name, it.name), it.type)},
+        tuple(_trees(graph, names.values())),
+        cache(partial(_by_robot, owners, names)),
+    )
+
+
+def _by_robot(
+    owners: Owners, names: Mapping[tuple[str, str], Ends]
+) -> Mapping[tuple[str, str, str], Ends]:
+    return {
         (owners.names.get(name, ""), kind, owners.plain_names.get(name, name)): ends
         for (kind, name), ends in names.items()
     }
-    return Seen(graph, owners, names, tuple(_trees(graph, names.values())), by_robot)
 
 
 def _ends(endpoints: Iterable[GraphEndpoint]) -> Iterator[Ends]:
-    found: dict[tuple[str, str], dict[str, list[GraphEndpoint]]] = {}
+    found: dict[tuple[str, str], tuple[list[GraphEndpoint], ...]] = {}
     for end in endpoints:
-        if "/_" not in end.name:
-            found.setdefault((end.kind, end.name), defaultdict(list))[end.role].append(end)
-    for (kind, name), by_role in found.items():
-        roles = (PUBLISHES, SUBSCRIBES, SERVES, CALLS)
-        yield Ends(kind, name, *(tuple(by_role.get(role, ())) for role in roles))
+        key = (end.kind, end.name)
+        if "/_" in end.name:
+            continue
+        sides = found.get(key)
+        if sides is None:
+            sides = found[key] = ([], [], [], [])
+        sides[_PLACE[end.role]].append(end)
+    for (kind, name), sides in found.items():
+        first = next(filter(None, sides))[0]
+        yield Ends(kind, name, first.type, *map(tuple, sides))
 
 
 def _trees(graph: Snapshot, names: Iterable[Ends]) -> Iterator[Tree]:
@@ -140,7 +168,13 @@ def nodes_of(ends: Iterable[GraphEndpoint]) -> tuple[str, ...]:
 
 def is_viewer(node: str) -> bool:
     """Does the node only look, or pass on what a person asks for?"""
-    return bool(_VIEWER.fullmatch(last_word(node)))
+    return _only_looks(last_word(node))
+
+
+# A fleet has a handful of such words, each in many nodes.
+@lru_cache(maxsize=4096)
+def _only_looks(word: str) -> bool:
+    return bool(_VIEWER.fullmatch(word))
 
 
 def is_hidden(node: str) -> bool:

@@ -7,8 +7,6 @@ from collections.abc import Iterator, Sequence
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.dangers import words
 from multibot_rewrite.graph.dangers.seen import (
-    EVERYBODYS,
-    TF,
     Ends,
     Seen,
     and_then,
@@ -19,7 +17,6 @@ from multibot_rewrite.graph.dangers.seen import (
 )
 from multibot_rewrite.graph.rules.declaration import danger_rule
 from multibot_rewrite.graph.wording import shorten
-from multibot_rewrite.remap.records import TOPIC
 
 
 def own_namespace(seen: Seen, name: str, robot: str) -> str:
@@ -29,13 +26,6 @@ def own_namespace(seen: Seen, name: str, robot: str) -> str:
         f" {name}:={name.strip('/')} (--ros-args -r, remappings= in the launch file) for a node in"
         f" the namespace of {robot}"
     )
-
-
-def _topics(seen: Seen) -> Iterator[Ends]:
-    """The topics of a graph but tf and what every node has."""
-    for (kind, name), ends in seen.names.items():
-        if kind == TOPIC and name not in EVERYBODYS and ends.type != TF:
-            yield ends
 
 
 @danger_rule(
@@ -60,7 +50,9 @@ running: /robot2/lidar publishes /robot2/scan sensor_msgs/msg/LaserScan
 )
 def topic_of_several_robots(seen: Seen) -> Iterator[Finding]:
     """Reports and orders of a fleet are none: only what belongs to one robot."""
-    for ends in _topics(seen):
+    for ends in seen.topics:
+        if len(ends.publishers) < 2:
+            continue
         nodes = nodes_of(at_work(ends.publishers))
         robots = robots_of(seen, nodes)
         plain = seen.plain(ends.name)
@@ -96,11 +88,8 @@ running: /robot2/amcl subscribes /robot2/scan sensor_msgs/msg/LaserScan
 )
 def data_of_another_robot(seen: Seen) -> Iterator[Finding]:
     """A node that reads both robots' topics is meant to: it compares or follows."""
-    own = {
-        (seen.robot(ends.name), seen.plain(ends.name)): ends
-        for ends in _topics(seen)
-        if seen.robot(ends.name) and ends.publishers
-    }
+    read_across = any(_is_read_across(seen, it) for it in seen.topics)
+    own = _topics_by_robot(seen) if read_across else {}
     for (owner, plain), ends in own.items():
         sensors = words.is_of_one_robot(plain, ends.type)
         for end in at_work(ends.subscribers) if sensors else ():
@@ -116,6 +105,21 @@ def data_of_another_robot(seen: Seen) -> Iterator[Finding]:
             yield data_of_another_robot.finding(
                 message, cause, robot=robot, node=end.node, names=(ends.name, mine.name)
             )
+
+
+def _is_read_across(seen: Seen, ends: Ends) -> bool:
+    """Does a node of one robot read the topic of another?"""
+    owner = seen.robot(ends.name)
+    return bool(owner) and any(seen.robot(it.node) not in ("", owner) for it in ends.subscribers)
+
+
+def _topics_by_robot(seen: Seen) -> dict[tuple[str, str], Ends]:
+    """What each robot publishes, by the name without the robot's."""
+    return {
+        (robot, seen.plain(ends.name)): ends
+        for ends in seen.topics
+        if ends.publishers and (robot := seen.robot(ends.name))
+    }
 
 
 @danger_rule(
@@ -142,8 +146,8 @@ running: /robot2/amcl subscribes /robot2/scan sensor_msgs/msg/LaserScan
 )
 def one_sensor_for_several_robots(seen: Seen) -> Iterator[Finding]:
     """Of a topic without a robot's name; that of a robot is for those who follow it."""
-    for ends in _topics(seen):
-        if seen.robot(ends.name) or not words.is_of_a_body(ends.type):
+    for ends in seen.topics:
+        if not words.is_of_a_body(ends.type) or seen.robot(ends.name):
             continue
         nodes = nodes_of(at_work(ends.subscribers))
         robots = robots_of(seen, nodes)
@@ -174,9 +178,9 @@ running: /robot2/slam_toolbox publishes /robot2/map nav_msgs/msg/OccupancyGrid r
 )
 def two_maps(seen: Seen) -> Iterator[Finding]:
     """Of nodes of several robots on one topic it is a topic of several robots."""
-    for ends in _topics(seen):
-        nodes = nodes_of(ends.publishers)
-        if ends.type != words.MAP or len(nodes) < 2 or len(robots_of(seen, nodes)) > 1:
+    for ends in seen.topics:
+        nodes = nodes_of(ends.publishers) if ends.type == words.MAP else ()
+        if len(nodes) < 2 or len(robots_of(seen, nodes)) > 1:
             continue
         message = f"{and_then(nodes)} both publish the map {ends.name}"
         cause = "map_server and SLAM, or the map servers of two robots: start one, or remap one"
@@ -206,7 +210,7 @@ running: /robot1/robot_state_publisher subscribes /robot1/joint_states sensor_ms
 )
 def joint_states_twice(seen: Seen) -> Iterator[Finding]:
     """Several drivers with a part of the joints each are usual."""
-    for ends in _topics(seen):
+    for ends in seen.topics:
         nodes: Sequence[str] = nodes_of(ends.publishers) if ends.type == words.JOINTS else ()
         made_up = [node for node in nodes if last_word(node).startswith("joint_state_publisher")]
         if made_up and len(nodes) > 1 and len(robots_of(seen, nodes)) < 2:
@@ -238,7 +242,9 @@ running: /robot1/ekf_global publishes /robot1/odometry/filtered nav_msgs/msg/Odo
 )
 def odometry_twice(seen: Seen) -> Iterator[Finding]:
     """A bag that is played is one as well, and so are relays: they are findings of their own."""
-    for ends in _topics(seen):
+    for ends in seen.topics:
+        if len(ends.publishers) < 2:
+            continue
         described = last_word(ends.name) == words.DESCRIPTION
         nodes = nodes_of(at_work(ends.publishers))
         twice = len(nodes) > 1 and (described or ends.type == words.ODOMETRY)

@@ -62,6 +62,11 @@ def is_pose_order(plain: str, type_: str) -> bool:
     return type_ in _POSES and plain.strip("/").replace("_", "") in _POSE_NAMES
 
 
+def is_order(plain: str, type_: str) -> bool:
+    """Does the topic (without its robot's name) move a robot or send it somewhere?"""
+    return moves(plain, type_) or is_pose_order(plain, type_)
+
+
 def is_of_a_body(type_: str) -> bool:
     """Is it what the body of a single robot measures: its joints, its way, its scan?"""
     return type_ in _BODY

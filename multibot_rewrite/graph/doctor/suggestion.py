@@ -74,6 +74,10 @@ def _fleet(seen: Diagnosis, nodes: Sequence[str], learned: bool) -> Iterator[str
     yield f"layout: {(seen.layout or fallback).name}"
     if any(robot.before for robot in robots):
         yield "affix: prefix"
+    between = {it.before[-1:] or it.behind[:1] for it in robots} - {""}
+    if len(between) == 1 and not between & {"/"}:
+        separator = between.pop()
+        yield f"separators: {{link: '{separator}', frame: '{separator}'}}"
     yield f"description: {DESCRIPTION}"
     if learned:
         yield f"nodes: {NODES_FILE}"

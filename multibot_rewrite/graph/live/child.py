@@ -15,7 +15,14 @@ from collections.abc import Generator, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from typing import IO, NamedTuple, cast
 
-from multibot_rewrite.graph.live.request import ENDED, NO_RCLPY, RMW_MISMATCH, Request, to_text
+from multibot_rewrite.graph.live.request import (
+    ENDED,
+    NO_RCLPY,
+    RMW_MISMATCH,
+    Request,
+    RosUnusable,
+    to_text,
+)
 from multibot_rewrite.graph.questions import Question
 from multibot_rewrite.graph.snapshot import (
     UNKNOWN_NODE,
@@ -26,7 +33,6 @@ from multibot_rewrite.graph.snapshot import (
     record_from,
 )
 from multibot_rewrite.graph.states import NodeState
-from multibot_rewrite.model import MultibotError
 
 INSTALL = (
     "source ROS 2 (. /opt/ros/jazzy/setup.bash) or, on Linux, pip install 'multibot_rewrite[ros]'"
@@ -40,10 +46,6 @@ NO_SECOND_LOOK = (
     " second look; give a longer --timeout"
 )
 _EXIT_SECONDS = 3.0
-
-
-class RosUnusable(MultibotError):
-    """rclpy (or zenoh, to ask a router) is missing or does not start; the message says what to do."""
 
 
 class RosProcess(NamedTuple):

@@ -5,10 +5,16 @@ from __future__ import annotations
 import json
 from typing import Any, NamedTuple
 
+from multibot_rewrite.model import MultibotError
+
 # The child's exit codes besides 0; rcl itself ends a process with 102.
 NO_RCLPY, ENDED = 4, 130
 RMW_MISMATCH = 102
 _LINE = b"\n"
+
+
+class RosUnusable(MultibotError):
+    """rclpy (or zenoh, to ask a router) is missing or does not start; the message says what to do."""
 
 
 class Request(NamedTuple):

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+from multibot_rewrite.findings.grouping import said_of
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.graph.pictures.page_sections import (
     PageSection,
@@ -58,7 +59,8 @@ def _html(card: _Card, scene: Scene, order: Mapping[str, int], rules: Mapping[st
         f'<a href="#{it.id}">{safe(it.group.robot or "shared, or of no robot")}</a>'
         for it in card.sections
     ]
-    lines = [f"<li>{_line(at, scene.rows[at], rules)}</li>" for at in card.rows]
+    first = card.sections[0].group.robot
+    lines = [f"<li>{_line(at, scene.rows[at], rules, first)}</li>" for at in card.rows]
     return (
         f'<div class="card {look_of(card.sections[0])}" role="listitem" data-robot="{numbers}">'
         f"<h3>{_folded(links, MOST_ROBOTS, 'robot', ', ')}</h3><p>{safe(_state(card, scene))}</p>"
@@ -81,13 +83,14 @@ def _state(card: _Card, scene: Scene) -> str:
     return f"{robots}{state}{each}; {counted(nodes, 'node')} running"
 
 
-def _line(at: int, row: FindingRow, rules: Mapping[str, Rule]) -> str:
-    """A finding in a few words, with a link to it."""
+def _line(at: int, row: FindingRow, rules: Mapping[str, Rule], robot: str) -> str:
+    """A finding in a few words, as it is of the robot, with a link to it."""
     it = row.finding
-    about = next(iter(it.names), it.node)
+    about = said_of(next(iter(it.names), it.node), it, robot)
     words = rules[it.code].name.replace("-", " ") if it.code in rules else it.code
+    message = said_of(it.message, it, robot)
     return (
-        f'<a class="brief {safe(it.level)}" href="#finding-{at}" title="{safe(it.message)}">'
+        f'<a class="brief {safe(it.level)}" href="#finding-{at}" title="{safe(message)}">'
         f"<b>{safe(words)}</b> <code>{safe(about)}</code></a>"
     )
 

@@ -9,6 +9,7 @@ from typing import NamedTuple
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
 from multibot_rewrite.graph.rules.ownership import NameOwnership, frame_ownership, name_ownership
 from multibot_rewrite.graph.rules.similar_names import probable_matches
+from multibot_rewrite.graph.rules.tf_copies import without_bridged
 from multibot_rewrite.graph.rules.tf_trees import TfTree, tf_trees
 from multibot_rewrite.graph.snapshot import GraphEndpoint, Snapshot
 from multibot_rewrite.graph.tool_nodes import is_tool
@@ -21,7 +22,8 @@ EndpointKey = tuple[str, str, str, str]
 class View(NamedTuple):
     """A snapshot beside the plan, with the look-ups that several rules need.
 
-    ``types`` has the type of every endpoint in the graph, ``planned`` all endpoints of the plan.
+    ``types`` has the type of every endpoint in the graph, ``planned`` all endpoints of the plan,
+    ``missing`` those of them that are not in the graph.
     ``unplanned_endpoints`` are by node those in the graph that are not in the plan, without the
     hidden topics and services of actions. ``published_topics`` have a publisher in the graph.
     ``seen`` counts the nodes by name. ``unplanned`` are nodes that are not in the plan and not
@@ -39,6 +41,7 @@ class View(NamedTuple):
     frame_ownership: NameOwnership
     types: Mapping[EndpointKey, str]
     planned: Mapping[EndpointKey, PlannedEndpoint]
+    missing: Mapping[EndpointKey, PlannedEndpoint]
     unplanned_endpoints: Mapping[str, list[GraphEndpoint]]
     published_topics: Set[str]
     seen: Mapping[str, int]
@@ -53,7 +56,9 @@ class View(NamedTuple):
 
 def make_view(plan: Expectation, graph: Snapshot) -> View:
     """Build the look-ups once for all rules."""
-    planned = {(w.node, w.kind, w.role, w.name): w for w in plan.endpoints}
+    graph = graph._replace(frames=without_bridged(plan, graph.frames))
+    # Their first four fields are the key.
+    planned = {end[:4]: end for end in plan.endpoints}
     index = _index_endpoints(graph.endpoints, planned)
     robot_of = {node: robot.name for robot in plan.robots for node in robot.nodes}
     seen = Counter(node.name for node in graph.nodes)
@@ -72,10 +77,9 @@ def make_view(plan: Expectation, graph: Snapshot) -> View:
         frame_ownership=frame_ownership(plan),
         types=index.types,
         planned=planned,
+        missing=index.missing,
         unplanned_endpoints=index.unplanned,
-        published_topics={
-            name for _, kind, role, name in index.types if (kind, role) == (TOPIC, PUBLISHES)
-        },
+        published_topics=index.published,
         seen=seen,
         unplanned=unplanned,
         probable_matches=probable_matches(missing, others, unplanned, ownership),
@@ -96,20 +100,27 @@ class _EndpointIndex(NamedTuple):
     by_name: dict[str, list[GraphEndpoint]]
     unplanned: dict[str, list[GraphEndpoint]]
     types: dict[EndpointKey, str]
+    published: set[str]
+    missing: dict[EndpointKey, PlannedEndpoint]
 
 
 def _index_endpoints(
     endpoints: Iterable[GraphEndpoint], planned: Mapping[EndpointKey, PlannedEndpoint]
 ) -> _EndpointIndex:
-    index = _EndpointIndex(defaultdict(list), defaultdict(list), defaultdict(list), {})
-    by_node, by_name, unplanned, types = index
+    index = _EndpointIndex(
+        defaultdict(list), defaultdict(list), defaultdict(list), {}, set(), dict(planned)
+    )
+    by_node, by_name, unplanned, types, published, missing = index
     for endpoint in endpoints:
         kind, role, name, type_, _, node, _, _ = endpoint
         key = (node, kind, role, name)
         by_node[node].append(endpoint)
         by_name[name].append(endpoint)
+        if role == PUBLISHES and kind == TOPIC:
+            published.add(name)
+        met = missing.pop(key, None)
         # A node may subscribe to a topic more than once.
-        if key not in planned and key not in types and "/_" not in name:
+        if met is None and "/_" not in name and key not in planned and key not in types:
             unplanned[node].append(endpoint)
         types[key] = type_
     return index

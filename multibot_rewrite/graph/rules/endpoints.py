@@ -46,9 +46,9 @@ running: /robot1/driver subscribes /cmd_vel
 )
 def missing_endpoint(view: View) -> Iterator[Finding]:
     """Only where its node is in the graph."""
-    for key, planned in view.planned.items():
+    for planned in view.missing.values():
         robot = view.robot_of.get(planned.node, "")
-        if planned.node not in view.seen or key in view.types:
+        if planned.node not in view.seen:
             continue
         # Of two nodes with one name, rcl shows the services of only one.
         if view.seen[planned.node] > 1 and planned.kind != TOPIC:

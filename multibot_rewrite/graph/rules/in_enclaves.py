@@ -71,10 +71,11 @@ def without_enclave(view: View) -> Iterator[Finding]:
     planned = [it for it in view.graph.nodes if it.name in view.robot_of]
     if not any(it.enclave for it in planned):
         return
-    for robot in view.robots:
-        bare = [it for it in planned if not it.enclave and view.robot_of[it.name] == robot]
-        if bare:
-            yield _bare(robot, bare)
+    bare: dict[str, list[GraphNode]] = {robot: [] for robot in view.robots}
+    for it in planned:
+        if not it.enclave:
+            bare[view.robot_of[it.name]].append(it)
+    yield from (_bare(robot, nodes) for robot, nodes in bare.items() if nodes)
 
 
 def _bare(robot: str, nodes: list[GraphNode]) -> Finding:

@@ -18,10 +18,10 @@ from multibot_rewrite.graph.rules.causes import (
 )
 from multibot_rewrite.graph.rules.comparison import View
 from multibot_rewrite.graph.rules.declaration import graph_rule
-from multibot_rewrite.graph.rules.tf_trees import tree_topic
+from multibot_rewrite.graph.rules.tf_copies import copying_nodes
 from multibot_rewrite.graph.snapshot import LISTENER
 from multibot_rewrite.graph.wording import SEVERAL, shorten
-from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, TOPIC
+from multibot_rewrite.remap.records import SUBSCRIBES, TOPIC
 
 
 @graph_rule(
@@ -73,8 +73,8 @@ def _missing_by_name_without_rules(view: View) -> dict[tuple[str, str], PlannedE
     """The planned endpoints that are missing, by node and the name they have without a rule."""
     return {
         (planned.node, name): planned
-        for key, planned in view.planned.items()
-        if key not in view.types and planned.node in view.robot_of
+        for planned in view.missing.values()
+        if planned.node in view.robot_of
         for name in names_without_rules(view, planned)
     }
 
@@ -95,10 +95,12 @@ def _planned_leaks(view: View) -> Iterator[Finding]:
     """A name that the plan itself has for several robots, because no remap rule changes it."""
     shared = {*view.plan.shared_topics, *EVERYWHERE, *_shared_tf(view)}
     nodes: dict[str, dict[str, None]] = defaultdict(dict)
-    relays = _relays(view)
-    for node, kind, role, name in view.planned:
-        own = node in view.robot_of and name not in shared and not view.ownership.robot(name)
-        if own and (node, kind, role, name) in view.types and node not in relays:
+    relays = copying_nodes(view.plan)
+    for key in view.planned:
+        node, _, _, name = key
+        if name in view.ownership.exact or name in shared or node not in view.robot_of:
+            continue
+        if not view.ownership.robot(name) and key in view.types and node not in relays:
             nodes[name][node] = None
     for name, users in nodes.items():
         robots = dict.fromkeys(view.robot_of[node] for node in users)
@@ -109,19 +111,6 @@ def _planned_leaks(view: View) -> Iterator[Finding]:
             yield leaked_name.finding(
                 message, cause, robot=view.robot_of[node], node=node, names=(name,)
             )
-
-
-def _relays(view: View) -> set[str]:
-    """The nodes that, by the plan, do nothing but send their robot's tf on ``/tf`` as well."""
-    trees: dict[str, set[tuple[str, str]]] = defaultdict(set)
-    for node, _, role, name in view.planned:
-        trees[node].add((role, tree_topic(name)))
-    home = {robot.name: tree_topic(robot.tf) for robot in view.plan.robots}
-    return {
-        node
-        for node, robot in view.robot_of.items()
-        if trees[node] == {(SUBSCRIBES, home[robot]), (PUBLISHES, "/tf")}
-    }
 
 
 def _shared_tf(view: View) -> set[str]:

@@ -125,6 +125,8 @@ as planned: /robot1/gripper
 )
 def unplanned_node(view: View) -> Iterator[Finding]:
     """Only where the plan has nodes of its robot."""
+    if not view.unplanned:
+        return
     matches = set(view.probable_matches.values())
     planned = {robot.name for robot in view.plan.robots if robot.nodes}
     without_robot = view.ownership.without_robot

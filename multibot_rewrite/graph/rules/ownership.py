@@ -77,7 +77,13 @@ class NameOwnership(NamedTuple):
         slash = "/" if name.startswith("/") else ""
         if "/" in tag:
             return slash + f"{name.strip('/')}/".removeprefix(f"{tag}/").rstrip("/")
-        segments = name.strip("/").split("/")
+        bare = name.strip("/")
+        # The usual cases, checked first because that is fast.
+        if self.robot_is_last and bare.endswith(f"/{tag}"):
+            return slash + bare[: -len(tag) - 1]
+        if not self.robot_is_last and bare.startswith(f"{tag}/"):
+            return slash + bare[len(tag) + 1 :]
+        segments = bare.split("/")
         places = [at for at, segment in enumerate(segments) if segment == tag]
         if places and len(segments) > 1:
             del segments[places[-1 if self.robot_is_last else 0]]
@@ -151,10 +157,13 @@ def frame_ownership(plan: Expectation) -> NameOwnership:
 def _of_one_robot(pairs: Iterable[tuple[str, str]]) -> dict[str, str]:
     """The names that belong to one robot only."""
     found: dict[str, str] = {}
+    of_several = set()
     for name, robot in pairs:
         if found.setdefault(name, robot) != robot:
-            found[name] = ""
-    return {name: robot for name, robot in found.items() if robot}
+            of_several.add(name)
+    for name in of_several:
+        del found[name]
+    return found
 
 
 def _is_last(names: Iterable[tuple[str, str]]) -> bool:

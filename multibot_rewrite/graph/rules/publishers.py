@@ -43,22 +43,25 @@ running: /robot1/local_costmap/local_costmap subscribes /robot1/scan
 )
 def topic_below_node_namespace(view: View) -> Iterator[Finding]:
     """The usual case are the sensor topics of a costmap."""
-    known = {*view.published_topics, *(name for _, _, _, name in view.planned)}
-    for node, robot in _nodes_with_own_namespace(view):
-        # A costmap reads its robot's sensors; for other nodes the plan is right.
-        costmap = COSTMAP in node.rpartition("/")[2]
-        endpoints = view.by_node if costmap else view.unplanned_endpoints
-        for end in _without_publisher(view, endpoints, node):
-            above = in_namespaces_above(node, end.name)
-            planned = (node, end.kind, end.role, end.name) in view.planned
-            allowed = view.published_topics if planned else known
-            own = (name for name in above if view.ownership.robot(name) == robot)
-            meant = next((name for name in own if name in allowed), "")
-            if meant:
-                message = f"subscribes to {end.name}, which has no publisher; did you mean {meant}?"
-                yield topic_below_node_namespace.finding(
-                    message, use_absolute(meant), robot=robot, node=node, names=(end.name, meant)
-                )
+    waiting = [
+        (robot, end)
+        for node, robot in _nodes_with_own_namespace(view)
+        for end in _without_publisher(view, node)
+    ]
+    known = {name for _, _, _, name in view.planned} if waiting else set()
+    for robot, end in waiting:
+        node, published = end.node, view.published_topics
+        own = (
+            it for it in in_namespaces_above(node, end.name) if view.ownership.robot(it) == robot
+        )
+        planned = (node, end.kind, end.role, end.name) in view.planned
+        allowed = (it for it in own if it in published or (it in known and not planned))
+        meant = next(allowed, "")
+        if meant:
+            message = f"subscribes to {end.name}, which has no publisher; did you mean {meant}?"
+            yield topic_below_node_namespace.finding(
+                message, use_absolute(meant), robot=robot, node=node, names=(end.name, meant)
+            )
 
 
 def _nodes_with_own_namespace(view: View) -> Iterator[tuple[str, str]]:
@@ -72,10 +75,11 @@ def _nodes_with_own_namespace(view: View) -> Iterator[tuple[str, str]]:
             yield node, robot
 
 
-def _without_publisher(
-    view: View, endpoints: Mapping[str, list[GraphEndpoint]], node: str
-) -> Iterator[GraphEndpoint]:
-    """A node's subscriptions without a publisher, each topic once."""
+def _without_publisher(view: View, node: str) -> Iterator[GraphEndpoint]:
+    """A node's subscriptions without a publisher, each topic once. A costmap reads its robot's sensors;
+    for other nodes the plan is right."""
+    costmap = COSTMAP in node.rpartition("/")[2]
+    endpoints = view.by_node if costmap else view.unplanned_endpoints
     topics = {
         end.name: end
         for end in endpoints.get(node, ())

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, NamedTuple
 
-from multibot_rewrite.graph.live.child import RosUnusable
+from multibot_rewrite.graph.live.request import RosUnusable
 from multibot_rewrite.model import InputError
 
 INSTALL = "pip install 'multibot_rewrite[zenoh]' (or pip install eclipse-zenoh)"

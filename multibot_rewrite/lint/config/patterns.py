@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import glob
 import os
 import re
 from collections.abc import Iterable, Iterator
@@ -18,7 +17,9 @@ def anchored(pattern: str, folder: str, where: str) -> tuple[str, ...]:
     pattern = pattern.removeprefix("./")
     tail = pattern.removeprefix("**/")
     anywhere = tail != pattern or "/" not in tail.rstrip("/")
-    top = glob.escape(folder).rstrip("/")
+    from glob import escape  # most configurations have no pattern
+
+    top = escape(folder).rstrip("/")
     if not anywhere or tail.startswith("*"):
         return (f"{top}/{tail}",)
     return f"{top}/{tail}", f"{top}/*/{tail}"

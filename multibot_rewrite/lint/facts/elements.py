@@ -23,13 +23,13 @@ class Elements:
         self._tops = _by_tag(document.root.iterchildren("*"))
         self._first: dict[str, Mapping[_Element | None, _Element]] = {}
 
-    def every(self, *tags: str) -> list[_Element]:
+    def every(self, *tags: str) -> Sequence[_Element]:
         """All of these tags, tag by tag in document order."""
-        return [it for tag in tags for it in self._every.get(tag, ())]
+        return _of(self._every, tags)
 
-    def tops(self, *tags: str) -> list[_Element]:
+    def tops(self, *tags: str) -> Sequence[_Element]:
         """The same, only of the root's children."""
-        return [it for tag in tags for it in self._tops.get(tag, ())]
+        return _of(self._tops, tags)
 
     def first(self, tag: str) -> Mapping[_Element | None, _Element]:
         """The first child of that tag, by its parent: for rules that ask every element for one."""
@@ -38,6 +38,12 @@ class Elements:
             below = self._every.get(tag, ())
             found = self._first[tag] = {it.getparent(): it for it in reversed(below)}
         return found
+
+
+def _of(found: _ByTag, tags: tuple[str, ...]) -> Sequence[_Element]:
+    if len(tags) == 1:
+        return found.get(tags[0], ())
+    return [it for tag in tags for it in found.get(tag, ())]
 
 
 def _by_tag(elements: Iterable[_Element]) -> _ByTag:

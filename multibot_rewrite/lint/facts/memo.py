@@ -16,9 +16,10 @@ def memoized(make: Callable[[Subject], _Made]) -> Callable[[Subject], _Made]:
 
     @wraps(make)
     def look_up(subject: Subject) -> _Made:
-        if make not in subject.memo:
-            subject.memo[make] = make(subject)
-        made: _Made = subject.memo[make]
+        memo = subject.memo
+        if make not in memo:
+            memo[make] = make(subject)
+        made: _Made = memo[make]
         return made
 
     return look_up

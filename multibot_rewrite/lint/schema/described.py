@@ -9,12 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
-from pathlib import Path
 
 from multibot_rewrite.lazy import lazy_compile
+from multibot_rewrite.lint.schema.tables import table_text
 from multibot_rewrite.record import NamedTuple
 
-_FOLDER = Path(__file__).parent
 SDF, PLUGINS, UNITS = "sdf.schema", "plugins.schema", "units.schema"
 KINDS = ("words", "hardware", "ros1")
 NO_WORDS: tuple[str, ...] = ()
@@ -66,7 +65,7 @@ class Described(NamedTuple):
 def chunks(file: str) -> Mapping[str, str]:
     """The text of every section of a file by each of its names; nothing is read of it yet."""
     found: dict[str, str] = {}
-    _, *parts = (_FOLDER / file).read_text(encoding="utf-8").split("\n[")
+    _, *parts = table_text(file).split("\n[")
     for part in parts:
         head = part[: part.index("]")]
         kind, _, rest = head.partition(" ")

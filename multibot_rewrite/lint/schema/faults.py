@@ -35,12 +35,12 @@ _TOPS = etree.XPath(
     " | /robot/joint[normalize-space()] | /robot/material[normalize-space()]"
 )
 _TEXTS = etree.XPath("descendant-or-self::*[text()[normalize-space()]]")
-# A number with a line break or tab right after it.
-_BROKEN = (
-    lazy_compile(rb"\n(?<=[\d.]\n)"),
-    lazy_compile(rb"\t(?<=[\d.]\t)"),
-    lazy_compile(rb"\r(?<=[\d.]\r)"),
-)
+# A number with a line break or tab right after it; that there is none at all is quick to see.
+_BROKEN = {
+    b"\n": lazy_compile(rb"\n(?<=[\d.]\n)"),
+    b"\t": lazy_compile(rb"\t(?<=[\d.]\t)"),
+    b"\r": lazy_compile(rb"\r(?<=[\d.]\r)"),
+}
 _ASSIGNED = lazy_compile(rb"([\w.-]+)\s*=\s*[\"'][^\"'=]*$")
 # Joints of these types have no axis that urdfdom reads.
 _AXIS_FREE = ("fixed", "floating")
@@ -311,7 +311,8 @@ def _broken_numbers(document: Document, known: Schema) -> Iterator[Fault]:
     """Line breaks and tabs after a number: white space for XML, but not for urdfdom."""
     source, elements, starts = document.source, document.elements, document.starts
     seen: set[int] = set()
-    for at in (it.start() for pattern in _BROKEN for it in pattern.finditer(source)):
+    patterns = [pattern for blank, pattern in _BROKEN.items() if blank in source]
+    for at in (it.start() for pattern in patterns for it in pattern.finditer(source)):
         number = bisect_right(starts, at) - 1
         if number < 0 or number in seen or tag_end(source, starts[number]) <= at:
             continue

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from pathlib import Path
 
+from multibot_rewrite.lint.schema.tables import table_text
 from multibot_rewrite.lint.schema.versions import OLDEST, Version, read_version
 from multibot_rewrite.record import NamedTuple
 
-_FILE = Path(__file__).parent / "readers.schema"
+_FILE = "readers.schema"
 URDFDOM, RVIZ, SDFORMAT, CAPSULE = "urdfdom", "RViz", "sdformat", "capsule"
 
 
@@ -27,7 +27,7 @@ class Reader(NamedTuple):
 @lru_cache
 def readers() -> tuple[Reader, ...]:
     """All rows of the table."""
-    lines = _FILE.read_text(encoding="utf-8").splitlines()
+    lines = table_text(_FILE).splitlines()
     rows = [line.split() for line in lines if line and not line.startswith("#")]
     return tuple(Reader(*row) for row in rows)
 

@@ -8,7 +8,7 @@ else.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from math import radians, tau
 
@@ -56,7 +56,7 @@ def version_of_release(release: str) -> Version:
     return tuple(found)
 
 
-def block_faults(blocks: list[_Element], robot: Robot, release: str) -> tuple[Fault, ...]:
+def block_faults(blocks: Sequence[_Element], robot: Robot, release: str) -> tuple[Fault, ...]:
     """Every fault in these ``<gazebo>`` elements."""
     version, taken = version_of_release(release), described(SDF, "urdf")
     assert taken
@@ -127,7 +127,7 @@ def _child(
         hint = f"Gazebo of this release reads up to SDF {_text(version)}"
         yield Fault("later", child, None, message, hint)
         return
-    yield from _value(child, None, row, text_of(child), known, version)
+    yield from _value(child, "", row, text_of(child), known, version)
     if row.section:
         yield from _element(child, row.section, version)
 
@@ -145,7 +145,7 @@ def _element(element: _Element, section: str, version: Version) -> Iterator[Faul
         elif is_own(key):
             yield from _unknown_attribute(element, key, known)
     yield from _missing(element, known, version)
-    if "*" in known.rows:
+    if "*" in known.rows or not len(element):
         return
     for child in element.iterchildren("*"):
         yield from _child(child, str(element.tag), known, version, {})
@@ -169,55 +169,56 @@ def _of_version(rows: tuple[Row, ...], version: Version) -> Row:
 
 
 def _value(
-    element: _Element,
-    attribute: str | None,
-    row: Row,
-    text: str,
-    known: Described,
-    version: Version,
+    element: _Element, at: str, row: Row, text: str, known: Described, version: Version
 ) -> Iterator[Fault]:
-    """What is wrong with a value."""
+    """What is wrong with a value: of the attribute ``at``, or the text."""
     text = text.strip()
     if not text or "$" in text:
         return
-    at = "" if attribute is None else attribute
-    named = f"{element.tag}@{attribute}" if attribute else f"<{element.tag}>"
     if row.type == "string":
-        yield from _word(element, at, f"{known.names[0]}/{row.name}", text, named, version)
+        yield from _word(element, at, f"{known.names[0]}/{row.name}", text, version)
         return
-    where = f"{named} {shortened(text)!r}"
     wrong = misread(row.type, text)
     if wrong:
         kind = "unreadable" if wrong.fails else "misread"
-        yield Fault(kind, element, at, f"{where} {wrong.problem}")
+        yield Fault(kind, element, at, f"{_where(element, at, text)} {wrong.problem}")
     elif row.low is not None or row.high is not None:
-        yield from _range(element, at, row, text, where)
+        yield from _range(element, at, row, text)
     elif row.type == "pose" or row.name in ANGLES:
-        yield from _degrees(element, at, row, text, where)
+        yield from _degrees(element, at, row, text)
 
 
-def _degrees(element: _Element, at: str, row: Row, text: str, where: str) -> Iterator[Fault]:
+def _where(element: _Element, at: str, text: str) -> str:
+    """How a message names a value."""
+    return f"{_named(element, at)} {shortened(text)!r}"
+
+
+def _named(element: _Element, at: str) -> str:
+    return f"{element.tag}@{at}" if at else f"<{element.tag}>"
+
+
+def _degrees(element: _Element, at: str, row: Row, text: str) -> Iterator[Fault]:
     """An angle of more than a turn; a pose may say that its are in degrees, or be a quaternion."""
     if element.get("degrees", "").lower() in ("true", "1") or element.get("rotation_format"):
         return
     angles = [number_in(it) or 0.0 for it in (text.split()[3:] if row.type == "pose" else [text])]
     worst = max(angles, key=abs, default=0.0)
     if abs(worst) > TURN:
-        hint = f"{worst:g} degrees are {radians(worst):.4g}"
-        yield Fault("degrees", element, at, f"{where} is more than a turn: it is in radians", hint)
+        message = f"{_where(element, at, text)} is more than a turn: it is in radians"
+        yield Fault("degrees", element, at, message, f"{worst:g} degrees are {radians(worst):.4g}")
 
 
-def _range(element: _Element, at: str, row: Row, text: str, where: str) -> Iterator[Fault]:
+def _range(element: _Element, at: str, row: Row, text: str) -> Iterator[Fault]:
     value = number_in(text)
     if value is None:
         return
     if row.low is not None and value < row.low:
-        yield Fault(
-            "range", element, at, f"{where} is below {row.low:.10g}, the least that SDF allows"
-        )
+        message = f"is below {row.low:.10g}, the least that SDF allows"
+        yield Fault("range", element, at, f"{_where(element, at, text)} {message}")
     elif row.high is not None and value > row.high:
-        message = f"{where} is above {row.high:.10g}, the most that SDF allows"
-        yield Fault("range", element, at, message, _in_radians(row, value))
+        message = f"is above {row.high:.10g}, the most that SDF allows"
+        hint = _in_radians(row, value)
+        yield Fault("range", element, at, f"{_where(element, at, text)} {message}", hint)
 
 
 def _in_radians(row: Row, value: float) -> str:
@@ -226,9 +227,7 @@ def _in_radians(row: Row, value: float) -> str:
     return f"{value:g} degrees are {radians(value):.4g} radians" if is_angle else ""
 
 
-def _word(
-    element: _Element, at: str, name: str, text: str, named: str, version: Version
-) -> Iterator[Fault]:
+def _word(element: _Element, at: str, name: str, text: str, version: Version) -> Iterator[Fault]:
     """A word that has to be one of those that the library knows."""
     known = words(name)
     if not known or text in known or (text.lower() in known and _is_folded(name)):
@@ -237,9 +236,8 @@ def _word(
     if not near and version <= CLASSIC and name == SENSOR_TYPE:
         return  # Gazebo Classic lets plugins add types of sensors
     hint = f"did you mean {near!r}?" if near else ""
-    yield Fault(
-        "word", element, at, f"{named} is {shortened(text)!r}, which SDF does not know", hint
-    )
+    message = f"{_named(element, at)} is {shortened(text)!r}, which SDF does not know"
+    yield Fault("word", element, at, message, hint)
 
 
 @lru_cache

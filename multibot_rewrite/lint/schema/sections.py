@@ -10,15 +10,15 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
-from pathlib import Path
 
 from lxml import etree
 
+from multibot_rewrite.lint.schema.tables import table_text
 from multibot_rewrite.lint.schema.values import FINE
 from multibot_rewrite.lint.schema.versions import OLDEST, Version, read_version
 from multibot_rewrite.record import NamedTuple
 
-_FILE = Path(__file__).parent / "urdf.schema"
+_FILE = "urdf.schema"
 ROBOT = "robot"
 NO_LATER: Mapping[str, Version] = {}
 # Combinations longer than this are not worth remembering: the children of <robot>.
@@ -85,7 +85,7 @@ def schema(version: Version) -> Schema:
 
 @lru_cache
 def _all_sections() -> Mapping[str, Section]:
-    return _sections(_FILE.read_text(encoding="utf-8").splitlines())
+    return _sections(table_text(_FILE).splitlines())
 
 
 def _of_version(section: Section, version: Version) -> Section:

@@ -5,6 +5,8 @@ Source: urdfdom 6.0.0, class ``URDFVersion`` in urdf_parser.h; without an attrib
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 from lxml.etree import _Element
 
 from multibot_rewrite.lazy import lazy_compile
@@ -28,6 +30,7 @@ KNOWN = (Version(1, 0), Version(1, 1), Version(1, 2))
 OLDEST, NEWEST = KNOWN[0], KNOWN[-1]
 
 
+@lru_cache(maxsize=64)  # a dozen rules ask
 def read_version(text: str) -> Version | None:
     """The version that a text names; None where urdfdom takes it for none."""
     pieces = text.split(".")

@@ -82,10 +82,13 @@ def _key(name: str) -> str:
 
 
 def _entry_points(folder: str) -> bytes:
+    path = f"{folder}/entry_points.txt"
+    if not os.access(path, os.R_OK):
+        return b""  # as most packages, of which there may be hundreds: an error would take longer
     try:
-        with open(f"{folder}/entry_points.txt", "rb", buffering=0) as file:
+        with open(path, "rb", buffering=0) as file:
             return file.read()
-    except OSError:  # most packages have none
+    except OSError:
         return b""
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from lxml import etree
 
@@ -15,7 +15,6 @@ from multibot_rewrite.lint.facts.memo import memoized
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.nearest import Guesses
 
-_LOOKS = ["visual", "link", "robot"]
 Look = tuple[tuple[float, ...] | str, str]
 
 
@@ -59,24 +58,18 @@ def undefined_material(subject: Subject) -> Iterator[Problem]:
         yield Problem(look, f"material {name!r} is not defined", "name", hint)
 
 
-def _materials(elements: Elements) -> list[etree._Element]:
-    return elements.tops("material") if elements.root.tag == "robot" else []
+def _materials(elements: Elements) -> Sequence[etree._Element]:
+    return elements.tops("material") if elements.root.tag == "robot" else ()
 
 
 @memoized
 def _looks(subject: Subject) -> list[etree._Element]:
     """The named materials of visuals."""
-    named = (it for it in subject.elements.every("material") if it.get("name") is not None)
-    return [it for it in named if _tags_above(it) == _LOOKS]
-
-
-def _tags_above(element: etree._Element) -> list[str]:
-    found: list[str] = []
-    above = element.getparent()
-    while above is not None:
-        found.append(str(above.tag))
-        above = above.getparent()
-    return found
+    root = subject.document.root
+    links = set(subject.elements.tops("link")) if root.tag == "robot" else set()
+    visuals = {it for it in subject.elements.every("visual") if it.getparent() in links}
+    materials = subject.elements.every("material")
+    return [it for it in materials if it.getparent() in visuals and it.get("name") is not None]
 
 
 def _misspelled(subject: Subject) -> set[etree._Element | None]:

@@ -13,7 +13,7 @@ from multibot_rewrite.lint.facts.source_values import claim_is_fixed, is_fixed, 
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.multirobot.shared import APART, claims_of, is_plain
 from multibot_rewrite.model import Claim
-from multibot_rewrite.rewriters.insert import insertions
+from multibot_rewrite.rewriters.insert import lacks_namespace
 
 DESCRIPTIONS = ("robot_param", "robotParam", "robot_param_node")
 
@@ -72,15 +72,12 @@ def hard_coded_namespace(subject: Subject) -> Iterator[Problem]:
 )
 def no_namespace(subject: Subject) -> Iterator[Problem]:
     """The first plugin without a namespace, and how many there are."""
-    declared = subject.inventory.declared
-    bare = []
-    for host in subject.inventory.hosts:
-        section = host.node.section
-        if section is None or not any("namespace" in it.kinds for it in section.sites):
-            continue
-        items = insertions([(host.element, section)], declared, APART)
-        if any(it.kind == "namespace" for it in items):
-            bare.append(host.element)
+    inventory = subject.inventory
+    bare = [
+        element
+        for element, section in inventory.served
+        if lacks_namespace(element, section, inventory.declared, APART)
+    ]
     if bare:
         have = f"and {len(bare) - 1} more have" if len(bare) > 1 else "has"
         message = f"plugin {bare[0].get('name', '')!r} {have} no namespace"

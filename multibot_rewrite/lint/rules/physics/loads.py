@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import dist
 
 from multibot_rewrite.checks.links_and_joints import Joint, roots
 from multibot_rewrite.checks.numbers import value_of
@@ -60,9 +61,9 @@ def too_weak_for_gravity(subject: Subject) -> Iterator[Problem]:
             continue
         limit = joint.parts.get("limit")
         effort = None if limit is None else value_of(limit, "effort")
-        if limit is None or not effort or effort < 0 or not _holds(subject, joint):
+        if limit is None or not effort or effort < 0 or _most(subject, joint) <= effort:
             continue
-        load = _load(subject, joint)
+        load = _load(subject, joint) if _holds(joint) else 0.0
         if load > effort * SPARE:
             unit = "N" if joint.type == "prismatic" else "Nm"
             message = (
@@ -71,7 +72,19 @@ def too_weak_for_gravity(subject: Subject) -> Iterator[Problem]:
             yield Problem(limit, message, "effort", f"{load:.3g} {unit} would hold it")
 
 
-def _holds(subject: Subject, joint: Joint) -> bool:
+def _most(subject: Subject, joint: Joint) -> float:
+    """More than gravity can do at a joint whatever its axis: one quick look, enough for most."""
+    pose, weight = (
+        link_poses(subject).get(joint.child),
+        carried(subject).get(joint.child, NO_WEIGHT),
+    )
+    if pose is None or not weight.mass:
+        return 0.0
+    arm = 1.0 if joint.type == "prismatic" else dist(weight.centre, pose.at)
+    return GRAVITY * weight.mass * arm
+
+
+def _holds(joint: Joint) -> bool:
     """Does a motor hold this joint, at 0?"""
     if joint.type not in DRIVEN or "mimic" in joint.parts or joint.type == "continuous":
         return joint.type == "continuous" and "mimic" not in joint.parts

@@ -12,9 +12,17 @@ from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import WARNING
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lazy import lazy_compile
+from multibot_rewrite.lint.facts.source_values import is_fixed, starts_of
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.examples import block
-from multibot_rewrite.lint.rules.references.shared import ARM, a_system
+from multibot_rewrite.lint.rules.references.shared import (
+    ARM,
+    COMMAND,
+    STATE,
+    a_system,
+    name_of,
+    owners,
+)
 from multibot_rewrite.model import InputError
 from multibot_rewrite.outside import is_file
 from multibot_rewrite.rewriters.text import text_of
@@ -45,7 +53,8 @@ _POSITION = block('<joint name="j">', '<command_interface name="position"/>')
     WARNING,
     what="A controller claims an interface that no <ros2_control> exports, or the same one twice. Its "
     "parameters are in the file that the description loads, or, if it loads none, in the one file "
-    "called *controllers*.yaml in its folder.",
+    "called *controllers*.yaml in its folder. Of a joint whose interface an argument of xacro chooses "
+    "nothing is said.",
     why="The controller manager does not activate a controller whose interfaces do not exist.",
     fix="Name an interface that the description has, or add it to the <ros2_control>.",
     bad=ARM + a_system(_VELOCITY) + _LOADS,
@@ -66,6 +75,21 @@ def claimed_interface(subject: Subject) -> Iterator[Problem]:
         at = "" if element.tag == "parameters" else None
         for message, hint in _found_in(subject, path, is_sure):
             yield Problem(element, message, at, hint)
+
+
+def _chosen(subject: Subject) -> tuple[str, ...]:
+    """How the interfaces begin whose names are chosen by an argument of xacro: the controllers that
+    claim another one are for another choice."""
+    if not subject.origins:
+        return ()
+    interfaces = {
+        it: owner for owner in owners(subject) for it in owner.iterchildren(COMMAND, STATE)
+    }
+    return tuple(
+        f"{str(it.tag).removesuffix('_interface')} interface {name_of(interfaces[it])}/"
+        for it, start in starts_of(subject, interfaces).items()
+        if not is_fixed(subject, start, "name")
+    )
 
 
 def _missing(gap: Gap, more: int, expanded: bool) -> tuple[str, str]:
@@ -89,10 +113,13 @@ def _files(subject: Subject, system: _Element) -> Iterator[tuple[_Element, str, 
         if host.node.section and host.node.section.process_wide
         for element in host.element.iterchildren("parameters")
     ]
+    starts = starts_of(subject, named) if subject.origins else {}
     for element in named:
         path = _found(subject, text_of(element))
+        # What an argument of xacro names by default may be the file of another robot.
+        own = element not in starts or is_fixed(subject, starts[element], "")
         if path.endswith(_YAML) and is_file(path):
-            yield element, path, True
+            yield element, path, own
     if not named:
         folder = os.path.dirname(os.path.abspath(subject.document.file))
         beside = [it for it in entries(folder) if _BESIDE in it and it.endswith(_YAML)]
@@ -131,7 +158,9 @@ def _found_in(subject: Subject, path: str, is_sure: bool) -> Iterator[tuple[str,
     known, exports = load_nodes(release), tuple(exported(document.root, document.file))
     if not is_sure and not claims_any(given, known, exports):
         return
-    for first, *more in by_place(interface_gaps(given, known, exports)):
+    gaps = list(interface_gaps(given, known, exports))
+    chosen = _chosen(subject) if gaps else ()
+    for first, *more in by_place(it for it in gaps if not it.name.startswith(chosen)):
         yield _missing(first, len(more), bool(subject.origins))
     for it in twice_gaps(given, known):
         yield f"{_at(it)}: {it.node} claims {it.name} twice", "name another joint in one of them"
