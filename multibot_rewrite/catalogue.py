@@ -82,6 +82,7 @@ HOMES: tuple[Home, ...] = (
         "RViz",
         (
             "companions.rviz.window_checks",
+            "companions.rviz.bridged",
             "companions.rviz.display_checks",
             "companions.rviz.name_checks",
         ),

@@ -24,7 +24,7 @@ from multibot_rewrite.plural import plural
 from multibot_rewrite.sources.read import read_file
 from multibot_rewrite.view.heard import moved
 from multibot_rewrite.view.models import ViewUnusable
-from multibot_rewrite.view.page import title_of, to_frame, to_html
+from multibot_rewrite.view.page import Meshes, meshes_of, title_of, to_frame, to_html
 from multibot_rewrite.view.scene import ViewedRobot, scene_of
 
 NO_VIEW = 4
@@ -37,11 +37,12 @@ def run(options: argparse.Namespace) -> int:
     graph = read_snapshots(options.snapshot) if options.snapshot else None
     try:
         scene = scene_of(plan, graph)
-        page = to_html(scene, title_of(scene.robots, plan.fleet.naming.layout.name))
+        meshes = meshes_of(scene)
+        page = to_html(scene, meshes, title_of(scene.robots, plan.fleet.naming.layout.name))
     except ViewUnusable as error:
         say(str(error), PROGRAM)
         return NO_VIEW
-    for it in _notes(scene.robots):
+    for it in _notes(scene.robots, meshes):
         note(options, f"note: {it}")
     deliver(options, page)
     size = f"{len(page) / 1e6:.1f} MB"
@@ -52,10 +53,11 @@ def run(options: argparse.Namespace) -> int:
     return DONE
 
 
-def _notes(robots: Sequence[ViewedRobot]) -> Iterator[str]:
-    """Meshes that are not there, and what tf has elsewhere."""
+def _notes(robots: Sequence[ViewedRobot], meshes: Meshes) -> Iterator[str]:
+    """Meshes that are not there or cannot be read, and what tf has elsewhere."""
     shapes = (it for one in robots for its in one.model.links.values() for it in its)
-    for missing in sorted({it.missing for it in shapes if it.missing}):
+    unread = (why for why in meshes.values() if isinstance(why, str))
+    for missing in sorted({*(it.missing for it in shapes if it.missing), *unread}):
         yield f"{missing}, it is shown as a box"
     for robot in robots:
         off = list(moved(robot.model.joints, robot.transforms))
@@ -79,7 +81,9 @@ def framed(options: argparse.Namespace, graph: Snapshot) -> Framed | None:
             return None
         plan = _fleet(options, file) if file else _plan(options)
         scene = scene_of(plan, graph)
-        return to_frame(scene, title_of(scene.robots, plan.fleet.naming.layout.name))
+        return to_frame(
+            scene, meshes_of(scene), title_of(scene.robots, plan.fleet.naming.layout.name)
+        )
     except MultibotError as error:
         note(options, f"note: the report does not show the robots in 3D: {error}")
         return None

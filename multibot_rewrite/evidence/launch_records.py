@@ -75,10 +75,12 @@ class LaunchNote(NamedTuple):
 
 
 class LaunchGraph(NamedTuple):
-    """What launch files start."""
+    """What launch files start. ``files`` are the parameter files that plugins in descriptions name, by
+    the path that they have there."""
 
     nodes: tuple[LaunchedNode, ...] = ()
     notes: tuple[LaunchNote, ...] = ()
+    files: tuple[tuple[str, ParameterText], ...] = ()
 
     @property
     def whole(self) -> bool:
@@ -129,10 +131,12 @@ def order_of(text: str) -> LaunchOrder:
 
 def graph_of(text: str) -> LaunchGraph:
     """The graph that ``to_json`` wrote."""
-    nodes, notes = json.loads(text)
+    nodes, notes, files = json.loads(text)
     found = (LaunchNote(Place(*place), *rest) for place, *rest in notes)
     return LaunchGraph(
-        tuple(_node(dict(zip(_FIELDS, it, strict=True))) for it in nodes), tuple(found)
+        tuple(_node(dict(zip(_FIELDS, it, strict=True))) for it in nodes),
+        tuple(found),
+        tuple((path, ParameterText(*it)) for path, it in files),
     )
 
 

@@ -15,7 +15,7 @@ from lxml import etree
 from multibot_rewrite.evidence.bridges import bridged_by, is_bridge
 from multibot_rewrite.evidence.launch_records import LaunchGraph, LaunchNote
 from multibot_rewrite.evidence.launched import programs
-from multibot_rewrite.evidence.running import Knowledge, RunningNode, running_nodes
+from multibot_rewrite.evidence.running import DESCRIPTION, Knowledge, RunningNode, running_nodes
 from multibot_rewrite.evidence.static_transforms import STATIC
 from multibot_rewrite.graph.snapshot import (
     EXPECTED,
@@ -47,7 +47,6 @@ CLOCK, CLOCK_TYPE = "/clock", "rosgraph_msgs/msg/Clock"
 TF, TF_STATIC, TF_TYPE = "/tf", "/tf_static", "tf2_msgs/msg/TFMessage"
 _PREFIX_SWITCH = "tf_frame_prefix_enable"
 _SIM_TIME = "use_sim_time"
-_DESCRIPTION = "robot_description"
 NOT_WHOLE, NOT_KNOWN, NO_TREE, REFUSED = (
     "launch-not-whole",
     "node-not-known",
@@ -225,7 +224,7 @@ def _publishes_a_tree(it: RunningNode) -> bool:
 def _tree(it: RunningNode) -> list[Edge] | None:
     """The transforms of a description under ``frame_prefix``; None where that is not known."""
     prefix = str(_value(it, "frame_prefix") or "")
-    text = _value(it, _DESCRIPTION)
+    text = _value(it, DESCRIPTION)
     if not isinstance(text, str) or not text.strip():
         return None
     try:

@@ -18,12 +18,16 @@ from multibot_rewrite.evidence.launched import document_of, has_sections, known_
 from multibot_rewrite.evidence.launched import programs as known_programs
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import Given, GivenNode, Place
+from multibot_rewrite.evidence.simulated_managers import Published, simulated_managers
 from multibot_rewrite.evidence.spawners import Spawned, spawned_in, texts_of
 from multibot_rewrite.evidence.static_transforms import with_static_transform
 from multibot_rewrite.remap.records import MANAGER, NodeFacts
 from multibot_rewrite.rosnames import expand
 
 Rules = tuple[tuple[str, str], ...]
+DESCRIPTION = "robot_description"
+# The process of the managers that plugins make.
+_SIMULATOR = "simulator"
 
 
 class Knowledge(NamedTuple):
@@ -73,10 +77,24 @@ def running_nodes(
     found: list[RunningNode] = []
     for at, it in enumerate(started):
         found += _started(it, containers.get(it.container), f"{at}", known)
+    asked = {it.manager for it in spawned} - {it.full_name for it in found}
+    for manager in simulated_managers(
+        _descriptions(found), dict(graph.files), asked, known.release
+    ):
+        found += _started(manager, None, _SIMULATOR, known)
+        started.append(manager)
     managers = {it.full_name: it for it in found if it.facts and it.facts.known == MANAGER}
     controllers = _controllers(spawned, managers, started, known)
     lost = [it for it in spawned if it.manager not in managers]
     return (*found, *controllers), (*notes, *_spawned_twice(spawned), *_without_manager(lost))
+
+
+def _descriptions(nodes: Iterable[RunningNode]) -> Iterator[Published]:
+    """The descriptions that launched nodes have as parameters."""
+    for it in nodes:
+        given = it.values.get(DESCRIPTION)
+        if given and isinstance(given.value, str):
+            yield Published(given.value, it.place)
 
 
 def full_name(it: LaunchedNode, facts: NodeFacts | None) -> str:
@@ -152,7 +170,9 @@ def _controllers(
         manager = managers[name]
         documents = [document_of(it.file, it.text) for it in texts if has_sections(it)]
         given = given_nodes(documents, known.parameters)
-        for it in (it for it in spawned if it.manager == name and not it.inactive):
+        active = (it for it in spawned if it.manager == name and not it.inactive)
+        # A spawner skips what is loaded already (spawner.py).
+        for it in {it.name: it for it in active}.values():
             mine = _given_to(it, given)
             wide = manager.rules if forwarded.of_manager else ()
             yield RunningNode(
@@ -188,9 +208,10 @@ def _spawned_twice(spawned: Sequence[Spawned]) -> Iterator[LaunchNote]:
 
 
 def _without_manager(lost: Sequence[Spawned]) -> Iterator[LaunchNote]:
-    """A simulator's plugin makes the manager: the description has its rules."""
+    """No description that the launch publishes has a plugin that makes the manager either."""
     for manager in dict.fromkeys(it.manager for it in lost):
         mine = [it for it in lost if it.manager == manager]
         names = ", ".join(dict.fromkeys(it.name for it in mine))
-        text = f"{manager} is started by no node of the launch, so {names} are not known"
+        who = "no node of the launch and no plugin of a published description"
+        text = f"{manager} is started by {who}, so {names} are not known"
         yield LaunchNote(mine[0].place, text)

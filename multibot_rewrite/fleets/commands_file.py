@@ -13,7 +13,7 @@ from multibot_rewrite.fleets.fleet_file import BRINGUP
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.moveit_parameters import moveit_commands
 from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, path_for
-from multibot_rewrite.fleets.relays import EXECUTABLE, PACKAGE, relays
+from multibot_rewrite.fleets.relays import relays
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_nodes import node_sources
 from multibot_rewrite.fleets.shape_outputs import vendor_commands
@@ -67,11 +67,10 @@ def commands_file(
 def _relays(plan: FleetPlan) -> Iterator[str]:
     """The commands that relay a robot's tf, if its fleet file says so."""
     (robot,) = plan.robots
-    made = relays(robot.spec.namespace, plan.fleet.naming) if plan.file.relayed else ()
-    for it in made:
+    for it in relays(robot.spec.namespace, plan.fleet.naming, plan.file):
         own = ros_arguments(it.table.namespace, it.table.name, ())
         told = [word for pair in it.parameters.items() for word in ("-p", ":=".join(pair))]
-        yield shlex.join(["ros2", "run", PACKAGE, EXECUTABLE, *own, *told])
+        yield shlex.join(["ros2", "run", *it.program, *it.arguments, *own, *told])
 
 
 def _prefixed(robot: RewrittenRobot) -> Iterator[str]:

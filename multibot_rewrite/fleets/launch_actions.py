@@ -17,7 +17,7 @@ from multibot_rewrite.fleets.cell_file import MOVE_GROUP
 from multibot_rewrite.fleets.cell_outputs import parameters_path
 from multibot_rewrite.fleets.fleet_file import BRINGUP, REAL
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
-from multibot_rewrite.fleets.launch_records import Component, File, RobotStarts, Start, Text
+from multibot_rewrite.fleets.fleet_starts import Component, File, RobotStarts, Start, Text
 from multibot_rewrite.fleets.node_names import NodeNames, names_of
 from multibot_rewrite.fleets.output_file import expanded_name, path_for
 from multibot_rewrite.fleets.relays import Relay, relays
@@ -59,11 +59,12 @@ def of_robot(one: FleetPlan, files: Collection[str], bridged: Collection[str]) -
     placed = start_poses.start_poses(one).transforms
     about = f"{os.path.basename(robot.spec.description)} in {_where(names)}"
     starts += [_transform(it) for it in placed]
-    starts += [_relay(it) for it in _relays(given)]
+    copied, bridged_tf = _relays(given)
+    starts += copied
     commands = [_activation(given, it) for it in names.started if it not in left]
     params = tuple(path_for(robot, it) for it in robot.spec.companions.get("params", ()))
     found = tuple(starts), tuple(spawned), tuple(left.items()), tuple(filter(None, commands))
-    return RobotStarts(robot.spec.name, about, params, *found)
+    return RobotStarts(robot.spec.name, about, params, *found, bridged_tf)
 
 
 class _Given(NamedTuple):
@@ -87,7 +88,8 @@ def _where(names: NodeNames) -> str:
 def _left(given: _Given) -> Iterator[tuple[str, str]]:
     """The nodes that are not started, each with the reason; it is empty for those that are started by
     something else."""
-    relayed = {it.table.node for it in _relays(given)}
+    naming, file = given.plan.fleet.naming, given.plan.file
+    relayed = {it.table.node for it in relays(given.robot.spec.namespace, naming, file)}
     for name in given.names.started:
         it = given.facts.get(name)
         if name in _BY_HAND or name in relayed:
@@ -228,14 +230,18 @@ def _transform(it: start_poses.StaticTransform) -> Start:
     return Start("tf2_ros", "static_transform_publisher", arguments=tuple(words))
 
 
-def _relays(given: _Given) -> list[Relay]:
-    """What brings its tf to ``/tf``, if the fleet file says so."""
-    robot = given.robot.spec.namespace
-    return list(relays(robot, given.plan.fleet.naming)) if given.plan.file.relayed else []
+def _relays(given: _Given) -> tuple[tuple[Start, ...], tuple[Start, ...]]:
+    """What brings its tf to ``/tf``, if the fleet file says so; and what does it with the bridge, which
+    may not be installed."""
+    naming, file = given.plan.fleet.naming, given.plan.file
+    made = relays(given.robot.spec.namespace, naming, file)
+    starts = tuple(_relay(it) for it in made)
+    return (starts, ()) if naming.layout.frames else ((), starts)
 
 
 def _relay(it: Relay) -> Start:
-    return Start(*PROGRAMS["relay"][:2], it.table.namespace, it.table.name, (dict(it.parameters),))
+    told = (dict(it.parameters),) if it.parameters else ()
+    return Start(*it.program, it.table.namespace, it.table.name, told, arguments=it.arguments)
 
 
 def _activation(given: _Given, name: str) -> str:

@@ -7,8 +7,8 @@ from collections.abc import Collection, Iterator, Sequence
 
 from multibot_rewrite.fleets import launch_actions, teleop, world_file
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
-from multibot_rewrite.fleets.launch_python import GZ, FleetStarts, to_python
-from multibot_rewrite.fleets.launch_records import File, RobotStarts
+from multibot_rewrite.fleets.fleet_starts import GZ, File, FleetStarts, RobotStarts
+from multibot_rewrite.fleets.launch_python import to_python
 from multibot_rewrite.fleets.launch_xml import to_xml
 from multibot_rewrite.fleets.output_file import OutputFile
 from multibot_rewrite.fleets.rviz_outputs import RvizOutput

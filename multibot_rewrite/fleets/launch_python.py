@@ -3,33 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
-from multibot_rewrite.fleets.launch_records import Component, File, RobotStarts, Start, Text
+from multibot_rewrite.fleets.fleet_starts import (
+    CLASSIC,
+    GZ,
+    Component,
+    File,
+    FleetStarts,
+    RobotStarts,
+    Start,
+    Text,
+    launch_arguments,
+)
+from multibot_rewrite.fleets.relays import BRIDGE, not_bridged
 
-CLASSIC, GZ = "classic", "gz"
 _Files = tuple[File, ...]
-
-
-class FleetStarts(NamedTuple):
-    """All that the launch file of a fleet starts: the simulators, what is for all robots, the robots,
-    the windows. ``head`` is its title, ``use_sim_time`` the default, ``driving`` are lines to type;
-    ``world`` is the simulator's by default."""
-
-    head: str
-    simulators: Sequence[str]
-    shared: Sequence[Start]
-    robots: Sequence[RobotStarts]
-    windows: Sequence[Start]
-    use_sim_time: bool
-    driving: Sequence[str]
-    world: File | str = ""
 
 
 _BODY = '''\
 from pathlib import Path
 
-from launch import LaunchDescription
+{prefix}from launch import LaunchDescription
 from launch.actions import {actions}
 from launch.conditions import IfCondition
 from launch.substitutions import {substitutions}
@@ -49,6 +44,16 @@ def text(name):
     """What a file beside this one holds, as a parameter."""
     return ParameterValue((FOLDER / name).read_text(), value_type=str)
 '''
+_INSTALLED = '''\
+def if_installed(package, otherwise, actions):
+    """The actions where the package is installed, else a line that says what is missing."""
+    try:
+        get_package_prefix(package)
+    except PackageNotFoundError:
+        return [LogInfo(msg=otherwise)]
+    return actions
+'''
+_PREFIX = "from ament_index_python.packages import PackageNotFoundError, get_package_prefix\n"
 _CHOSEN = '''\
 def first(count):
     """The names of so many robots."""
@@ -78,6 +83,8 @@ def to_python(it: FleetStarts) -> str:
 def _parts(it: FleetStarts) -> Iterator[Iterable[str]]:
     yield _head(it)
     yield _imports(it)
+    if any(robot.bridged_tf for robot in it.robots):
+        yield "", "", *_INSTALLED.splitlines()
     for robot in it.robots:
         yield ("", "", *_robot(robot, bool(it.simulators)))
     names = (f'    "{robot.name}": start_{robot.name},' for robot in it.robots)
@@ -106,6 +113,10 @@ def _imports(it: FleetStarts) -> list[str]:
     actions = ["DeclareLaunchArgument", "GroupAction", "OpaqueFunction"]
     if any(robot.commands for robot in it.robots):
         actions.insert(1, "ExecuteProcess")
+    prefix = ""
+    if any(robot.bridged_tf for robot in it.robots):
+        actions.insert(-1, "LogInfo")
+        prefix = _PREFIX
     substitutions = ["LaunchConfiguration"]
     if it.simulators:
         actions.insert(-1, "IncludeLaunchDescription")
@@ -118,6 +129,7 @@ def _imports(it: FleetStarts) -> list[str]:
         substitutions=", ".join(substitutions),
         ros_actions=", ".join(ros),
         more=more,
+        prefix=prefix,
         share=share,
     )
     return body.splitlines()
@@ -135,6 +147,15 @@ def _robot(it: RobotStarts, simulated: bool) -> Iterator[str]:
     yield "    return ["
     for start in it.starts:
         yield from _process(start, 8, own)
+    if it.bridged_tf:
+        yield "        *if_installed("
+        yield f"            {_quoted(BRIDGE)},"
+        yield f"            {_quoted(not_bridged(it.name))},"
+        yield "            ["
+        for start in it.bridged_tf:
+            yield from _process(start, 16)
+        yield "            ],"
+        yield "        ),"
     for command in it.commands:
         yield f"        ExecuteProcess(cmd=[{_quoted('sh')}, {_quoted('-c')}, {_quoted(command)}]),"
     if it.spawned:
@@ -247,18 +268,6 @@ def _description(it: FleetStarts) -> Iterator[str]:
         yield "            ),"
     yield "        ]"
     yield "    )"
-
-
-def launch_arguments(it: FleetStarts) -> Iterator[tuple[str, str | File, str]]:
-    """The launch arguments: name, default, what it is."""
-    yield "robots", "", "only these: robot1,robot2, or so many: 2"
-    yield "use_sim_time", str(it.use_sim_time).lower(), "whether all nodes use /clock"
-    if it.windows:
-        yield "rviz", "true", "whether to open RViz"
-    if it.simulators:
-        yield "simulator", "true", "whether to start the simulator and to spawn the robots in it"
-        yield "headless", "false", "whether the simulator has no window"
-        yield "world", it.world, "the world of the simulator"
 
 
 _SIMULATORS: Mapping[str, tuple[str, ...]] = {

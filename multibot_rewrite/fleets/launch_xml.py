@@ -1,17 +1,28 @@
 """What a fleet starts -> ``fleet.launch.xml``: the same as ``fleet.launch.py``, in launch's XML.
 
-Source: launch_xml and launch_ros of humble to lyrical (``node``, ``node_container``, ``group``).
+Source: launch_xml and launch_ros of humble to lyrical (``node``, ``node_container``, ``group``,
+``let``, ``log``, ``shutdown``).
 """
 
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 from xml.sax.saxutils import quoteattr
 
-from multibot_rewrite.fleets.launch_python import CLASSIC, GZ, FleetStarts, launch_arguments
-from multibot_rewrite.fleets.launch_records import Component, File, Start, Text
+from multibot_rewrite.fleets.fleet_starts import (
+    CLASSIC,
+    GZ,
+    Component,
+    File,
+    FleetStarts,
+    RobotStarts,
+    Start,
+    Text,
+    launch_arguments,
+)
+from multibot_rewrite.fleets.relays import BRIDGE, not_bridged
 
 _HEADLESS = "$(eval '\\'%s\\' if \\'$(var headless)\\'.lower() == \\'true\\' else \\'%s\\'')"
 _SIMULATORS: Mapping[str, tuple[str, tuple[tuple[str, str], ...]]] = {
@@ -24,10 +35,20 @@ _SIMULATORS: Mapping[str, tuple[str, tuple[tuple[str, str], ...]]] = {
         (("gui", _HEADLESS % ("false", "true")), ("world", "$(var world)")),
     ),
 }
+# Names that are worked out before anything starts; quotes inside eval are escaped.
+_ASKED = "$(eval '\\'$(var robots)\\'.replace(\\',\\', \\' \\').split() or $(var fleet)')"
+_REFUSED = (
+    "$(eval 'not set($(var asked)) <= set($(var fleet))"
+    " and \\'$(var robots)\\' not in map(str, range(1, len($(var fleet)) + 1))')"
+)
 _CHOSEN = (
-    "$(eval '\\'{0}\\' in \\'$(var robots)\\'.replace(\\',\\', \\' \\').split()"
-    " or not \\'$(var robots)\\'"
-    " or (\\'$(var robots)\\'.isdigit() and {1} < int(\\'$(var robots)\\'))')"
+    "$(eval '$(var fleet)[:int(\\'$(var robots)\\')]"
+    " if \\'$(var robots)\\'.isdigit() else $(var asked)')"
+)
+_IS_CHOSEN = "$(eval '\\'{0}\\' in $(var chosen)')"
+_MORE = "for more: multibot build FLEET -o $(var folder) --count N"
+_INSTALLED = (
+    "$(command 'sh -c \"ros2 pkg prefix {0} > /dev/null 2>&1 && echo true || echo false\"')"
 )
 
 
@@ -45,34 +66,64 @@ def _lines(it: FleetStarts) -> Iterator[str]:
         yield f"  {_tag('arg', name=name, default=told, description=about)}"
     # Behind an include $(dirname) may be the folder of the included file.
     yield f"  {_tag('let', name='folder', value='$(dirname)')}"
-    for simulator in it.simulators:
-        file, arguments = _SIMULATORS[simulator]
-        yield f"  {_tag('include', '>', file=file, **{'if': '$(var simulator)'})}"
-        yield from (f"    {_tag('arg', name=name, value=text)}" for name, text in arguments)
-        yield "  </include>"
-    for start in it.shared:
-        yield from _process(start, 2)
-    for at, robot in enumerate(it.robots):
-        yield f"  <!-- {robot.about} -->"
-        yield f"  {_tag('group', '>', **{'if': _CHOSEN.format(robot.name, at)})}"
-        yield from _group(robot.starts, 4)
-        for command in robot.commands:
-            yield f"    {_tag('executable', cmd=shlex.join(['sh', '-c', command]))}"
-        if robot.spawned:
-            yield f"    {_tag('group', '>', **{'if': '$(var simulator)'})}"
-            yield from _group(robot.spawned, 6)
-            yield "    </group>"
-        yield "  </group>"
-    if it.windows:
-        yield f"  {_tag('group', '>', **{'if': '$(var rviz)'})}"
-        yield from _group(it.windows, 4)
-        yield "  </group>"
+    yield from _below(_choice([robot.name for robot in it.robots]))
+    if any(robot.bridged_tf for robot in it.robots):
+        yield f"  {_tag('let', name=BRIDGE, value=_INSTALLED.format(BRIDGE))}"
+    yield from _below(_group(_started(it), unless="$(var refused)"))
     yield "</launch>"
 
 
-def _group(starts: Iterable[Start], indent: int) -> Iterator[str]:
+def _choice(names: Sequence[str]) -> Iterator[str]:
+    """Which robots are started; robots that were not built are refused."""
+    yield "<!-- robots:= has names of robots, or their number. -->"
+    yield _tag("let", name="fleet", value=str(list(names)))
+    yield _tag("let", name="asked", value=_ASKED)
+    yield _tag("let", name="refused", value=_REFUSED)
+    yield _tag("let", name="chosen", value=_CHOSEN, unless="$(var refused)")
+    what = f"robots:=$(var robots): this fleet has {', '.join(names)}"
+    yield _tag("log", message=f"{what}; {_MORE}", **{"if": "$(var refused)"})
+    yield _tag("shutdown", reason=what, **{"if": "$(var refused)"})
+
+
+def _started(it: FleetStarts) -> Iterator[str]:
+    for simulator in it.simulators:
+        file, arguments = _SIMULATORS[simulator]
+        yield _tag("include", ">", file=file, **{"if": "$(var simulator)"})
+        yield from (f"  {_tag('arg', name=name, value=text)}" for name, text in arguments)
+        yield "</include>"
+    for start in it.shared:
+        yield from _process(start)
+    for robot in it.robots:
+        yield f"<!-- {robot.about} -->"
+        yield from _group(_robot(robot), **{"if": _IS_CHOSEN.format(robot.name)})
+    if it.windows:
+        yield from _group(_processes(it.windows), **{"if": "$(var rviz)"})
+
+
+def _robot(it: RobotStarts) -> Iterator[str]:
+    yield from _processes(it.starts)
+    if it.bridged_tf:
+        yield from _group(_processes(it.bridged_tf), **{"if": f"$(var {BRIDGE})"})
+        yield _tag("log", message=not_bridged(it.name), unless=f"$(var {BRIDGE})")
+    for command in it.commands:
+        yield _tag("executable", cmd=shlex.join(["sh", "-c", command]))
+    if it.spawned:
+        yield from _group(_processes(it.spawned), **{"if": "$(var simulator)"})
+
+
+def _group(lines: Iterable[str], **condition: str) -> Iterator[str]:
+    yield _tag("group", ">", **condition)
+    yield from _below(lines)
+    yield "</group>"
+
+
+def _below(lines: Iterable[str]) -> Iterator[str]:
+    return (f"  {line}" for line in lines)
+
+
+def _processes(starts: Iterable[Start]) -> Iterator[str]:
     for start in starts:
-        yield from _process(start, indent)
+        yield from _process(start)
 
 
 def _tag(tag: str, end: str = "/>", /, **attributes: str) -> str:
@@ -80,41 +131,38 @@ def _tag(tag: str, end: str = "/>", /, **attributes: str) -> str:
     return f"<{tag}{written}{end}"
 
 
-def _process(it: Start, indent: int) -> Iterator[str]:
-    space = " " * indent
+def _process(it: Start) -> Iterator[str]:
     tag = "node_container" if it.components else "node"
     named = {"name": it.name} if it.name else {}
     spaced = {"namespace": it.namespace} if it.namespace else {}
     words = " ".join(_word(word) for word in it.arguments)
     given = {"args": words} if words else {}
     program = {"pkg": it.package, "exec": it.executable}
-    yield space + _tag(tag, ">", **program, **named, **spaced, **given, output="screen")
-    yield from _given(it.parameters, it.remappings, indent + 2)
+    yield _tag(tag, ">", **program, **named, **spaced, **given, output="screen")
+    yield from _below(_given(it.parameters, it.remappings))
     for one in it.components:
-        yield from _component(one, indent + 2)
-    yield f"{space}</{tag}>"
+        yield from _below(_component(one))
+    yield f"</{tag}>"
 
 
-def _component(it: Component, indent: int) -> Iterator[str]:
+def _component(it: Component) -> Iterator[str]:
     words = {"pkg": it.package, "plugin": it.plugin, "name": it.name, "namespace": it.namespace}
-    yield " " * indent + _tag("composable_node", ">", **words)
-    yield from _given(it.parameters, it.remappings, indent + 2)
-    yield " " * indent + "</composable_node>"
+    yield _tag("composable_node", ">", **words)
+    yield from _below(_given(it.parameters, it.remappings))
+    yield "</composable_node>"
 
 
 def _given(
     parameters: Iterable[File | Mapping[str, Any]],
     remappings: Iterable[tuple[str, str]],
-    indent: int,
 ) -> Iterator[str]:
-    space = " " * indent
     for one in parameters:
         if isinstance(one, File):
-            yield space + _tag("param", **{"from": f"$(var folder)/{one.path}"})
+            yield _tag("param", **{"from": f"$(var folder)/{one.path}"})
         else:
-            yield from (space + _parameter(name, value) for name, value in one.items())
-    yield space + _tag("param", name="use_sim_time", value="$(var use_sim_time)")
-    yield from (space + _tag("remap", **{"from": old, "to": new}) for old, new in remappings)
+            yield from (_parameter(name, value) for name, value in one.items())
+    yield _tag("param", name="use_sim_time", value="$(var use_sim_time)")
+    yield from (_tag("remap", **{"from": old, "to": new}) for old, new in remappings)
 
 
 def _parameter(name: str, value: Any) -> str:

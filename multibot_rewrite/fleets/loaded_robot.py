@@ -25,7 +25,7 @@ from multibot_rewrite.fleets.kept_files import KeptFiles
 from multibot_rewrite.fleets.move_group_parameters import move_group_parameters
 from multibot_rewrite.fleets.node_names import NodeNames, Rules, names_of
 from multibot_rewrite.fleets.output_file import OutputFile
-from multibot_rewrite.fleets.relays import relays
+from multibot_rewrite.fleets.relays import Relay, relays
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_nodes import stack_nodes
 from multibot_rewrite.model import UsageError
@@ -224,13 +224,11 @@ class LoadedRobot:
         return [(topic, target) for topic, target in targets.items() if target]
 
     @property
-    def relays(self) -> dict[str, dict[str, str]]:
-        """The relays of its tf to ``/tf``, by their names in ``table``, with their parameters; empty
-        unless the fleet file says ``relayed``. Raises nothing."""
-        if not self._fleet.plan.file.relayed:
-            return {}
-        made = relays(self._graph, self._robot.topics.naming)
-        return {it.table.node: it.parameters for it in made}
+    def relays(self) -> dict[str, Relay]:
+        """The relays of its tf to ``/tf``, by their names in ``table``; empty unless the fleet file
+        says ``relayed``. Raises nothing."""
+        made = relays(self._graph, self._robot.topics.naming, self._fleet.plan.file)
+        return {it.table.node: it for it in made}
 
     @cached_property
     def _spawn(self) -> spawn.Spawn:

@@ -1,16 +1,20 @@
 """``relayed`` of a fleet file: each robot's tf on ``/tf``, too, so that one RViz shows all robots.
 
-A ``relay`` of topic_tools for tf and one for tf_static, for each robot. It takes QoS from what it
-reads, so tf_static stays latched. Source: topic_tools src/relay_node.cpp, src/tool_base_node.cpp.
-husarion's tf_namespace_bridge puts the robot's namespace before each frame, so it is for the layout
-in which frames have the same names (tf_namespace_bridge src/tf_namespace_bridge.cpp).
+Where frames differ, a ``relay`` of topic_tools for tf and one for tf_static, for each robot. It takes
+QoS from what it reads, so tf_static stays latched. Source: topic_tools src/relay_node.cpp,
+src/tool_base_node.cpp.
+Where they have the same names, husarion's tf_namespace_bridge: it runs in the robot's namespace, reads
+``tf`` and ``tf_static`` there, and puts that namespace before every frame, the world's too: a static
+transform joins that to the world of the fleet. Source: tf_namespace_bridge
+src/tf_namespace_bridge.cpp, launch/tf_namespace_bridge.yaml, CMakeLists.txt (41881734b).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
+from multibot_rewrite.companions.rviz.rewrite import world_frame
 from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.fleets.fleet_file import FleetFile
 from multibot_rewrite.model import UsageError
@@ -26,47 +30,76 @@ from multibot_rewrite.remap.records import (
 )
 from multibot_rewrite.remap.targets import placed, target_of
 
-PACKAGE, EXECUTABLE = "topic_tools", "relay"
+BRIDGE, _WORLD = "tf_namespace_bridge", "bridged_world"
+_RELAY, _STATIC = ("topic_tools", "relay"), ("tf2_ros", "static_transform_publisher")
 _FIXED = "the parameters input_topic and output_topic say its names"
+_IN_CODE = "its code says its names"
 
 
 class Relay(NamedTuple):
-    """A relay of one robot: its node as the table has it, the topic it reads, the one it writes."""
+    """A node that brings tf of one robot to ``/tf``: as the table has it, its program, the topics that
+    it reads and writes, what it is told."""
 
     table: NodeTable
-    source: str
-    target: str
-
-    @property
-    def parameters(self) -> dict[str, str]:
-        """What it is told."""
-        return {"input_topic": self.source, "output_topic": self.target}
+    program: tuple[str, str]
+    reads: tuple[str, ...]
+    writes: tuple[str, ...]
+    parameters: Mapping[str, str] = {}
+    arguments: tuple[str, ...] = ()
 
 
 def check_relayed(file: FleetFile, naming: Naming) -> None:
-    """Raises UsageError for a layout whose tf cannot be relayed to one topic, or need not be."""
+    """Raises UsageError for a layout whose tf need not be relayed to one topic, or cannot be."""
     layout, place = naming.layout, f"{file.file}: relayed"
     if not layout.tf_per_robot:
         raise UsageError(
             f"{place}: layout {layout.name} has one /tf for all robots; remove relayed"
         )
-    if not layout.frames:
-        what = f"in layout {layout.name} frames of all robots have the same names"
-        hint = (
-            "take layout both, or start tf_namespace_bridge of Husarion for each robot by yourself"
-        )
-        raise UsageError(f"{place}: {what}, so on one /tf they would be one robot; {hint}")
+    if not layout.frames and naming.topics != NAMESPACE:
+        what = f"{BRIDGE} reads tf in the robot's namespace, and topics: {naming.topics} moves it"
+        raise UsageError(f"{place}: {what}; remove topics, or take layout both")
 
 
-def relays(robot: str, naming: Naming) -> Iterator[Relay]:
-    """The relays of a robot (its namespace)."""
+def relays(robot: str, naming: Naming, file: FleetFile) -> list[Relay]:
+    """The relays of a robot (its namespace), if the fleet file asks for them."""
+    if not file.relayed:
+        return []
+    copied = naming.layout.frames
+    return [*(_copies(robot, naming) if copied else _bridge(robot, naming, file.world))]
+
+
+def _copies(robot: str, naming: Naming) -> Iterator[Relay]:
+    above = f"/{robot}" if naming.topics == NAMESPACE else ""
     for topic in TF_TOPICS:
-        node = f"{topic}_relay"
-        namespace, name = placed(robot, node, naming)
+        table = _table(robot, f"{topic}_relay", naming)
         target = target_of(f"/{topic}", TOPIC, robot, naming)
-        above = f"/{robot}" if naming.topics == NAMESPACE else ""
-        table = NodeTable(robot, node, namespace, name, ())
-        yield Relay(table, f"{above}/{target.lstrip('/')}", f"/{topic}")
+        source = f"{above}/{target.lstrip('/')}"
+        told = {"input_topic": source, "output_topic": f"/{topic}"}
+        yield Relay(table, _RELAY, (source,), (f"/{topic}",), told)
+
+
+def _bridge(robot: str, naming: Naming, world: str) -> Iterator[Relay]:
+    reads, writes = (tuple(f"{above}/{it}" for it in TF_TOPICS) for above in (f"/{robot}", ""))
+    table = _table(robot, BRIDGE, naming)
+    yield Relay(table, (BRIDGE, BRIDGE), reads, writes)
+    if frame := world or world_frame(naming):
+        words = ("--frame-id", frame, "--child-frame-id", bridged_frame(robot, frame))
+        yield Relay(_table(robot, _WORLD, naming), _STATIC, (), writes[1:], arguments=words)
+
+
+def bridged_frame(robot: str, frame: str) -> str:
+    """What the bridge of a robot (its namespace) makes of a frame."""
+    return f"{robot}/{frame}"
+
+
+def not_bridged(robot: str) -> str:
+    """What is said where the bridge is not installed: a relay would put all robots' frames into one."""
+    why = f"{BRIDGE} is not installed, so the tf of {robot} is not on /tf"
+    return f"{why}: install it, or take layout both"
+
+
+def _table(robot: str, node: str, naming: Naming) -> NodeTable:
+    return NodeTable(robot, node, *placed(robot, node, naming), ())
 
 
 def with_relays(fleet: Fleet, file: FleetFile) -> Fleet:
@@ -74,7 +107,7 @@ def with_relays(fleet: Fleet, file: FleetFile) -> Fleet:
     if not file.relayed:
         return fleet
     check_relayed(file, fleet.naming)
-    made = [it for spec in file.robots for it in relays(spec.namespace, fleet.naming)]
+    made = [it for spec in file.robots for it in relays(spec.namespace, fleet.naming, file)]
     table = fleet.table
     nodes = (*table.nodes, *(it.table for it in made))
     names = (*table.names, *(name for it in made for name in _names(it)))
@@ -84,10 +117,9 @@ def with_relays(fleet: Fleet, file: FleetFile) -> Fleet:
     )
 
 
-def _names(relay: Relay) -> Sequence[EndpointName]:
+def _names(relay: Relay) -> Iterable[EndpointName]:
     robot, node = relay.table.robot, relay.table.full_name
-    ends = ((SUBSCRIBES, relay.source), (PUBLISHES, relay.target))
-    return [
-        EndpointName(robot, node, Endpoint(TOPIC, role, name, TF_TYPE, fixed=_FIXED), name)
-        for role, name in ends
-    ]
+    why = _FIXED if relay.program == _RELAY else _IN_CODE
+    for role, names in ((SUBSCRIBES, relay.reads), (PUBLISHES, relay.writes)):
+        for name in names:
+            yield EndpointName(robot, node, Endpoint(TOPIC, role, name, TF_TYPE, fixed=why), name)

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 from multibot_rewrite.companions.names.robot_topics import fleet_topics
+from multibot_rewrite.companions.rviz.bridged import bridged_window
 from multibot_rewrite.companions.rviz.rewrite import (
     RvizRobot,
     RvizText,
@@ -54,6 +55,9 @@ def rviz_outputs(plan: FleetPlan, each: Iterable[FleetPlan]) -> Iterator[RvizOut
         if plan.file.cell:
             made = cell_window(yaml_of(path), plan.file.cell, robots[0], world)
             texts = (*(it for it in texts if not (it.robot and made)), *filter(None, [made]))
+        if relayed and not plan.fleet.naming.layout.frames:
+            window, bare = bridged_window(yaml_of(path), shown, world)
+            texts, found = (window, *texts), (*found, *bare)
         done = ONE_TF_TOPIC.code if relayed else ""
         yield RvizOutput(path, texts, tuple(it for it in found if it.code != done))
 

@@ -20,6 +20,17 @@ def of_launch_ros(module: str) -> Any:
     return import_module(f"{launch_ros.__name__}.{module}")
 
 
+def is_installed(package: str) -> bool:
+    """Is a package of ROS installed? Raises ImportError."""
+    from ament_index_python.packages import PackageNotFoundError, get_package_prefix
+
+    try:
+        get_package_prefix(package)
+    except PackageNotFoundError:
+        return False
+    return True
+
+
 def missing() -> str:
     """Why launch cannot be imported; empty if it can."""
     try:

@@ -16,6 +16,7 @@ from typing import Any
 from multibot_rewrite.companions.rviz.rewrite import RvizText
 from multibot_rewrite.fleets.loaded_robot import LoadedRobot
 from multibot_rewrite.fleets.node_names import NodeNames
+from multibot_rewrite.fleets.relays import BRIDGE, Relay, not_bridged
 from multibot_rewrite.fleets.rviz_outputs import robot_windows
 from multibot_rewrite.fleets.scripts import LoadedFleet
 from multibot_rewrite.launch import nav2_programs as programs
@@ -29,7 +30,7 @@ from multibot_rewrite.launch.actions import (
     place,
 )
 from multibot_rewrite.launch.context import Action, Context, fleet_of, sim_time, written
-from multibot_rewrite.launch.door import of_launch, of_launch_ros
+from multibot_rewrite.launch.door import is_installed, of_launch, of_launch_ros
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.releases import has_release
 from multibot_rewrite.remap.yaml_with_lines import unknown
@@ -89,7 +90,7 @@ def _started(robot: LoadedRobot, context: Context) -> list[Action]:
     hosted = [it for it in known if names.container(it)]
     alone = [it for it in known if it not in hosted]
     made = [it for name in alone for it in _alone(robot, name, context)]
-    made += [_relay(name, told) for name, told in robot.relays.items()]
+    made += _relays(robot)
     if hosted:
         made.append(_container(robot, hosted, context))
     if _is_on(context, "robot_state_publisher") and programs.STATE in names.nodes:
@@ -175,10 +176,19 @@ def _own(names: NodeNames, name: str, context: Context) -> list[dict[str, Any]]:
     return []
 
 
-def _relay(name: str, told: dict[str, str]) -> Action:
-    """A relay of the robot's tf to /tf."""
-    package, executable, *_ = programs.RELAY
-    return node(name, package=package, executable=executable, output="screen", parameters=[told])
+def _relays(robot: LoadedRobot) -> list[Action]:
+    """What brings the robot's tf to /tf; a line where its package is not installed."""
+    if BRIDGE in robot.relays and not is_installed(BRIDGE):
+        return [of_launch("actions").LogInfo(msg=not_bridged(robot.name))]
+    return [_relay(name, it) for name, it in robot.relays.items()]
+
+
+def _relay(name: str, it: Relay) -> Action:
+    package, executable = it.program
+    told = [it.parameters] if it.parameters else []
+    words = list(it.arguments)
+    known = {"package": package, "executable": executable, "output": "screen"}
+    return node(name, **known, parameters=told, arguments=words)
 
 
 def _state_publisher() -> Action:
@@ -233,8 +243,12 @@ def _rviz(context: Context) -> list[Action]:
     if not windows:
         raise UsageError(f"rviz:={word}: {fleet.file} has no rviz: under companions")
     if word == ONE and len(windows) > 1:
-        hint = "say relayed: true in the fleet file, or rviz:=each"
-        raise UsageError(f"rviz:=one: these robots need {len(windows)} windows; {hint}")
+        # What works for one robot alone has a window of its own besides.
+        shared = [it for it in windows if not it[1].robot]
+        if not shared:
+            hint = "say relayed: true in the fleet file, or rviz:=each"
+            raise UsageError(f"rviz:=one: these robots need {len(windows)} windows; {hint}")
+        windows = shared
     return [_window(context, *it) for it in windows]
 
 

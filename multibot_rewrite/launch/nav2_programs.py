@@ -14,7 +14,7 @@ from multibot_rewrite.remap.programs import PROGRAMS, SLAM, Program, container_o
 __all__ = ["MANAGER", "SLAM", "Program", "container_of", "program", "with_program"]
 
 CONTAINER, MAP_SERVER, SHARED_MANAGER = "nav2_container", "map_server", "lifecycle_manager_shared"
-STATE, RELAY = "robot_state_publisher", PROGRAMS["relay"]
+STATE = "robot_state_publisher"
 TRANSITIONS: Mapping[str, int] = MappingProxyType({"configure": 1, "activate": 3})
 _INFO = "costmap_filter_info_server"
 _KINDS: Mapping[str, str] = MappingProxyType(
@@ -42,6 +42,6 @@ def program(name: str) -> Program:
 def with_program(names: Iterable[str]) -> list[str]:
     """Those of the nodes that are Nav2's or slam_toolbox, managers last, so that what they manage is
     there."""
-    order = [it for it in PROGRAMS if it != "relay"]
-    known = (it for it in names if kind_of(it) in order)
+    order = list(PROGRAMS)
+    known = (it for it in names if kind_of(it) in PROGRAMS)
     return sorted(known, key=lambda it: order.index(kind_of(it)))

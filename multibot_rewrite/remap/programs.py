@@ -3,7 +3,7 @@
 By a node's name in ``nodes.yaml``; one without a row has a program of its own name in its package.
 Sources: the launch files and CMakeLists.txt of each package on its jazzy branch; nav2_bringup
 launch/*.py of humble (1.1.20), jazzy (1.3.13), kilted (1.4.2), lyrical (1.5.1) and rolling (a3a97043e);
-slam_toolbox launch/online_sync_launch.py; topic_tools relay_node.cpp.
+slam_toolbox launch/online_sync_launch.py.
 """
 
 from __future__ import annotations
@@ -73,7 +73,6 @@ PROGRAMS: Mapping[str, Program] = MappingProxyType(
         ),
         "map_saver": Program("nav2_map_server", "map_saver_server"),
         SLAM: Program("slam_toolbox", "sync_slam_toolbox_node"),
-        "relay": Program("topic_tools", "relay"),
         # Last, so that what it manages is there.
         LIFECYCLE_MANAGER: Program(
             "nav2_lifecycle_manager",

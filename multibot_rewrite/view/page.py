@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 from importlib.resources import files
 from typing import Any
@@ -16,13 +16,22 @@ from multibot_rewrite.view.heard import DEGREES, METRES
 from multibot_rewrite.view.models import Mesh, Shape, load_mesh, three
 from multibot_rewrite.view.scene import Scene, ViewedRobot
 
+# Meshes by their files, or why one cannot be shown.
+Meshes = Mapping[str, Mesh | str]
 
-def to_html(scene: Scene, title: str) -> bytes:
+
+def meshes_of(scene: Scene) -> Meshes:
+    """The meshes of all robots, each read once."""
+    shapes = (it for robot in scene.robots for its in robot.model.links.values() for it in its)
+    return {path: load_mesh(path) for path in dict.fromkeys(it.mesh for it in shapes) if path}
+
+
+def to_html(scene: Scene, meshes: Meshes, title: str) -> bytes:
     """The page; raises ViewUnusable without trimesh."""
-    return to_frame(scene, title).html.encode()
+    return to_frame(scene, meshes, title).html.encode()
 
 
-def to_frame(scene: Scene, title: str) -> Framed:
+def to_frame(scene: Scene, meshes: Meshes, title: str) -> Framed:
     """The page, to be put into another; raises ViewUnusable without trimesh."""
     library, own = three(), _asset("viewer.js") + _asset("heard.js")
     style = _asset("viewer.css")
@@ -32,7 +41,7 @@ def to_frame(scene: Scene, title: str) -> Framed:
         f" script-src {scripts}; base-uri 'none'; form-action 'none'"
     )
     head = escape(one_line(title))
-    data = json.dumps(_data(scene), separators=(",", ":")).replace("<", "\\u003c")
+    data = json.dumps(_data(scene, meshes), separators=(",", ":")).replace("<", "\\u003c")
     page = (
         '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f'<meta http-equiv="Content-Security-Policy" content="{policy}">\n'
@@ -66,9 +75,7 @@ def _asset(name: str) -> str:
     return files(__package__).joinpath(name).read_text("utf-8")
 
 
-def _data(scene: Scene) -> dict[str, Any]:
-    shapes = (it for robot in scene.robots for its in robot.model.links.values() for it in its)
-    meshes = {path: load_mesh(path) for path in dict.fromkeys(it.mesh for it in shapes) if path}
+def _data(scene: Scene, meshes: Meshes) -> dict[str, Any]:
     numbers = {path: at for at, path in enumerate(meshes)}
     return {
         "meshes": [_mesh(it) for it in meshes.values()],
@@ -88,7 +95,7 @@ def _base64(data: bytes) -> str:
     return base64.b64encode(data).decode()
 
 
-def _robot(it: ViewedRobot, numbers: dict[str, int], meshes: dict[str, Mesh | str]) -> Any:
+def _robot(it: ViewedRobot, numbers: Mapping[str, int], meshes: Meshes) -> Any:
     names = {one.after: [one.before, one.line] for one in it.names}
     return {
         "name": it.name,
@@ -101,6 +108,7 @@ def _robot(it: ViewedRobot, numbers: dict[str, int], meshes: dict[str, Mesh | st
         },
         "joints": [list(one) for one in it.model.joints],
         "changes": list(_changes(it.changes)),
+        "plugins": it.plugins,
         "topic": it.topic,
         "prefix": it.prefix,
         "heard": it.heard,
@@ -108,7 +116,7 @@ def _robot(it: ViewedRobot, numbers: dict[str, int], meshes: dict[str, Mesh | st
     }
 
 
-def _shape(it: Shape, numbers: dict[str, int], meshes: dict[str, Mesh | str]) -> Any:
+def _shape(it: Shape, numbers: Mapping[str, int], meshes: Meshes) -> Any:
     missing = it.missing
     if it.mesh and isinstance(bad := meshes[it.mesh], str):
         missing = bad

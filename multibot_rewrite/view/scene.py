@@ -16,6 +16,7 @@ from multibot_rewrite.graph.snapshot import GraphFrame, Snapshot
 from multibot_rewrite.library import Prepared
 from multibot_rewrite.model import Change
 from multibot_rewrite.reports.changes import list_changes
+from multibot_rewrite.steps.document import Document
 from multibot_rewrite.view.heard import HeardTree, LinkFrames, heard_trees
 from multibot_rewrite.view.models import Model, load_model
 from multibot_rewrite.view.sdf_model import declared, line_of, load_sdf
@@ -33,6 +34,14 @@ class Name(NamedTuple):
     line: int
 
 
+class Plugin(NamedTuple):
+    """A ``<plugin>`` of the source: its name, what it loads, the line where it begins."""
+
+    name: str
+    loads: str
+    line: int
+
+
 class ViewedRobot(NamedTuple):
     """A robot: where it stands (x, y, z, roll, pitch, yaw), its model, its names, what was changed.
 
@@ -46,6 +55,7 @@ class ViewedRobot(NamedTuple):
     model: Model
     names: tuple[Name, ...]
     changes: tuple[Change, ...]
+    plugins: tuple[Plugin, ...]
     topic: str
     prefix: str
     heard: Mapping[str, str]
@@ -96,7 +106,7 @@ def _robot(it: RewrittenRobot, changes: _Changes, graph: Snapshot | None) -> Vie
     )
     return ViewedRobot(
         spec.name, file, tuple(spec.pose or (0.0,) * 6), model, names,
-        tuple(sorted(made)), topic, prefix, heard, transforms,
+        tuple(sorted(made)), tuple(_plugins(it.member.source)), topic, prefix, heard, transforms,
     )  # fmt: skip
 
 
@@ -107,6 +117,15 @@ def _of(changes: Iterable[Change], graph: bool) -> Iterator[Change]:
 def _model(it: RewrittenRobot) -> Model:
     root, source = it.member.described.document.root, os.path.abspath(it.spec.description)
     return load_sdf(root, source) if root.tag == "sdf" else load_model(it.description, source)
+
+
+def _plugins(document: Document) -> Iterator[Plugin]:
+    """In the order of the file."""
+    for it, start in zip(document.elements, document.starts, strict=True):
+        if it.tag == "plugin":
+            line = document.source.count(b"\n", 0, start) + 1
+            text = (it.text or "").strip()
+            yield Plugin(it.get("name", text), it.get("filename", text), line)
 
 
 def _names(it: RewrittenRobot, model: Model) -> Iterator[Name]:

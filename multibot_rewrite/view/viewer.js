@@ -88,10 +88,8 @@ function build(robot, before) {
   const children = new Set(robot.joints.map((it) => it[3]));
   for (const [name, it] of Object.entries(links)) if (!children.has(name)) root.add(it);
   const [x, y, z, roll, pitch, yaw] = robot.pose;
-  if (!before) {
-    root.position.set(x, y, z);
-    root.rotation.set(roll, pitch, yaw, "ZYX");
-  }
+  root.position.set(x, y, z);
+  root.rotation.set(roll, pitch, yaw, "ZYX");
   return { root, links, labels, axes, moving };
 }
 
@@ -213,11 +211,7 @@ function table(changes) {
 }
 
 function describe(robot, name, kind) {
-  about.replaceChildren();
-  for (const it of document.querySelectorAll(".picked")) it.classList.remove("picked");
-  const button = document.getElementById(`${robot.name} ${kind} ${name}`);
-  if (button) button.classList.add("picked");
-  about.append(make("h2", { textContent: name || robot.name }));
+  showPicked(`${robot.name} ${kind} ${name}`, name || robot.name);
   if (!name) {
     about.append(make("p", {}, `${robot.file}: ${robot.changes.length} values are changed.`),
       asHeard(robot), sliders(robot), table(robot.changes));
@@ -233,6 +227,33 @@ function describe(robot, name, kind) {
   for (const shape of robot.links[name] || [])
     if (shape[5]) about.append(make("p", { className: "missing", textContent: `${shape[5]}: shown as a box` }));
   about.append(sliders(robot, kind === "joint" ? name : ""), rows(robot, name));
+}
+
+// A plugin goes on until the next one begins.
+function describePlugin(robot, at) {
+  const [name, loads, line] = robot.plugins[at], end = (robot.plugins[at + 1] || [, , Infinity])[2];
+  const found = robot.changes.filter(([where, , path]) => where >= line && where < end && path.includes("/plugin"));
+  showPicked(`${robot.name} plugin ${at}`, name);
+  about.append(make("dl", {}, make("dt", {}, "plugin"), make("dd", {}, loads),
+    make("dt", {}, "declared"), make("dd", {}, `${robot.file}:${line}`)),
+    found.length ? table(found) : make("p", { textContent: "Nothing in it is changed." }));
+}
+
+function showPicked(id, title) {
+  about.replaceChildren(make("h2", { textContent: title }));
+  for (const it of document.querySelectorAll(".picked")) it.classList.remove("picked");
+  const button = document.getElementById(id);
+  if (button) button.classList.add("picked");
+}
+
+function plugins(robot) {
+  const list = make("ul");
+  robot.plugins.forEach(([name], at) => {
+    const it = make("button", { type: "button", textContent: name, id: `${robot.name} plugin ${at}`, className: "kept" });
+    it.addEventListener("click", () => describePlugin(robot, at));
+    list.append(make("li", {}, it));
+  });
+  return robot.plugins.length ? make("details", { open: true }, make("summary", { textContent: "plugins" }), list) : "";
 }
 
 function sliders(robot, only) {
@@ -281,7 +302,7 @@ for (const robot of data.robots) {
   for (const link of Object.keys(robot.links)) if (!children.has(link)) list.append(branch(robot, link));
   const head = make("summary", { textContent: robot.name });
   head.addEventListener("click", () => describe(robot, "", "robot"));
-  document.getElementById("tree").append(make("details", { open: data.robots.length < 4 }, head, list));
+  document.getElementById("tree").append(make("details", { open: data.robots.length < 4 }, head, list, plugins(robot)));
 }
 
 // A click, not the end of a drag.
@@ -300,7 +321,7 @@ renderer.domElement.addEventListener("click", (it) => {
   if (hit) describe(hit.object.userData.robot, hit.object.userData.link, "link");
 });
 
-for (const it of [left, right]) it.addEventListener("change", () => { resize(); if (it === left) fit(); });
+for (const it of [left, right]) it.addEventListener("change", () => { resize(); fit(); });
 for (const it of Object.values(toggles)) it.addEventListener("change", draw);
 document.getElementById("fit").addEventListener("click", fit);
 controls.addEventListener("change", draw);

@@ -274,3 +274,57 @@ def test_bad_words_are_one_line(
     assert main(["check-launch", *words]) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert said in line
+
+
+def simulated(space: str) -> str:
+    """A description with gz_ros2_control in a namespace."""
+    rules = "<remapping>~/odom:=odom</remapping><remapping>/tf:=tf</remapping>"
+    home = f"<ros><namespace>{space}</namespace>{rules}</ros>"
+    plugin = f'<plugin filename="gz_ros2_control-system" name="gz_ros2_control::\
+GazeboSimROS2ControlPlugin">{home}<parameters>/made/c.yaml</parameters></plugin>'
+    return URDF.replace("</robot>", f"<gazebo>{plugin}</gazebo></robot>")
+
+
+def controlled(known: Knowledge, space: str, asked: str) -> Snapshot:
+    """One robot in gz, and a spawner that asks for a manager."""
+    sections = {
+        "controller_manager": {"drive": {"type": "diff_drive_controller/DiffDriveController"}},
+        "drive": {"odom_frame_id": "odom", "base_frame_id": "base_link"},
+    }
+    text = yaml.safe_dump(
+        {"/**": {name: {"ros__parameters": values} for name, values in sections.items()}}
+    )
+    spawner = node("controller_manager/spawner", "s", "/robot1", arguments=("drive", "-c", asked))
+    twice = (spawner, spawner._replace(place=AT._replace(line=9)))
+    graph = LaunchGraph(
+        (publisher("/robot1", robot_description=simulated(space)), *twice),
+        (),
+        (("/made/c.yaml", ParameterText("", text)),),
+    )
+    return would_run(graph, known)
+
+
+def test_controllers_of_a_simulators_plugin_are_those_of_its_description(known: Knowledge) -> None:
+    """gz_ros2_control_plugin.cpp: the manager is in the namespace of the plugin, with its rules and its
+    file; simulated time is forced on it, and it gives that to its controllers
+    (controller_manager.cpp). A spawner skips what is loaded (spawner.py)."""
+    made = controlled(known, "robot1", "controller_manager")
+    assert [it.name for it in made.nodes].count("/robot1/drive") == 1
+    ends = names(made, "/robot1/drive")
+    assert {("publishes", "/robot1/tf"), ("publishes", "/robot1/odom")} <= ends
+    edges = {(it.parent, it.child, it.topic) for it in made.frames}
+    assert ("robot1/odom", "robot1/base_link", "/robot1/tf") in edges
+    clocks = {it.node: it.sim_time for it in made.states}
+    assert clocks["/robot1/drive"] is clocks["/robot1/controller_manager"] is True
+    assert clocks["/robot1/rsp"] is False
+    (said,) = (it.message for it in made.environment.caveats)
+    assert "/robot1/controller_manager gets drive from 2 spawners" in said
+
+
+def test_a_spawner_that_asks_for_another_manager_is_told(known: Knowledge) -> None:
+    made = controlled(known, "other", "controller_manager")
+    assert "/robot1/drive" not in {it.name for it in made.nodes}
+    assert any(
+        "/robot1/controller_manager is started by no node of the launch and no plugin" in it.message
+        for it in made.environment.caveats
+    )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import shlex
 import shutil
@@ -300,6 +301,48 @@ def test_arguments_choose_robots_and_windows(words: str, robot: str, tmp_path: P
         )
         spaces = [word for it in told for word in words_of(it)[2] if word.startswith("__ns")]
         assert set(spaces) == {f"__ns:=/{robot}"}
+
+
+@REAL
+@pytest.mark.parametrize(("words", "robots"), [("robots:=3", 0), ("robots:=robot9", 0), ("", 2)])
+def test_the_xml_file_starts_nothing_for_robots_that_were_not_built(
+    words: str, robots: int, tmp_path: Path
+) -> None:
+    out = built(tmp_path, "classic", "both")
+    given = [words] if words else []
+    told, said = launched(out / "fleet.launch.xml", tmp_path, *given, programs=programs(out))
+    spaces = [word for it in told for word in words_of(it)[2] if word.startswith("__ns")]
+    assert len(set(spaces)) == robots
+    refused = f"{words}: this fleet has robot1, robot2; for more: multibot build FLEET -o {out}"
+    assert (refused in said) == (not robots)
+
+
+@REAL
+@pytest.mark.parametrize("form", ["py", "xml"])
+@pytest.mark.parametrize("installed", [True, False])
+def test_tf_is_bridged_where_the_bridge_is_installed(
+    form: str, installed: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """``ros2 pkg prefix`` ends with 1 for a package that is not there (ros2pkg verb/prefix.py)."""
+    (tmp_path / "bin").mkdir()
+    (tmp_path / "bin" / "ros2").write_text(f"#!/bin/sh\nexit {int(not installed)}\n")
+    (tmp_path / "bin" / "ros2").chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path / 'bin'}:{os.environ['PATH']}")
+    out = built(tmp_path, "real", "tf-per-robot\nrelayed: true")
+    known = {
+        name: package for name, package in programs(out).items() if installed or "tf_n" not in name
+    }
+    told, said = launched(out / f"fleet.launch.{form}", tmp_path, programs=known)
+    bridges = [it["words"][1:] for it in told if it["words"][0].endswith("/tf_namespace_bridge")]
+    assert sorted(word for words in bridges for word in words if word.startswith("__ns")) == (
+        ["__ns:=/robot1", "__ns:=/robot2"] if installed else []
+    )
+    worlds = [it["words"] for it in told if "__node:=bridged_world" in it["words"]]
+    assert sorted(it[it.index("--child-frame-id") + 1] for it in worlds) == (
+        ["robot1/map", "robot2/map"] if installed else []
+    )
+    line = "tf_namespace_bridge is not installed, so the tf of robot2 is not on /tf"
+    assert (line in said) == (not installed)
 
 
 def chosen(out: Path, monkeypatch: pytest.MonkeyPatch, text: str) -> list[str]:

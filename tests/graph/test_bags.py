@@ -14,7 +14,7 @@ from made_bags import ROBOTS, SCAN, TEXT, TF, TWIST, Made, healthy, plan, write
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.graph.bags.read import read_bag
-from multibot_rewrite.graph.bags.recording import as_snapshot
+from multibot_rewrite.graph.bags.recording import RecordedTopic, Recording, as_snapshot
 from multibot_rewrite.graph.bags.rules import compare
 from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.plan_file import to_yaml
@@ -294,3 +294,21 @@ def test_codes_are_all_seeded() -> None:
     """MG601 MG602 MG603 MG604 MG605 MG606 MG607 MG608 MG609 MG610 are each found in a bag above."""
     codes = {code for _, found_, _ in FAULTS.values() for code in found_}
     assert {f"MG6{at:02}" for at in range(1, 11)} <= codes
+
+
+def test_a_tf_topic_of_one_robot_alone_needs_no_endpoint_of_the_plan() -> None:
+    """A plan that somebody wrote names a robot's tf, and no node that sends it."""
+    name = "/robot1/tf"
+    topic = RecordedTopic(name, TF, 100)
+    wanted = plan()._replace(endpoints=())
+    assert [str(it.names) for it in compare(wanted, Recording((topic,), (), 10.0))] == [
+        "('/robot2/tf',)"
+    ]
+
+
+def test_the_robots_of_a_recording_are_told_by_its_topics(
+    made: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    _, _, err = run(capsys, "doctor", "--bag", made / "healthy")
+    assert "2 robots by their namespaces: robot1, robot2" in err
+    assert "of no robot" not in err

@@ -160,6 +160,9 @@ def test_who_may_send() -> None:
     assert codes(graph(*RUNNING, pub, more=NODES)) == [("MG121", "/_ros2cli_77")]
     both = codes(graph(*RUNNING, MUX, teleop, more=NODES))
     assert ("MG122", "/robot1/mux") in both
+    # Of a sender that may send and one that may not, the second is too many.
+    stray = ("/robot1/stray", "publishes", "/robot1/cmd_vel", "geometry_msgs/msg/Twist")
+    assert ("MG122", "/robot1/stray") in codes(graph(*RUNNING, MUX, stray, more=NODES))
 
 
 @pytest.mark.parametrize(

@@ -571,3 +571,20 @@ def test_actions_for_robots_are_read_with_their_names(name: str) -> None:
     made = main(["check-launch", str(file), "--plan", str(file.with_name("fleet.yaml"))])
     # Only what the simulator sends is not known.
     assert made == 3
+
+
+@in_launch
+def test_files_that_plugins_of_a_description_name_are_kept(tmp_path: Path) -> None:
+    """A launch makes them of others, and they are gone when it has been read."""
+    file = tmp_path / "controllers.yaml"
+    file.write_text("drive: {ros__parameters: {enable_odom_tf: false}}\n")
+    plugin = f"<plugin><parameters> {file} </parameters></plugin>"
+    value = f"ParameterValue({plugin!r}, value_type=str)"
+    found = read(
+        tmp_path,
+        f"""\
+        Node(package="robot_state_publisher", executable="robot_state_publisher",
+             parameters=[{{"robot_description": {value}}}]),""",
+    )
+    ((path, kept),) = found.files
+    assert (path, kept.text) == (str(file), file.read_text())

@@ -159,8 +159,7 @@ def launched_by(release: str) -> Iterator[tuple[str, str, str]]:
 
 def test_programs_are_those_of_launch_files_of_some_release() -> None:
     known = {row for release in RELEASES for row in launched_by(release)}
-    # topic_tools is not among the sources.
-    for name, it in ((name, it) for name, it in PROGRAMS.items() if it.package != "topic_tools"):
+    for name, it in PROGRAMS.items():
         words = {("node", it.package, it.executable), ("lifecycle_node", it.package, it.executable)}
         assert words & known, name
         assert not it.plugin or ("component", it.package, it.plugin) in known, name
@@ -176,7 +175,7 @@ WITHOUT = launch.missing() or ("" if sources_folder() else f"set {VARIABLE}")
     bool(WITHOUT), reason=f"not tried in the real launch, which is not here: {WITHOUT}"
 )
 @pytest.mark.skipif(not importlib.util.find_spec("rclpy"), reason="no rclpy")
-@pytest.mark.parametrize("number", range(34))
+@pytest.mark.parametrize("number", range(67))
 def test_nav2_comes_up_as_planned(number: int) -> None:
     """Every row of the table in docs/nav2.md."""
     from nav2_cells import cells, outcome

@@ -1,7 +1,7 @@
 """Nav2 for two robots in the real launch, and the graph and parameters that come of it.
 
     python tests/support/nav2_cells.py [WORD ...]     the table; only cells that have these words
-    python tests/support/nav2_cells.py --write        write it into docs/nav2.md
+    python tests/support/nav2_cells.py --write [WORD ...]     write these into docs/nav2.md
 
 MULTIBOT_SOURCES names a folder with sources by release: RELEASE/*navigation2*, RELEASE/*slam_toolbox*.
 Needs launch, launch_ros, nav2_common's sources and rclpy. launch decides what is started and with
@@ -35,6 +35,9 @@ from multibot_rewrite.graph.live.request import Request
 from multibot_rewrite.graph.plan_file import read_plan
 from multibot_rewrite.graph.questions import questions
 from multibot_rewrite.graph.rehearsal import with_substitutes
+from multibot_rewrite.graph.snapshot import Snapshot
+from multibot_rewrite.graph.states import NodeState
+from multibot_rewrite.releases import has_release
 from multibot_rewrite.remap.stacks import load_nodes
 
 HERE = Path(__file__).parent
@@ -45,9 +48,12 @@ LAUNCH = ROOT / "share" / "launch" / "nav2.launch.py"
 ROBOTS = ("robot1", "robot2")
 START, END = "<!-- cells -->", "<!-- end of cells -->"
 OWN, BRINGUP = "nav2.launch.py", "nav2_bringup"
+BRIDGE = "tf_namespace_bridge"
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
 # So long has the graph to be quiet.
 LOOK_SECONDS, ASK_SECONDS = 40.0, 30.0
+# A busy machine answers late.
+TIMES = 4
 FLEET = """\
 layout: {layout}
 affix: {affix}
@@ -114,6 +120,7 @@ PROGRAMS = {
     "component_container": "nav2_container",
     "component_container_isolated": "nav2_container",
     "relay": "tf_relay",
+    "static_transform_publisher": "bridged_world",
 }
 PLUGINS = {
     "MapServer": "map_server",
@@ -180,9 +187,10 @@ def cells() -> Iterator[Cell]:
     for release in ("jazzy", "kilted"):
         for layout, composed, slam in product(("tf-per-robot", "both"), both, both):
             yield Cell(BRINGUP, release, layout, composed, slam)
-    for layout, composed, slam in product(LAYOUTS, both, both):
-        yield Cell(OWN, "jazzy", layout, composed, slam)
-    for layout in ("both", "postfix"):
+    for release in ("jazzy", "kilted", "lyrical"):
+        for layout, composed, slam in product(LAYOUTS, both, both):
+            yield Cell(OWN, release, layout, composed, slam)
+    for layout in ("tf-per-robot", "both", "postfix"):
         yield Cell(OWN, "jazzy", layout, True, False, "relayed: true")
 
 
@@ -265,7 +273,7 @@ def processes(fleet: LoadedFleet, rows: list[dict[str, Any]], folder: Path) -> l
                 *(it.helper, it.by, it.above),
             ]
             for it in ends.get(names.get(name, ""), ())
-            if "relay" not in name and not (manager and it.role == "calls")
+            if "relay" not in name and name != BRIDGE and not (manager and it.role == "calls")
         ]
         return {
             **{"name": code, "words": words, "parameters": parameters, "below": below},
@@ -274,10 +282,11 @@ def processes(fleet: LoadedFleet, rows: list[dict[str, Any]], folder: Path) -> l
 
     def with_hosted(name: str, code: str, words: list[str], parameters: Any) -> Iterator[Any]:
         yield node(name, code, words, parameters)
+        inside = _handed_on(words) if has_release("lyrical+", fleet.plan.file.distro) else []
         for it in facts.values():
             if it.host == name:
                 above, _, own = it.name.rpartition("/")
-                yield node(it.name, own, [], [], above)
+                yield node(it.name, own, inside, [], above)
 
     made = []
     for number, row in enumerate(rows):
@@ -302,6 +311,13 @@ def processes(fleet: LoadedFleet, rows: list[dict[str, Any]], folder: Path) -> l
     return made
 
 
+def _handed_on(words: list[str]) -> list[str]:
+    """What a costmap gets of its parent's arguments: nav2_costmap_2d 1.5.1 costmap_2d_ros.cpp
+    (getChildNodeOptions) replaces name and namespace."""
+    rules = (it for it in words if it != "-r" and not it.startswith(("__node:=", "__ns:=")))
+    return [word for rule in rules for word in ("-r", rule)]
+
+
 def _full(row: Mapping[str, Any]) -> str:
     return f"{row['namespace'].strip('/')}/{row['name']}".strip("/")
 
@@ -322,7 +338,7 @@ def outcome(cell: Cell, folder: Path, sources: Path) -> Outcome:
     code = main(["build", str(folder / "fleet.yaml"), "-o", str(out), "-q"])
     assert code == 0, f"build ended with {code}"
     packages = packages_below(sources / cell.release)
-    around = install(packages, folder / "prefix", {"my_driver": []})
+    around = install(packages, folder / "prefix", {"my_driver": [], BRIDGE: []})
     environ = {**os.environ, **around, "RECORDER_QUIET": "1.5"}
     rows = recorded(launch_file(cell, folder, sources), environ)
     order = json.dumps(processes(fleet, rows, folder))
@@ -331,17 +347,15 @@ def outcome(cell: Cell, folder: Path, sources: Path) -> Outcome:
 
 def looked_at(order: str, out: Path) -> Outcome:
     """The graph of the stand-ins against the plan."""
-    environ = stage(None)
+    # With LOCALHOST the 33rd process and those after it are not found.
+    environ = {**stage(None), "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}
     with running(str(STAND_INS.stem), order, {**environ, "PYTHONPATH": _path(environ)}) as child:
         replaced = json.loads(child.next_message() or b"{}")
         plan = with_built(read_plan((out / "plan.yaml").read_bytes(), "plan.yaml"), str(out))
         plan = with_substitutes(plan, replaced)
         graph = observe(Request(LOOK_SECONDS, substitutes=True), environ)
         asked = {it.node: [own.name for own in it.parameters] for it in plan.states}
-        states = ask(list(questions(graph, asked)), ASK_SECONDS, environ)
-        if len({it.node for it in states if it.parameters}) < len(asked):
-            states = ask(list(questions(graph, asked)), ASK_SECONDS, environ)
-        graph = graph._replace(states=states)
+        graph = graph._replace(states=answers(graph, asked, environ))
     found = tuple(it for it in check(plan, graph) if it.level != "note")
     nodes = {name for it in plan.robots for name in it.nodes} & {it.name for it in graph.nodes}
     answered = {it.node: len(it.parameters) for it in graph.states}
@@ -350,12 +364,26 @@ def looked_at(order: str, out: Path) -> Outcome:
     return Outcome(len(nodes), compared, wanted, found)
 
 
+def answers(
+    graph: Snapshot, asked: Mapping[str, list[str]], environ: Mapping[str, str]
+) -> tuple[NodeState, ...]:
+    """What nodes say of the parameters that they are asked for."""
+    wanted = sum(len(own) for own in asked.values())
+    for _ in range(TIMES):
+        states = ask(list(questions(graph, asked)), ASK_SECONDS, environ)
+        if sum(len(it.parameters) for it in states if it.node in asked) >= wanted:
+            break
+    return tuple(states)
+
+
 def _path(environ: Mapping[str, str]) -> str:
     return os.pathsep.join((str(HERE), environ.get("PYTHONPATH", "")))
 
 
-def rows_of(chosen: list[str]) -> Iterator[str]:
-    """The rows of the table."""
+def rows_of(chosen: list[str], page: str) -> Iterator[str]:
+    """The rows of the table: the chosen ones anew, others as they are in the page."""
+    rows = (line for line in page.splitlines() if line.startswith("| nav2"))
+    kept = {tuple(line.strip("| ").split(" | ")[:5]): line for line in rows}
     sources = sources_folder()
     if sources is None:
         raise SystemExit(f"set {VARIABLE} to a folder with sources by release")
@@ -365,6 +393,8 @@ def rows_of(chosen: list[str]) -> Iterator[str]:
     yield "|---|---|---|---|---|--:|--:|--:|--:|"
     for cell in cells():
         if not set(chosen) <= set(cell.words):
+            if before := kept.get(tuple(cell.words)):
+                yield before
             continue
         with tempfile.TemporaryDirectory() as folder:
             made = outcome(cell, Path(folder), sources)
@@ -377,10 +407,11 @@ def rows_of(chosen: list[str]) -> Iterator[str]:
 
 if __name__ == "__main__":
     lines = []
-    for line in rows_of([it for it in sys.argv[1:] if it != "--write"]):
+    words, write = [it for it in sys.argv[1:] if it != "--write"], "--write" in sys.argv
+    for line in rows_of(words, PAGE.read_text() if write else ""):
         print(line, flush=True)
         lines.append(line)
-    if "--write" in sys.argv:
+    if write:
         before, _, rest = PAGE.read_text().partition(START)
         after = rest.partition(END)[2]
         PAGE.write_text("\n".join((f"{before}{START}", "", *lines, "", f"{END}{after}")))

@@ -99,6 +99,9 @@ def endpoints(stubs: Any, node: Any, one: dict[str, Any]) -> list[Any]:
         owner = helpers[by] if helped else node
         end = StubEndpoint(kind, role, named, type_, False)
         made += stub_nodes._create_endpoint(stubs, owner, end, edges)
+    if one["name"] == "tf_namespace_bridge":
+        for topic in ("tf", "tf_static"):
+            relay(node, topic, f"/{topic}", stubs.replaced, node.get_namespace().strip("/") + "/")
     if value("input_topic"):
         relay(node, value("input_topic"), value("output_topic"), stubs.replaced)
     for managed in value("node_names", []) if one["manager"] else []:
@@ -110,15 +113,24 @@ def endpoints(stubs: Any, node: Any, one: dict[str, Any]) -> list[Any]:
     return made
 
 
-def relay(node: Any, source: str, target: str, replaced: dict[str, str]) -> None:
-    """As topic_tools does: what comes goes out, with the same QoS."""
+def relay(node: Any, source: str, target: str, replaced: dict[str, str], prefix: str = "") -> None:
+    """As topic_tools does: what comes goes out, with the same QoS; or with a prefix, as
+    tf_namespace_bridge does."""
+
+    def passed_on(message: Any) -> None:
+        # A transform alone stands for tf2_msgs where that is not installed.
+        for it in getattr(message, "transforms", (message,)):
+            it.header.frame_id = f"{prefix}{it.header.frame_id}"
+            it.child_frame_id = f"{prefix}{it.child_frame_id}"
+        publisher.publish(message)
+
     type_ = stub_nodes._installed(TF)
     if type_ is None:
         replaced[TF] = substitute_type(TOPIC, TF)
         type_ = stub_nodes._installed(replaced[TF])
     latched = "tf_static" in source
     publisher = stub_nodes.ros.publish(node, type_, target, latched)
-    node.create_subscription(type_, source, publisher.publish, stub_nodes.ros._qos(latched, True))
+    node.create_subscription(type_, source, passed_on, stub_nodes.ros._qos(latched, True))
 
 
 def helper_of(session: Any, node: Any, by: str) -> Any:

@@ -166,3 +166,19 @@ def test_a_large_mesh_is_shown_as_its_box(file: Path, monkeypatch: pytest.Monkey
     monkeypatch.setattr(models, "MOST_FACES", 0)
     (mesh,) = page(file.parent, file)["meshes"]
     assert len(base64.b64decode(mesh["f"])) == 12 * 12
+
+
+def test_plugins_with_their_lines(tmp_path: Path) -> None:
+    text = (ROBOTS / "rover.urdf").read_text().splitlines()
+    (robot,) = page(tmp_path, ROBOTS / "rover.urdf", "a")["robots"]
+    wanted = [at for at, line in enumerate(text, 1) if "<plugin " in line]
+    assert [it[2] for it in robot["plugins"]] == wanted
+    assert robot["plugins"][0] == ["diff_drive", "libgazebo_ros_diff_drive.so", wanted[0]]
+
+
+def test_a_mesh_that_cannot_be_read_is_said(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (file.parent / "part.stl").write_bytes(b"")
+    assert main(["view", str(file), "-o", str(file.parent / "view.html")]) == 0
+    said = capsys.readouterr().err
+    assert "package://nowhere/a.dae is not found, it is shown as a box" in said
+    assert said.count("part.stl") == 1

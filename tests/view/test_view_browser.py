@@ -65,6 +65,15 @@ def test_the_page_draws_and_tells(chromium: webdriver.Chrome, tmp_path: Path) ->
         "robot1 before the rewrite"
     )
     assert chromium.execute_script(COLOURS) > 20
+    # A robot and what it was before stand at one place, so two views can be compared.
+    built = "return data.robots[1].built.map((it) => it.root.position.y)"
+    assert chromium.execute_script(built) == [1.5, 1.5]
+    chromium.find_element(By.ID, "robot2 plugin 0").click()
+    about = chromium.find_element(By.ID, "about").text
+    assert "libgazebo_ros_diff_drive.so" in about and "left_wheel_joint_robot2" in about
+    assert "lidar_link/robot2" not in about
+    chromium.find_element(By.ID, "robot1 link base_link/robot1").click()
+    chromium.find_element(By.XPATH, "//summary[text()='robot1']").click()
     before = chromium.execute_script(
         "return data.robots[0].built[0].moving['left_wheel_joint_robot1'].turn.quaternion.y"
     )

@@ -150,6 +150,9 @@ def _planned(plan: Expectation) -> _Planned:
             robot = names.robot(end.name)
             if robot and end.name not in shared:
                 plain[names.without_robot(end.name, robot)][robot] = end.name
+    for it in plan.robots:
+        if it.frames and it.tf not in shared and names.robot(it.tf) == it.name:
+            plain[names.without_robot(it.tf, it.name)][it.name] = it.tf
     return _Planned(plan, ends, plain, names, frame_ownership(plan))
 
 
@@ -235,11 +238,12 @@ def _between_robots(
     planned: _Planned, recorded: Mapping[str, RecordedTopic], seconds: float
 ) -> Iterator[Finding]:
     """Of the same topic of several robots: which has none, which has fewer messages."""
+    trees = {it.tf for it in planned.plan.robots}
     for names in planned.plain.values():
         sent = {
             robot: name
             for robot, name in names.items()
-            if any(it.role == PUBLISHES for it in planned.ends[name])
+            if name in trees or any(it.role == PUBLISHES for it in planned.ends[name])
         }
         there = {robot: recorded[name] for robot, name in sent.items() if name in recorded}
         if there:

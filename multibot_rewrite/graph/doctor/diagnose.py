@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.graph.bags.recording import RECORDER, is_recorded
 from multibot_rewrite.graph.check import inconclusive_where_in_doubt
 from multibot_rewrite.graph.dangers.find import find_dangers
 from multibot_rewrite.graph.dangers.seen import TF, Owners
@@ -71,13 +72,16 @@ def survey(seen: Diagnosis) -> Iterator[str]:
     """What there is, in a few lines: the robots, the layout, who is on which tf topic."""
     names = [robot.name for robot in seen.robots]
     if not names:
-        nodes = plural(len(seen.graph.nodes), "node")
+        nodes = "a recording" if is_recorded(seen.graph) else plural(len(seen.graph.nodes), "node")
         yield f"{nodes}, no name of a robot in them: one robot, or several that share all names"
     else:
         where = _where(seen.robots)
         yield f"{plural(len(names), 'robot')} {where}: {shorten(names, SEVERAL)}"
         yield f"layout: {_layout_line(seen)}"
     for topic, nodes_ in seen.tf:
+        if nodes_ == (RECORDER,):
+            yield f"tf on {topic}"
+            continue
         by_robot = Counter(seen.owners.names.get(node, "") or "no robot" for node in nodes_)
         yield f"tf on {topic}: {plural(len(nodes_), 'node')} of {shorten(by_robot, SEVERAL)}"
 

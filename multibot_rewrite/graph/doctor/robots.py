@@ -92,9 +92,10 @@ def _namespaces(graph: Snapshot) -> list[str]:
     return sorted({*outer, *_numbered_alike(outer, lived_in)})
 
 
-def _may_be_a_robot(space: str, nodes: Iterable[str]) -> bool:
+def _may_be_a_robot(space: str, nodes: Collection[str]) -> bool:
     part = _PART.fullmatch(space.rpartition("/")[2].lower())
-    return not part and any(node.startswith(f"{space}/") for node in nodes)
+    # A recording has no nodes.
+    return not part and (not nodes or any(node.startswith(f"{space}/") for node in nodes))
 
 
 def _numbered_alike(spaces: Collection[str], nodes: Iterable[str]) -> Iterator[str]:

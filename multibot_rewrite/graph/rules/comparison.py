@@ -9,6 +9,7 @@ from typing import NamedTuple
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
 from multibot_rewrite.graph.rules.ownership import NameOwnership, frame_ownership, name_ownership
 from multibot_rewrite.graph.rules.similar_names import probable_matches
+from multibot_rewrite.graph.rules.tf_copies import without_bridged
 from multibot_rewrite.graph.rules.tf_trees import TfTree, tf_trees
 from multibot_rewrite.graph.snapshot import GraphEndpoint, Snapshot
 from multibot_rewrite.graph.tool_nodes import is_tool
@@ -55,6 +56,7 @@ class View(NamedTuple):
 
 def make_view(plan: Expectation, graph: Snapshot) -> View:
     """Build the look-ups once for all rules."""
+    graph = graph._replace(frames=without_bridged(plan, graph.frames))
     # Their first four fields are the key.
     planned = {end[:4]: end for end in plan.endpoints}
     index = _index_endpoints(graph.endpoints, planned)

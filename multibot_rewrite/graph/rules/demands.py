@@ -46,12 +46,16 @@ def sender_not_planned(view: View) -> Iterator[Finding]:
     for topic in (it for it in view.plan.topics if it.senders):
         allowed = shorten(topic.senders, SEVERAL)
         for node in dict.fromkeys(it.node for it in _publishers(view, topic)):
-            if not any(fnmatchcase(node, pattern) for pattern in topic.senders):
+            if not _may_send(topic, node):
                 message = f"publishes {topic.name}, which only {allowed} may publish"
                 hint = (
                     f"stop it or remap it; if it is right, add it to topics: {topic.name}: senders"
                 )
                 yield sender_not_planned.finding(message, hint, **_about(view, topic, node))
+
+
+def _may_send(topic: PlannedTopic, node: str) -> bool:
+    return any(fnmatchcase(node, pattern) for pattern in topic.senders)
 
 
 def _publishers(view: View, topic: PlannedTopic) -> Iterator[GraphEndpoint]:
@@ -89,7 +93,11 @@ def several_senders(view: View) -> Iterator[Finding]:
         nodes = dict.fromkeys(it.node for it in _publishers(view, topic))
         if len(nodes) > 1:
             planned = (TOPIC, PUBLISHES, topic.name)
-            others = [it for it in nodes if (it, *planned) not in view.planned]
+            others = [
+                it
+                for it in nodes
+                if (it, *planned) not in view.planned and not _may_send(topic, it)
+            ]
             node = next(iter((*others, *nodes)))
             listed = shorten(nodes, SEVERAL)
             message = f"{topic.name} has {len(nodes)} senders: {listed}; the plan has one"

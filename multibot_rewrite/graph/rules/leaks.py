@@ -18,12 +18,10 @@ from multibot_rewrite.graph.rules.causes import (
 )
 from multibot_rewrite.graph.rules.comparison import View
 from multibot_rewrite.graph.rules.declaration import graph_rule
-from multibot_rewrite.graph.rules.tf_trees import tree_topic
+from multibot_rewrite.graph.rules.tf_copies import copying_nodes
 from multibot_rewrite.graph.snapshot import LISTENER
 from multibot_rewrite.graph.wording import SEVERAL, shorten
-from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, TOPIC
-
-_GLOBAL_TF = ("/tf", "/tf_static")
+from multibot_rewrite.remap.records import SUBSCRIBES, TOPIC
 
 
 @graph_rule(
@@ -97,7 +95,7 @@ def _planned_leaks(view: View) -> Iterator[Finding]:
     """A name that the plan itself has for several robots, because no remap rule changes it."""
     shared = {*view.plan.shared_topics, *EVERYWHERE, *_shared_tf(view)}
     nodes: dict[str, dict[str, None]] = defaultdict(dict)
-    relays = _relays(view)
+    relays = copying_nodes(view.plan)
     for key in view.planned:
         node, _, _, name = key
         if name in view.ownership.exact or name in shared or node not in view.robot_of:
@@ -113,23 +111,6 @@ def _planned_leaks(view: View) -> Iterator[Finding]:
             yield leaked_name.finding(
                 message, cause, robot=view.robot_of[node], node=node, names=(name,)
             )
-
-
-def _relays(view: View) -> set[str]:
-    """The nodes that, by the plan, do nothing but send their robot's tf on ``/tf`` as well."""
-    senders = {
-        node for node, _, role, name in view.planned if role == PUBLISHES and name in _GLOBAL_TF
-    }
-    trees: dict[str, set[tuple[str, str]]] = defaultdict(set)
-    for node, _, role, name in view.planned if senders else ():
-        if node in senders:
-            trees[node].add((role, tree_topic(name)))
-    home = {robot.name: tree_topic(robot.tf) for robot in view.plan.robots}
-    return {
-        node
-        for node in senders & view.robot_of.keys()
-        if trees[node] == {(SUBSCRIBES, home[view.robot_of[node]]), (PUBLISHES, "/tf")}
-    }
 
 
 def _shared_tf(view: View) -> set[str]:

@@ -30,17 +30,19 @@ _FAILS = "try wrapping it"
 _SIMULATORS = ("gz", "ign", "gazebo", "gzserver")
 _GAZEBO = ("ros_gz_sim", "gzserver")
 # ament_index_python and Python say it so.
+_OF_PLUGIN = re.compile(r"<parameters>\s*([^<\s]+)\s*</parameters>")
 _NOT_FOUND = re.compile(r"package '(\w+)' not found|No module named '(\w+)")
 
 
 class Visit(NamedTuple):
-    """A visit: the context, what has been found, what an event or a timer starts with its visit and the
-    locals that it keeps, the place of what is visited, what starts it if not the launch itself, and
-    after how many events."""
+    """A visit: the context, what has been found, the files that descriptions name, what an event or a
+    timer starts with its visit and the locals that it keeps, the place of what is visited, what starts
+    it if not the launch itself, and after how many events."""
 
     context: Any
     nodes: list[LaunchedNode]
     notes: list[LaunchNote]
+    files: dict[str, ParameterText]
     waiting: list[tuple[Any, Any, Mapping[str, Any]]]
     place: Place
     later: str = ""
@@ -194,11 +196,13 @@ def _evaluated(given: Any, here: Visit) -> Iterator[ParameterText]:
     if isinstance(found, dict):
         yield _values(found)
         yield from _made(found.values(), here)
+        _keep_files(found.values(), here)
     elif isinstance(found, pathlib.PurePath):
         yield from _file(str(found), here)
     else:
         name, value = found.evaluate(here.context)
         yield _values({name: value})
+        _keep_files([value], here)
 
 
 def _made(values: Iterable[Any], here: Visit) -> Iterator[ParameterText]:
@@ -206,6 +210,14 @@ def _made(values: Iterable[Any], here: Visit) -> Iterator[ParameterText]:
     for path in (it for it in values if isinstance(it, str) and "\n" not in it):
         if os.path.isfile(path) and not _kept_file(path):
             yield from _file(path, here)
+
+
+def _keep_files(values: Iterable[Any], here: Visit) -> None:
+    """Keep the parameter files that plugins in descriptions name: they may be gone when these are
+    read."""
+    for text_ in (it for it in values if isinstance(it, str)):
+        for path in _OF_PLUGIN.findall(text_):
+            here.files.update((path, it) for it in _file(path, here))
 
 
 def _values(values: Any) -> ParameterText:

@@ -39,11 +39,12 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
     except (Exception, SystemExit) as error:
         raise UnreadableError(failure(error)) from error
     context = of_launch().LaunchContext(noninteractive=True)
-    seen = Visit(context, [], [], [], Place(os.path.abspath(order.file), 1))
+    seen = Visit(context, [], [], {}, [], Place(os.path.abspath(order.file), 1))
     visit_all(description, seen)
     for it in faults(context):
         seen.note(it, parameters=True)
-    return LaunchGraph(tuple(seen.nodes), tuple(dict.fromkeys(seen.notes)))
+    notes = tuple(dict.fromkeys(seen.notes))
+    return LaunchGraph(tuple(seen.nodes), notes, tuple(seen.files.items()))
 
 
 def _included(order: LaunchOrder) -> Any:

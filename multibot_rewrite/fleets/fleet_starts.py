@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
+
+# The simulators that it can start.
+CLASSIC, GZ = "classic", "gz"
 
 
 class File(NamedTuple):
@@ -49,7 +52,8 @@ class Start(NamedTuple):
 class RobotStarts(NamedTuple):
     """What one robot runs; ``files`` are its parameter files, ``spawned`` is what brings it into the
     simulator, ``left`` are nodes that are not started, each with the reason; ``commands`` are
-    lines of a shell that run beside."""
+    lines of a shell that run beside. ``bridged_tf`` brings its tf to ``/tf`` where
+    tf_namespace_bridge is installed."""
 
     name: str
     about: str
@@ -58,3 +62,31 @@ class RobotStarts(NamedTuple):
     spawned: tuple[Start, ...]
     left: tuple[tuple[str, str], ...]
     commands: tuple[str, ...] = ()
+    bridged_tf: tuple[Start, ...] = ()
+
+
+class FleetStarts(NamedTuple):
+    """All that the launch file of a fleet starts: the simulators, what is for all robots, the robots,
+    the windows. ``head`` is its title, ``use_sim_time`` the default, ``driving`` are lines to type;
+    ``world`` is the simulator's by default."""
+
+    head: str
+    simulators: Sequence[str]
+    shared: Sequence[Start]
+    robots: Sequence[RobotStarts]
+    windows: Sequence[Start]
+    use_sim_time: bool
+    driving: Sequence[str]
+    world: File | str = ""
+
+
+def launch_arguments(it: FleetStarts) -> Iterator[tuple[str, str | File, str]]:
+    """The launch arguments: name, default, what it is."""
+    yield "robots", "", "only these: robot1,robot2, or so many: 2"
+    yield "use_sim_time", str(it.use_sim_time).lower(), "whether all nodes use /clock"
+    if it.windows:
+        yield "rviz", "true", "whether to open RViz"
+    if it.simulators:
+        yield "simulator", "true", "whether to start the simulator and to spawn the robots in it"
+        yield "headless", "false", "whether the simulator has no window"
+        yield "world", it.world, "the world of the simulator"
