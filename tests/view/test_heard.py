@@ -118,3 +118,14 @@ def test_a_frame_on_the_tf_of_another_robot_is_not_heard(tmp_path: Path) -> None
     one, two = page(tmp_path, *words, "--snapshot", tmp_path / "graph.json")["robots"]
     assert set(one["heard"].values()) == {"silent"}
     assert set(two["heard"].values()) == {"heard"}
+
+
+def test_a_recording_has_places_too(tmp_path: Path) -> None:
+    """The last of its transforms: 99 m ahead after 100 messages."""
+    made_bags = pytest.importorskip("made_bags", reason="no rosbags")
+    bag = made_bags.write(tmp_path / "bag", made_bags.healthy().values())
+    words = [ROBOTS / "rover.urdf", "robot1", "--layout", "both", "--affix", "prefix"]
+    found = page(tmp_path, *words, "--bag", bag)["trees"]
+    frames = {it[0]: it[2] for tree in found for it in tree[3]}
+    assert frames["robot1/base_link"] == [99, 2, 3, 0, 0, 0, 1]
+    page(tmp_path, *words, "--bag", bag, "--snapshot", "graph.json", code=2)
