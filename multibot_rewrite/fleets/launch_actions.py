@@ -293,18 +293,23 @@ def _shared(plan: FleetPlan, names: NodeNames, known: Mapping[str, NodeFacts]) -
         yield Start(*manager[:2], "", f"{LIFECYCLE_MANAGER}_shared", (values,))
 
 
-def windows(configs: Sequence[RvizOutput], files: Collection[str]) -> tuple[Start, ...]:
-    """The windows of RViz; MoveIt's displays read the parameters of their process."""
-    return tuple(
-        Start(
-            "rviz2",
-            "rviz2",
-            window.namespace,
-            "",
-            tuple(File(it) for it in (f"{window.robot}/{moveit_parameters.FILE}",) if it in files),
-            tuple(window.remaps),
-            ("-d", File(window_path(window, it.source))),
-        )
-        for it in configs
-        for window in it.windows
-    )
+def windows(configs: Sequence[RvizOutput], files: Collection[str]) -> Iterator[tuple[str, Start]]:
+    """The windows of RViz, each with the one robot that it shows, or "" for all.
+
+    MoveIt's displays read the parameters of their process.
+    """
+    for it in configs:
+        for window in it.windows:
+            given = f"{window.robot}/{moveit_parameters.FILE}"
+            yield (
+                window.robot,
+                Start(
+                    "rviz2",
+                    "rviz2",
+                    window.namespace,
+                    "",
+                    (File(given),) if given in files else (),
+                    tuple(window.remaps),
+                    ("-d", File(window_path(window, it.source))),
+                ),
+            )

@@ -158,15 +158,23 @@ def _robot(it: RobotStarts, simulated: bool) -> Iterator[str]:
         yield "        ),"
     for command in it.commands:
         yield f"        ExecuteProcess(cmd=[{_quoted('sh')}, {_quoted('-c')}, {_quoted(command)}]),"
-    if it.spawned:
-        yield "        GroupAction("
-        yield "            ["
-        for start in it.spawned:
-            yield from _process(start, 16)
-        yield "            ],"
-        yield '            condition=IfCondition(LaunchConfiguration("simulator")),'
-        yield "        ),"
+    yield from _group(it.spawned, "simulator", 8)
+    yield from _group(it.windows, "rviz", 8)
     yield "    ]"
+
+
+def _group(starts: Sequence[Start], argument: str, indent: int) -> Iterator[str]:
+    """What is started where a launch argument is true."""
+    if not starts:
+        return
+    space = " " * indent
+    yield f"{space}GroupAction("
+    yield f"{space}    ["
+    for start in starts:
+        yield from _process(start, indent + 8)
+    yield f"{space}    ],"
+    yield f'{space}    condition=IfCondition(LaunchConfiguration("{argument}")),'
+    yield f"{space}),"
 
 
 def _process(it: Start, indent: int, own: _Files = ()) -> Iterator[str]:
@@ -247,7 +255,7 @@ def _quoted(text: str) -> str:
 
 def _description(it: FleetStarts) -> Iterator[str]:
     yield "def generate_launch_description():"
-    yield '    """The simulator, then robot by robot, then the windows."""'
+    yield '    """The simulator, then robot by robot, then the windows for all."""'
     yield "    return LaunchDescription("
     yield "        ["
     for name, default, about in launch_arguments(it):
@@ -258,14 +266,7 @@ def _description(it: FleetStarts) -> Iterator[str]:
     for start in it.shared:
         yield from _process(start, 12)
     yield "            OpaqueFunction(function=chosen),"
-    if it.windows:
-        yield "            GroupAction("
-        yield "                ["
-        for start in it.windows:
-            yield from _process(start, 20)
-        yield "                ],"
-        yield '                condition=IfCondition(LaunchConfiguration("rviz")),'
-        yield "            ),"
+    yield from _group(it.windows, "rviz", 12)
     yield "        ]"
     yield "    )"
 

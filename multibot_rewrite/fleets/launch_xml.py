@@ -109,6 +109,8 @@ def _robot(it: RobotStarts) -> Iterator[str]:
         yield _tag("executable", cmd=shlex.join(["sh", "-c", command]))
     if it.spawned:
         yield from _group(_processes(it.spawned), **{"if": "$(var simulator)"})
+    if it.windows:
+        yield from _group(_processes(it.windows), **{"if": "$(var rviz)"})
 
 
 def _group(lines: Iterable[str], **condition: str) -> Iterator[str]:

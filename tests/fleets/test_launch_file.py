@@ -304,6 +304,25 @@ def test_arguments_choose_robots_and_windows(words: str, robot: str, tmp_path: P
 
 
 @REAL
+@pytest.mark.parametrize(
+    ("words", "shown"),
+    [("", ["robot1", "robot2"]), ("robots:=robot2", ["robot2"]), ("rviz:=false", [])],
+)
+def test_a_window_of_one_robot_opens_with_that_robot(
+    words: str, shown: list[str], tmp_path: Path
+) -> None:
+    example, out = ROOT / "examples" / "two_robots_postfix", tmp_path / "out"
+    assert main(["build", str(example / "fleet.yaml"), "-o", str(out), "-q"]) == 0
+    for form in ("py", "xml"):
+        (tmp_path / form).mkdir()
+        given = [words] if words else []
+        file = out / f"fleet.launch.{form}"
+        told, _ = launched(file, tmp_path / form, *given, programs=programs(out))
+        opened = [it["words"] for it in told if it["words"][0].endswith("/rviz2")]
+        assert sorted(Path(it[2]).parent.name for it in opened) == shown
+
+
+@REAL
 @pytest.mark.parametrize(("words", "robots"), [("robots:=3", 0), ("robots:=robot9", 0), ("", 2)])
 def test_the_xml_file_starts_nothing_for_robots_that_were_not_built(
     words: str, robots: int, tmp_path: Path
