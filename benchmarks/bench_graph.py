@@ -381,8 +381,8 @@ def busy(load: float) -> str:
     if load < (os.cpu_count() or 1):
         return ""
     return (
-        f"The machine was busy with other work (load {load:.1f} before the run), so waiting times, and CPU\n"
-        "times a little, are longer than they are alone.\n"
+        f"The machine was busy with other work (load {load:.1f} before the run), so waiting times,\n"
+        "and CPU times a little, are longer than they are alone.\n"
     )
 
 
