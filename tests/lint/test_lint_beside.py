@@ -185,6 +185,7 @@ PLANTED = {
     "a text for a source's boolean": (PLUGINS, "marking: true", "marking: 'on'", "MB851:32"),
     "a parameter of a shim's controller": (SHIM, "max_vel_x", "max_vel_xx", "MB850:7"),
     "a parameter of a shim": (SHIM, "angular_dist", "anglar_dist", "MB850:6"),
+    "a critic of a shim's controller": (SHIM, "GoalDist.scale", "GoalDist.scael", "MB850:9"),
     "an integer for a double": (CONTROLLERS, "0.34", "1", "MB851:10"),
     "a text for a double": (CONTROLLERS, "wheel_radius: 0.07", 'wheel_radius: "0.07"', "MB851:11"),
     "a number for a name": (
@@ -280,6 +281,11 @@ HEALTHY = {
         SHIM,
         "dwb_core::DWBLocalPlanner\n      angular_dist_threshold",
         "acme::Planner\n      angular_dis_threshold",
+    ),
+    "another type of an unknown plugin": (
+        PLUGINS,
+        "nav2_smac_planner::SmacPlannerHybrid\n      angle_quantization_bins: 72",
+        "acme::Planner\n      angle_quantization_bins: 72.5",
     ),
     "critics of unknown namespaces": (
         PLUGINS,

@@ -89,22 +89,19 @@ def _sections(beside: Beside) -> Iterator[Section]:
 
 
 def _of_plugins(title: str, given: Sequence[Given]) -> tuple[list[Section], tuple[Given, ...]]:
-    """A section for each known plugin, with names below its own; and what is no plugin's."""
+    """A section for each known plugin, with names below its own; and what is no plugin's. Nobody knows
+    what an unknown plugin declares."""
     plugins = plugins_in({it.name: it.value for it in given})
     of: dict[str, list[Given]] = {}
     for it in given:
         parts = it.name.split(".")
         above = (".".join(parts[:end]) for end in range(len(parts) - 1, 0, -1))
         of.setdefault(next((name for name in above if name in plugins), ""), []).append(it)
-    rest = of.pop("", [])
-    found = []
+    rest, found = of.pop("", []), []
     for name, its in of.items():
         class_, facts = plugins[name]
         own = tuple(it._replace(name=it.name.removeprefix(f"{name}.")) for it in its)
-        if facts:
-            found.append(Section(f"{title}: {name} ({class_})", None, own, facts))
-        else:
-            rest += its
+        found.append(Section(f"{title}: {name} ({class_})", None, own, facts))
     return found, tuple(rest)
 
 
@@ -155,8 +152,7 @@ def unknown_parameters(beside: Beside) -> Iterator[Remark]:
 
 def _in_blocks(section: Section, paths: Sequence[str]) -> Iterator[str]:
     """Parameters of a plugin in the blocks that the file gives it: ``scan`` of a layer's sources."""
-    fixed = {it.partition(".")[0] for it in paths if "." in it}
-    blocks = {it.name.partition(".")[0] for it in section.given if "." in it.name} - fixed
+    blocks = {it.name.partition(".")[0] for it in section.given if "." in it.name}
     inner = [it.removeprefix(ID) for it in paths if it.startswith(ID)]
     yield from (f"{block}.{it}" for block in sorted(blocks) for it in inner if "<" not in it)
 

@@ -59,7 +59,7 @@ def _listed(values: Values) -> Iterator[tuple[str, str]]:
     """The polygons and sources of a collision monitor, which is told by having both."""
     if all(it in values for it in LISTED):
         for path, class_ in LISTED.items():
-            yield from ((it, class_) for it in _list(values, path) if f"{it}.type" in values)
+            yield from ((it, class_) for it in _list(values, path))
 
 
 def _classes(values: Values) -> Iterator[tuple[str, str]]:
