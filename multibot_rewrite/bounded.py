@@ -50,7 +50,7 @@ def read_bytes(path: str, limit: int = MAX_BYTES) -> bytes:
 def read_text(path: str) -> str:
     """The text of a file, lines ended by a newline; raises what ``read_bytes`` raises, and
     UnicodeDecodeError."""
-    text = read_bytes(path).decode("utf-8-sig")
+    text = read_bytes(path).decode().removeprefix("\ufeff")  # utf-8-sig is a module to be loaded
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 

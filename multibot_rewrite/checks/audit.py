@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "audit",
+    "included_models",
     "is_unknown",
     "other_releases",
     "other_ros",
@@ -57,6 +58,7 @@ def audit(inventory: Inventory, renames: RenameMap, tree: Tree) -> list[Finding]
         ambiguous(inventory),
         unknown_plugins(inventory, tree),
         unknown_hardware(inventory, tree),
+        included_models(inventory),
         ignored_namespaces(inventory, tree),
         used_namespaces(inventory, tree),
         hazards(inventory, renames),
@@ -128,6 +130,20 @@ def undeclared(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
 def is_unknown(section: VocabularySection) -> bool:
     """Is the plugin in no section? Then the element's own is used, or the one for any ROS node."""
     return section.select == "plugin" or section.names[0] == ANY_WITH_ROS
+
+
+def included_models(inventory: Inventory, tree: Tree | None = None) -> Iterator[Problem]:
+    """Models of an SDF that are in other files: nobody reads what these start."""
+    # A world has models of its own, too: only what a robot is made of counts.
+    for model in inventory.document.root.iter("model"):
+        for include in model.iterchildren("include"):
+            uri = text_at(include, "uri")
+            if uri:
+                message = (
+                    f"the included {uri!r} is not read: its topics and frames stay as they are"
+                )
+                hint = "rewrite its model.sdf for each robot, and write the result here"
+                yield Problem(include, message, None, hint, (), "MB906")
 
 
 def unknown_plugins(inventory: Inventory, tree: Tree) -> Iterator[Problem]:

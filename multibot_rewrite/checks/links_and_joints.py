@@ -93,8 +93,8 @@ def _link(element: _Element) -> Link:
 def _inertial(element: _Element) -> Inertial:
     parts = {it.tag: it for it in reversed(element)}
     mass, inertia = parts.get("mass"), parts.get("inertia")
-    values = () if inertia is None else tuple(number(inertia.get(it)) for it in MOMENTS)
-    moments = tuple(it for it in values if it is not None)
+    values = [] if inertia is None else [number(inertia.get(it)) for it in MOMENTS]
+    moments = tuple([it for it in values if it is not None])
     return Inertial(
         element,
         None if mass is None else value_of(mass, "value"),

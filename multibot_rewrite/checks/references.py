@@ -51,10 +51,10 @@ def doubtful(inventory: Inventory) -> list[Claim]:
     return [
         claim
         for claim in inventory.claims
-        if not (
+        if claim.site.role == "uses"
+        and not (
             claim.site.whole_value_kind and claim.value in declared[claim.site.whole_value_kind]
         )
-        and claim.site.role == "uses"
     ]
 
 

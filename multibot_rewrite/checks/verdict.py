@@ -15,6 +15,7 @@ REASONS = {
     "MB219": ("model", "not known"),
     "MB902": ("plugin", "not known"),
     "MB903": ("hardware class", "not known"),
+    "MB906": ("included model", "not read"),
     "MB430": ("topic", SHARED),
     "MB431": ("node", SHARED),
     "MB435": ("plugin", "whose controllers take rules of their spawner alone"),

@@ -39,7 +39,7 @@ def run(options: argparse.Namespace) -> int:
     plan = plan_of(options)
     try:
         if options.watch:
-            return _watch(options, plan)
+            return _watch(options, _with_files(options, plan) if options.state else plan)
         if options.bag:
             return _recorded(options, plan)
         graph = live.graph(options)
@@ -185,10 +185,12 @@ def _sum_up(
 def _watch(options: argparse.Namespace, plan: Expectation) -> int:
     gaps = _gaps(options, plan)
     print_lines(map(str, gaps))
-    last = follow(lambda graph: (plan, check(plan, graph)), live.watched(options))
+    snapshots = live.watched(options, _parameters(plan))
+    last = follow(lambda graph: (plan, check(plan, graph)), snapshots)
     if last is None:
         note(options, "ended before anything was seen")
         return live.INCONCLUSIVE
+    live.note_answers(options, last.graph)
     findings = [*last.findings, *gaps]
     if options.output:
         report_first(options, findings, About([options.plan], robot_words(plan), plan.release))

@@ -131,6 +131,7 @@ def _watch(options: argparse.Namespace) -> int:
     if last is None:
         note(options, "ended before anything was seen")
         return live.INCONCLUSIVE
+    live.note_answers(options, last.graph)
     if options.output:
         _report(options, diagnose(last.graph), last.findings)
     _write(options, diagnose(last.graph), last.findings, _outcome(final(last)))

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from multibot_rewrite.cli.output import note
 from multibot_rewrite.graph.environment import settings
 from multibot_rewrite.graph.live.request import Request
-from multibot_rewrite.graph.questions import NO_MORE, questions
+from multibot_rewrite.graph.questions import ANSWER_SECONDS, NO_MORE, questions
 from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
@@ -26,8 +26,6 @@ if TYPE_CHECKING:
 INCONCLUSIVE, NO_ROS = 3, 4
 # How long a single look takes at most.
 LOOK_SECONDS = 15.0
-# How long all nodes together have for their answers to --state.
-ASK_SECONDS = 5.0
 
 
 def check_source(options: argparse.Namespace) -> None:
@@ -37,9 +35,8 @@ def check_source(options: argparse.Namespace) -> None:
         _check_bag(options)
     if saved and watching:
         raise UsageError("--watch is for the live graph, leave out --snapshot")
-    if getattr(options, "state", False) and (saved or options.zenoh or watching):
-        hint = "leave out --snapshot, --zenoh and --watch"
-        raise UsageError(f"--state asks nodes of the live graph, once; {hint}")
+    if getattr(options, "state", False) and (saved or options.zenoh):
+        raise UsageError("--state asks nodes of the live graph: leave out --snapshot and --zenoh")
     if saved and options.zenoh:
         raise UsageError("saved snapshots and --zenoh are two sources: give one of them")
 
@@ -89,15 +86,26 @@ def with_states(
     from multibot_rewrite.graph.live.child import ask
 
     asked = list(questions(seen, parameters))
-    found = ask(asked, ASK_SECONDS, environ(options.domain))
-    nodes = plural(len({it.node for it in asked}), "node")
-    note(options, f"{len(found)} of {nodes} answered --state")
-    return seen._replace(states=found)
+    found = ask(asked, ANSWER_SECONDS, environ(options.domain))
+    seen = seen._replace(states=found)
+    note_answers(options, seen)
+    return seen
 
 
-def watched(options: argparse.Namespace) -> Generator[Snapshot, None, None]:
-    """Snapshots of the live graph that the options name, one after each change."""
-    asked = Request(options.timeout or inf, watch=True)
+def note_answers(options: argparse.Namespace, seen: Snapshot) -> None:
+    """A line of how many nodes answered ``--state``."""
+    if options.state:
+        nodes = plural(len({it.node for it in questions(seen)}), "node")
+        note(options, f"{len(seen.states)} of {nodes} answered --state")
+
+
+def watched(
+    options: argparse.Namespace, parameters: Mapping[str, Collection[str]] = NO_MORE
+) -> Generator[Snapshot, None, None]:
+    """Snapshots of the live graph that the options name, one after each change; with ``--state`` also
+    with what its nodes answer, who are asked for ``parameters`` besides."""
+    asks = dict(parameters) if options.state else None
+    asked = Request(options.timeout or inf, watch=True, asks=asks)
     if options.zenoh:
         from multibot_rewrite.graph.zenoh import observe
 

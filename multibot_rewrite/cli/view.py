@@ -15,6 +15,8 @@ from multibot_rewrite.fleets.fleet_file import input_files, read_fleet
 from multibot_rewrite.fleets.fleet_or_plan import is_fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.fleets.manifest import hash_of, inputs_of
+from multibot_rewrite.graph.bags.read import BagsUnusable, read_bag
+from multibot_rewrite.graph.bags.recording import as_snapshot
 from multibot_rewrite.graph.pictures.page import Framed
 from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.snapshot_file import read_snapshots
@@ -34,12 +36,12 @@ def run(options: argparse.Namespace) -> int:
     """Rewrite, load, write the page; returns the exit code."""
     plan = _plan(options)
     check_target(options.output, [*input_files(plan.file), *options.snapshot])
-    graph = read_snapshots(options.snapshot) if options.snapshot else None
     try:
+        graph = _graph(options)
         scene = scene_of(plan, graph)
         meshes = meshes_of(scene)
         page = to_html(scene, meshes, title_of(scene.robots, plan.fleet.naming.layout.name))
-    except ViewUnusable as error:
+    except (ViewUnusable, BagsUnusable) as error:
         say(str(error), PROGRAM)
         return NO_VIEW
     for it in _notes(scene.robots, meshes):
@@ -51,6 +53,15 @@ def run(options: argparse.Namespace) -> int:
         f"wrote {options.output}: {plural(len(scene.robots), 'robot')}, {size}; open it in a browser",
     )
     return DONE
+
+
+def _graph(options: argparse.Namespace) -> Snapshot | None:
+    """What was seen or recorded of tf, if that is asked for."""
+    if options.bag and options.snapshot:
+        raise UsageError("--bag is a recording: leave out --snapshot")
+    if options.bag:
+        return as_snapshot(read_bag(options.bag))
+    return read_snapshots(options.snapshot) if options.snapshot else None
 
 
 def _notes(robots: Sequence[ViewedRobot], meshes: Meshes) -> Iterator[str]:

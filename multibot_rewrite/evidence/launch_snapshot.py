@@ -45,6 +45,7 @@ from multibot_rewrite.rosnames import (
 
 CLOCK, CLOCK_TYPE = "/clock", "rosgraph_msgs/msg/Clock"
 TF, TF_STATIC, TF_TYPE = "/tf", "/tf_static", "tf2_msgs/msg/TFMessage"
+_CLASSIC = ("gazebo_ros", "spawn_entity.py")
 _PREFIX_SWITCH = "tf_frame_prefix_enable"
 _SIM_TIME = "use_sim_time"
 NOT_WHOLE, NOT_KNOWN, NO_TREE, REFUSED = (
@@ -74,7 +75,7 @@ def would_run(graph: LaunchGraph, known: Knowledge) -> Snapshot:
         except UsageError as error:
             refused.append(f"{it.full_name} ({it.place}: {error})")
             parts.append(_Part(it.full_name, (), ()))
-    caveats = (*_refused(refused), *_caveats((*graph.notes, *notes), nodes))
+    caveats = (*_refused(refused), *_caveats((*graph.notes, *notes), nodes), *_in_classic(graph))
     return Snapshot(
         tuple(GraphNode(part.name, it.process) for it, part in zip(nodes, parts, strict=True)),
         tuple(end for part in parts for end in part.endpoints),
@@ -107,6 +108,14 @@ def _caveats(notes: Iterable[LaunchNote], nodes: Sequence[RunningNode]) -> Itera
     if treeless:
         text = f"the description is not known, so neither are its frames: {shorten(treeless)}"
         yield Caveat(NO_TREE, True, text)
+
+
+def _in_classic(graph: LaunchGraph) -> Iterator[Caveat]:
+    """Plugins of Gazebo Classic are nodes, which a robot brings with it."""
+    spawners = [it for it in graph.nodes if (it.package, it.executable) == _CLASSIC]
+    if spawners:
+        text = "nodes that plugins of Gazebo Classic make of a spawned robot are not known"
+        yield Caveat(NOT_WHOLE, True, f"{spawners[0].place}: {text}")
 
 
 def _passes_tf_on(it: RunningNode) -> bool:

@@ -11,6 +11,8 @@ Reader = Callable[[object], object]
 _TYPE_NAMES = {str: "text", int: "a whole number", bool: "true or false"}
 # NaN is not below it, and every whole number below it fits into a float.
 _LARGEST = 1e300
+# What no robot reaches, in metres. NaN is not below it, either.
+FARTHEST = 1e12
 
 
 class WrongValue(Exception):
@@ -61,7 +63,7 @@ def read_seconds(value: object) -> object:
 def read_transform(value: object) -> object:
     """Three numbers and four, or nothing."""
     numbers = cast("tuple[float, ...]", read_list(read_seconds, value))
-    if len(numbers) not in (0, 7) or not all(map(math.isfinite, numbers)):
+    if len(numbers) not in (0, 7) or not all(abs(it) < FARTHEST for it in numbers):
         raise unexpected("7 numbers: x, y, z and a quaternion x, y, z, w", value)
     return numbers
 

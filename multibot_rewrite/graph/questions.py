@@ -14,6 +14,8 @@ GET_PARAMETERS = "rcl_interfaces/srv/GetParameters"
 LIST_CONTROLLERS = "controller_manager_msgs/srv/ListControllers"
 ASKED = (GET_STATE, GET_PARAMETERS, LIST_CONTROLLERS)
 SIM_TIME = "use_sim_time"
+# How long all nodes together have for their answers.
+ANSWER_SECONDS = 5.0
 NO_MORE: Mapping[str, Collection[str]] = {}
 
 

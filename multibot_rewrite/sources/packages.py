@@ -69,7 +69,8 @@ def _split(paths: str) -> tuple[str, ...]:
 def _own_package(folder: str) -> tuple[str, str] | None:
     """Name and folder of the package that a folder is in."""
     for _ in range(HIGHEST):
-        if _MANIFEST in entries(folder):
+        # Asked for alone: folders above may be those of all users, or for temporary files.
+        if os.path.isfile(os.path.join(folder, _MANIFEST)):
             return _package_name(folder), folder
         folder = os.path.dirname(folder)
     return None

@@ -212,6 +212,7 @@ def test_a_controller_runs_beside_its_manager_with_the_rules_of_both(run: Graph)
         ((node("acme/driver", "driver"),), (), "/robot1/driver (acme/driver)"),
         ((publisher("/robot1", TF, robot_description=""),), (), "/robot1/rsp"),
         ((), (LaunchNote(AT, "decided only at run time"),), f"{AT}: decided only at run time"),
+        ((node("gazebo_ros/spawn_entity.py", ""),), (), "plugins of Gazebo Classic make"),
         ((publisher("/robot1", (("/tf", "1tf"),)),), (), "rcl refuses"),
     ],
 )
@@ -328,3 +329,13 @@ def test_a_spawner_that_asks_for_another_manager_is_told(known: Knowledge) -> No
         "/robot1/controller_manager is started by no node of the launch and no plugin" in it.message
         for it in made.environment.caveats
     )
+
+
+def test_the_bridge_of_tf_is_known(run: Graph) -> None:
+    """tf_namespace_bridge.cpp: no layout moves its topics."""
+    ends = names(run(node("tf_namespace_bridge/tf_namespace_bridge", "b")), "/robot1/b")
+    assert ends == {
+        (role, f"{above}/{topic}")
+        for role, above in (("publishes", ""), ("subscribes", "/robot1"))
+        for topic in ("tf", "tf_static")
+    }

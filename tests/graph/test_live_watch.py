@@ -65,9 +65,9 @@ class Watch:
 
 
 @contextmanager
-def watching(plan: Path, own: int) -> Iterator[Watch]:
+def watching(plan: Path, own: int, *more: str) -> Iterator[Watch]:
     process = subprocess.Popen(
-        [*CHECK, str(plan), "--watch"],
+        [*CHECK, str(plan), "--watch", *more],
         env=live_fleet.environ(own),
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -80,16 +80,45 @@ def watching(plan: Path, own: int) -> Iterator[Watch]:
         process.wait()
 
 
+def rated(robot: str, rate: int) -> list[dict[str, object]]:
+    """A node that is asked for a parameter."""
+    return [node(robot, parameters={"rate": rate}, changed={"rate": 2})]
+
+
+def with_rates(plan: Path) -> Path:
+    """The plan, in which each node has the rate 2."""
+    states = ", ".join(f"/robot{at}/drive: {{parameters: {{rate: 2}}}}" for at in (1, 2))
+    plan.write_text(f"{plan.read_text()}states: {{{states}}}\n")
+    return plan
+
+
 def test_a_fleet_that_comes_up_while_it_is_watched(plan: Path) -> None:
     own = domain(70)
-    with watching(plan, own) as watch:
+    with watching(with_rates(plan), own, "--state") as watch:
         assert "0/2 nodes, 0/6 names" in watch.until("nodes")
-        with live_fleet.running(own, [node("robot1")], [node("robot2")]):
+        with live_fleet.running(own, rated("robot1", 2), rated("robot2", 2)):
             watch.until("2/2 nodes, 6/6 names, 0 findings: still changing")
-            watch.until("2/2 nodes, 6/6 names, 0 findings: as planned")
+            watch.until("2/2 nodes, 6/6 names, 0 findings: as planned", 40)
             code, said = watch.end()
     assert code == 0, said
-    assert said == "multibot: 2 robots, 0 findings: as planned\n"
+    answered = "multibot: 2 of 2 nodes answered --state\n"
+    assert said == f"{answered}multibot: 2 robots, 0 findings: as planned\n"
+
+
+@pytest.mark.deep
+def test_a_parameter_that_changes_is_seen_although_the_graph_does_not(plan: Path) -> None:
+    own = domain(74)
+    with (
+        watching(with_rates(plan), own, "--state") as watch,
+        live_fleet.running(own, rated("robot1", 1), rated("robot2", 2)) as (first, _),
+    ):
+        found = watch.until("  + /robot1/drive: error: MG132 rate is 1, planned is 2", 60)
+        assert "/robot2" not in found
+        first.send_signal(signal.SIGUSR1)
+        watch.until("  - /robot1/drive: error: MG132", 60)
+        assert "as planned" in watch.until("nodes", 60)
+        code, said = watch.end()
+    assert code == 1, said
 
 
 @pytest.mark.deep

@@ -17,6 +17,8 @@ from multibot_rewrite.fleets.built_states import with_built
 from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.expectation import Expectation, PlannedParameter, PlannedState
 from multibot_rewrite.graph.live import ask
+from multibot_rewrite.graph.live.answers import AGAIN_SECONDS, Answers
+from multibot_rewrite.graph.live.request import Request, from_text, to_text
 from multibot_rewrite.graph.plan_file import read_plan, to_json, to_yaml
 from multibot_rewrite.graph.questions import Question, questions
 from multibot_rewrite.graph.snapshot import (
@@ -346,13 +348,63 @@ def test_check_finds_the_files_beside_the_plan(
     [
         (["--built", "nowhere", "--state"], "nowhere: no folder"),
         (["--built", "."], "add --state"),
-        (["--state", "--watch"], "once"),
         (["--state", "--snapshot", "g.json"], "--state asks nodes of the live graph"),
     ],
 )
 def test_wrong_use(given: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert multibot.main(["check", "plan.yaml", *given]) == 2
     assert said in capsys.readouterr().err
+
+
+class Asked:
+    """Nodes that answer with what is in ``states``; how often they were asked."""
+
+    def __init__(self, *states: NodeState) -> None:
+        self.states, self.times = states, 0
+
+    def __call__(self, asked: object) -> tuple[NodeState, ...]:
+        self.times += 1
+        return self.states
+
+
+A, B = NodeState("/a", "active"), NodeState("/b", "active")
+BOTH = Snapshot((GraphNode("/a", ""), GraphNode("/b", "")), (), (), environment())
+
+
+def test_a_watched_graph_is_asked_when_it_is_quiet_and_again_after_a_while() -> None:
+    nodes = Asked(B, A)
+    answers = Answers(nodes, {})
+    assert answers.old(0.0)
+    assert not answers.update(BOTH, quiet=False, now=1.0) and nodes.times == 0
+    assert answers.update(BOTH, quiet=True, now=4.0) and answers.states == (A, B)
+    assert not answers.old(4.0 + AGAIN_SECONDS - 1) and answers.old(4.0 + AGAIN_SECONDS)
+    nodes.states = (A, B)
+    assert not answers.update(BOTH, quiet=True, now=20.0)
+    nodes.states = (A._replace(lifecycle="inactive"), B)
+    assert answers.update(BOTH, quiet=True, now=30.0) and answers.states == nodes.states
+
+
+def test_a_node_that_hangs_keeps_its_answer_and_one_that_left_has_none() -> None:
+    nodes = Asked(A, B)
+    answers = Answers(nodes, {})
+    answers.update(BOTH, quiet=True, now=4.0)
+    nodes.states = (B,)
+    assert not answers.update(BOTH, quiet=True, now=14.0) and answers.states == (A, B)
+    assert answers.update(BOTH._replace(nodes=BOTH.nodes[1:]), quiet=False, now=15.0)
+    assert answers.states == (B,)
+
+
+def test_nobody_is_asked_without_state() -> None:
+    nodes = Asked(A)
+    answers = Answers(nodes, None)
+    assert not answers.old(100.0) and not answers.update(BOTH, quiet=True, now=100.0)
+    assert nodes.times == 0
+
+
+def test_what_is_to_be_asked_reaches_the_child() -> None:
+    asked = Request(3.0, watch=True, asks={"/a": ["rate"]})
+    assert from_text(to_text(asked)) == asked
+    assert from_text(to_text(Request(3.0))).asks is None
 
 
 def test_a_node_is_asked_for_what_is_planned() -> None:

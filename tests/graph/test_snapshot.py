@@ -188,6 +188,7 @@ NODE_OBJECT = {"name": "/a", "process": ""}
             changed("frames", 1, "transform", to=[None] * 7),
             "frames[1].transform: expected 7 numbers",
         ),
+        (changed("frames", 1, "transform", 0, to=1e200), "frames[1].transform: expected 7 numbers"),
         (changed("frames", 1, "transform", 3, to="x"), "transform[3]: expected a number"),
         (changed("endpoints", 0, to=NODE_OBJECT), "g.json: endpoints[0].kind: missing"),
         (changed("frames", 0, to=NODE_OBJECT), "g.json: frames[0].child: missing"),
@@ -443,11 +444,12 @@ def test_a_transform_has_the_numbers_that_came_last() -> None:
     session.update(ends, False)
     for x in (1.0, 2.123456789123):
         calls[0](SimpleNamespace(transforms=[stamped("odom", "base", x)]), None)
-    calls[0](SimpleNamespace(transforms=[stamped("base", "imu", math.nan)]), None)
+    for name, x in {"imu": math.nan, "gps": math.inf, "lost": -1e13}.items():
+        calls[0](SimpleNamespace(transforms=[stamped("base", name, x)]), None)
     found = frames(session.transforms(), ends, last=session.last)
     assert {it.child: it.transform for it in found} == {
         "base": (2.123456789, 0, 0, 0, 0, 0, 1),
-        "imu": (),
+        **dict.fromkeys(("imu", "gps", "lost"), ()),
     }
 
 

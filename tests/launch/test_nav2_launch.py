@@ -18,15 +18,18 @@ from typing import Any
 
 import pytest
 import yaml
+from launched_programs import launched
 from paths import FIXTURES, ROBOTS, ROOT, SUPPORT
 from vendor_sources import VARIABLE, sources_folder
 
 from multibot_rewrite import launch
-from multibot_rewrite.launch.nav2_programs import MANAGER, PROGRAMS
+from multibot_rewrite.cli.rehearse import stage
+from multibot_rewrite.launch.nav2_programs import MANAGER, PROGRAMS, SLAM
 from multibot_rewrite.releases import RELEASES
 
 REASON = f"not tried in the real launch, which is not here: {launch.missing()}"
 in_launch = pytest.mark.skipif(bool(launch.missing()), reason=REASON)
+STAND_IN = SUPPORT / "lifecycle_stand_in.py"
 FILE = ROOT / "share" / "launch" / "nav2.launch.py"
 PARAMS = """\
 amcl:
@@ -148,6 +151,27 @@ def test_processes_in_namespaces_with_a_map_for_all(tmp_path: Path) -> None:
 def test_bad_words_are_said(tmp_path: Path, words: tuple[str, ...], stack: str, said: str) -> None:
     done = run(written(tmp_path, stack=stack), *words)
     assert said in done.stderr + done.stdout
+
+
+@in_launch
+@pytest.mark.live
+@pytest.mark.skipif(not importlib.util.find_spec("rclpy"), reason="no rclpy: pip install '.[ros]'")
+def test_slam_toolbox_is_configured_and_activated_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It has a life cycle from Jazzy on (slam_toolbox_common.hpp), and nobody else knows it: with
+    ``use_lifecycle_manager`` false, its default, it makes no bond (slam_toolbox_common.cpp)."""
+    fleet = written(tmp_path, stack="nav2_slam", layout="tf-per-robot") / "fleet.yaml"
+    fleet.write_text(fleet.read_text().replace("  - {name: robot2", "#"))
+    for name, value in stage(None).items():
+        monkeypatch.setenv(name, value)
+    programs = {it.executable: it.package for it in PROGRAMS.values()}
+    real = {PROGRAMS[SLAM].executable: STAND_IN}
+    told, _ = launched(FILE, tmp_path, f"fleet:={fleet}", programs=programs, real=real)
+    (slam,) = (it for it in told if "state" in it)
+    assert "__ns:=/robot1" in slam["words"]
+    # lifecycle_msgs Transition: configure is 1, activate 3.
+    assert (slam["state"], slam["asked"]) == ("active", [1, 3])
 
 
 def launched_by(release: str) -> Iterator[tuple[str, str, str]]:

@@ -443,7 +443,7 @@ ALLOWED = (
     "lint/beside/kinds.py", "lint/beside/parameter_table.py",
     "sources/child/", "sources/processes.py", "sources/packages.py", "sources/access.py",
 )  # fmt: skip
-PACKAGE_DATA = ("files(", "_FILE.", "(_FOLDER / file)")
+PACKAGE_DATA = ("files(", "(_FOLDER, file)")
 
 
 def unmarked(path: Path) -> list[str]:

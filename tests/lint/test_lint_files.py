@@ -61,6 +61,10 @@ NAME = '<material name="m"/>'
             '<robot name="r"><gazebo reference="a"><material>Gazebo/Red</material></gazebo></robot>',
             [],
         ),
+        (
+            '<robot name="r"><gazebo><visual><material name="m"/></visual></gazebo></robot>',
+            [],
+        ),
         ('<robot name="r"><material/></robot>', ["MB115"]),
         ('<robot name="r"><material name="m"><colour/></material></robot>', ["MB110"]),
     ],

@@ -256,6 +256,10 @@ PLANTED = {
         classic("DiffDrivePlugin", "<left_joint>j</left_joint><wheel_separation>1</wheel_separation>"),
         "MB163",
     ),
+    "the parameter of Classic's own plugin in gz": (
+        system("elevator", "Elevator", "<lift_joint>j</lift_joint>"),
+        "MB163",
+    ),
     "no link of Classic's battery": (
         classic("LinearBatteryPlugin", "<battery_name>b</battery_name>"),
         "MB165",

@@ -234,6 +234,13 @@ def collada(scene: str = SHOWN, unit: str = "1", beside: str = "", above: str = 
     ("data", "low", "high"),
     [
         (collada(), (-1, 0, 0), (1, 2, 3)),
+        (
+            collada()
+            .replace(b'stride="3"', b'stride="4" offset="1"')
+            .replace(b"0 0 0 1 2 3 -1 0 0", b"9 1 2 3 9 4 5 6"),
+            (1, 2, 3),
+            (4, 5, 6),
+        ),
         (collada(unit="0.001"), (-0.001, 0, 0), (0.001, 0.002, 0.003)),
         (collada(f"<translate>1 0 0</translate>{SHOWN}", "0.1"), (0, 0, 0), (0.2, 0.2, 0.3)),
         (collada(f"<scale>2 -1 1</scale>{SHOWN}"), (-2, -2, 0), (2, 0, 3)),
@@ -289,6 +296,7 @@ BOMB = '<!DOCTYPE a [<!ENTITY a "1 2 3 "><!ENTITY b "%s">]>' % ("&a;" * 10)
         collada(""),
         collada('<instance_geometry url="#other"/>'),
         collada('<instance_geometry url="other.dae#cube"/>'),
+        collada('<instance_geometry url="/cube"/>'),
         collada('<instance_controller url="#skin"/>'),
         collada(f"<lookat>0 0 0 1 0 0 0 0 1</lookat>{SHOWN}"),
         collada(f"<translate>0 0</translate>{SHOWN}"),

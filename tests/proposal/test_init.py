@@ -349,6 +349,10 @@ CRANE = """\
   <link name="mast"/><link name="crane_hook"/><link name="crane_rope"/><link name="mast_top"/>
   <joint name="lift_joint" type="prismatic"><parent link="mast"/><child link="crane_hook"/>
     <limit lower="0" upper="1" effort="1" velocity="1"/></joint>
+  <link name="hook"/><link name="map"/><link name="odom"/>
+  <joint name="hook_joint" type="fixed"><parent link="crane_hook"/><child link="hook"/></joint>
+  <joint name="map_joint" type="fixed"><parent link="mast"/><child link="map"/></joint>
+  <joint name="odom_joint" type="fixed"><parent link="mast"/><child link="odom"/></joint>
   <joint name="rope_joint" type="fixed"><parent link="mast"/><child link="crane_rope"/></joint>
   <joint name="top_joint" type="fixed"><parent link="mast"/><child link="mast_top"/></joint>
 </robot>

@@ -112,3 +112,14 @@ def test_what_all_robots_share_is_no_refusal_of_two() -> None:
     text = LIDAR.format("{name}/scan")
     first, second = rewrite_all(text, ["left_b", "b"], separators={"topic": "_"})
     assert first.not_proved == second.not_proved == ("1 topic shared by all robots",)
+
+
+def test_a_model_of_another_file_is_not_proved() -> None:
+    """Nobody reads what its sensors publish; a world's models are no part of a robot."""
+    source = (
+        '<sdf version="1.9"><model name="rover"><link name="base"/>'
+        "<include><uri>model://lidar</uri><name>front</name></include></model></sdf>"
+    )
+    made = rewrite(source, "robot1", layout="both")
+    assert made.not_proved == ("1 included model not read",)
+    assert [it.code for it in made.findings] == ["MB906"]

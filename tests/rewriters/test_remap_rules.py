@@ -131,6 +131,11 @@ def test_a_rule_that_is_not_for_this_topic_does_not_keep_one_from_it(rule: str) 
     assert name_in_graph(made.text, "/tf") == "/robot1/tf"
 
 
+def test_a_rule_for_another_node_keeps_its_left_side() -> None:
+    made = rewrite(plugin("force", rules("other:/gazebo_ros_force:=push")), "robot1", layout="both")
+    assert rule_texts(made.text) == ["other:/gazebo_ros_force:=push"]
+
+
 def test_a_namespace_in_a_rule_is_that_of_the_node() -> None:
     source = plugin("force", rules("__ns:=/x", "/x/gazebo_ros_force:=push"))
     for layout, wanted in (("both", "/robot1/x/push"), ("postfix", "/x/push/robot1")):

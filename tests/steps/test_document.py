@@ -147,6 +147,14 @@ def test_the_size_in_the_message_is_over_the_limit() -> None:
     assert (size, limit) == (MAX_BYTES + 7, MAX_BYTES)
 
 
+@pytest.mark.parametrize("frame", [b"%s", b"<robot>%s</robot>"])
+def test_an_element_of_more_than_a_thousand_attributes_is_refused(frame: bytes) -> None:
+    least, most = (b"".join(b' a%d=""' % n for n in range(count)) for count in (1000, 1001))
+    read_document(frame % (b"<robot%s/>" % least), "my.urdf")
+    with pytest.raises(InputError, match="1,001 attributes, over the limit of 1,000"):
+        read_document(frame % (b"<robot%s/>" % most), "my.urdf")
+
+
 def test_another_root_is_refused() -> None:
     with pytest.raises(InputError, match=r"the root element is <html>, expected .*<robot>"):
         rewrite(b"<html/>", "r1")

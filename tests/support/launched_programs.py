@@ -57,9 +57,10 @@ def launched(
     *arguments: str,
     programs: Mapping[str, str] = MappingProxyType({}),
     more: Mapping[str, str] = MappingProxyType({}),
+    real: Mapping[str, Path] = MappingProxyType({}),
 ) -> tuple[list[dict[str, Any]], str]:
     """What the programs of a launch file were told, and what launch said; ``more`` are files of
-    packages, by their paths below ``share``."""
+    packages, by their paths below ``share``, ``real`` the texts of programs that do more."""
     share = {
         f"share/multibot_example/{path.relative_to(EXAMPLE)}": path.read_text()
         for path in EXAMPLE.glob("*/*.*")
@@ -68,6 +69,9 @@ def launched(
     files = {**share, **{f"share/{it}": EMPTY for it in included}}
     files |= {f"share/{path}": text for path, text in more.items()}
     fake_packages(folder / "install", files, {**PROGRAMS, **programs})
+    for name, source in real.items():
+        (path,) = (folder / "install" / "lib").glob(f"*/{name}")
+        path.write_text(f"#!{sys.executable}\n{source.read_text()}")
     (folder / "told").mkdir()
     (folder / "tmp").mkdir()
     env = {

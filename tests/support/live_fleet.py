@@ -6,13 +6,15 @@ Run as ``python live_fleet.py SPEC``; SPEC is JSON, a list of nodes: {"name", "n
 messages that it sends, ten a second or, latched, one; an image has a megabyte}. "bare": a node without
 what every node brings, as far as rclpy lets it. "alone": a DDS participant of its own, as if in a
 process of its own. "arguments": what a command line tells the node. "parameters": those that it
-declares. "state": what it answers to GetState. "wait": seconds until the next node is made.
+declares, "changed" those that it gets when its process is sent SIGUSR1. "state": what it answers to
+GetState. "wait": seconds until the next node is made.
 """
 
 from __future__ import annotations
 
 import json
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -121,6 +123,8 @@ def _node(spec: Mapping[str, Any], executor: Any) -> Any:
         executor.add_node(node)
     for name, value in spec.get("parameters", {}).items():
         node.declare_parameter(name, value)
+    if spec.get("changed"):
+        signal.signal(signal.SIGUSR1, lambda *_: _change(node, spec["changed"]))
     for name, type_, *words in spec.get("publishers", ()):
         node.create_publisher(_type(type_), name, _qos(words))
     for name, type_, *words in spec.get("subscriptions", ()):
@@ -138,6 +142,12 @@ def _node(spec: Mapping[str, Any], executor: Any) -> Any:
     for header in spec.get("headers", ()):
         _send_header(node, *header)
     return node
+
+
+def _change(node: Any, values: Mapping[str, Any]) -> None:
+    from rclpy.parameter import Parameter
+
+    node.set_parameters([Parameter(name, value=value) for name, value in values.items()])
 
 
 def _context() -> Any:

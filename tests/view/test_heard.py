@@ -107,3 +107,25 @@ def test_a_snapshot_without_places_has_no_trees(tmp_path: Path) -> None:
     made = page(tmp_path, ROBOTS / "rover.urdf", "robot1", "--snapshot", graph)
     assert made["trees"] == []
     assert made["robots"][0]["heard"]["base_link/robot1"] == "heard"
+
+
+def test_a_frame_on_the_tf_of_another_robot_is_not_heard(tmp_path: Path) -> None:
+    """Where each robot has its own tf, frames of all are called alike."""
+    graph = healthy("tf-per-robot")
+    frames = (it for it in graph.frames if it.topic.startswith("/robot2/"))
+    (tmp_path / "graph.json").write_bytes(to_json(graph._replace(frames=tuple(frames))))
+    words = [ROBOTS / "rover.urdf", "robot1", "robot2", "--layout", "tf-per-robot"]
+    one, two = page(tmp_path, *words, "--snapshot", tmp_path / "graph.json")["robots"]
+    assert set(one["heard"].values()) == {"silent"}
+    assert set(two["heard"].values()) == {"heard"}
+
+
+def test_a_recording_has_places_too(tmp_path: Path) -> None:
+    """The last of its transforms: 99 m ahead after 100 messages."""
+    made_bags = pytest.importorskip("made_bags", reason="no rosbags")
+    bag = made_bags.write(tmp_path / "bag", made_bags.healthy().values())
+    words = [ROBOTS / "rover.urdf", "robot1", "--layout", "both", "--affix", "prefix"]
+    found = page(tmp_path, *words, "--bag", bag)["trees"]
+    frames = {it[0]: it[2] for tree in found for it in tree[3]}
+    assert frames["robot1/base_link"] == [99, 2, 3, 0, 0, 0, 1]
+    page(tmp_path, *words, "--bag", bag, "--snapshot", "graph.json", code=2)

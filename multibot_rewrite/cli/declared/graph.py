@@ -42,7 +42,11 @@ HEADERS = switch(
     "--no-frame-ids",
     about="do not receive a message of each sensor topic, for its frame; --watch never does",
 )
-WATCH = switch("--watch", about="show every change until Ctrl-C or --timeout")
+WATCH = switch(
+    "--watch",
+    about="show every change until Ctrl-C or --timeout; with --state, nodes are asked when nothing has"
+    " changed for a while, and again every 10 s",
+)
 MERGE = Option(
     ("--merge",),
     "no look: join snapshots that were taken on several machines",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from multibot_rewrite.cli.declared.shared import (
+    BAG,
     DISTRO,
     FINDINGS,
     GENERAL,
@@ -41,6 +42,7 @@ VIEW = Command(
                 argument("words", "ROBOT", "names of robots; NAME:=VALUE is for xacro", "*"),
                 ROBOTS,
                 SAVED,
+                BAG,
                 DISTRO,
                 TRUST,
             ),
@@ -50,7 +52,7 @@ VIEW = Command(
         FINDINGS,
         GENERAL,
     ),
-    "0 done; 1 the description is refused; 2 wrong use or unreadable input; 4 no yourdfpy",
+    "0 done; 1 the description is refused; 2 wrong use or unreadable input; 4 no yourdfpy or rosbags",
     more="It needs pip install 'multibot_rewrite[view]'. Meshes are put into the page.",
     fail_on=ERROR,
 )

@@ -23,11 +23,17 @@ PREFIXED = {
     "gpio_prefix": "gpio",
     "joint_stem": "joint",
 }
+_PLACEHOLDERS = frozenset("<${}")
 
 
 def is_plain(value: str) -> bool:
     """Is it a name, without substitutions or placeholders for a launch file?"""
     return bool(value) and "<" not in value and NOT_PLAIN.isdisjoint(value)
+
+
+def is_filled(value: str) -> bool:
+    """Is it a text without placeholders, though perhaps no name?"""
+    return bool(value) and _PLACEHOLDERS.isdisjoint(value)
 
 
 def joint(context: Context, value: str) -> str:

@@ -11,6 +11,7 @@ from multibot_rewrite.companions.names.by_kind import (
     expressible,
     frames_differ,
     is_component,
+    is_filled,
     is_plain,
     is_shared_frame,
 )
@@ -165,7 +166,7 @@ amcl:
 
 
 def _invalid_topic(job: ParamsJob, site: NameSite) -> Iterator[Finding]:
-    fault = check_topic_name(site.value) if is_plain(site.value) else None
+    fault = check_topic_name(site.value) if is_filled(site.value) else None
     if fault:
         message = f"{site.value!r} is not a valid {site.kind} name: {fault.reason}"
         hint = "it stays unchanged; correct it"

@@ -1,10 +1,10 @@
-"""Frames that start with a slash."""
+"""Frames that start with a slash, or have white space in them."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from multibot_rewrite.companions.names.by_kind import is_plain
+from multibot_rewrite.companions.names.by_kind import is_filled, is_plain
 from multibot_rewrite.companions.params.name_sites import NameSite
 from multibot_rewrite.companions.params.sections import ParamSection
 from multibot_rewrite.companions.params.values import ParamsJob, is_stripped
@@ -36,12 +36,42 @@ diff_drive_controller:
     formats=("params",),
 )
 
+WHITE_SPACE = declare(
+    "MF134",
+    "frame-with-white-space",
+    WARNING,
+    what="A parameter names a frame with white space in it.",
+    why="tf takes any text for a frame, so 'odom ' is another one than 'odom', which nothing sends. It "
+    "is not rewritten: nodes of all robots that send it send one frame.",
+    fix="Remove the white space.",
+    bad="""\
+amcl:
+  ros__parameters:
+    odom_frame_id: "odom "
+""",
+    good="""\
+amcl:
+  ros__parameters:
+    odom_frame_id: odom
+""",
+    line=3,
+    formats=("params",),
+)
+
 
 def slash_findings(job: ParamsJob, section: ParamSection, site: NameSite) -> Iterator[Finding]:
-    """The finding about a frame's slash, if any."""
-    if site.kind != "frame" or site.at >= 0 or not site.value.startswith("/"):
+    """The finding about a frame's slash or white space, if any."""
+    if site.kind != "frame" or site.param is None:
         return
-    if site.param is None or not is_plain(site.value):
+    block = site.scalar.style in ("|", ">")
+    if not block and is_filled(site.value) and site.value.split() != [site.value]:
+        message = (
+            f"frame {site.value!r} has white space in it: it is another one, and not rewritten"
+        )
+        hint = f"write {'_'.join(site.value.split())}"
+        yield found_at(job.document, site.scalar, WHITE_SPACE, message, hint)
+        return
+    if site.at >= 0 or not site.value.startswith("/") or not is_plain(site.value):
         return
     message = f"frame {site.value!r} starts with a slash, which tf2 refuses"
     hint = f"write {site.value.lstrip('/')}"

@@ -34,20 +34,36 @@ def main(order: str, stop: threading.Event, send: Send) -> int:
     asked = [Question(node, name, type_, tuple(own)) for node, name, type_, own in given]
     with ros.opened() as session:
         node = ros.add_node(session, f"_multibot_ask_{os.getpid()}")
-        found = _ask(session, node, asked, float(seconds), stop)
-    send(json.dumps(plain_value(tuple(found.values()))).encode())
+        found = ask_nodes(session, node, asked, float(seconds), stop)
+    send(json.dumps(plain_value(found)).encode())
     return 0
+
+
+def ask_nodes(
+    session: ros.Session,
+    node: Any,
+    asked: Iterable[Question],
+    seconds: float,
+    stop: threading.Event,
+) -> tuple[NodeState, ...]:
+    """The answers that come within ``seconds``, or until ``stop``, by the names of nodes."""
+    clients: dict[str, Any] = {}
+    try:
+        found = _ask(session, node, asked, clients, time.monotonic() + seconds, stop)
+    finally:
+        for client in clients.values():
+            node.destroy_client(client)
+    return tuple(found[it] for it in sorted(found))
 
 
 def _ask(
     session: ros.Session,
     node: Any,
     asked: Iterable[Question],
-    seconds: float,
+    clients: dict[str, Any],
+    end: float,
     stop: threading.Event,
 ) -> dict[str, NodeState]:
-    end = time.monotonic() + seconds
-    clients: dict[str, Any] = {}
     waiting = [it for it in asked if _client(node, it, clients)]
     sent: dict[Question, Any] = {}
     found: dict[str, NodeState] = {}

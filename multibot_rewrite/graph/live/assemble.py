@@ -6,6 +6,7 @@ from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
+from multibot_rewrite.graph.json_values import FARTHEST
 from multibot_rewrite.graph.snapshot import (
     EXPECTED,
     QUIET,
@@ -30,8 +31,8 @@ TF_TYPES = ("tf2_msgs/msg/TFMessage", "geometry_msgs/msg/TransformStamped")
 # Almost every node publishes one of these, so few queries show which nodes share a process.
 COMMON_TOPICS = ("/parameter_events", "/rosout")
 NO_ENCLAVES: Mapping[str, str] = {}
-# As a file keeps transforms: below a micrometre, and what no robot reaches.
-_DIGITS, _FARTHEST = 9, 1e12
+# Of transforms: below a micrometre.
+_DIGITS = 9
 
 
 class ReceivedTransform(NamedTuple):
@@ -185,8 +186,7 @@ def numbers_of(transform: Any) -> tuple[float, ...]:
     """A geometry_msgs/Transform as a snapshot keeps it; empty where it is no finite transform."""
     at, turn = transform.translation, transform.rotation
     numbers = at.x, at.y, at.z, turn.x, turn.y, turn.z, turn.w
-    # Not a number is not below, either.
-    if not all(abs(it) < _FARTHEST for it in numbers):
+    if not all(abs(it) < FARTHEST for it in numbers):
         return ()
     return tuple(round(it, _DIGITS) for it in numbers)
 

@@ -16,10 +16,13 @@ from typing import Any, NamedTuple
 
 from multibot_rewrite.graph import environment
 from multibot_rewrite.graph.live import assemble, queries, ros
+from multibot_rewrite.graph.live.answers import Answers
+from multibot_rewrite.graph.live.ask import ask_nodes
 from multibot_rewrite.graph.live.headers import HeaderSamples
 from multibot_rewrite.graph.live.request import ENDED, Request, from_text
 from multibot_rewrite.graph.live.tf_subscriptions import Callback, TfSubscriptions
 from multibot_rewrite.graph.live.worker import Send, run_worker
+from multibot_rewrite.graph.questions import ANSWER_SECONDS, Question
 from multibot_rewrite.graph.snapshot import (
     CHANGING,
     QUIET,
@@ -30,6 +33,7 @@ from multibot_rewrite.graph.snapshot import (
     Snapshot,
     to_json,
 )
+from multibot_rewrite.graph.states import NodeState
 from multibot_rewrite.remap.records import ACTION, CALLS, SERVES
 
 # The shortest pause between two polls. A pause is also so many times as long as a poll took: a
@@ -131,6 +135,7 @@ def watch(session: GraphSession) -> Iterator[Snapshot]:
     before: object = None
     sent: object = None
     changed = sent_at = 0.0
+    answers = Answers(partial(_ask, session), session.request.asks)
     pause, spent, clock = POLL_SECONDS, 0.0, assemble.ObservationClock()
     while not session.stop.is_set():
         ros.spin(session.ros, pause)
@@ -142,15 +147,23 @@ def watch(session: GraphSession) -> Iterator[Snapshot]:
             before, changed = state, now
         quiet = now - changed >= assemble.QUIET_SECONDS
         due = now - changed >= SETTLE_SECONDS or now - sent_at >= LONGEST_SETTLE_SECONDS
-        if due and sent != (state, quiet):
+        new, again = sent != (state, quiet), quiet and answers.old(session.now())
+        if due and (new or again):
             sent, sent_at = (state, quiet), now
             if quiet:
                 cache.clear()
             names, endpoints = _view(session, cache)
             ears.tf.update(endpoints, session.request.substitutes)
             why = QUIET if quiet else CHANGING
-            yield _snapshot(session, names, endpoints, ears, (why, session.now()))
+            seen = _snapshot(session, names, endpoints, ears, (why, session.now()))
+            other = answers.update(seen, quiet, session.now())
+            if new or other:
+                yield seen._replace(states=answers.states)
         spent = time.thread_time() - began
+
+
+def _ask(session: GraphSession, asked: Iterable[Question]) -> Iterable[NodeState]:
+    return ask_nodes(session.ros, session.node, asked, ANSWER_SECONDS, session.stop)
 
 
 def _overview(session: GraphSession) -> tuple[list[str], list[GraphEndpoint]]:

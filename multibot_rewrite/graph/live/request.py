@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Collection, Mapping
 from typing import Any, NamedTuple
 
 from multibot_rewrite.model import MultibotError
@@ -24,7 +25,8 @@ class Request(NamedTuple):
     ``timeout`` seconds at the latest. The snapshot has QoS and process of ``topics``. With
     ``watch`` it does not end, and there is a snapshot after each change. With ``substitutes``
     transforms are also read from the messages that a rehearsal has without tf2_msgs. With
-    ``headers`` one message a sensor topic is received, for its frame; not when watching.
+    ``headers`` one message a sensor topic is received, for its frame; not when watching. With
+    ``asks`` nodes of a watched graph are asked for their states, each for these parameters besides.
     """
 
     timeout: float
@@ -33,6 +35,7 @@ class Request(NamedTuple):
     watch: bool = False
     substitutes: bool = False
     headers: bool = False
+    asks: Mapping[str, Collection[str]] | None = None
 
 
 def to_text(order: tuple[Any, ...]) -> str:
@@ -42,8 +45,8 @@ def to_text(order: tuple[Any, ...]) -> str:
 
 def from_text(text: str) -> Request:
     """Read what ``to_text`` made of a Request."""
-    timeout, expected, topics, *switches = json.loads(text)
-    return Request(float(timeout), tuple(expected), tuple(topics), *switches)
+    timeout, expected, topics, *others = json.loads(text)
+    return Request(float(timeout), tuple(expected), tuple(topics), *others)
 
 
 def framed(data: bytes) -> bytes:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from functools import partial
 
 from multibot_rewrite.checks.audit import (
+    included_models,
     other_releases,
     other_ros,
     unknown_hardware,
@@ -123,3 +124,22 @@ row_of_another_release = rule(
     },
     options={"vocabulary": ["my.vocab"], "distro": "lyrical"},
 )(partial(_audit, other_releases))
+
+included_model = rule(
+    "MB906",
+    "included-model",
+    NOTE,
+    what="A model of an SDF includes a model of another file.",
+    why="That file is not read with this one: its sensors and plugins have the same topics, nodes and "
+    "frames for all robots, unless they are made of the model's name.",
+    fix="Rewrite its model.sdf for each robot, and write the model in place of its <include>.",
+    bad='<?xml version="1.0"?><sdf version="1.9"><model name="rover">\n'
+    '  <link name="base"/>\n'
+    "  <include><uri>model://lidar</uri><name>front</name></include>\n"
+    "</model></sdf>\n",
+    good='<?xml version="1.0"?><sdf version="1.9"><model name="rover">\n'
+    '  <link name="base"/>\n'
+    '  <model name="front"><link name="l"/></model>\n'
+    "</model></sdf>\n",
+    line=3,
+)(partial(_audit, included_models))

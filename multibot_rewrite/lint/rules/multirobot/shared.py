@@ -21,7 +21,8 @@ ONE_TF = make_naming("frames-per-robot")
 
 
 def claims_of(subject: Subject, kinds: tuple[str, ...]) -> list[Claim]:
-    """Claims whose first kind is one of ``kinds``; only plugins, sensors and hardware have them."""
+    """Claims whose first kind is one of ``kinds``, which are no names of links or joints; only plugins,
+    sensors and hardware have them."""
     by_kind = _claims_by_kind(subject) if subject.inventory.hosts else {}
     found = [it for kind in kinds for it in by_kind.get(kind, ())]
     return [claim for _, claim in sorted(found, key=itemgetter(0))]
@@ -29,9 +30,12 @@ def claims_of(subject: Subject, kinds: tuple[str, ...]) -> list[Claim]:
 
 @memoized
 def _claims_by_kind(subject: Subject) -> Mapping[str, Sequence[tuple[int, Claim]]]:
-    """All claims by their first kind, each with its number."""
+    """The claims by their first kind, each with its number; most name a link or joint, and are left
+    out."""
     found: dict[str, list[tuple[int, Claim]]] = {}
     for at, claim in enumerate(subject.inventory.claims):
+        if claim.site.whole_value_kind:
+            continue
         found.setdefault(claim.site.kinds[0], []).append((at, claim))
     return found
 
