@@ -324,7 +324,7 @@ def test_controllers_of_a_simulators_plugin_are_those_of_its_description(known: 
 
 def test_a_spawner_that_asks_for_another_manager_is_told(known: Knowledge) -> None:
     made = controlled(known, "other", "controller_manager")
-    assert "/robot1/drive" not in {it.name for it in made.nodes}
+    assert [it.name for it in made.nodes] == ["/robot1/rsp"]
     assert any(
         "/robot1/controller_manager is started by no node of the launch and no plugin" in it.message
         for it in made.environment.caveats
