@@ -20,6 +20,7 @@ from multibot_rewrite.companions.params.sections import (
 from multibot_rewrite.companions.yaml_text import YamlText, pairs
 from multibot_rewrite.lint.beside.bounds import beyond
 from multibot_rewrite.lint.beside.parameter_facts import Fact, facts_of_node, of_release
+from multibot_rewrite.lint.beside.plugins import plugins_in
 from multibot_rewrite.lint.beside.records import Beside, Remark
 from multibot_rewrite.lint.facts.typos import meant_name
 from multibot_rewrite.model import InputError
@@ -81,7 +82,29 @@ def _sections(beside: Beside) -> Iterator[Section]:
         if node is not None and not _is_surely(node, name, type_, given):
             node = None
         facts = facts_of_node(node, type_, document.file, settings.roots)
-        yield Section(it.path, node, given, facts)
+        below, rest = _of_plugins(it.path, given)
+        yield Section(it.path, node, rest, facts)
+        yield from below
+
+
+def _of_plugins(title: str, given: Sequence[Given]) -> tuple[list[Section], tuple[Given, ...]]:
+    """A section for each known plugin, with names below its own; and what is no plugin's."""
+    plugins = plugins_in({it.name: it.value for it in given})
+    of: dict[str, list[Given]] = {}
+    for it in given:
+        parts = it.name.split(".")
+        above = (".".join(parts[:end]) for end in range(len(parts) - 1, 0, -1))
+        of.setdefault(next((name for name in above if name in plugins), ""), []).append(it)
+    rest = of.pop("", [])
+    found = []
+    for name, its in of.items():
+        class_, facts = plugins[name]
+        own = tuple(it._replace(name=it.name.removeprefix(f"{name}.")) for it in its)
+        if facts:
+            found.append(Section(f"{title}: {name} ({class_})", None, own, facts))
+        else:
+            rest += its
+    return found, tuple(rest)
 
 
 def _is_surely(node: KnownNode, name: str, type_: str, given: Sequence[Given]) -> bool:
