@@ -8,6 +8,7 @@ Faults are the parsers' own exceptions, so that a reader reports them like any o
 from __future__ import annotations
 
 import errno
+import os
 import re
 from collections.abc import Callable, Iterable
 from functools import cache
@@ -41,7 +42,11 @@ def read_bytes(path: str, limit: int = MAX_BYTES) -> bytes:
     """The bytes of a file, which may be a device without an end; raises OSError, also for a file that
     is too large, and ValueError for a path that no system takes."""
     with open(path, "rb") as file:
-        data = file.read(limit + 1)
+        # Not the limit at once: the memory for it takes longer to get than most files to read.
+        size = min(os.fstat(file.fileno()).st_size, limit)
+        data = file.read(size + 1)
+        if size < len(data) <= limit:  # it grows, or has no size, as a device
+            data += file.read(limit + 1 - len(data))
     if len(data) > limit:
         raise OSError(errno.EFBIG, f"it is over the limit of {limit:,} bytes", path)
     return data
@@ -51,7 +56,7 @@ def read_text(path: str) -> str:
     """The text of a file, lines ended by a newline; raises what ``read_bytes`` raises, and
     UnicodeDecodeError."""
     text = read_bytes(path).decode().removeprefix("\ufeff")  # utf-8-sig is a module to be loaded
-    return text.replace("\r\n", "\n").replace("\r", "\n")
+    return text.replace("\r\n", "\n").replace("\r", "\n") if "\r" in text else text
 
 
 def compose_yaml(text: str) -> yaml.Node | None:

@@ -329,9 +329,7 @@ def test_nobody_manages_it_so_it_may_be_meant() -> None:
     assert "/robot1/lifecycle_manager_localization" in found.hint
 
 
-@pytest.mark.parametrize(
-    "more", [["--watch"], ["--zenoh", "tcp/localhost:7447"], ["--snapshot", "g"]]
-)
+@pytest.mark.parametrize("more", [["--zenoh", "tcp/localhost:7447"], ["--snapshot", "g"]])
 def test_states_are_of_the_live_graph(more: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert multibot.main(["doctor", "--state", *more]) == 2
     assert "--state asks nodes of the live graph" in capsys.readouterr().err

@@ -7,7 +7,19 @@ from collections.abc import Callable
 import pytest
 from fault_changes import CHANGE_STATE, added, both
 from graph_cases import environment, qos, sent
-from healthy_systems import CLOCK, NAVIGATE, ODOMETRY, SCAN, TF, TRIGGER, TWIST, nav2_with_tools
+from healthy_systems import (
+    CLOCK,
+    NAVIGATE,
+    ODOMETRY,
+    POSE,
+    SCAN,
+    TF,
+    TRIGGER,
+    TWIST,
+    TWO,
+    idle_mux,
+    nav2_with_tools,
+)
 
 from multibot_rewrite.graph.doctor.diagnose import diagnose
 from multibot_rewrite.graph.doctor.robots import guess_robots
@@ -15,6 +27,7 @@ from multibot_rewrite.graph.doctor.seen_plan import seen_plan
 from multibot_rewrite.graph.snapshot import GraphFrame, GraphNode, Snapshot
 from multibot_rewrite.remap.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
 
+IMU = "sensor_msgs/msg/Imu"
 EMPTY = Snapshot((), (), (), environment())
 
 
@@ -92,12 +105,45 @@ SILENT: dict[str, Callable[[Snapshot], Snapshot]] = {
         added("/robot1/vel_b", (PUBLISHES, "/robot1/twist", TWIST)),
         added("/robot1/log", (SUBSCRIBES, "/robot1/twist", TWIST)),
     ),
+    "a bridge of all robots to another network": added(
+        "/network",
+        *((role, f"/{robot}/imu", IMU) for robot in TWO for role in (SUBSCRIBES, PUBLISHES)),
+    ),
+    "a node that makes poses of a pose which does not come": added(
+        "/robot1/collector", (SUBSCRIBES, "/robot1/pose", POSE), (PUBLISHES, "/robot1/poses", POSE)
+    ),
+    "a second lidar that is not there": both(
+        added("/robot1/lidar", (PUBLISHES, "/robot1/lidar_r", SCAN)),
+        added("/robot1/merger", *((SUBSCRIBES, f"/robot1/lidar_{it}", SCAN) for it in "lr")),
+    ),
+    "goals for a robot that has just started": both(
+        added("/carrier/drive"),
+        added("/fleet_manager", (CALLS, "/carrier/navigate_to_pose", NAVIGATE)),
+    ),
+    "a side whose version of the message is not known": lambda graph: graph._replace(
+        endpoints=tuple(
+            it._replace(type_hash="RIHS01_a") if it.role == PUBLISHES else it
+            for it in graph.endpoints
+        )
+    ),
 }
 
 
 @pytest.mark.parametrize("name", SILENT)
 def test_it_is_no_fault(name: str) -> None:
     assert [str(it) for it in diagnose(SILENT[name](nav2_with_tools())).findings] == []
+
+
+def test_an_idle_input_of_a_mux_is_not_one_that_it_has() -> None:
+    inputs = [(SUBSCRIBES, f"/robot1/cmd_vel_{it}", TWIST) for it in ("tab", "tag")]
+    graph = added("/robot1/twist_mux", *inputs)(idle_mux())
+    graph = added("/robot1/tag", (PUBLISHES, "/robot1/cmd_vel_tag", TWIST))(graph)
+    assert diagnose(graph).findings == ()
+
+
+def test_a_bag_with_odometry_is_a_bag() -> None:
+    graph = added("/rosbag2_player", (PUBLISHES, "/robot1/odom", ODOMETRY))(nav2_with_tools())
+    assert {it.code for it in diagnose(graph).findings} == {"MG313"}
 
 
 def test_both_robots_may_send_the_world_above_them() -> None:

@@ -11,12 +11,16 @@ from pathlib import Path
 import pytest
 from paths import FIXTURES, ROBOTS
 
+from multibot_rewrite.interfaces.parameter_facts import read_parameters
 from multibot_rewrite.lint.beside.bounds import beyond
 from multibot_rewrite.lint.beside.kinds import BRIDGE, MOVEIT, PARAMS, RVIZ, kind_of
 from multibot_rewrite.lint.beside.parameter_table import table
+from multibot_rewrite.lint.beside.plugin_table import ID, plugin_owners
+from multibot_rewrite.lint.beside.plugin_table import table as plugin_table
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.run import lint_files
+from multibot_rewrite.releases import RELEASES
 from multibot_rewrite.remap.nodl.lookup import INDEX
 
 SHIPPED = Path(kind_of.__code__.co_filename).parent / "parameters.tsv"
@@ -60,6 +64,66 @@ controller_server:
       plugin: nav2_regulated_pure_pursuit_controller::RegulatedPurePursuitController
       desired_linear_vel: 0.5
 """
+PLUGINS = """\
+controller_server:
+  ros__parameters:
+    controller_plugins: [Dwb, Mppi, Shim]
+    Dwb:
+      plugin: dwb_core::DWBLocalPlanner
+      max_vel_x: 0.5
+      vx_samples: 20
+      critics: [BaseObstacle, GoalDist]
+      BaseObstacle.scale: 0.02
+      GoalDist: {scale: 24.0, aggregation_type: last}
+    Mppi:
+      plugin: nav2_mppi_controller::MPPIController
+      batch_size: 2000
+      TrajectoryVisualizer: {time_step: 3}
+      critics: [CostCritic]
+      CostCritic: {cost_weight: 3.81, critical_cost: 300.0}
+planner_server:
+  ros__parameters:
+    planner_plugins: [GridBased]
+    GridBased:
+      plugin: nav2_smac_planner::SmacPlannerHybrid
+      angle_quantization_bins: 72
+      smoother: {w_smooth: 0.3}
+local_costmap:
+  local_costmap:
+    ros__parameters:
+      plugins: [voxel_layer, inflation_layer]
+      voxel_layer:
+        plugin: nav2_costmap_2d::VoxelLayer
+        z_voxels: 16
+        observation_sources: scan
+        scan: {raytrace_max_range: 3.0, marking: true}
+      inflation_layer:
+        plugin: nav2_costmap_2d::InflationLayer
+        inflation_radius: 0.55
+behavior_server:
+  ros__parameters:
+    backup: {plugin: nav2_behaviors/BackUp, acceleration_limit: 2.5}
+"""
+MONITOR = """\
+collision_monitor:
+  ros__parameters:
+    polygons: [Stop, Slow]
+    Stop: {type: circle, radius: 0.3, action_type: stop}
+    Slow: {type: polygon, slowdown_ratio: 0.3, acme: 1}
+    observation_sources: [scan]
+    scan: {type: scan, topic: scan, source_timeout: 1.0, obstacles_angle: 0.1}
+"""
+SHIM = """\
+controller_server:
+  ros__parameters:
+    FollowPath:
+      plugin: nav2_rotation_shim_controller::RotationShimController
+      primary_controller: dwb_core::DWBLocalPlanner
+      angular_dist_threshold: 0.785
+      max_vel_x: 0.5
+      critics: [GoalDist]
+      GoalDist.scale: 24.0
+"""
 VIEW = """\
 Visualization Manager:
   Global Options:
@@ -99,7 +163,29 @@ PLANTED = {
     "a trajectory's parameter": (CONTROLLERS, "state_interfaces", "state_interface", "MB850:21"),
     "the manager's parameter": (CONTROLLERS, "update_rate", "updaet_rate", "MB850:3"),
     "a parameter of amcl": (NAV, "max_particles", "max_particels", "MB850:5"),
-    "a plugin's parameter": (NAV, "desired_linear_vel", "desired_linaer_vel", ""),
+    "a plugin's parameter": (NAV, "desired_linear_vel", "desired_linaer_vel", "MB850:14"),
+    "a parameter of DWB": (PLUGINS, "max_vel_x", "max_vel_xx", "MB850:6"),
+    "a parameter of a critic of DWB": (PLUGINS, "scale: 24.0", "scael: 24.0", "MB850:10"),
+    "a parameter of MPPI": (PLUGINS, "batch_size", "bach_size", "MB850:13"),
+    "a parameter in a block of MPPI": (PLUGINS, "time_step", "time_stepp", "MB850:14"),
+    "a parameter of a critic of MPPI": (PLUGINS, "critical_cost", "critcal_cost", "MB850:16"),
+    "a parameter of a planner": (PLUGINS, "quantization", "quantisation", "MB850:22"),
+    "a planner's smoother": (PLUGINS, "w_smooth", "w_smoth", "MB850:23"),
+    "a layer's parameter": (PLUGINS, "z_voxels", "z_voxel", "MB850:30"),
+    "a radius of inflation": (PLUGINS, "inflation_radius", "inflation_raduis", "MB850:35"),
+    "a behavior's parameter": (PLUGINS, "acceleration_limit", "acceleration_limt", "MB850:38"),
+    "a source's parameter": (PLUGINS, "raytrace_max_range", "raytrace_max_rnage", "MB850:32"),
+    "a polygon's parameter": (MONITOR, "radius", "raduis", "MB850:4"),
+    "a polygon's ratio": (MONITOR, "slowdown_ratio", "slowdown_raito", "MB850:5"),
+    "an integer for a ratio": (MONITOR, "0.3, acme", "1, acme", "MB851:5"),
+    "a parameter of the monitor's source": (MONITOR, "source_timeout", "source_timout", "MB850:7"),
+    "an integer for a speed": (PLUGINS, "0.5", "1", "MB851:6"),
+    "a double for a size": (PLUGINS, "2000", "2000.0", "MB851:13"),
+    "an integer for a weight": (PLUGINS, "3.81", "4", "MB851:16"),
+    "a text for a source's boolean": (PLUGINS, "marking: true", "marking: 'on'", "MB851:32"),
+    "a parameter of a shim's controller": (SHIM, "max_vel_x", "max_vel_xx", "MB850:7"),
+    "a parameter of a shim": (SHIM, "angular_dist", "anglar_dist", "MB850:6"),
+    "a critic of a shim's controller": (SHIM, "GoalDist.scale", "GoalDist.scael", "MB850:9"),
     "an integer for a double": (CONTROLLERS, "0.34", "1", "MB851:10"),
     "a text for a double": (CONTROLLERS, "wheel_radius: 0.07", 'wheel_radius: "0.07"', "MB851:11"),
     "a number for a name": (
@@ -116,7 +202,7 @@ PLANTED = {
     "an integer for a frequency": (NAV, "20.0", "20", "MB851:10"),
     "a radius below 0": (CONTROLLERS, "0.07", "-0.07", "MB852:11"),
     "a separation of 0": (CONTROLLERS, "0.34", "0.0", "MB852:10"),
-    "no wheels": (CONTROLLERS, "[left_wheel_joint]", '[""]', ""),
+    "no wheels": (CONTROLLERS, "[left_wheel_joint]", '[""]', "MB852:8"),
     "an unknown interface": (CONTROLLERS, "[position, velocity]", "[position, speed]", "MB852:21"),
     "an acceleration below 0": (CONTROLLERS, "2.0", "-2.0", "MB852:16"),
     "a frame of amcl": (NAV, "base_footprint", "base_footprnt", "MB853:3"),
@@ -181,6 +267,39 @@ HEALTHY = {
     "a parameter of every node": (NAV, "scan_topic: scan", "use_sim_time: true"),
     "quality of service": (NAV, "scan_topic: scan", "qos_overrides./tf.publisher.depth: 3"),
     "a plugin's own parameter": (NAV, "desired_linear_vel: 0.5", "acme_velocity: 1"),
+    "nothing of plugins": (PLUGINS, "", ""),
+    "nothing of a shim": (SHIM, "", ""),
+    "nothing of a monitor": (MONITOR, "", ""),
+    "blocks of no list": (MONITOR, "[Stop, Slow]", "[Stop]"),
+    "a plugin of another package": (PLUGINS, "dwb_core::DWBLocal", "acme::Local"),
+    "a misspelt parameter of an unknown plugin": (
+        PLUGINS,
+        "plugin: nav2_costmap_2d::InflationLayer\n        inflation_radius",
+        "plugin: acme::InflationLayer\n        inflaton_radius",
+    ),
+    "what a shim's unknown controller reads": (
+        SHIM,
+        "dwb_core::DWBLocalPlanner\n      angular_dist_threshold",
+        "acme::Planner\n      angular_dis_threshold",
+    ),
+    "another type of an unknown plugin": (
+        PLUGINS,
+        "nav2_smac_planner::SmacPlannerHybrid\n      angle_quantization_bins: 72",
+        "acme::Planner\n      angle_quantization_bins: 72.5",
+    ),
+    "critics of unknown namespaces": (
+        PLUGINS,
+        "critics: [BaseObstacle, GoalDist]\n      BaseObstacle.scale",
+        "default_critic_namespaces: [acme]\n      critics: [BaseObstacle]\n      BaseObstacle.scal",
+    ),
+    "a critic's class": (
+        PLUGINS,
+        "GoalDist: {scale",
+        "GoalDist: {class: acme_critics::Far, scael",
+    ),
+    "a critic of another package": (PLUGINS, "[CostCritic]", "[CostCritic, AcmeCritic]"),
+    "another name of a source": (PLUGINS, "scan: {", "front_scan: {"),
+    "a planner's own parameter": (PLUGINS, "angle_quantization_bins", "acme_bins"),
     "a frame of another node": (NAV, "base_frame_id: base_footprint", "base_frame_id: gps_mast"),
     "a frame at run time": (VIEW, "base_link", "map"),
     "a frame with a slash": (VIEW, "base_link", "/base_link"),
@@ -389,3 +508,53 @@ def test_a_file_is_judged_with_the_descriptions_beside_it(tmp_path: Path) -> Non
 def test_the_known_parameters_are_those_of_the_sources() -> None:
     """After a change: python -m multibot_rewrite.lint.beside.parameter_table fixtures/interfaces"""
     assert SHIPPED.read_text() == table(FIXTURES / "interfaces")
+
+
+def test_the_known_plugins_are_those_of_the_sources() -> None:
+    """After a change: python -m multibot_rewrite.lint.beside.plugin_table fixtures/interfaces"""
+    shipped = SHIPPED.with_name("plugins.tsv").read_text()
+    assert shipped == plugin_table(FIXTURES / "interfaces")
+    plugins = {it.partition("\t")[0] for it in shipped.splitlines()}
+    assert plugins == set(plugin_owners().packages)
+
+
+def test_every_class_of_a_package_with_plugins_has_a_plugin() -> None:
+    """A class of which nobody knows whose parameters it declares would make a plugin look smaller."""
+    known = plugin_owners()
+    # They read the names of plugins, which every plugin has.
+    servers = {"ControllerServer", "SmootherServer", "BehaviorServer", "Costmap2DROS"}
+    # They read docks, scorers and layers of a container, whose names are not known.
+    servers |= {"utils", "EdgeScorer", "OperationsManager", "RouteOperationClient"}
+    servers |= {"PluginContainerLayer", "CollisionMonitor", "CollisionDetector", "ExclusionZone"}
+    for release in RELEASES:
+        text = (FIXTURES / f"interfaces/parameters_{release}.tsv").read_text()
+        for it in read_parameters(text):
+            if it.package in known.packages.values() and it.path.startswith(ID):
+                is_known = it.owner in servers or (it.package, it.owner) in known.owners
+                assert is_known or it.path == "<id>.plugin", it
+
+
+def test_a_plugin_is_judged_by_its_release(tmp_path: Path) -> None:
+    """optimizer.cpp of MPPI has ``sgf_order`` from Lyrical on; another release's name is no typing
+    mistake."""
+    file = tmp_path / "nav.yaml"
+    head = "controller_server:\n  ros__parameters:\n    A:\n      plugin: "
+    file.write_text(f"{head}nav2_mppi_controller::MPPIController\n      sgf_oder: 2\n")
+    codes = {it: lint_file(str(file), Settings(distro=it)) for it in ("jazzy", "lyrical")}
+    assert [len(its) for its in codes.values()] == [0, 1]
+    file.write_text(f"{head}nav2_mppi_controller::MPPIController\n      sgf_order: 2\n")
+    assert lint_file(str(file), Settings(distro="jazzy")) == []
+
+
+def test_a_name_of_older_releases_is_told_with_the_new_one(tmp_path: Path) -> None:
+    file = tmp_path / "nav.yaml"
+    file.write_text(PLUGINS.replace("raytrace_max_range", "obstacle_range"))
+    (it,) = lint_file(str(file), Settings())
+    assert (it.code, it.hint) == ("MB850", "did you mean 'scan.obstacle_max_range'?")
+
+
+def test_an_empty_name_in_a_list_is_told_for_what_it_is(tmp_path: Path) -> None:
+    file = tmp_path / "drive.yaml"
+    file.write_text(CONTROLLERS.replace("[left_wheel_joint]", '[left_wheel_joint, ""]', 1))
+    (it,) = lint_file(str(file), Settings(select=("MB852",)))
+    assert it.message.endswith("and has to be without an empty name")

@@ -8,6 +8,7 @@ import os
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from threading import Thread
 
 import pytest
 import yaml
@@ -199,6 +200,25 @@ def test_a_file_without_an_end_is_too_large(file: str, reader: str, tmp_path: Pa
     with pytest.raises(MultibotError) as caught:
         READ_TEXT[reader](given)
     assert "it is over the limit of 16,777,216 bytes" in str(caught.value)
+
+
+def test_a_file_is_read_whole_whatever_size_it_says(tmp_path: Path) -> None:
+    pipe, full = tmp_path / "pipe", tmp_path / "full"
+    os.mkfifo(pipe)
+    written = Thread(target=pipe.write_bytes, args=(b"x" * 200_000,))
+    written.start()  # in pieces: more than a pipe holds, and its size is 0
+    assert bounded.read_bytes(str(pipe)) == b"x" * 200_000
+    written.join()
+    full.write_bytes(b"x" * 10)
+    assert bounded.read_bytes(str(full), 10) == b"x" * 10
+    assert bounded.read_bytes("/proc/self/cmdline") == Path("/proc/self/cmdline").read_bytes()
+    with pytest.raises(OSError, match="over the limit of 9 bytes"):
+        bounded.read_bytes(str(full), 9)
+
+
+def test_line_ends_are_those_of_unix(tmp_path: Path) -> None:
+    (tmp_path / "text").write_bytes(b"\xef\xbb\xbfa\r\nb\rc\n")
+    assert bounded.read_text(str(tmp_path / "text")) == "a\nb\nc\n"
 
 
 def calls(file: Path) -> set[str]:

@@ -66,8 +66,24 @@ def test_what_is_missing_or_too_much_is_refused() -> None:
     for wrong in ((), (1.0, "a", (), 4)):
         with pytest.raises(TypeError):
             Ours(*wrong)
+    with pytest.raises(TypeError, match=r"Point.__new__\(\) missing 1 required .*'x'"):
+        Ours(name="a")
+    with pytest.raises(TypeError, match="Expected 3 arguments, got 2"):
+        Ours._make((1.0, "a"))
+    with pytest.raises(ValueError, match=r"unexpected field names: \['y'\]"):
+        Ours(1.0)._replace(y=2.0)
     with pytest.raises(AttributeError):
         Ours(1.0).x = 2.0
+
+
+def test_each_record_has_its_own_fields() -> None:
+    names: dict[str, typing.Any] = {"NamedTuple": record.NamedTuple, "__name__": __name__}
+    exec(
+        "class A(NamedTuple):\n a: int\n b: int = 1\nclass B(NamedTuple):\n b: int\n a: int", names
+    )
+    a, b = names["A"](1), names["B"](a=1, b=2)
+    assert (a, a.a, a.b, b, b.a, b.b) == ((1, 1), 1, 1, (2, 1), 1, 2)
+    assert (repr(a), repr(b)) == ("A(a=1, b=1)", "B(b=2, a=1)")
 
 
 def test_a_record_goes_to_another_process() -> None:

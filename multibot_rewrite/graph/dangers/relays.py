@@ -43,7 +43,7 @@ def relayed_to_another_robot(seen: Seen) -> Iterator[Finding]:
         (end.node, seen.plain(ends.name)): ends
         for ends in _of_bodies(seen)
         for end in at_work(ends.subscribers)
-        if not seen.robot(end.node) and end.node not in nodes_of(ends.publishers)
+        if not seen.robot(end.node)
     }
     for ends in _of_bodies(seen):
         for node in nodes_of(ends.publishers):

@@ -104,8 +104,8 @@ def _observe_once(request: Request, environ: Mapping[str, str]) -> Snapshot:
     limit = request.timeout + SLACK_SECONDS
     with running(OBSERVE, to_text(request), environ, limit) as child:
         data = child.next_message()
-    assert data is not None
-    return from_json(data, "the view of the graph")
+        assert data is not None
+        return from_json(data, "the view of the graph")
 
 
 def watch(request: Request, environ: Mapping[str, str]) -> Generator[Snapshot, None, None]:

@@ -82,9 +82,10 @@ def main(order: str, stop: threading.Event, send: Send) -> int:
                 send(to_json(snapshot))
             return 0
         snapshot = take_snapshot(session)
-    if stop.is_set():
-        return ENDED
-    send(to_json(snapshot))
+        if stop.is_set():
+            return ENDED
+        # Read while this node leaves the graph.
+        send(to_json(snapshot))
     return 0
 
 
@@ -192,7 +193,9 @@ def _wait_until_settled(
         now, began = clock.observed, time.thread_time()
         view = _overview(session)
         changed = times.update(now, view, request.expected)
-        pause = _pause_after(time.thread_time() - began, LONG_PAUSE_FACTOR)
+        # While it changes the moment of the last change is wanted.
+        factor = PAUSE_FACTOR if changed.all == now else LONG_PAUSE_FACTOR
+        pause = _pause_after(time.thread_time() - began, factor)
         # Not later than the moment at which it is quiet.
         pause = min(pause, max(POLL_SECONDS, changed.all + assemble.QUIET_SECONDS - now))
         seen = {end.node for end in view[1]}

@@ -54,6 +54,8 @@ def _said(name: str, given: list[Any], value: Any) -> str:
         return "" if given[0] <= value <= given[1] else f"from {given[0]} to {given[1]}"
     if name == "not_empty" and value in ("", []):
         return "not empty"
+    if name == "not_empty" and isinstance(value, list) and "" in value:
+        return "without an empty name"  # it is taken, and no interface has that name
     return _of_list(name, first, value)
 
 

@@ -69,7 +69,7 @@ def facts_of_node(
 def _in_nodl(node: KnownNode) -> Iterator[Fact]:
     """What the installed NoDL document of a node declares."""
     for path, type_ in nodl_parameters(node.package, node.name):
-        yield from _fact(path, type_, "", "", NODL, f"NoDL of {node.package}/{node.name}")
+        yield from make_facts(path, type_, "", "", NODL, f"NoDL of {node.package}/{node.name}")
 
 
 @outside
@@ -94,13 +94,14 @@ def known_facts() -> Mapping[str, tuple[Fact, ...]]:
         package, path, type_, bounds, releases, how, source = line.split("\t")
         whole = f"{below[package]}.{path}" if package in below else path
         its = found.setdefault(package, [])
-        its += _fact(whole, type_, bounds, releases, how, source)
+        its += make_facts(whole, type_, bounds, releases, how, source)
     return {package: tuple(its) for package, its in found.items()}
 
 
-def _fact(
+def make_facts(
     path: str, type_: str, bounds: str, releases: str, how: str, source: str
 ) -> Iterator[Fact]:
+    """The fact of a row; none for a name that says nothing."""
     if not _ANY.fullmatch(path):
         pattern = ".+".join(map(re.escape, _WILD.split(path)))
         checks = tuple((it[1], it[2]) for it in _CHECK.finditer(bounds))
@@ -129,7 +130,7 @@ def _in_sources(package: str, file: str, roots: tuple[str, ...]) -> tuple[Fact, 
         for it in (
             file_parameters(text) if "type:" in text and "ros__parameters" not in text else ()
         ):
-            found += _fact(it.path, it.type, it.bounds, "", YAML, f"{path}:{it.line}")
+            found += make_facts(it.path, it.type, it.bounds, "", YAML, f"{path}:{it.line}")
     return tuple(found)
 
 

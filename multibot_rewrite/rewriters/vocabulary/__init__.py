@@ -88,12 +88,10 @@ those of installed packages (see ``installed``) and those a call or a command na
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 
 from multibot_rewrite.bounded import read_text
-from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import Site, VocabularyError
 from multibot_rewrite.releases import RELEASES, has_release, is_release_words
 from multibot_rewrite.rewriters.vocabulary.grammar import (
@@ -113,8 +111,6 @@ from multibot_rewrite.rewriters.vocabulary.installed import advice, installed
 
 HERE = os.path.dirname(__file__)
 Raw = tuple[str, int, str]
-_AT = lazy_compile(r"^at:(.*)", re.MULTILINE)
-_RELEASES = lazy_compile(r"^releases:(.*)", re.MULTILINE)
 
 __all__ = [
     "FORMS",
@@ -226,10 +222,8 @@ class Vocabulary:
         for name, all_raws in elements:
             raws = [raw for raw in all_raws if self._is_here(_released(raw[2]))]
             if raws:
-                parents = [
-                    word for raw in raws for row in _AT.findall(raw[2]) for word in row.split()
-                ]
-                found[name] = list(dict.fromkeys(parents))
+                rows = (row for raw in raws for row in _set(raw[2], "at"))
+                found[name] = list(dict.fromkeys(word for row in rows for word in row.split()))
         return found
 
     def sections(self, *types: str) -> list[VocabularySection]:
@@ -270,9 +264,13 @@ class Vocabulary:
 
 def _released(chunk: str) -> str:
     """The release words of a section that is not read yet; wrong ones are found when it is."""
-    found = _RELEASES.search(chunk) if "releases:" in chunk else None
-    words = found[1].strip() if found else ""
+    words = next((row.strip() for row in _set(chunk, "releases")), "")
     return words if words and is_release_words(words) else ""
+
+
+def _set(chunk: str, name: str) -> list[str]:
+    """What a setting is set to in a section that is not read yet, row by row."""
+    return [it.partition("\n")[0] for it in chunk.split(f"\n{name}:")[1:]]
 
 
 @lru_cache(maxsize=8)

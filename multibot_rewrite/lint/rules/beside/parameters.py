@@ -29,8 +29,8 @@ def _drive(line: str) -> str:
     "MB850",
     "unknown-parameter",
     WARNING,
-    what="A parameter file sets a parameter that its node does not have, with a name nearly that "
-    "of one it has.",
+    what="A parameter file sets a parameter that its node, controller or plugin of Nav2 does not have, "
+    "with a name nearly that of one it has.",
     why="The node does not declare it, so the value has no effect, and the node runs with its default: "
     "odometry from base_link, a speed without limit.",
     fix="Correct the name. Parameters come from the generate_parameter_library files of the "
@@ -75,7 +75,7 @@ def parameter_type(beside: Beside) -> Iterator[Remark]:
     WARNING,
     what="The value of a parameter is outside of the bounds that its node checks.",
     why="generate_parameter_library rejects it ('Invalid value set during initialization'): the "
-    "controller is not loaded.",
+    "controller is not loaded. An empty name in a list of joints is taken, and no interface has it.",
     fix="Write a value within the bounds; the message has them.",
     bad=_drive("wheel_radius: -0.1"),
     good=_drive("wheel_radius: 0.1"),
