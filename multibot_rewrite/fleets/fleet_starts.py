@@ -53,14 +53,8 @@ class Start(NamedTuple):
 
 class RobotStarts(NamedTuple):
     """What one robot runs; ``files`` are its parameter files, ``spawned`` is what brings it into the
-<<<<<<< HEAD
-    simulator, ``left`` are nodes that are not started, each with the reason; ``commands`` are
-    lines of a shell that run beside. ``bridged_tf`` brings its tf to ``/tf`` where
-    tf_namespace_bridge is installed, ``windows`` show this robot alone."""
-=======
     simulator, ``left`` are nodes that are not started, each with the reason. ``bridged_tf`` brings its
-    tf to ``/tf`` where tf_namespace_bridge is installed."""
->>>>>>> launch2
+    tf to ``/tf`` where tf_namespace_bridge is installed, ``windows`` show this robot alone."""
 
     name: str
     about: str

@@ -189,9 +189,6 @@ def _robot(it: RobotStarts, simulated: bool) -> Iterator[str]:
             yield from _process(start, 16)
         yield "            ],"
         yield "        ),"
-<<<<<<< HEAD
-    for command in it.commands:
-        yield f"        ExecuteProcess(cmd=[{_quoted('sh')}, {_quoted('-c')}, {_quoted(command)}]),"
     yield from _group(it.spawned, "simulator", 8)
     yield from _group(it.windows, "rviz", 8)
     yield "    ]"
@@ -211,21 +208,7 @@ def _group(starts: Sequence[Start], argument: str, indent: int) -> Iterator[str]
     yield f"{space}),"
 
 
-def _process(it: Start, indent: int, own: _Files = ()) -> Iterator[str]:
-=======
-    if it.spawned:
-        yield "        GroupAction("
-        yield "            ["
-        for start in it.spawned:
-            yield from _process(start, 16)
-        yield "            ],"
-        yield '            condition=IfCondition(LaunchConfiguration("simulator")),'
-        yield "        ),"
-    yield "    ]"
-
-
 def _process(it: Start, indent: int, own: _Files = (), action: str = "Node") -> Iterator[str]:
->>>>>>> launch2
     space = " " * indent
     if it.brought_up:
         yield f"{space}*brought_up("
