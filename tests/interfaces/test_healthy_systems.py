@@ -33,7 +33,7 @@ KINDS = {
     "ekf_filter_node_map": "ekf_filter_node",
     "navsat_transform": "navsat_transform_node",
 }
-# What Nav2 reads, and what is published below the name of another node: no rule of these stacks joins them.
+# What Nav2 reads, and what is published below another name: no rule of these stacks joins them.
 ODOMETRY = {(f"/{it}/odom", f"/{it}/diff_drive_controller/odom") for it in ("robot1", "robot2")}
 # Humble's speed filter has no default with the namespace of its costmap's parent (speed_filter.cpp).
 SPEED = {(f"/{it}/speed_limit", f"/{it}/local_costmap/speed_limit") for it in ("robot1", "robot2")}
