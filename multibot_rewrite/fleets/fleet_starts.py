@@ -37,7 +37,8 @@ class Component(NamedTuple):
 
 class Start(NamedTuple):
     """A process: its program, its node's name and namespace (empty for those of its code), and what it
-    is given. ``components`` are loaded into it."""
+    is given. ``components`` are loaded into it; ``brought_up`` is one with a life cycle that nobody
+    else configures and activates."""
 
     package: str
     executable: str
@@ -47,13 +48,13 @@ class Start(NamedTuple):
     remappings: tuple[tuple[str, str], ...] = ()
     arguments: tuple[str | File, ...] = ()
     components: tuple[Component, ...] = ()
+    brought_up: bool = False
 
 
 class RobotStarts(NamedTuple):
     """What one robot runs; ``files`` are its parameter files, ``spawned`` is what brings it into the
-    simulator, ``left`` are nodes that are not started, each with the reason; ``commands`` are
-    lines of a shell that run beside. ``bridged_tf`` brings its tf to ``/tf`` where
-    tf_namespace_bridge is installed."""
+    simulator, ``left`` are nodes that are not started, each with the reason. ``bridged_tf`` brings its
+    tf to ``/tf`` where tf_namespace_bridge is installed, ``windows`` show this robot alone."""
 
     name: str
     about: str
@@ -61,14 +62,14 @@ class RobotStarts(NamedTuple):
     starts: tuple[Start, ...]
     spawned: tuple[Start, ...]
     left: tuple[tuple[str, str], ...]
-    commands: tuple[str, ...] = ()
     bridged_tf: tuple[Start, ...] = ()
+    windows: tuple[Start, ...] = ()
 
 
 class FleetStarts(NamedTuple):
     """All that the launch file of a fleet starts: the simulators, what is for all robots, the robots,
-    the windows. ``head`` is its title, ``use_sim_time`` the default, ``driving`` are lines to type;
-    ``world`` is the simulator's by default."""
+    the windows for all. ``head`` is its title, ``use_sim_time`` the default, ``driving`` are lines to
+    type; ``world`` is the simulator's by default."""
 
     head: str
     simulators: Sequence[str]
@@ -84,7 +85,7 @@ def launch_arguments(it: FleetStarts) -> Iterator[tuple[str, str | File, str]]:
     """The launch arguments: name, default, what it is."""
     yield "robots", "", "only these: robot1,robot2, or so many: 2"
     yield "use_sim_time", str(it.use_sim_time).lower(), "whether all nodes use /clock"
-    if it.windows:
+    if it.windows or any(robot.windows for robot in it.robots):
         yield "rviz", "true", "whether to open RViz"
     if it.simulators:
         yield "simulator", "true", "whether to start the simulator and to spawn the robots in it"

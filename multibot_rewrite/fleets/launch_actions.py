@@ -61,9 +61,8 @@ def of_robot(one: FleetPlan, files: Collection[str], bridged: Collection[str]) -
     starts += [_transform(it) for it in placed]
     copied, bridged_tf = _relays(given)
     starts += copied
-    commands = [_activation(given, it) for it in names.started if it not in left]
     params = tuple(path_for(robot, it) for it in robot.spec.companions.get("params", ()))
-    found = tuple(starts), tuple(spawned), tuple(left.items()), tuple(filter(None, commands))
+    found = tuple(starts), tuple(spawned), tuple(left.items())
     return RobotStarts(robot.spec.name, about, params, *found, bridged_tf)
 
 
@@ -135,6 +134,7 @@ def _started(given: _Given, name: str) -> Iterator[Start]:
             it.rules,
             program.words,
             tuple(_components(given, name)),
+            not activates_itself(facts, given.release),
         )
 
 
@@ -244,14 +244,6 @@ def _relay(it: Relay) -> Start:
     return Start(*it.program, it.table.namespace, it.table.name, told, arguments=it.arguments)
 
 
-def _activation(given: _Given, name: str) -> str:
-    """The line that brings up a node with a life cycle that nobody manages; empty for other nodes."""
-    if name not in given.facts or activates_itself(given.facts[name], given.release):
-        return ""
-    change = f"ros2 lifecycle set {given.names.full_name(name)}"
-    return f"until {change} configure; do sleep 1; done; {change} activate"
-
-
 def is_classic(robot: RewrittenRobot) -> bool:
     """Is its simulator Gazebo Classic?"""
     return spawn.CLASSIC_PLUGIN.encode() in (robot.simulated or robot.description)
@@ -293,18 +285,23 @@ def _shared(plan: FleetPlan, names: NodeNames, known: Mapping[str, NodeFacts]) -
         yield Start(*manager[:2], "", f"{LIFECYCLE_MANAGER}_shared", (values,))
 
 
-def windows(configs: Sequence[RvizOutput], files: Collection[str]) -> tuple[Start, ...]:
-    """The windows of RViz; MoveIt's displays read the parameters of their process."""
-    return tuple(
-        Start(
-            "rviz2",
-            "rviz2",
-            window.namespace,
-            "",
-            tuple(File(it) for it in (f"{window.robot}/{moveit_parameters.FILE}",) if it in files),
-            tuple(window.remaps),
-            ("-d", File(window_path(window, it.source))),
-        )
-        for it in configs
-        for window in it.windows
-    )
+def windows(configs: Sequence[RvizOutput], files: Collection[str]) -> Iterator[tuple[str, Start]]:
+    """The windows of RViz, each with the one robot that it shows, or "" for all.
+
+    MoveIt's displays read the parameters of their process.
+    """
+    for it in configs:
+        for window in it.windows:
+            given = f"{window.robot}/{moveit_parameters.FILE}"
+            yield (
+                window.robot,
+                Start(
+                    "rviz2",
+                    "rviz2",
+                    window.namespace,
+                    "",
+                    (File(given),) if given in files else (),
+                    tuple(window.remaps),
+                    ("-d", File(window_path(window, it.source))),
+                ),
+            )

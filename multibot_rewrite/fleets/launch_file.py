@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterator, Sequence
 
 from multibot_rewrite.fleets import launch_actions, teleop, world_file
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
-from multibot_rewrite.fleets.fleet_starts import GZ, File, FleetStarts, RobotStarts
+from multibot_rewrite.fleets.fleet_starts import GZ, File, FleetStarts, RobotStarts, Start
 from multibot_rewrite.fleets.launch_python import to_python
 from multibot_rewrite.fleets.launch_xml import to_xml
 from multibot_rewrite.fleets.output_file import OutputFile
@@ -46,16 +46,23 @@ def _starts(
     clock = clocks.pop() if len(clocks) == 1 else None
     source = os.path.basename(plan.file.file) or "a fleet"
     count = plural(len(plan.robots), "robot")
+    opened = list(launch_actions.windows(configs, paths))
+    names = {it.name for it in robots}
     return FleetStarts(
         f"Start {count} of {source}{facts_of_release(plan.file.distro)}.",
         simulators,
         launch_actions.of_all(plan, paths),
-        robots,
-        launch_actions.windows(configs, paths),
+        [_with_windows(it, opened) for it in robots],
+        [window for name, window in opened if name not in names],
         bool(simulators) if clock is None else clock,
         [teleop.command(it) for one in each for it in teleop.teleops(one)],
         _world(simulators, paths),
     )
+
+
+def _with_windows(it: RobotStarts, opened: Sequence[tuple[str, Start]]) -> RobotStarts:
+    """The robot with the windows that show it alone: they are not opened without it."""
+    return it._replace(windows=tuple(window for name, window in opened if name == it.name))
 
 
 def _world(simulators: Collection[str], paths: Collection[str]) -> File | str:

@@ -104,6 +104,15 @@ behavior_server:
   ros__parameters:
     backup: {plugin: nav2_behaviors/BackUp, acceleration_limit: 2.5}
 """
+MONITOR = """\
+collision_monitor:
+  ros__parameters:
+    polygons: [Stop, Slow]
+    Stop: {type: circle, radius: 0.3, action_type: stop}
+    Slow: {type: polygon, slowdown_ratio: 0.3, acme: 1}
+    observation_sources: [scan]
+    scan: {type: scan, topic: scan, source_timeout: 1.0, obstacles_angle: 0.1}
+"""
 SHIM = """\
 controller_server:
   ros__parameters:
@@ -165,12 +174,18 @@ PLANTED = {
     "a layer's parameter": (PLUGINS, "z_voxels", "z_voxel", "MB850:30"),
     "a radius of inflation": (PLUGINS, "inflation_radius", "inflation_raduis", "MB850:35"),
     "a behavior's parameter": (PLUGINS, "acceleration_limit", "acceleration_limt", "MB850:38"),
+    "a source's parameter": (PLUGINS, "raytrace_max_range", "raytrace_max_rnage", "MB850:32"),
+    "a polygon's parameter": (MONITOR, "radius", "raduis", "MB850:4"),
+    "a polygon's ratio": (MONITOR, "slowdown_ratio", "slowdown_raito", "MB850:5"),
+    "an integer for a ratio": (MONITOR, "0.3, acme", "1, acme", "MB851:5"),
+    "a parameter of the monitor's source": (MONITOR, "source_timeout", "source_timout", "MB850:7"),
     "an integer for a speed": (PLUGINS, "0.5", "1", "MB851:6"),
     "a double for a size": (PLUGINS, "2000", "2000.0", "MB851:13"),
     "an integer for a weight": (PLUGINS, "3.81", "4", "MB851:16"),
     "a text for a source's boolean": (PLUGINS, "marking: true", "marking: 'on'", "MB851:32"),
     "a parameter of a shim's controller": (SHIM, "max_vel_x", "max_vel_xx", "MB850:7"),
     "a parameter of a shim": (SHIM, "angular_dist", "anglar_dist", "MB850:6"),
+    "a critic of a shim's controller": (SHIM, "GoalDist.scale", "GoalDist.scael", "MB850:9"),
     "an integer for a double": (CONTROLLERS, "0.34", "1", "MB851:10"),
     "a text for a double": (CONTROLLERS, "wheel_radius: 0.07", 'wheel_radius: "0.07"', "MB851:11"),
     "a number for a name": (
@@ -254,6 +269,8 @@ HEALTHY = {
     "a plugin's own parameter": (NAV, "desired_linear_vel: 0.5", "acme_velocity: 1"),
     "nothing of plugins": (PLUGINS, "", ""),
     "nothing of a shim": (SHIM, "", ""),
+    "nothing of a monitor": (MONITOR, "", ""),
+    "blocks of no list": (MONITOR, "[Stop, Slow]", "[Stop]"),
     "a plugin of another package": (PLUGINS, "dwb_core::DWBLocal", "acme::Local"),
     "a misspelt parameter of an unknown plugin": (
         PLUGINS,
@@ -264,6 +281,11 @@ HEALTHY = {
         SHIM,
         "dwb_core::DWBLocalPlanner\n      angular_dist_threshold",
         "acme::Planner\n      angular_dis_threshold",
+    ),
+    "another type of an unknown plugin": (
+        PLUGINS,
+        "nav2_smac_planner::SmacPlannerHybrid\n      angle_quantization_bins: 72",
+        "acme::Planner\n      angle_quantization_bins: 72.5",
     ),
     "critics of unknown namespaces": (
         PLUGINS,
@@ -503,7 +525,7 @@ def test_every_class_of_a_package_with_plugins_has_a_plugin() -> None:
     servers = {"ControllerServer", "SmootherServer", "BehaviorServer", "Costmap2DROS"}
     # They read docks, scorers and layers of a container, whose names are not known.
     servers |= {"utils", "EdgeScorer", "OperationsManager", "RouteOperationClient"}
-    servers |= {"PluginContainerLayer"}
+    servers |= {"PluginContainerLayer", "CollisionMonitor", "CollisionDetector", "ExclusionZone"}
     for release in RELEASES:
         text = (FIXTURES / f"interfaces/parameters_{release}.tsv").read_text()
         for it in read_parameters(text):
@@ -522,6 +544,13 @@ def test_a_plugin_is_judged_by_its_release(tmp_path: Path) -> None:
     assert [len(its) for its in codes.values()] == [0, 1]
     file.write_text(f"{head}nav2_mppi_controller::MPPIController\n      sgf_order: 2\n")
     assert lint_file(str(file), Settings(distro="jazzy")) == []
+
+
+def test_a_name_of_older_releases_is_told_with_the_new_one(tmp_path: Path) -> None:
+    file = tmp_path / "nav.yaml"
+    file.write_text(PLUGINS.replace("raytrace_max_range", "obstacle_range"))
+    (it,) = lint_file(str(file), Settings())
+    assert (it.code, it.hint) == ("MB850", "did you mean 'scan.obstacle_max_range'?")
 
 
 def test_an_empty_name_in_a_list_is_told_for_what_it_is(tmp_path: Path) -> None:

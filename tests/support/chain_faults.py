@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fault_changes import DESCRIPTION, Fault, added, both, nav, renamed
+from fault_changes import DESCRIPTION, Change, Fault, added, both, nav, renamed
 from healthy_systems import (
     JOINTS,
     NAVIGATE,
@@ -118,6 +118,12 @@ def chain_rows() -> tuple[Fault, ...]:
             "MG303", ("/robot2/robot_state_publisher", "/robot2/broadcaster/joint_states"),
         ),
         Fault(
+            "a controller that reads velocities below its own name", nav,
+            _read_below("/robot1/cmd_vel", "/robot1/diff_drive"),
+            "MG303",
+            ("subscribes to /robot1/diff_drive/cmd_vel", "/diff_drive/cmd_vel:=/robot1/cmd_vel"),
+        ),
+        Fault(
             "two containers of one name", nav,
             lambda g: g._replace(nodes=(*g.nodes, *(GraphNode("/nav2_container", it) for it in "ab"))),
             "MG301", ("/nav2_container", "20 s"),
@@ -164,6 +170,11 @@ def _sent_by(graph: Snapshot, name: str, node: str, type_: str) -> Snapshot:
     kept = (it for it in graph.endpoints if not (it.name == name and it.role == PUBLISHES))
     own = f"{node}/{name.rpartition('/')[2]}"
     return added(node, (PUBLISHES, own, type_))(graph._replace(endpoints=tuple(kept)))
+
+
+def _read_below(name: str, node: str) -> Change:
+    """This node reads the topic below its own name, as diff_drive_controller does, and nobody else."""
+    return renamed(name, f"{node}/{name.rpartition('/')[2]}", node)
 
 
 def _two_versions(graph: Snapshot) -> Snapshot:

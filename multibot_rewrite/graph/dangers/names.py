@@ -47,7 +47,8 @@ _COMMON = (
     absence=True,
     planned="MG111",
     what="A node subscribes to a topic that nobody publishes, while nearly the same name is published:"
-    " with or without the robot's namespace, below another namespace, or misspelled.",
+    " with or without the robot's namespace, below another namespace or the node's own name, or"
+    " misspelled.",
     why="The two sides never meet, and there is no error message.",
     fix="Pass the remap rule of the hint, or write the other side's name in the parameters.",
     bad="""\
@@ -100,9 +101,11 @@ def _published_instead(
         for name, it in published.items()
         if it.type == end.type and nodes_of(it.publishers) != (end.node,)
     ]
-    hidden = next((it for it in same if it in unheard and _hides(published[it], end.name)), "")
-    if hidden:
-        return hidden
+    below = _without_own_name(end)
+    hidden = (it for it in same if it == below or _hides(published[it], end.name))
+    unheard_one = next((it for it in hidden if it in unheard), "")
+    if unheard_one:
+        return unheard_one
     bare = (it for it in same if owner and not seen.robot(it) and it == seen.plain(end.name))
     unread = (it for it in bare if it in unheard)
     return next(unread, "") or alike(end.name, same, end.type)
@@ -123,6 +126,12 @@ def _hides(ends: Ends, meant: str) -> bool:
     space, _, last = meant.rpartition("/")
     own = (f"{space}/{last_word(node)}/{last}" for node in nodes_of(ends.publishers))
     return ends.name in own or _is_doubled(ends.name, meant)
+
+
+def _without_own_name(end: GraphEndpoint) -> str:
+    """What ``cmd_vel`` is for others that the node has as ``~/cmd_vel``; empty for other names."""
+    last = last_word(end.name)
+    return f"{end.node.rpartition('/')[0]}/{last}" if end.name == f"{end.node}/{last}" else ""
 
 
 def _is_doubled(name: str, meant: str) -> bool:

@@ -20,7 +20,7 @@ from multibot_rewrite.companions.params.sections import (
 from multibot_rewrite.companions.yaml_text import YamlText, pairs
 from multibot_rewrite.lint.beside.bounds import beyond
 from multibot_rewrite.lint.beside.parameter_facts import Fact, facts_of_node, of_release
-from multibot_rewrite.lint.beside.plugins import plugins_in
+from multibot_rewrite.lint.beside.plugins import RENAMED, plugins_in
 from multibot_rewrite.lint.beside.records import Beside, Remark
 from multibot_rewrite.lint.facts.typos import meant_name
 from multibot_rewrite.model import InputError
@@ -35,6 +35,7 @@ _EVERYWHERE = re.compile(
 )
 _ARRAY = re.compile(r"(\w+?)_array(?:_fixed_\d+)?")
 _CAPITALS = re.compile(r"[A-Z][A-Z0-9]*_[A-Z0-9_]+")
+ID = "<id>."
 _NUMBERS = frozenset(("double", "int", "bool"))
 _WORDS = {bool: "bool", int: "int", float: "double", str: "string"}
 
@@ -88,22 +89,19 @@ def _sections(beside: Beside) -> Iterator[Section]:
 
 
 def _of_plugins(title: str, given: Sequence[Given]) -> tuple[list[Section], tuple[Given, ...]]:
-    """A section for each known plugin, with names below its own; and what is no plugin's."""
+    """A section for each known plugin, with names below its own; and what is no plugin's. Nobody knows
+    what an unknown plugin declares."""
     plugins = plugins_in({it.name: it.value for it in given})
     of: dict[str, list[Given]] = {}
     for it in given:
         parts = it.name.split(".")
         above = (".".join(parts[:end]) for end in range(len(parts) - 1, 0, -1))
         of.setdefault(next((name for name in above if name in plugins), ""), []).append(it)
-    rest = of.pop("", [])
-    found = []
+    rest, found = of.pop("", []), []
     for name, its in of.items():
         class_, facts = plugins[name]
         own = tuple(it._replace(name=it.name.removeprefix(f"{name}.")) for it in its)
-        if facts:
-            found.append(Section(f"{title}: {name} ({class_})", None, own, facts))
-        else:
-            rest += its
+        found.append(Section(f"{title}: {name} ({class_})", None, own, facts))
     return found, tuple(rest)
 
 
@@ -140,7 +138,9 @@ def unknown_parameters(beside: Beside) -> Iterator[Remark]:
     guesses = Guesses()
     for section in sections(beside):
         facts = [it for it in section.facts if it.is_declared]
-        there = [it.path for it in of_release(facts, beside.settings.distro) if "<" not in it.path]
+        paths = [it.path for it in of_release(facts, beside.settings.distro)]
+        there = [it for it in paths if "<" not in it]
+        there += _in_blocks(section, paths) if section.node is None else ()
         said = {it.name for it in section.given}
         free = [it for it in there if it not in said]
         for it in section.given if there else ():
@@ -148,6 +148,13 @@ def unknown_parameters(beside: Beside) -> Iterator[Remark]:
             if near:
                 message = f"{section.title} has no parameter {it.name!r}"
                 yield Remark(it.key, message, f"did you mean {near!r}?")
+
+
+def _in_blocks(section: Section, paths: Sequence[str]) -> Iterator[str]:
+    """Parameters of a plugin in the blocks that the file gives it: ``scan`` of a layer's sources."""
+    blocks = {it.name.partition(".")[0] for it in section.given if "." in it.name}
+    inner = [it.removeprefix(ID) for it in paths if it.startswith(ID)]
+    yield from (f"{block}.{it}" for block in sorted(blocks) for it in inner if "<" not in it)
 
 
 def _is_known(section: Section, it: Given) -> bool:
@@ -162,6 +169,8 @@ def _meant(name: str, known: Sequence[str], guesses: Guesses) -> str:
     """The parameter in the same place, or the same one in another, that differs by little."""
     above, _, last = name.rpartition(".")
     beside = {it.rpartition(".")[2]: it for it in known if it.rpartition(".")[0] == above}
+    if RENAMED.get(last) in beside:
+        return beside[RENAMED[last]]
     near = meant_name(last, beside) or guesses.nearest(last, beside, MISTYPED)
     return beside.get(near, "") or meant_name(name, known)
 

@@ -4,7 +4,7 @@
 loads the class that ``NAME.plugin`` says; dwb_local_planner.cpp (resolveCriticClassName) and
 critic_manager.cpp of nav2_mppi_controller make the classes of critics of their names;
 nav2_rotation_shim_controller.cpp gives its controller its own name, from Lyrical on
-``primary_controller`` below it.
+``primary_controller`` below it; collision_monitor_node.cpp (configurePolygons, configureSources).
 """
 
 from __future__ import annotations
@@ -19,6 +19,13 @@ from multibot_rewrite.lint.beside.parameter_facts import Fact, make_facts
 DWB = "dwb_core::DWBLocalPlanner"
 MPPI = "nav2_mppi_controller::MPPIController"
 SHIM = "nav2_rotation_shim_controller::RotationShimController"
+# Lists of the collision monitor -> the class of what they name.
+LISTED = {
+    "polygons": "nav2_collision_monitor::Polygon",
+    "observation_sources": "nav2_collision_monitor::Source",
+}
+# Older names that no supported release reads: obstacle_layer.cpp of Foxy and of Galactic.
+RENAMED = {"obstacle_range": "obstacle_max_range", "raytrace_range": "raytrace_max_range"}
 _PLUGIN, _PRIMARY = ".plugin", ".primary_controller"
 _CRITICS, _NAMESPACES = ".critics", ".default_critic_namespaces"
 
@@ -40,12 +47,19 @@ def plugins_in(values: Values) -> dict[str, tuple[str, tuple[Fact, ...]]]:
     """The name of each plugin of a section -> its class and what it declares: nothing for one that is
     not known, or loads one that is not known."""
     found: dict[str, tuple[str, tuple[Fact, ...]]] = {}
-    for name, class_ in _classes(values):
+    for name, class_ in (*_listed(values), *_classes(values)):
         facts = plugin_facts().get(class_, ())
         if class_ == SHIM:
             facts = _with_primary(facts, values, name)
         found[name] = (class_, facts)
     return found
+
+
+def _listed(values: Values) -> Iterator[tuple[str, str]]:
+    """The polygons and sources of a collision monitor, which is told by having both."""
+    if all(it in values for it in LISTED):
+        for path, class_ in LISTED.items():
+            yield from ((it, class_) for it in _list(values, path))
 
 
 def _classes(values: Values) -> Iterator[tuple[str, str]]:
