@@ -37,7 +37,8 @@ class Component(NamedTuple):
 
 class Start(NamedTuple):
     """A process: its program, its node's name and namespace (empty for those of its code), and what it
-    is given. ``components`` are loaded into it."""
+    is given. ``components`` are loaded into it; ``brought_up`` is one with a life cycle that nobody
+    else configures and activates."""
 
     package: str
     executable: str
@@ -47,13 +48,13 @@ class Start(NamedTuple):
     remappings: tuple[tuple[str, str], ...] = ()
     arguments: tuple[str | File, ...] = ()
     components: tuple[Component, ...] = ()
+    brought_up: bool = False
 
 
 class RobotStarts(NamedTuple):
     """What one robot runs; ``files`` are its parameter files, ``spawned`` is what brings it into the
-    simulator, ``left`` are nodes that are not started, each with the reason; ``commands`` are
-    lines of a shell that run beside. ``bridged_tf`` brings its tf to ``/tf`` where
-    tf_namespace_bridge is installed, ``windows`` show this robot alone."""
+    simulator, ``left`` are nodes that are not started, each with the reason. ``bridged_tf`` brings its
+    tf to ``/tf`` where tf_namespace_bridge is installed, ``windows`` show this robot alone."""
 
     name: str
     about: str
@@ -61,7 +62,6 @@ class RobotStarts(NamedTuple):
     starts: tuple[Start, ...]
     spawned: tuple[Start, ...]
     left: tuple[tuple[str, str], ...]
-    commands: tuple[str, ...] = ()
     bridged_tf: tuple[Start, ...] = ()
     windows: tuple[Start, ...] = ()
 

@@ -61,9 +61,8 @@ def of_robot(one: FleetPlan, files: Collection[str], bridged: Collection[str]) -
     starts += [_transform(it) for it in placed]
     copied, bridged_tf = _relays(given)
     starts += copied
-    commands = [_activation(given, it) for it in names.started if it not in left]
     params = tuple(path_for(robot, it) for it in robot.spec.companions.get("params", ()))
-    found = tuple(starts), tuple(spawned), tuple(left.items()), tuple(filter(None, commands))
+    found = tuple(starts), tuple(spawned), tuple(left.items())
     return RobotStarts(robot.spec.name, about, params, *found, bridged_tf)
 
 
@@ -135,6 +134,7 @@ def _started(given: _Given, name: str) -> Iterator[Start]:
             it.rules,
             program.words,
             tuple(_components(given, name)),
+            not activates_itself(facts, given.release),
         )
 
 
@@ -242,14 +242,6 @@ def _relays(given: _Given) -> tuple[tuple[Start, ...], tuple[Start, ...]]:
 def _relay(it: Relay) -> Start:
     told = (dict(it.parameters),) if it.parameters else ()
     return Start(*it.program, it.table.namespace, it.table.name, told, arguments=it.arguments)
-
-
-def _activation(given: _Given, name: str) -> str:
-    """The line that brings up a node with a life cycle that nobody manages; empty for other nodes."""
-    if name not in given.facts or activates_itself(given.facts[name], given.release):
-        return ""
-    change = f"ros2 lifecycle set {given.names.full_name(name)}"
-    return f"until {change} configure; do sleep 1; done; {change} activate"
 
 
 def is_classic(robot: RewrittenRobot) -> bool:

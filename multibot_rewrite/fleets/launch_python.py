@@ -25,12 +25,14 @@ _BODY = '''\
 from pathlib import Path
 
 {prefix}from launch import LaunchDescription
-from launch.actions import {actions}
+from launch.actions import (
+    {actions},
+)
 from launch.conditions import IfCondition
-from launch.substitutions import {substitutions}
+{events}from launch.substitutions import {substitutions}
 from launch_ros.actions import {ros_actions}
 {more}from launch_ros.parameter_descriptions import ParameterValue
-{share}
+{share}{messages}
 FOLDER = Path(__file__).resolve().parent
 CLOCK = {{"use_sim_time": ParameterValue(LaunchConfiguration("use_sim_time"), value_type=bool)}}
 
@@ -53,6 +55,27 @@ def if_installed(package, otherwise, actions):
         return [LogInfo(msg=otherwise)]
     return actions
 '''
+_BROUGHT_UP = '''\
+def brought_up(node):
+    """A node with a life cycle: it is configured, and activated when that is done."""
+
+    def change(transition):
+        matched = matches_action(node)
+        event = ChangeState(lifecycle_node_matcher=matched, transition_id=transition)
+        return EmitEvent(event=event)
+
+    configured = OnStateTransition(
+        target_lifecycle_node=node,
+        start_state="configuring",
+        goal_state="inactive",
+        entities=[change(Transition.TRANSITION_ACTIVATE)],
+    )
+    return [node, RegisterEventHandler(configured), change(Transition.TRANSITION_CONFIGURE)]
+'''
+_LIFECYCLE = """\
+from launch_ros.event_handlers import OnStateTransition
+from launch_ros.events.lifecycle import ChangeState
+"""
 _PREFIX = "from ament_index_python.packages import PackageNotFoundError, get_package_prefix\n"
 _CHOSEN = '''\
 def first(count):
@@ -85,6 +108,8 @@ def _parts(it: FleetStarts) -> Iterator[Iterable[str]]:
     yield _imports(it)
     if any(robot.bridged_tf for robot in it.robots):
         yield "", "", *_INSTALLED.splitlines()
+    if _has_life_cycle(it):
+        yield "", "", *_BROUGHT_UP.splitlines()
     for robot in it.robots:
         yield ("", "", *_robot(robot, bool(it.simulators)))
     names = (f'    "{robot.name}": start_{robot.name},' for robot in it.robots)
@@ -111,21 +136,25 @@ def _head(it: FleetStarts) -> Iterator[str]:
 def _imports(it: FleetStarts) -> list[str]:
     components = any(start.components for robot in it.robots for start in robot.starts)
     actions = ["DeclareLaunchArgument", "GroupAction", "OpaqueFunction"]
-    if any(robot.commands for robot in it.robots):
-        actions.insert(1, "ExecuteProcess")
+    managed = _has_life_cycle(it)
+    if managed:
+        actions += ["EmitEvent", "RegisterEventHandler"]
     prefix = ""
     if any(robot.bridged_tf for robot in it.robots):
-        actions.insert(-1, "LogInfo")
+        actions.append("LogInfo")
         prefix = _PREFIX
     substitutions = ["LaunchConfiguration"]
     if it.simulators:
-        actions.insert(-1, "IncludeLaunchDescription")
+        actions.append("IncludeLaunchDescription")
         substitutions += ["PathJoinSubstitution", "PythonExpression"]
-    ros = ["ComposableNodeContainer", "Node"] if components else ["Node"]
+    ros = ["ComposableNodeContainer"] * components + ["LifecycleNode"] * managed + ["Node"]
     more = "from launch_ros.descriptions import ComposableNode\n" if components else ""
+    more += _LIFECYCLE if managed else ""
     share = "from launch_ros.substitutions import FindPackageShare\n" if it.simulators else ""
     body = _BODY.format(
-        actions=", ".join(actions),
+        actions=",\n    ".join(sorted(actions)),
+        events="from launch.events import matches_action\n" if managed else "",
+        messages="from lifecycle_msgs.msg import Transition\n" if managed else "",
         substitutions=", ".join(substitutions),
         ros_actions=", ".join(ros),
         more=more,
@@ -133,6 +162,10 @@ def _imports(it: FleetStarts) -> list[str]:
         share=share,
     )
     return body.splitlines()
+
+
+def _has_life_cycle(it: FleetStarts) -> bool:
+    return any(start.brought_up for robot in it.robots for start in robot.starts)
 
 
 def _robot(it: RobotStarts, simulated: bool) -> Iterator[str]:
@@ -156,8 +189,6 @@ def _robot(it: RobotStarts, simulated: bool) -> Iterator[str]:
             yield from _process(start, 16)
         yield "            ],"
         yield "        ),"
-    for command in it.commands:
-        yield f"        ExecuteProcess(cmd=[{_quoted('sh')}, {_quoted('-c')}, {_quoted(command)}]),"
     yield from _group(it.spawned, "simulator", 8)
     yield from _group(it.windows, "rviz", 8)
     yield "    ]"
@@ -177,9 +208,14 @@ def _group(starts: Sequence[Start], argument: str, indent: int) -> Iterator[str]
     yield f"{space}),"
 
 
-def _process(it: Start, indent: int, own: _Files = ()) -> Iterator[str]:
+def _process(it: Start, indent: int, own: _Files = (), action: str = "Node") -> Iterator[str]:
     space = " " * indent
-    yield f"{space}{'ComposableNodeContainer' if it.components else 'Node'}("
+    if it.brought_up:
+        yield f"{space}*brought_up("
+        yield from _process(it._replace(brought_up=False), indent + 4, own, "LifecycleNode")
+        yield f"{space}),"
+        return
+    yield f"{space}{'ComposableNodeContainer' if it.components else action}("
     yield from (f"{space}    {line}" for line in _keywords(it, own))
     if it.components:
         yield f"{space}    composable_node_descriptions=["

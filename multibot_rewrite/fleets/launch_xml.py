@@ -47,6 +47,12 @@ _CHOSEN = (
 )
 _IS_CHOSEN = "$(eval '\\'{0}\\' in $(var chosen)')"
 _MORE = "for more: multibot build FLEET -o $(var folder) --count N"
+# launch's XML has no word for a life cycle. A transition that is refused ends with 0 (ros2lifecycle
+# verb/set.py), so the state is asked for.
+_BROUGHT_UP = (
+    "until ros2 lifecycle get {0} | grep -q ^active; do ros2 lifecycle set {0} configure;"
+    " ros2 lifecycle set {0} activate; sleep 1; done"
+)
 _INSTALLED = (
     "$(command 'sh -c \"ros2 pkg prefix {0} > /dev/null 2>&1 && echo true || echo false\"')"
 )
@@ -105,8 +111,6 @@ def _robot(it: RobotStarts) -> Iterator[str]:
     if it.bridged_tf:
         yield from _group(_processes(it.bridged_tf), **{"if": f"$(var {BRIDGE})"})
         yield _tag("log", message=not_bridged(it.name), unless=f"$(var {BRIDGE})")
-    for command in it.commands:
-        yield _tag("executable", cmd=shlex.join(["sh", "-c", command]))
     if it.spawned:
         yield from _group(_processes(it.spawned), **{"if": "$(var simulator)"})
     if it.windows:
@@ -145,6 +149,9 @@ def _process(it: Start) -> Iterator[str]:
     for one in it.components:
         yield from _below(_component(one))
     yield f"</{tag}>"
+    if it.brought_up:
+        command = _BROUGHT_UP.format(f"{it.namespace.rstrip('/')}/{it.name}")
+        yield _tag("executable", cmd=shlex.join(["sh", "-c", command]))
 
 
 def _component(it: Component) -> Iterator[str]:

@@ -7,6 +7,7 @@ import os
 import re
 import shlex
 import shutil
+import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import ExitStack
@@ -17,7 +18,7 @@ from xml.etree import ElementTree
 
 import pytest
 from launched_programs import launched
-from paths import ROBOTS, ROOT
+from paths import ROBOTS, ROOT, SUPPORT
 from told_nodes import nodes_of, words_of
 
 from multibot_rewrite import launch, load_fleet
@@ -220,13 +221,13 @@ def test_a_real_robot_needs_no_simulator(tmp_path: Path) -> None:
     assert 'executable="joint_state_publisher"' in text, "nothing else sends its joint states"
 
 
-def of_nav2(folder: Path, **keys: str) -> tuple[str, str]:
+def of_nav2(folder: Path, distro: str = "jazzy", **keys: str) -> tuple[str, str]:
     """Both files for two robots with Nav2's parameters and these keys."""
     for name in ("hexbase.urdf.xacro", "nav2_params.yaml"):
         shutil.copy(ROOT / "examples" / "namespace_and_prefix" / name, folder)
     more = "".join(f"{key}: {value}\n" for key, value in keys.items())
     (folder / "fleet.yaml").write_text(
-        f"distro: jazzy\ndescription: hexbase.urdf.xacro\n{more}"
+        f"distro: {distro}\ndescription: hexbase.urdf.xacro\n{more}"
         f"companions: {{params: nav2_params.yaml}}\n{TWO}"
     )
     out = folder / "out"
@@ -237,9 +238,44 @@ def of_nav2(folder: Path, **keys: str) -> tuple[str, str]:
 def test_slam_toolbox_is_brought_up(tmp_path: Path) -> None:
     """It has a life cycle from Jazzy on, and no manager of Nav2 knows it."""
     python, xml = of_nav2(tmp_path, layout="tf-per-robot", stack="nav2_slam")
-    line = "ros2 lifecycle set /robot1/slam_toolbox activate"
-    assert line in python and line in xml
+    before = python.partition('executable="sync_slam_toolbox_node"')[0].split()
+    assert before[-3:] == ["*brought_up(", "LifecycleNode(", 'package="slam_toolbox",']
+    assert python.count("*brought_up(") == 2, "one a robot, and nothing else"
+    assert xml.count("ros2 lifecycle set /robot2/slam_toolbox activate") == 1
+
+
+def test_in_humble_slam_toolbox_has_no_life_cycle(tmp_path: Path) -> None:
+    python, xml = of_nav2(tmp_path, layout="postfix", stack="nav2_slam", distro="humble")
     assert 'executable="sync_slam_toolbox_node"' in python
+    assert "brought_up" not in python and "lifecycle set" not in xml
+
+
+RELUCTANT = """\
+#!/bin/sh
+# Stands for ros2: the node is there at the second call, and is not configured at once.
+cd "$(dirname "$0")"
+echo "$2 $4" >> asked
+case "$(wc -l < asked) $(cat state) $2 $4" in
+  [1-4]\\ *) echo "Node not found" >&2; exit 1;;
+  *" set configure") echo inactive > state;;
+  *" inactive set activate") echo active > state;;
+  *" get ") cat state;;
+esac
+"""
+
+
+def test_the_line_of_the_xml_file_ends_when_the_node_is_active(tmp_path: Path) -> None:
+    """A transition that is refused ends with 0 (ros2lifecycle verb/set.py of humble to rolling)."""
+    _, xml = of_nav2(tmp_path, layout="tf-per-robot", stack="nav2_slam")
+    (command, _) = (it.get("cmd") or "" for it in ElementTree.fromstring(xml).iter("executable"))
+    (tmp_path / "ros2").write_text(RELUCTANT)
+    (tmp_path / "ros2").chmod(0o755)
+    (tmp_path / "state").write_text("unconfigured\n")
+    environ = {"PATH": f"{tmp_path}:{os.environ['PATH']}"}
+    subprocess.run(shlex.split(command), env=environ, check=True, timeout=60)
+    asked = (tmp_path / "asked").read_text().split("\n")
+    assert asked[-5:-1] == ["get ", "set configure", "set activate", "get "]
+    assert (tmp_path / "state").read_text() == "active\n"
 
 
 def test_a_container_has_its_components(tmp_path: Path) -> None:
@@ -407,6 +443,22 @@ def test_more_robots_than_the_file_has_are_built(tmp_path: Path) -> None:
         '"robot3", "-topic", "/robot3/robot_description", "-x", "5.0"'
         in (out / "fleet.launch.py").read_text()
     )
+
+
+@REAL
+@pytest.mark.live
+def test_slam_toolbox_is_active_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("rclpy", reason="no rclpy: pip install '.[ros]'")
+    of_nav2(tmp_path, layout="tf-per-robot", stack="slam_toolbox")
+    for name, value in stage(None).items():
+        monkeypatch.setenv(name, value)
+    out, real = tmp_path / "out", {"sync_slam_toolbox_node": SUPPORT / "lifecycle_stand_in.py"}
+    words = ("robots:=robot2", "simulator:=false")
+    told, _ = launched(out / "fleet.launch.py", tmp_path, *words, programs=programs(out), real=real)
+    (slam,) = (it for it in told if "state" in it)
+    assert "__ns:=/robot2" in slam["words"]
+    # lifecycle_msgs Transition: configure is 1, activate 3.
+    assert (slam["state"], slam["asked"]) == ("active", [1, 3])
 
 
 def runs() -> Iterator[Any]:
