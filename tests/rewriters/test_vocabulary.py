@@ -192,6 +192,12 @@ def test_settings_and_notes_are_read(tmp_path: Path) -> None:
     assert (mine.sites[0].note, mine.sites[0].line) == ("why not", 5)
 
 
+def test_places_are_known_before_a_section_is_read(tmp_path: Path) -> None:
+    text = "[element reel]\nabout: one of many\nat: winch link\n@at uses link\nat: crane\n"
+    vocabulary = load_vocabulary((write(tmp_path, text),), NEWEST_LTS)
+    assert vocabulary.places()["reel"] == ["winch", "link", "crane"]
+
+
 def test_an_own_site_wins_over_its_block(tmp_path: Path) -> None:
     text = "[block both]\n@a uses link\n@b uses link\n[plugin mine]\nwith: both\n@a uses joint\n"
     (mine,) = load_vocabulary((write(tmp_path, text),), NEWEST_LTS).find("plugin", "mine")

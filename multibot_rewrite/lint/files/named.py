@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from glob import glob
-
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.outside import outside
 
@@ -28,4 +26,6 @@ def robot_name(path: str) -> str:
 @outside
 def files_like(pattern: str) -> tuple[str, ...]:
     """The files that a pattern names, in order."""
+    from glob import glob  # few descriptions come to this
+
     return tuple(sorted(glob(pattern)))

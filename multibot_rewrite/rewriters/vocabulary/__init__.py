@@ -138,7 +138,6 @@ class Vocabulary:
         self.extended = extended
         self.release = release
         self._raw: dict[tuple[str, str], list[Raw]] = {}
-        self._names: dict[str, dict[str, None]] = {type_: {} for type_ in TYPES}
         self._found: dict[tuple[str, str], tuple[VocabularySection, ...]] = {}
         for file, text in texts.items():
             self._index(file, text)
@@ -154,7 +153,6 @@ class Vocabulary:
             type_, *names = read_header(f"{file}:{line}", chunk.partition("\n")[0])
             for name in names:
                 self._raw.setdefault((type_, name), []).append((file, line, chunk))
-                self._names[type_][name] = None
             line += chunk.count("\n")
 
     def find(self, type_: str, name: str) -> tuple[VocabularySection, ...]:
@@ -192,11 +190,11 @@ class Vocabulary:
 
     def has(self, type_: str, name: str) -> bool:
         """Is there a section of that type and name, in this release or another?"""
-        return name in self._names[type_]
+        return (type_, name) in self._raw
 
     def names(self, type_: str) -> list[str]:
         """Every name and alias of that type."""
-        return list(self._names[type_])
+        return [name for of, name in self._raw if of == type_]
 
     def rows_elsewhere(self, type_: str, name: str) -> Iterator[Site]:
         """The rows that this release lacks, each with the words for the releases that have it."""

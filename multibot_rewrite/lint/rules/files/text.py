@@ -12,6 +12,9 @@ from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.model import Edit
 
 BOM = b"\xef\xbb\xbf"
+# Of nearly all files, which spares them the two expressions below.
+_ENCODINGS = (b"", b" ", b' encoding="utf-8"', b' encoding="UTF-8"')
+_USUAL = tuple(b'<?xml version="1.0"%b?>' % it for it in _ENCODINGS)
 _DECLARED = lazy_compile(rb"<\?xml\s+version\s*=\s*[\"']([^\"']*)[\"']")
 _ENCODED = lazy_compile(rb"<\?xml\s[^>]*?\sencoding\s*=\s*[\"']([^\"']*)[\"']")
 _NAMESPACE = lazy_compile(rb"\s+xmlns:([\w.-]+)\s*=\s*(?:\"[^\"]*\"|'[^']*')")
@@ -35,11 +38,14 @@ def xml_declaration(subject: Subject) -> Iterator[Problem]:
     source = subject.document.source
     if subject.origins or b"<?xml" not in source[:8]:
         return
+    start = source.index(b"<?xml")
+    if source.startswith(_USUAL, start):
+        return
     for pattern, right, allowed in (
         (_DECLARED, b"1.0", (b"1.0",)),
         (_ENCODED, b"UTF-8", (b"utf-8", b"utf8", b"us-ascii", b"ascii")),
     ):
-        found = pattern.match(source, source.index(b"<?xml"))
+        found = pattern.match(source, start)
         if found and found[1].lower() not in allowed:
             value = found[1].decode("utf-8", "replace")
             edit = Edit(found.start(1), found.end(1), right, None)
