@@ -252,11 +252,12 @@ def test_in_humble_slam_toolbox_has_no_life_cycle(tmp_path: Path) -> None:
 
 RELUCTANT = """\
 #!/bin/sh
-# Stands for ros2: the node is there at the second call, and is not configured at once.
+# Stands for ros2: the node is there at the fifth call, and refuses to be activated at the first.
 cd "$(dirname "$0")"
 echo "$2 $4" >> asked
 case "$(wc -l < asked) $(cat state) $2 $4" in
   [1-4]\\ *) echo "Node not found" >&2; exit 1;;
+  6\\ *) echo "Transitioning failed" >&2;;
   *" set configure") echo inactive > state;;
   *" inactive set activate") echo active > state;;
   *" get ") cat state;;
