@@ -12,11 +12,11 @@ from functools import reduce
 from io import BytesIO
 from itertools import count
 from math import cos, isfinite, radians, sin, sqrt
-from typing import NamedTuple
 
 from lxml.etree import XMLSyntaxError, _Element, iterparse
 
 from multibot_rewrite.checks.shapes import Extent, around
+from multibot_rewrite.record import NamedTuple
 
 # Rows of a matrix of 3 x 4: a rotation that may scale, and a place.
 _Rows = tuple[tuple[float, ...], ...]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple
 
 import yaml
 
@@ -11,6 +10,7 @@ from multibot_rewrite.closure.gap import Gap
 from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, pairs
 from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.nearest import nearest
+from multibot_rewrite.record import NamedTuple
 
 GZ_TOPIC, GZ_TYPE, GZ_WAY = "gz topic", "gz type", "gz direction"
 # Keys of a row that name the gz side, in the order in which ros_gz_bridge looks at them.

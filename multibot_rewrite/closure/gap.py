@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import NamedTuple
 
 from multibot_rewrite.evidence.records import Place
+from multibot_rewrite.record import NamedTuple
 
 
 class Gap(NamedTuple):

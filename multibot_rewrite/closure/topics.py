@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from typing import NamedTuple
 
 from multibot_rewrite.closure.gap import Gap
 from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.nearest import nearest
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import ACTION, CALLS, PUBLISHES, SERVES, SUBSCRIBES, TOPIC
 
 # What people, planners of missions, scenes and tools send, by the last word of the name.

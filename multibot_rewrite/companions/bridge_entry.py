@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from typing import NamedTuple
 
 import yaml
 
 from multibot_rewrite.companions.yaml_blocks import Block
+from multibot_rewrite.record import NamedTuple
 
 # Stands for the name of the spawned model: it may differ from the namespace and the tag.
 MODEL_SLOT = "multibotModelSlot"

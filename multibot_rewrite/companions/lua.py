@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from typing import NamedTuple
 
 from multibot_rewrite.checks.mentions import mentioned
 from multibot_rewrite.companions.context import Companion, Context
@@ -27,6 +26,7 @@ from multibot_rewrite.companions.yaml_text import Splice
 from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import Rule, declare
 from multibot_rewrite.model import InputError
+from multibot_rewrite.record import NamedTuple
 
 FRAMES = frozenset({"map_frame", "tracking_frame", "published_frame", "odom_frame"})
 # Cartographer's own files, which set no frames (cartographer/configuration_files).

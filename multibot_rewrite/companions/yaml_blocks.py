@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from typing import NamedTuple
 
 import yaml
 
 from multibot_rewrite.companions.yaml_text import Splice, YamlText
+from multibot_rewrite.record import NamedTuple
 
 
 class Block(NamedTuple):

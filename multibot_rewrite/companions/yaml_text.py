@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
 
 import yaml
 
@@ -15,6 +14,7 @@ from multibot_rewrite.bounded import MAX_BYTES, compose_yaml
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.model import InputError
+from multibot_rewrite.record import NamedTuple
 
 # Reads back as the same text in any place, and never as a number, date, boolean or null.
 _PLAIN = re.compile(r"[A-Za-z_/~][A-Za-z0-9_./~-]*")

@@ -11,9 +11,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from typing import NamedTuple
 
 from multibot_rewrite.evidence.records import Given, GivenNode, Place
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.conditions import Values, holds
 from multibot_rewrite.remap.records import Claim
 

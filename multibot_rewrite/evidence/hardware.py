@@ -10,12 +10,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
 from importlib.resources import files
-from typing import NamedTuple
 
 from lxml.etree import _Element
 
 from multibot_rewrite.evidence.claims import claimed
 from multibot_rewrite.evidence.records import Given, Place
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.fact_words import SOURCE_KEY
 from multibot_rewrite.remap.node_library import read_claims
 from multibot_rewrite.remap.records import MANAGER, Claim, NodeFacts

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
-from typing import NamedTuple
 
 from lxml import etree
 
@@ -31,6 +30,7 @@ from multibot_rewrite.graph.transforms import STATE_PUBLISHER, Edge, edges_in, s
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import has_release
 from multibot_rewrite.remap.records import ACTION, PUBLISHES, SERVICE, SUBSCRIBES, TOPIC, Endpoint
 from multibot_rewrite.rosnames import (

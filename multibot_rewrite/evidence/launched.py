@@ -11,7 +11,7 @@ import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cache, lru_cache
 from importlib.resources import files
-from typing import Any, NamedTuple
+from typing import Any
 
 from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.companions.params.known_nodes import KnownNodes
@@ -30,6 +30,7 @@ from multibot_rewrite.evidence.spawners import Spawned, is_spawner, spawned_in, 
 from multibot_rewrite.evidence.static_transforms import with_static_transform
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.model import InputError
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import Endpoint, NodeFacts
 from multibot_rewrite.rosnames import expand
 

@@ -6,7 +6,6 @@ A file and a stack that disagree: the file wins, and the disagreement is a note.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import NamedTuple
 
 from multibot_rewrite.evidence.alternatives import GUESSED, alternatives
 from multibot_rewrite.evidence.claims import claims_of
@@ -14,6 +13,7 @@ from multibot_rewrite.evidence.filling import filled
 from multibot_rewrite.evidence.records import GivenNode
 from multibot_rewrite.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import NodeFacts
 
 MANAGER = "controller_manager"

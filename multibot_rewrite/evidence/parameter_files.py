@@ -10,7 +10,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
-from typing import NamedTuple
 
 import yaml
 
@@ -30,6 +29,7 @@ from multibot_rewrite.companions.yaml_text import YamlText, line_of, pairs
 from multibot_rewrite.evidence.records import Given, GivenNode, Place
 from multibot_rewrite.model import InputError
 from multibot_rewrite.nearest import nearest
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rosnames import check_node_name
 
 OWN_TYPE = "type"

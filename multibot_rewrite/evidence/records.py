@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
 
 from multibot_rewrite.companions.params.rcl_parameters import Value
+from multibot_rewrite.record import NamedTuple
 
 
 class Place(NamedTuple):

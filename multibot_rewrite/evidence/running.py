@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple
 
 from multibot_rewrite.companions.params.known_nodes import KnownNodes
 from multibot_rewrite.controller_ways import controller_way
@@ -21,6 +20,7 @@ from multibot_rewrite.evidence.records import Given, GivenNode, Place
 from multibot_rewrite.evidence.simulated_managers import Published, simulated_managers
 from multibot_rewrite.evidence.spawners import Spawned, spawned_in, texts_of
 from multibot_rewrite.evidence.static_transforms import with_static_transform
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import MANAGER, NodeFacts
 from multibot_rewrite.rosnames import expand
 

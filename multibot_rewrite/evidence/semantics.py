@@ -8,13 +8,13 @@ in tf), trajectory_execution_manager.cpp (a trajectory's controllers have to mov
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
 from lxml.etree import _Element
 
 from multibot_rewrite.checks.links_and_joints import Robot, read_robot
 from multibot_rewrite.checks.planning_groups import groups_of, joints_of, text_of
 from multibot_rewrite.evidence.records import Place
+from multibot_rewrite.record import NamedTuple
 
 FIXED = "fixed"
 

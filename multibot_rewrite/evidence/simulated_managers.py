@@ -8,7 +8,6 @@ is an argument ``--params-file``, rules of ``<ros>`` are arguments, too; ``use_s
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from typing import NamedTuple
 
 from multibot_rewrite.evidence.launch_records import LaunchedNode, ParameterText
 from multibot_rewrite.evidence.records import Place
@@ -16,6 +15,7 @@ from multibot_rewrite.model import InputError
 from multibot_rewrite.readback.nodes import ReadNode
 from multibot_rewrite.readback.reading import read
 from multibot_rewrite.readback.xml import read_xml, values_at
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.vocabulary import load_vocabulary
 
 _NAMED = "controller_manager_name"

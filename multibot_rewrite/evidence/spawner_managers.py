@@ -7,11 +7,11 @@ manager is below the namespace that the spawner gets, by ``--namespace`` or as a
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
-from typing import NamedTuple
 
 from multibot_rewrite.evidence.spawners import Spawned
 from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.record import NamedTuple
 
 _ROBOTS = """\
 companions: {params: controllers.yaml}

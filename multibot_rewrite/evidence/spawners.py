@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple, NoReturn
+from typing import NoReturn
 
 from multibot_rewrite.evidence.launch_records import LaunchedNode, LaunchNote, ParameterText
 from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.evidence.ros_arguments import ros_arguments
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rosnames import expand
 
 SPAWNER = "controller_manager/spawner"

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from typing import NamedTuple
 
 import yaml
 
@@ -42,6 +41,7 @@ from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.bridge_checks import entry_findings, model_of, other_models, skipped
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import POSTFIX
+from multibot_rewrite.record import NamedTuple
 
 # gz topics of the whole simulation, like those below /world.
 WORLD = frozenset({"clock", "stats"})

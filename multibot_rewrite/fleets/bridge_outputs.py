@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import NamedTuple, cast
+from typing import cast
 
 from multibot_rewrite.companions.bridge_entry import BOTH, GZ
 from multibot_rewrite.companions.rviz.read_config import text_of
@@ -18,6 +18,7 @@ from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, pa
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_groups import RobotGroup, group_robots
 from multibot_rewrite.fleets.robot_nodes import node_sources
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.bridged_topics import BridgedTopic, UnbridgedTopic, bridged_topics
 
 BRIDGE = "bridge.yaml"

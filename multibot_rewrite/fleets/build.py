@@ -6,7 +6,6 @@ import itertools
 import os
 from collections.abc import Iterator, Sequence
 from functools import cache
-from typing import NamedTuple
 
 from multibot_rewrite.companions.yaml_text import quoted
 from multibot_rewrite.findings.finding import Finding
@@ -45,6 +44,7 @@ from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.graph.enclaves import to_policy
 from multibot_rewrite.graph.plan_file import to_yaml
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import PUBLISHES, Table
 from multibot_rewrite.remap.table_formats import launch, standing_by_robot
 from multibot_rewrite.sources.read import is_xacro

@@ -7,12 +7,13 @@ messages with some of the joints (moveit2 2.12.4 current_state_monitor.cpp, ``jo
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 from multibot_rewrite.fleets.fleet_data import FleetData
 from multibot_rewrite.fleets.fleet_paths import listed
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import SHARED_TOPICS, Naming
+from multibot_rewrite.record import NamedTuple
 
 CELL, MOVE_GROUP, JOINT_STATES = "cell", "move_group", "/joint_states"
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 import yaml
 
@@ -11,6 +11,7 @@ from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.companions.yaml_text import line_of, pairs, read_yaml, refuse_anchors
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.nearest import did_you_mean_one_of
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.sources.read import read_file
 
 Path = tuple[Any, ...]

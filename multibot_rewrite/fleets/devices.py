@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from importlib.resources import files
-from typing import NamedTuple
 
 from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot, at_robot
+from multibot_rewrite.record import NamedTuple
 
 ADDRESS, CALIBRATION, COMPUTER, NOWHERE = "address", "calibration", "computer", "nowhere"
 # Of hardware that is not there.

@@ -9,13 +9,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from functools import cache
-from typing import NamedTuple
 
 from multibot_rewrite.findings.finding import NOTE, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.fleet_file import FleetFile, RobotSpec
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import NAMESPACE, POSTFIX, ROS_KINDS, SEPARATORS, Naming
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.reports.xacro_arguments import (
     WHOLE,
     Argument,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple
 
 from multibot_rewrite.companions.params.known_nodes import load_known_nodes
 from multibot_rewrite.evidence.hardware import with_hardware
@@ -36,6 +35,7 @@ from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import Naming, make_naming
 from multibot_rewrite.policy import Policy
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.bridged_topics import bridged_topics
 from multibot_rewrite.remap.node_library import with_included
 from multibot_rewrite.remap.nodl.facts import KnownNodes, nodes_of

@@ -7,7 +7,7 @@ import os
 from collections.abc import Mapping
 from functools import cache
 from importlib.resources import files
-from typing import Any, NamedTuple
+from typing import Any
 
 import yaml
 
@@ -15,6 +15,7 @@ from multibot_rewrite.fleets.checked_yaml import CheckedYaml, read_checked, text
 from multibot_rewrite.fleets.fleet_paths import Places, check_files, listed, with_paths
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import LAYOUTS
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import RELEASES
 
 SCHEMA = "fleet.schema.json"

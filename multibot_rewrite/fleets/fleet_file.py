@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, NamedTuple, cast
+from typing import Any, cast
 
 from multibot_rewrite.companions.rviz.colours import read_colour
 from multibot_rewrite.evidence.launch_records import LaunchOrder, launch_order
@@ -19,6 +19,7 @@ from multibot_rewrite.fleets.robot_choice import ALL, Choice, with_robots
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.naming import NAMESPACE, Naming, make_naming
 from multibot_rewrite.policy import Policy
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import chosen_release
 from multibot_rewrite.sources.own_names import filled, name_robot
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
 
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.filled_arguments import with_own_arguments
@@ -31,6 +30,7 @@ from multibot_rewrite.fleets.shared_nodes import check_shared
 from multibot_rewrite.fleets.simulators import may_be_real, note
 from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.naming import Naming, make_naming
+from multibot_rewrite.record import NamedTuple
 
 
 class FleetPlan(NamedTuple):

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
+
+from multibot_rewrite.record import NamedTuple
 
 # The simulators that it can start.
 CLASSIC, GZ = "classic", "gz"

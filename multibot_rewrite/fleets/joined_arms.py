@@ -7,7 +7,6 @@ robot_model.cpp (``buildModel``: a virtual joint counts only where its child is 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from typing import NamedTuple
 
 from lxml import etree
 from lxml.etree import _Element
@@ -17,6 +16,7 @@ from multibot_rewrite.fleets.fleet_file import Pose
 from multibot_rewrite.model import InputError
 from multibot_rewrite.nearest import did_you_mean_one_of
 from multibot_rewrite.readback.xml import read_xml
+from multibot_rewrite.record import NamedTuple
 
 _STANDING = Pose()
 _NAMED = ("link", "joint", "transmission", "ros2_control")

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 from multibot_rewrite.evidence.parameter_files import OWN_TYPE
 from multibot_rewrite.fleets import moveit_parameters, spawn, start_poses
@@ -24,6 +24,7 @@ from multibot_rewrite.fleets.relays import Relay, relays
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_nodes import node_sources
 from multibot_rewrite.fleets.rviz_outputs import RvizOutput, window_path
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.programs import (
     LIFECYCLE_MANAGER,
     PROGRAMS,

@@ -6,12 +6,12 @@ import json
 import os
 from collections.abc import Iterable, Mapping
 from hashlib import sha256
-from typing import NamedTuple
 
 from multibot_rewrite.bounded import load_json
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.output_file import OutputFile
 from multibot_rewrite.model import InputError
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.sources.read import read_file
 
 MANIFEST = "manifest.json"

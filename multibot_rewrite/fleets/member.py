@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import islice
-from typing import NamedTuple
 
 from lxml import etree
 
@@ -16,6 +15,7 @@ from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.readback.nodes import rules_of
 from multibot_rewrite.readback.reading import Reading, read
 from multibot_rewrite.readback.xml import read_xml
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.vocabulary import Vocabulary
 from multibot_rewrite.rosnames import RemapRule, bind, resolve_bound
 from multibot_rewrite.sources.own_names import NameTexts

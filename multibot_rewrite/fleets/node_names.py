@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 from multibot_rewrite.arguments import checked
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import CALLS, EndpointName, NodeTable, Table
 from multibot_rewrite.remap.started import Started, launch_arguments, started
 from multibot_rewrite.remap.ways import COMPONENT, SPAWNER

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Collection, Iterator
-from typing import NamedTuple, TypeAlias
+from typing import TypeAlias
 
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.fleet_file import RobotSpec
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.sources.read import read_file
 
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
 import yaml
 from lxml import etree
 
 from multibot_rewrite.companions.yaml_text import line_of, pairs, read_yaml
 from multibot_rewrite.model import InputError
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.sources.read import read_file
 
 # Text for people and for shells.

@@ -12,13 +12,13 @@ src/tf_namespace_bridge.cpp, launch/tf_namespace_bridge.yaml, CMakeLists.txt (41
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import NamedTuple
 
 from multibot_rewrite.companions.rviz.rewrite import world_frame
 from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.fleets.fleet_file import FleetFile
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS, Naming
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.bridged_topics import TF_TYPE
 from multibot_rewrite.remap.records import (
     PUBLISHES,

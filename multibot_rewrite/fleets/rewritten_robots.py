@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
-from typing import Any, NamedTuple
+from typing import Any
 
 from multibot_rewrite import pipeline
 from multibot_rewrite.checks.arguments import UNREAD
@@ -24,6 +24,7 @@ from multibot_rewrite.graph.transforms import Edge, links_of, tree_of
 from multibot_rewrite.library import Rewrite, rewrite_job
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import Naming
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.sources.job import Job, Reader, job_for, joined_reads, reader
 from multibot_rewrite.sources.own_names import ROBOT, Arguments, common_to

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 import yaml
 
 from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.fleets.fleet_data import FleetData
 from multibot_rewrite.model import InputError, UsageError
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rosnames import check_robot_name
 
 COUNT, STEP, POSE, NAME = "count", "step", "pose", "name"

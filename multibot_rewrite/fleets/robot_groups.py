@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
 
 from multibot_rewrite.companions.context import Context, make_context
 from multibot_rewrite.findings.finding import Finding
@@ -11,6 +10,7 @@ from multibot_rewrite.findings.grouping import grouped
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_nodes import companion_nodes, node_sources, stack_nodes
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import NodeFacts
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple
 
 from lxml.etree import _Element
 
@@ -27,6 +26,7 @@ from multibot_rewrite.fleets.launched_robot import (
 from multibot_rewrite.fleets.member import Member
 from multibot_rewrite.fleets.output_file import params_of
 from multibot_rewrite.fleets.shared_nodes import apart
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.nodl.facts import declared
 from multibot_rewrite.remap.records import MANAGER, NodeFacts
 

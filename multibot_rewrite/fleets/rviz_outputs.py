@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import shlex
 from collections.abc import Iterable, Iterator, Mapping
-from typing import NamedTuple
 
 from multibot_rewrite.companions.names.robot_topics import fleet_topics
 from multibot_rewrite.companions.rviz.bridged import bridged_window
@@ -25,6 +24,7 @@ from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, pa
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.start_poses import world_of
 from multibot_rewrite.fleets.with_start_pose_nodes import split_per_robot
+from multibot_rewrite.record import NamedTuple
 
 RVIZ = "rviz2"
 

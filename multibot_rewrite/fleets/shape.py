@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from functools import cache
 from importlib.resources import files
-from typing import Any, NamedTuple
+from typing import Any
 
 from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.companions.params.sections import raw_sections
@@ -17,6 +17,7 @@ from multibot_rewrite.fleets.output_file import expanded_name, params_of, path_f
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.naming import make_naming
+from multibot_rewrite.record import NamedTuple
 
 REAL, SIMULATED = "real", "simulated"
 DESCRIPTION, SRDF, BRIDGE = "description", "srdf", "bridge"

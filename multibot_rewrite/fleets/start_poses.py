@@ -8,7 +8,6 @@ from __future__ import annotations
 import re
 import shlex
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple
 
 from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.companions.rviz.rewrite import world_frame
@@ -27,6 +26,7 @@ from multibot_rewrite.fleets.start_pose_rules import (
 )
 from multibot_rewrite.graph.transforms import Edge
 from multibot_rewrite.naming import Naming
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.bridged_topics import TF_TYPE, bridge_data
 from multibot_rewrite.remap.records import TOPIC
 from multibot_rewrite.remap.targets import placed, target_of

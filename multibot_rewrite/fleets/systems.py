@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple
 
 from multibot_rewrite.closure.frames import Sender
 from multibot_rewrite.closure.topics import End
@@ -26,6 +25,7 @@ from multibot_rewrite.fleets.robot_nodes import RobotEvidence
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER, sent_by
 from multibot_rewrite.readback.nodes import ReadNode
 from multibot_rewrite.readback.reading import FRAME, read
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, TOPIC, EndpointName, NodeFacts
 from multibot_rewrite.rosnames import expand
 from multibot_rewrite.steps.document import read_document

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Collection, Iterator
-from typing import NamedTuple
 
 from multibot_rewrite.companions.bridge_entry import BOTH, GZ, ROS
 from multibot_rewrite.companions.names.robot_topics import robot_topic
@@ -17,6 +16,7 @@ from multibot_rewrite.fleets.bridge_file import below
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.output_file import yaml_of
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.bridged_topics import DIRECTIONS, bridged_topics
 from multibot_rewrite.remap.records import PUBLISHES, TOPIC
 

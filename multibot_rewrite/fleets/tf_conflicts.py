@@ -6,7 +6,6 @@ What a node publishes is what its parameters say, else its defaults (``evidence`
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from typing import NamedTuple
 
 from multibot_rewrite.companions.params.sections import PARAMETERS, raw_sections
 from multibot_rewrite.companions.yaml_text import YamlText, line_of, read_yaml
@@ -20,6 +19,7 @@ from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.fleets.robot_groups import RobotGroup, group_robots
 from multibot_rewrite.graph.expectation import tf_topic
 from multibot_rewrite.graph.transforms import Edge
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.own_defaults import frame_sites
 from multibot_rewrite.rewriters.text import text_at
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Mapping
 from itertools import pairwise
-from typing import NamedTuple
 
 from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
@@ -15,6 +14,7 @@ from multibot_rewrite.fleets.output_values import OutputValue
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.graph.expectation import USUAL_FRAMES
 from multibot_rewrite.naming import TF_TOPICS, Naming
+from multibot_rewrite.record import NamedTuple
 
 TF = tuple(f"/{it}" for it in TF_TOPICS)
 # Parameters and properties that make nodes put a prefix before frames.

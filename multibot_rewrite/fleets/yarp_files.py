@@ -11,7 +11,6 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
 
 from lxml.etree import _Element
 
@@ -21,6 +20,7 @@ from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.model import Edit, InputError
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.insert import ESCAPES
 from multibot_rewrite.rewriters.text import text_of
 from multibot_rewrite.sources.packages import HIGHEST, package_folder

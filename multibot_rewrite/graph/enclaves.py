@@ -9,10 +9,10 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
-from typing import NamedTuple
 
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint
 from multibot_rewrite.graph.tool_nodes import TOOL_NODES
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import (
     ACTION,
     CALLS,

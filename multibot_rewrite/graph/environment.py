@@ -10,7 +10,6 @@ import re
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from math import inf
-from typing import NamedTuple
 
 from multibot_rewrite.graph.snapshot import (
     CHANGING,
@@ -22,6 +21,7 @@ from multibot_rewrite.graph.snapshot import (
 )
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.record import NamedTuple
 
 MAX_DOMAIN = 232
 RANGES = ("OFF", "LOCALHOST", "SUBNET", "SYSTEM_DEFAULT")

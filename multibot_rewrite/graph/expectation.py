@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence, Set
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS, Naming, spelled
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import EndpointName, NodeFacts, Table
 from multibot_rewrite.remap.ways import HOST, PLUGIN, PROCESS, deliveries
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Sequence
-from typing import NamedTuple
 
 from multibot_rewrite.graph.environment import UNFINISHED, participants, unfinished
 from multibot_rewrite.graph.snapshot import (
@@ -26,6 +25,7 @@ from multibot_rewrite.graph.snapshot import (
 )
 from multibot_rewrite.graph.states import NodeState
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.record import NamedTuple
 
 _FROM_GOOD_TO_BAD = (EXPECTED, QUIET, TIMEOUT, CHANGING)
 _MANY = 4

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping
-from typing import NamedTuple
 
 from multibot_rewrite.graph.snapshot import Snapshot
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import SERVES, SERVICE
 
 GET_STATE = "lifecycle_msgs/srv/GetState"

@@ -9,10 +9,11 @@ QoS is the default, and endpoints that depend on a condition are left out.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedTopic
 from multibot_rewrite.graph.transforms import Edge, Edges
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.applied_rules import (
     RunningNode,
     bound_to,

@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping
 from functools import cache, lru_cache, partial
 from sys import intern
 from types import NoneType
-from typing import Any, NamedTuple, cast, get_args, get_origin, get_type_hints
+from typing import Any, cast, get_args, get_origin, get_type_hints
 
 from multibot_rewrite.bounded import load_json
 from multibot_rewrite.gc_pause import gc_paused
@@ -29,6 +29,7 @@ from multibot_rewrite.graph.json_values import (
 )
 from multibot_rewrite.graph.states import NodeState
 from multibot_rewrite.model import InputError
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import KINDS, ROLES
 
 SCHEMA = 1

@@ -6,7 +6,8 @@ A graph shows names and types alone; these need a service call to each node (``g
 from __future__ import annotations
 
 import json
-from typing import NamedTuple
+
+from multibot_rewrite.record import NamedTuple
 
 
 class Controller(NamedTuple):

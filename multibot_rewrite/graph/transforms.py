@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from multibot_rewrite.naming import Naming, spelled
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.conditions import holds
 from multibot_rewrite.remap.records import PUBLISHES, NodeFacts
 

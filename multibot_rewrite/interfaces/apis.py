@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cache
 from importlib.resources import files
-from typing import NamedTuple
+
+from multibot_rewrite.record import NamedTuple
 
 ARGUMENT = "ARGUMENT"
 HELPER, OWN = "helper", "own"

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
 
 from multibot_rewrite.interfaces.records import Class, Fact
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.node_library import NodeLibrary
 from multibot_rewrite.remap.records import Endpoint
 

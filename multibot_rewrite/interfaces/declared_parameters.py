@@ -11,7 +11,6 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from typing import NamedTuple
 
 from multibot_rewrite.interfaces.expressions import is_node
 from multibot_rewrite.interfaces.parameter_facts import (
@@ -22,6 +21,7 @@ from multibot_rewrite.interfaces.parameter_facts import (
     text_of,
 )
 from multibot_rewrite.interfaces.records import Call, Place, Source, Value
+from multibot_rewrite.record import NamedTuple
 
 ID = "<id>"
 _UNKNOWN = re.compile(r"<([^<>]*)>")

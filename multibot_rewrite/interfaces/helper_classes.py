@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple
 
 from multibot_rewrite.interfaces.plugin_parameters import ANY, Parameter, declared_types, type_of
+from multibot_rewrite.record import NamedTuple
 
 _CLASS = re.compile(r"^\s*class\s+(\w+)", re.MULTILINE)
 _READS = re.compile(r"\b_?prefix\s*\+\s*\"(\w+)\"")

@@ -6,11 +6,11 @@ import re
 from collections.abc import Iterator
 from functools import cache
 from importlib.resources import files
-from typing import NamedTuple
 
 from multibot_rewrite.interfaces.nodes import facts_of
 from multibot_rewrite.interfaces.records import Class, Fact, Place
 from multibot_rewrite.interfaces.scope import Index
+from multibot_rewrite.record import NamedTuple
 
 # What a name that is made at run time depends on.
 _MODE = re.compile(r"(?:plugin|tree has) \w+")

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from importlib.resources import files
-from typing import NamedTuple
 
 from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.interfaces.parameter_tables import LaunchFact
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import has_release
 
 NOT_STARTED, NOT_OURS = "not started", "not ours"

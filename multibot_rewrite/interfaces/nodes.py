@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections import deque
 from collections.abc import Iterator
-from typing import NamedTuple
 
 from multibot_rewrite.interfaces.apis import ARGUMENT, HELPER, OWN, Api, apis
 from multibot_rewrite.interfaces.expressions import is_node, last, template_arguments
@@ -20,6 +19,7 @@ from multibot_rewrite.interfaces.scope import (
     text_in,
     type_of,
 )
+from multibot_rewrite.record import NamedTuple
 
 DEEPEST = 12
 # The function in which a package of tree nodes names its classes.

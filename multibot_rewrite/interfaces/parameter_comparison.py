@@ -11,10 +11,10 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from importlib.resources import files
-from typing import NamedTuple
 
 from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.interfaces.parameter_facts import EMPTY, NO_DEFAULT, YAML, ParameterFact
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import has_release
 
 ID = "<id>"

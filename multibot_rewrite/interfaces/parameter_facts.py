@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
 
 from multibot_rewrite.interfaces.records import Place
+from multibot_rewrite.record import NamedTuple
 
 # How a source comes to a parameter.
 YAML, DECLARED, READ = "yaml", "declared", "read"

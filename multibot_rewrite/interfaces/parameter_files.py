@@ -6,12 +6,12 @@ Source: https://github.com/PickNikRobotics/generate_parameter_library (README, "
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
 import yaml
 
 from multibot_rewrite.bounded import compose_yaml
 from multibot_rewrite.interfaces.parameter_facts import text_of
+from multibot_rewrite.record import NamedTuple
 
 # The types of parameters; an array may have a length behind it: double_array_fixed_6.
 _TYPES = ("bool", "double", "int", "string", "none")

@@ -11,7 +11,6 @@ import sys
 from collections.abc import Iterable, Iterator
 from itertools import groupby
 from pathlib import Path
-from typing import NamedTuple
 
 from multibot_rewrite.interfaces.cpp import read_cpp
 from multibot_rewrite.interfaces.declared_parameters import (
@@ -30,6 +29,7 @@ from multibot_rewrite.interfaces.parameter_facts import (
 from multibot_rewrite.interfaces.parameter_files import file_parameters
 from multibot_rewrite.interfaces.records import Place
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import RELEASES
 
 _CPP = (".cpp", ".cc", ".hpp", ".h")

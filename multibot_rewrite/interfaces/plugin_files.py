@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import NamedTuple
 
 from multibot_rewrite.interfaces.hardware_parameters import read_hardware
 from multibot_rewrite.interfaces.helper_classes import by_prefix
@@ -21,6 +20,7 @@ from multibot_rewrite.interfaces.plugin_parameters import (
     reads_any,
 )
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import RELEASES
 
 HEAD = """\

@@ -11,11 +11,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from multibot_rewrite.interfaces.expressions import text_of
 from multibot_rewrite.interfaces.plugin_demands import required_in, words_in
 from multibot_rewrite.interfaces.syntax import nodes_of
+from multibot_rewrite.record import NamedTuple
 
 if TYPE_CHECKING:
     from multibot_rewrite.interfaces.syntax import Node

@@ -8,7 +8,8 @@ colon: ``<Node:name>``.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
+
+from multibot_rewrite.record import NamedTuple
 
 
 class Place(NamedTuple):

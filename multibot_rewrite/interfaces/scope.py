@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
-from typing import NamedTuple, TypeVar
+from typing import TypeVar
 
 from multibot_rewrite.interfaces.expressions import last, template_arguments
 from multibot_rewrite.interfaces.records import (
@@ -16,6 +16,7 @@ from multibot_rewrite.interfaces.records import (
     Source,
     Value,
 )
+from multibot_rewrite.record import NamedTuple
 
 DEEPEST = 8
 # Whose classes a repository inherits from, besides its own.

@@ -5,11 +5,11 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from typing import NamedTuple
 
 from multibot_rewrite.bounded import read_bytes
 from multibot_rewrite.proposal.looking import Looked
 from multibot_rewrite.proposal.searching import MOST_BYTES, Found, home_of
+from multibot_rewrite.record import NamedTuple
 
 # Descriptions whose names are looked at.
 MOST = 60

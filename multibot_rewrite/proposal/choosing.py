@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from math import ceil
-from typing import Any, NamedTuple
+from typing import Any
 
 from multibot_rewrite.proposal.companions import Companions
 from multibot_rewrite.proposal.looking import NO_SIMULATOR, Looked, holds_the_world
+from multibot_rewrite.record import NamedTuple
 
 PER_ROBOT, FRAMES = "tf-per-robot", "frames-per-robot"
 # Metres between the outlines of two robots, and the step to which distances are rounded.

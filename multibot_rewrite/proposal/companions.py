@@ -8,7 +8,6 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple
 
 from multibot_rewrite.companions.params.known_nodes import load_known_nodes
 from multibot_rewrite.companions.yaml_text import read_yaml
@@ -17,6 +16,7 @@ from multibot_rewrite.model import InputError
 from multibot_rewrite.proposal.belonging import moveit_of_others, of_others
 from multibot_rewrite.proposal.looking import CLASSIC, GZ, NO_SIMULATOR, Looked
 from multibot_rewrite.proposal.searching import Found, without
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.sources.packages import package_of
 from multibot_rewrite.sources.read import read_file
 

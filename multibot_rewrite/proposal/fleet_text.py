@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 from multibot_rewrite.naming import LAYOUTS
 from multibot_rewrite.printable import one_line
 from multibot_rewrite.proposal.choosing import Choice, Member
 from multibot_rewrite.proposal.looking import Looked
+from multibot_rewrite.record import NamedTuple
 
 # Files not taken that are named.
 MOST = 10

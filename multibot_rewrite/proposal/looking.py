@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
 
 from lxml import etree
 
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import InputError
 from multibot_rewrite.proposal.needed_values import NeededValues
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.reports.xacro_arguments import find_arguments, names_robots
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.sources.access import Reach

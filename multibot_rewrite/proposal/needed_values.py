@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
-from typing import NamedTuple
 
 from multibot_rewrite.bounded import read_bytes
+from multibot_rewrite.record import NamedTuple
 
 MOST_BYTES = 1_000_000
 # What gives each robot its own names.

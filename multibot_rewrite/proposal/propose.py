@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
 
 from multibot_rewrite.checks.footprint import reach_of
 from multibot_rewrite.model import UsageError
@@ -23,6 +22,7 @@ from multibot_rewrite.proposal.fleet_text import Proposal
 from multibot_rewrite.proposal.looking import CLASSIC, Looked, look, ranked, with_own_arguments
 from multibot_rewrite.proposal.needed_values import NeededValues
 from multibot_rewrite.proposal.searching import Found, search, without
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.sources.access import Reach
 

@@ -8,10 +8,10 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Container, Iterable, Iterator, Sequence
-from typing import NamedTuple
 
 from multibot_rewrite.bounded import read_bytes
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.sources.packages import package_of
 
 # Files that are looked at; of a larger one nothing is read.

@@ -6,9 +6,9 @@ The first match counts: a node's own arguments come before those of its process.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from typing import NamedTuple
 
 from multibot_rewrite.controller_ways import ControllerWay, controller_way
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import MANAGER, PUBLISHES, Endpoint, NodeTable, Table
 from multibot_rewrite.remap.ways import (
     COMPONENT,

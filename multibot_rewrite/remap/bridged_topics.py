@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
-from typing import Any, NamedTuple, cast
+from typing import Any, cast
 
 from lxml import etree
 
 from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS, Naming, spelled
 from multibot_rewrite.readback.model_namespaces import scoped_namespace
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.model_namespaces import is_model_namespace
 from multibot_rewrite.rewriters.text import text_at
 from multibot_rewrite.rewriters.tree import library_key

@@ -8,10 +8,10 @@ value of another parameter. The class of a plugin may be written without its nam
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import NamedTuple
 
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.record import NamedTuple
 
 Values = Callable[[str], object]
 _CONDITION = lazy_compile(r"(?P<parameter>[^\s=!]+)(?:\s*(?P<how>!=|=|\bhas\b)\s*(?P<value>.+?))?")

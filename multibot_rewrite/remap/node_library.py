@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import NamedTuple, TypeVar
+from typing import TypeVar
 
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import share_release
 from multibot_rewrite.remap.endpoint_entries import checked_endpoint, endpoints_of
 from multibot_rewrite.remap.fact_words import (

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import NamedTuple
 
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import has_release
 from multibot_rewrite.remap.records import NodeFacts
 

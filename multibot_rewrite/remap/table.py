@@ -7,11 +7,12 @@ by resolving every name with its rules as rcl does (``rosnames``), not by trusti
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple, TypeAlias
+from typing import TypeAlias
 
 from multibot_rewrite.controller_ways import controller_way
 from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.naming import NAMESPACE, Naming
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.applied_rules import is_stand_in
 from multibot_rewrite.remap.records import (
     ACTION,

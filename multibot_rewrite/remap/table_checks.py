@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cache
-from typing import NamedTuple
 
 from multibot_rewrite.controller_ways import controller_way
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.naming import NAMESPACE, Naming
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import RELEASES
 from multibot_rewrite.remap.records import (
     MANAGER,

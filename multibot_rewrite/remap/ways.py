@@ -10,9 +10,10 @@ navigation2 ``nav2_costmap_2d/src/costmap_2d_ros.cpp``; gz_ros2_control ``gz_ros
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import NamedTuple, TypeAlias
+from typing import TypeAlias
 
 from multibot_rewrite.controller_ways import controller_way
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import has_release
 from multibot_rewrite.remap.records import (
     EndpointName,

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
 
 from multibot_rewrite.checks.mentions import MENTIONED, kept, mentioned
 from multibot_rewrite.findings.place import locate
 from multibot_rewrite.model import Claim, Site
 from multibot_rewrite.naming import FRAME_KINDS, PREFIX, TOPIC_KINDS, Naming
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.reports.paths import tag_path
 from multibot_rewrite.rewriters.forms import IN_FRONT
 from multibot_rewrite.rewriters.insert import Insertion, without

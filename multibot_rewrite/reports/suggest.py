@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from multibot_rewrite.checks.mentions import MENTIONED
 from multibot_rewrite.model import VocabularyError
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.reports.paths import short_name
 from multibot_rewrite.reports.survey import loaded_by
 from multibot_rewrite.rewriters.forms import Declared

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from fnmatch import fnmatchcase
-from typing import NamedTuple, TypeVar
+from typing import TypeVar
 
 from multibot_rewrite.checks.audit import is_unknown
 from multibot_rewrite.checks.mentions import MENTIONED, unclaimed_mentions
 from multibot_rewrite.findings.place import locate
 from multibot_rewrite.model import Claim, InputError
 from multibot_rewrite.naming import DECLARED_KINDS
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.reports.paths import plugin_name, tag_path
 from multibot_rewrite.rewriters.spelling import ResolvedName
 from multibot_rewrite.rewriters.text import text_at

@@ -5,10 +5,10 @@ from __future__ import annotations
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
-from typing import NamedTuple
 
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import InputError
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.sources.access import BOUNDED, Reach
 from multibot_rewrite.sources.expand import expand, expand_traced

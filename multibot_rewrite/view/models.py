@@ -8,9 +8,10 @@ from __future__ import annotations
 import io
 import os
 from collections.abc import Iterator, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 from multibot_rewrite.model import InputError, MultibotError
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.sources.packages import package_folder
 
 INSTALL = "the view needs yourdfpy: pip install 'multibot_rewrite[view]'"

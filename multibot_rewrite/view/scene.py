@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import NamedTuple
 
 from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.fleets.fleet_file import Sources
@@ -15,6 +14,7 @@ from multibot_rewrite.graph.rules.tf_trees import tree_topic
 from multibot_rewrite.graph.snapshot import GraphFrame, Snapshot
 from multibot_rewrite.library import Prepared
 from multibot_rewrite.model import Change
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.reports.changes import list_changes
 from multibot_rewrite.steps.document import Document
 from multibot_rewrite.view.heard import HeardTree, LinkFrames, heard_trees

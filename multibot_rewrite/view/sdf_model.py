@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import pi, radians
-from typing import NamedTuple, cast
+from typing import cast
 
 from lxml.etree import _Element
 
@@ -17,6 +17,7 @@ from multibot_rewrite.checks.pose import Pose
 from multibot_rewrite.checks.poses import HERE, minus, placed, sdf_pose
 from multibot_rewrite.checks.rotation import inverse, matrix_of_quaternion, turned
 from multibot_rewrite.model import InputError
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.view.models import GREY, Joint, Matrix, Model, Shape, mesh_shape
 
 MODEL = "__model__"

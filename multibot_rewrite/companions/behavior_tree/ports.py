@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from functools import cache
 from importlib.resources import files
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from multibot_rewrite.bounded import load_yaml
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.steps.document import Document
 
 if TYPE_CHECKING:

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from importlib.resources import files
-from typing import Any, NamedTuple
+from typing import Any
 
 import yaml
 
 from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.companions.names.rename_map import KINDS, CompanionNames, is_declared
 from multibot_rewrite.companions.yaml_text import is_text, pairs
+from multibot_rewrite.record import NamedTuple
 
 KEEP = "keep"
 # The kind of name that a value is, or keys with the shape below each.

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
 
 import yaml
 
@@ -30,6 +29,7 @@ from multibot_rewrite.companions.template import TAG_SLOT, check_no_slots, make_
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, line_of, quoted
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import NAMESPACE
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import NodeFacts
 
 # The nodes that read these files, as the stacks call them.

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from functools import lru_cache
-from typing import NamedTuple
 
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.names.by_kind import is_plain
 from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.companions.template import NAMESPACE_SLOT
 from multibot_rewrite.naming import NAMESPACE
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import Endpoint, NodeFacts
 from multibot_rewrite.remap.stacks import built_in, is_apart
 from multibot_rewrite.remap.table import node_table, parsed

@@ -9,10 +9,10 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
 from importlib.resources import files
-from typing import NamedTuple
 
 from multibot_rewrite.bounded import read_text
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import has_release
 from multibot_rewrite.remap.fact_words import (
     FACT_KEYS,

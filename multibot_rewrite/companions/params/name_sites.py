@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from typing import NamedTuple
 
 import yaml
 
@@ -19,6 +18,7 @@ from multibot_rewrite.companions.params.known_nodes import (
 from multibot_rewrite.companions.params.sections import ParamSection
 from multibot_rewrite.companions.yaml_text import YamlText, items, line_of
 from multibot_rewrite.model import InputError
+from multibot_rewrite.record import NamedTuple
 
 STRING = "tag:yaml.org,2002:str"
 NULL = "tag:yaml.org,2002:null"

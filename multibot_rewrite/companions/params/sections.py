@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple
 
 import yaml
 
@@ -29,6 +28,7 @@ from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import spelled
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.stacks import apart_nodes, is_apart
 
 PARAMETERS = "ros__parameters"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple
 
 import yaml
 
@@ -25,6 +24,7 @@ from multibot_rewrite.companions.yaml_text import Splice, YamlText, found_at, pa
 from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.naming import NAMESPACE
+from multibot_rewrite.record import NamedTuple
 
 DEFAULT = "# multibot: the default is every robot's"
 OFF = "# multibot: the default puts the namespace before frames"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import NamedTuple
 
 import yaml
 
@@ -39,6 +38,7 @@ from multibot_rewrite.companions.yaml_blocks import (
     newline,
 )
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, pairs, quoted, replaced
+from multibot_rewrite.record import NamedTuple
 
 Robots = Sequence[RvizRobot]
 Wanted = Callable[[RvizItem], bool]

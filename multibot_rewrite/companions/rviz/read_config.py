@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from importlib.resources import files
-from typing import Any, NamedTuple
+from typing import Any
 
 import yaml
 
@@ -13,6 +13,7 @@ from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.companions.yaml_blocks import Block, blocks, is_block
 from multibot_rewrite.companions.yaml_text import YamlText, line_of, pairs, refuse_anchors
 from multibot_rewrite.model import InputError
+from multibot_rewrite.record import NamedTuple
 
 MANAGER = "Visualization Manager"
 GROUP = "rviz_common/Group"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
 
 import yaml
 
@@ -35,6 +34,7 @@ from multibot_rewrite.companions.yaml_text import Splice, YamlText, replaced, sp
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.model import ProofError, UsageError
 from multibot_rewrite.naming import TF_TOPICS, Naming
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import TOPIC
 from multibot_rewrite.remap.targets import target_of
 

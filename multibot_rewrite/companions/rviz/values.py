@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple
 
 import yaml
 
@@ -14,6 +13,7 @@ from multibot_rewrite.companions.rviz.colours import Colour
 from multibot_rewrite.companions.rviz.read_config import RvizItem, ValuePlace, text_of
 from multibot_rewrite.companions.yaml_text import Splice, replaced
 from multibot_rewrite.naming import NAMESPACE
+from multibot_rewrite.record import NamedTuple
 
 TOPIC, GRAPH_NAMESPACE, FRAME = "topic", "namespace", "frame"
 LINK, JOINT, GROUP = "link", "joint", "group"

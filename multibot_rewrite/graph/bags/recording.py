@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable
-from typing import NamedTuple
 
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.snapshot import (
@@ -16,6 +15,7 @@ from multibot_rewrite.graph.snapshot import (
     Qos,
     Snapshot,
 )
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import PUBLISHES, TOPIC
 
 # In place of the RMW: such a snapshot has no nodes, so only the rules about frames ask it.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.findings.rule import Rule, declare
@@ -12,6 +12,7 @@ from multibot_rewrite.graph.bags.recording import RecordedTopic, Recording
 from multibot_rewrite.graph.expectation import EVERYWHERE, Expectation, PlannedEndpoint
 from multibot_rewrite.graph.rules.ownership import NameOwnership, frame_ownership, name_ownership
 from multibot_rewrite.graph.wording import SEVERAL, shorten
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import PUBLISHES, TOPIC
 
 # Topics of one robot and of another are as often, unless something is wrong: so many times.

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from functools import cache
-from typing import NamedTuple
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.dangers.seen import (
@@ -20,6 +19,7 @@ from multibot_rewrite.graph.dangers.seen import (
 from multibot_rewrite.graph.rules.declaration import danger_rule
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.nearest import MISTYPED, nearest
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import TOPIC
 
 # What a robot measures is in its own frames. A pose, a path or a marker may be in another robot's.

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
 
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.graph.bags.recording import RECORDER, is_recorded
@@ -17,6 +16,7 @@ from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.naming import LAYOUTS, Layout
 from multibot_rewrite.plural import plural
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import PUBLISHES, TOPIC
 
 

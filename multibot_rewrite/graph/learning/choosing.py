@@ -5,12 +5,12 @@ from __future__ import annotations
 import re
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping, Sequence
-from typing import NamedTuple
 
 from multibot_rewrite.graph.snapshot import LISTENER, Snapshot
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.nearest import nearest_few
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rosnames import check_full_name, check_namespace
 
 # A tf2 listener without a node creates its own node, named after its address.

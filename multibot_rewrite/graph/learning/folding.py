@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
-from typing import NamedTuple
 
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import (
     ACTION,
     CALLS,

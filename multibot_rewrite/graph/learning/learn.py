@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple
 
 from multibot_rewrite.graph.learning.choosing import (
     Helpers,
@@ -28,6 +27,7 @@ from multibot_rewrite.graph.learning.folding import (
 from multibot_rewrite.graph.snapshot import GraphEndpoint, Snapshot
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import TF_TOPICS
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.bridged_topics import TF_TYPE
 from multibot_rewrite.remap.node_library import NodeLibrary
 from multibot_rewrite.remap.records import (

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import NamedTuple
 
 from multibot_rewrite.graph.learning.folding import CLOCK
 from multibot_rewrite.graph.learning.learn import EVERY_NODE, LearnedNode
 from multibot_rewrite.graph.snapshot import GraphEndpoint, Qos, Snapshot
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.node_library import NodeLibrary
 from multibot_rewrite.remap.nodl.document import POLICIES
 from multibot_rewrite.remap.nodl.writing import DEFAULT, UNKNOWN_QOS, NodlFile, document_of

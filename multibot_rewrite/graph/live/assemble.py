@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 from multibot_rewrite.graph.json_values import FARTHEST
 from multibot_rewrite.graph.snapshot import (
@@ -16,6 +16,7 @@ from multibot_rewrite.graph.snapshot import (
     GraphFrame,
     GraphNode,
 )
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import PUBLISHES, TOPIC
 
 # Participants announce themselves every 3 s: a shorter quiet time proves nothing.

@@ -13,7 +13,7 @@ import threading
 import time
 from collections.abc import Generator, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
-from typing import IO, NamedTuple, cast
+from typing import IO, cast
 
 from multibot_rewrite.graph.live.request import (
     ENDED,
@@ -33,6 +33,7 @@ from multibot_rewrite.graph.snapshot import (
     record_from,
 )
 from multibot_rewrite.graph.states import NodeState
+from multibot_rewrite.record import NamedTuple
 
 INSTALL = (
     "source ROS 2 (. /opt/ros/jazzy/setup.bash) or, on Linux, pip install 'multibot_rewrite[ros]'"

@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any
 
 from multibot_rewrite.graph import environment
 from multibot_rewrite.graph.live import assemble, queries, ros
@@ -34,6 +34,7 @@ from multibot_rewrite.graph.snapshot import (
     to_json,
 )
 from multibot_rewrite.graph.states import NodeState
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import ACTION, CALLS, SERVES
 
 # The shortest pause between two polls. A pause is also so many times as long as a poll took: a

@@ -8,10 +8,11 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import suppress
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import Any
 
 from multibot_rewrite.graph.live import assemble
 from multibot_rewrite.graph.snapshot import UNKNOWN_NODE, GraphEndpoint, Qos
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import (
     ACTION,
     CALLS,

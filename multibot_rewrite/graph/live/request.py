@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Collection, Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 from multibot_rewrite.model import MultibotError
+from multibot_rewrite.record import NamedTuple
 
 # The child's exit codes besides 0; rcl itself ends a process with 102.
 NO_RCLPY, ENDED = 4, 130

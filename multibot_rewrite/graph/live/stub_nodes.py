@@ -11,7 +11,7 @@ import sys
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from functools import cache
-from typing import Any, NamedTuple
+from typing import Any
 
 from multibot_rewrite.graph.live import ros
 from multibot_rewrite.graph.live.worker import Send, run_worker
@@ -25,6 +25,7 @@ from multibot_rewrite.graph.rehearsal import (
 )
 from multibot_rewrite.graph.snapshot import LISTENER
 from multibot_rewrite.graph.transforms import Edge
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import ACTION, CALLS, PUBLISHES, SERVES, SUBSCRIBES, TOPIC
 
 # The rate of robot_state_publisher and of most odometry sources.

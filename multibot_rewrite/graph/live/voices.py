@@ -6,7 +6,7 @@ the numbers of one transform go back again and again, several publishers count s
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from multibot_rewrite.record import NamedTuple
 
 # A publisher that was started anew goes back once; of what is latched each publisher has one message.
 BACK_MOVING, BACK_LATCHED = 2, 1

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple
 
 from multibot_rewrite.graph.pictures.scene import DrawnEdge, DrawnGroup, DrawnName, DrawnNode, Scene
 from multibot_rewrite.graph.pictures.simplify import (
@@ -14,6 +13,7 @@ from multibot_rewrite.graph.pictures.simplify import (
 )
 from multibot_rewrite.graph.pictures.states import FAULTY, MISSING
 from multibot_rewrite.graph.pictures.text import counted
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import CALLS, PUBLISHES
 
 

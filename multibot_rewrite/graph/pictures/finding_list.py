@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple
 
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.graph.pictures.explanations import rule_link, with_code
@@ -18,6 +17,7 @@ from multibot_rewrite.graph.pictures.scene import FindingRow, Scene
 from multibot_rewrite.graph.pictures.svg import Ids, safe
 from multibot_rewrite.graph.watching import Verdict
 from multibot_rewrite.graph.wording import SEVERAL, shorten
+from multibot_rewrite.record import NamedTuple
 
 # By whether the verdict is good, and whether there is a plan.
 NOTHING = {

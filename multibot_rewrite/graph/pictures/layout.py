@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
-from typing import NamedTuple
 
 from multibot_rewrite.graph.pictures.scene import DrawnEdge, DrawnGroup, DrawnName, DrawnNode
 from multibot_rewrite.graph.pictures.states import FAULTY, STATES
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import PUBLISHES, SERVES
 
 ROW, NODE_ROW, TOP = 24, 34, 40

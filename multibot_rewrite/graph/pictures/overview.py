@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple
 
 from multibot_rewrite.graph.pictures.scene import Crossing
 from multibot_rewrite.graph.pictures.states import FAULTY
 from multibot_rewrite.graph.pictures.svg import LETTER, MEANINGS, WIDTH, safe, tooltip
 from multibot_rewrite.graph.pictures.text import clipped, counted
+from multibot_rewrite.record import NamedTuple
 
 # Space for the arrows above the first row and below the last one.
 MARGIN = 44

@@ -9,7 +9,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from html import escape
 from importlib.resources import files
-from typing import NamedTuple
 
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.graph.check import ALL_RULES
@@ -32,6 +31,7 @@ from multibot_rewrite.graph.snapshot import QUIET, ZENOH
 from multibot_rewrite.graph.watching import Verdict
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.naming import LAYOUTS
+from multibot_rewrite.record import NamedTuple
 
 # The CSS class of a verdict; a good one with findings is not drawn as good.
 LOOKS = {Verdict.PLANNED: "good", Verdict.INCONCLUSIVE: "unsure", Verdict.WRONG: "bad"}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Hashable, Iterable, Mapping
-from typing import NamedTuple, TypeVar
+from typing import TypeVar
 
 from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding
 from multibot_rewrite.graph.pictures.scene import DrawnGroup, Scene
@@ -12,6 +12,7 @@ from multibot_rewrite.graph.pictures.simplify import has_faults, without_common
 from multibot_rewrite.graph.pictures.states import Targets
 from multibot_rewrite.graph.pictures.svg import Ids
 from multibot_rewrite.graph.pictures.text import counted
+from multibot_rewrite.record import NamedTuple
 
 LEVELS = (ERROR, WARNING, INCONCLUSIVE)
 # In a larger fleet only faulty robots are unfolded, and no more than MOST_OPEN.

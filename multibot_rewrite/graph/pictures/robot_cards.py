@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple
 
 from multibot_rewrite.findings.grouping import said_of
 from multibot_rewrite.findings.rule import Rule
@@ -19,6 +18,7 @@ from multibot_rewrite.graph.pictures.states import MISSING
 from multibot_rewrite.graph.pictures.svg import safe
 from multibot_rewrite.graph.pictures.text import counted
 from multibot_rewrite.graph.watching import Verdict
+from multibot_rewrite.record import NamedTuple
 
 # More robots or findings of a card are folded.
 MOST_ROBOTS, MOST_ROWS = 8, 5

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Collection, Container, Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple
 
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.grouping import with_members
@@ -29,6 +28,7 @@ from multibot_rewrite.graph.rules.comparison import EndpointKey, View, make_view
 from multibot_rewrite.graph.snapshot import Environment, GraphEndpoint, Snapshot
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.watching import WORDS, Outcome, judge
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import ACTION, SERVICE, TOPIC
 
 # Packages with the types of endpoints that every node has: logging, parameters, life cycle; and

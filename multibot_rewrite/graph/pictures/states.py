@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain
-from typing import NamedTuple
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.check import ALL_RULES
 from multibot_rewrite.graph.rules.comparison import View
 from multibot_rewrite.graph.rules.tf_trees import tree_topic
+from multibot_rewrite.record import NamedTuple
 
 OK, LEAK, CROSS_TALK, MISSING = "ok", "leak", "cross-talk", "missing"
 UNEXPECTED, CLASH = "unexpected", "clash"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from html import escape
-from typing import NamedTuple
 
 from multibot_rewrite.graph.pictures.layout import OFFERING, GroupLayout, lay_out
 from multibot_rewrite.graph.pictures.scene import DrawnGroup, DrawnName, DrawnNode
@@ -20,6 +19,7 @@ from multibot_rewrite.graph.pictures.states import (
 )
 from multibot_rewrite.graph.pictures.text import clipped, columns, counted, visible
 from multibot_rewrite.graph.pictures.tf_tree_rows import FrameTree
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import ACTION, SERVICE
 
 # What each state means, for the legend and the tooltips.

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple
 
 from multibot_rewrite.graph.check import ALL_RULES
 from multibot_rewrite.graph.expectation import PlannedRobot
@@ -12,6 +11,7 @@ from multibot_rewrite.graph.pictures.states import CLASH, MISSING, OK, States
 from multibot_rewrite.graph.rules.comparison import View
 from multibot_rewrite.graph.rules.tf_trees import tree_topic
 from multibot_rewrite.graph.snapshot import GraphFrame
+from multibot_rewrite.record import NamedTuple
 
 
 class FrameRow(NamedTuple):

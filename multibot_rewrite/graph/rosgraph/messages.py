@@ -6,7 +6,7 @@ They are those of ros2/rcl_interfaces, rosgraph_msgs/msg: since 1.2.3 in Humble,
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from multibot_rewrite.record import NamedTuple
 
 # The numbers of QoSProfile.msg are places in these lists.
 HISTORY = ("SYSTEM_DEFAULT", "KEEP_LAST", "KEEP_ALL", "UNKNOWN")

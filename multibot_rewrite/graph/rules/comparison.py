@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping, Set
-from typing import NamedTuple
 
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
 from multibot_rewrite.graph.rules.ownership import NameOwnership, frame_ownership, name_ownership
@@ -13,6 +12,7 @@ from multibot_rewrite.graph.rules.tf_copies import without_bridged
 from multibot_rewrite.graph.rules.tf_trees import TfTree, tf_trees
 from multibot_rewrite.graph.snapshot import GraphEndpoint, Snapshot
 from multibot_rewrite.graph.tool_nodes import is_tool
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import PUBLISHES, TOPIC
 
 # Node, kind, role and name of an endpoint.

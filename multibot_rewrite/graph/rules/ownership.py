@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple
 
 from multibot_rewrite.graph.expectation import Expectation
+from multibot_rewrite.record import NamedTuple
 
 # What may separate a robot's name from the rest of a segment.
 SEPARATORS = "_-."

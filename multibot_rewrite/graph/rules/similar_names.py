@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from typing import NamedTuple
 
 from multibot_rewrite.graph.rules.ownership import NameOwnership
 from multibot_rewrite.nearest import MISTYPED, nearest
+from multibot_rewrite.record import NamedTuple
 
 # With more names than these, some name is always similar.
 MOST_CANDIDATES = 50

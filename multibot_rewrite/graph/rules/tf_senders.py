@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple
 
 from multibot_rewrite.graph.expectation import Expectation, PlannedRobot
 from multibot_rewrite.graph.rules.comparison import View
 from multibot_rewrite.graph.rules.tf_trees import TfTree, tree_topic
 from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER
+from multibot_rewrite.record import NamedTuple
 
 
 class Sent(NamedTuple):

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
-from typing import NamedTuple
 
 from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.graph.rules.ownership import NameOwnership
 from multibot_rewrite.graph.snapshot import GraphFrame
+from multibot_rewrite.record import NamedTuple
 
 
 class TfTree(NamedTuple):

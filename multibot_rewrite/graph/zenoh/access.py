@@ -9,7 +9,6 @@ with ``@adv`` (zenoh-ext ``advanced_publisher.rs``); ``**`` does not match a par
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from typing import NamedTuple
 
 from multibot_rewrite.graph.expectation import (
     ALWAYS,
@@ -19,6 +18,7 @@ from multibot_rewrite.graph.expectation import (
     PlannedRobot,
 )
 from multibot_rewrite.graph.zenoh.tokens import SPACE
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import ACTION, PUBLISHES, SERVES
 
 Rule = dict[str, object]

@@ -8,7 +8,8 @@ stamp (int32, uint32), frame_id, child_frame_id, and seven doubles, translation 
 from __future__ import annotations
 
 import struct
-from typing import NamedTuple
+
+from multibot_rewrite.record import NamedTuple
 
 _HEADER = 4
 # CDR_BE and CDR_LE; other encapsulations have other alignment.

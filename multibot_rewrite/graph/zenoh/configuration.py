@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.zenoh.access import (
@@ -24,6 +24,7 @@ from multibot_rewrite.graph.zenoh.access import (
     rights,
     robot_rules,
 )
+from multibot_rewrite.record import NamedTuple
 
 ROUTER_FILE = "router.json5"
 # Where rmw_zenoh's sessions look for a router.

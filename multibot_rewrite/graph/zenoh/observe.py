@@ -8,7 +8,6 @@ from __future__ import annotations
 import time
 from collections import Counter
 from collections.abc import Generator, Iterable, Iterator
-from typing import NamedTuple
 
 from multibot_rewrite.graph.live.assemble import frames
 from multibot_rewrite.graph.live.request import Request
@@ -29,6 +28,7 @@ from multibot_rewrite.graph.zenoh.session import NoRouter, RouterSession, opened
 from multibot_rewrite.graph.zenoh.tf import ZenohTf
 from multibot_rewrite.graph.zenoh.tokens import SPACE, Token, read_token
 from multibot_rewrite.plural import plural
+from multibot_rewrite.record import NamedTuple
 
 POLL_SECONDS = 0.05
 # A watched graph is shown so long after a change, because changes come in groups, but not later.

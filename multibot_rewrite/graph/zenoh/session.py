@@ -9,10 +9,11 @@ import json
 from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any, NamedTuple
+from typing import Any
 
 from multibot_rewrite.graph.live.request import RosUnusable
 from multibot_rewrite.model import InputError
+from multibot_rewrite.record import NamedTuple
 
 INSTALL = "pip install 'multibot_rewrite[zenoh]' (or pip install eclipse-zenoh)"
 # The router answers in milliseconds; over a slow network connecting takes some time.

@@ -13,9 +13,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
 from math import inf
-from typing import NamedTuple
 
 from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphNode, Qos
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import (
     ACTION,
     CALLS,

@@ -11,7 +11,7 @@ import pathlib
 import re
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 import yaml
 
@@ -22,6 +22,7 @@ from multibot_rewrite.evidence.spawners import controller_files
 from multibot_rewrite.launch.door import of_launch, of_launch_ros
 from multibot_rewrite.launch.graph.made_files import source_of
 from multibot_rewrite.launch.graph.places import place_of
+from multibot_rewrite.record import NamedTuple
 
 _LIMIT = 1 << 24
 # launch_ros says so of a text that is no YAML or value (jazzy, utilities/evaluate_parameters.py:82).

@@ -11,10 +11,10 @@ import sys
 from collections.abc import Iterable, Iterator, Mapping
 from importlib.resources import files
 from pathlib import Path
-from typing import NamedTuple
 
 from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.interfaces.parameter_facts import ParameterFact, read_parameters
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import RELEASES
 
 ID = "<id>."

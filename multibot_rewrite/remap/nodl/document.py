@@ -9,8 +9,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
-from typing import NamedTuple
 
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import (
     ACTION,
     CALLS,

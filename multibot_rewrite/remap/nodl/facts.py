@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from typing import NamedTuple
 
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.node_library import NodeLibrary, stack_of
 from multibot_rewrite.remap.nodl.document import Document, Parameter
 from multibot_rewrite.remap.nodl.lookup import (

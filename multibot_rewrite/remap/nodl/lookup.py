@@ -9,10 +9,10 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from typing import NamedTuple
 
 from multibot_rewrite.bounded import read_text
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.nodl.document import Document, Include, parse
 
 INDEX = os.path.join("share", "ament_index", "resource_index", "nodl")

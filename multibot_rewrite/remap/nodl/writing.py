@@ -7,9 +7,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Sequence
-from typing import NamedTuple, TypeAlias
+from typing import TypeAlias
 
 from multibot_rewrite.model import ProofError, UsageError
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.nodl.document import GROUP, SECTIONS, parse
 from multibot_rewrite.remap.nodl.lookup import SUFFIXES
 from multibot_rewrite.remap.records import TOPIC, Endpoint
