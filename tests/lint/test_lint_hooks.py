@@ -211,6 +211,9 @@ def test_pre_commit_runs_the_hook(clone: Path, tmp_path: Path) -> None:
     here = repository(tmp_path / "r", GOOD)
     (here / ".pre-commit-config.yaml").write_text(PRE_COMMIT.replace(HOME, str(clone)))
     git(here, "add", ".")
+    git(here, "commit", "-q", "-m", "hooks")
+    (here / "notes.txt").write_text("a rover\n")
+    git(here, "add", ".")
     env = {"PRE_COMMIT_HOME": str(tmp_path / "home"), "PYTHONPATH": ""}
     command = [sys.executable, "-m", "pre_commit", "run", "--verbose"]
 

@@ -139,7 +139,9 @@ def problems(document: YamlText, text: str, naming: Naming) -> Iterator[str]:
 
 def is_filled(old: str, new: str) -> bool:
     """Is it as launch files fill it in, but that a name gets the robot's as any other does?"""
-    bare = re.sub(r"<(robot_namespace|namespace|robot_name)>|\$\(var (namespace|ns)\)", "", old)
+    bare = re.sub(
+        r"<(robot_namespace|namespace|robot_name)>|\$\(var (namespace|ns)\)|\$\{prefix\}", "", old
+    )
     whole = old.replace(old.strip("/"), ROBOT)
     return bare != old and (new == whole if not bare.strip("/") else is_respelled(bare, new))
 
@@ -195,7 +197,10 @@ def is_respelled(old: str, new: str) -> bool:
 
 
 def is_off(before: yaml.ScalarNode, after: yaml.ScalarNode) -> bool:
-    return before.tag.endswith(":bool") and after.value == "false"
+    """Is it off, or a prefix of frames that is the namespace, of which controllers make none?"""
+    return (before.tag.endswith(":bool") and after.value == "false") or (
+        (before.value, after.value) == ("~", "/")
+    )
 
 
 def wrong_names(old: yaml.Node | None, new: yaml.Node | None, naming: Naming) -> Iterator[str]:
