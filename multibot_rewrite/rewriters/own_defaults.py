@@ -100,13 +100,12 @@ def second_senders(hosts: Hosts, naming: Naming) -> frozenset[etree._Element]:
 
     Their frames stay below the model's name, where they are in nobody's way.
     """
-    senders = [
-        (host, sites) for host, section in hosts if (sites := frame_sites(host, section, naming))
-    ]
-    given = {host for host, sites in senders if any(text_at(host, it.path) for it in sites)}
+    sections = dict(hosts)
+    senders = [it for it, section in sections.items() if frame_sites(it, section, naming)]
+    given = {it for it in senders if any(text_at(it, at.path) for at in _of_model(sections[it]))}
     taken = {model_of(host) for host in given}
     second = set()
-    for host, _ in senders:
+    for host in senders:
         model = model_of(host)
         if host not in given and (model in taken or _is_nested(model)):
             second.add(host)
@@ -120,5 +119,9 @@ def _is_nested(model: etree._Element) -> bool:
 
 def frame_sites(host: etree._Element, section: VocabularySection, naming: Naming) -> list[Site]:
     """Where the frames of a transform are, of a system that sends one with these parameters."""
-    sites = [it for it in section.sites if MODEL in it.default and it.kinds[:1] == ("frame",)]
-    return [it for it in sites if default_of(host, it.default, naming)]
+    return [it for it in _of_model(section) if default_of(host, it.default, naming)]
+
+
+def _of_model(section: VocabularySection) -> list[Site]:
+    """Where the frames are that are below the model's name by default."""
+    return [it for it in section.sites if MODEL in it.default and it.kinds[:1] == ("frame",)]

@@ -69,6 +69,12 @@ def test_the_second_reading_refuses_frames_that_were_not_filled_in(
         rewrite(source, "robot1", layout=layout)
 
 
+def test_two_drives_of_nothing_but_the_world_are_filled_in_alike() -> None:
+    drive = DRIVE.format("<child_frame_id>world</child_frame_id>")
+    source = f'<robot name="r"><link name="world"/><gazebo>{drive}{drive}</gazebo></robot>'
+    assert rewrite(source, "robot1", layout="L4").data.count(b"<frame_id>odom/robot1<") == 2
+
+
 CAMERA = """<robot name="r"><link name="l"/><gazebo reference="l"><sensor name="eye" type="camera">
 <plugin name="driver" filename="libgazebo_ros_camera.so"/></sensor></gazebo></robot>"""
 
