@@ -107,7 +107,11 @@ TIME = st.floats(0, 1e6) | st.just(math.inf)
 @given(
     st.builds(GraphNode, NAME, TEXT),
     st.builds(Qos, TEXT, st.integers(), TEXT, TEXT, TIME, TIME, TEXT, TIME),
-    st.builds(GraphFrame, TEXT, TEXT, NAME, st.booleans(), st.lists(NAME).map(tuple)),
+    st.builds(
+        GraphFrame,
+        *(TEXT, TEXT, NAME, st.booleans(), st.lists(NAME).map(tuple), st.booleans()),
+        st.just(()) | st.tuples(*[st.floats(-1e3, 1e3)] * 7),
+    ),
     st.builds(Caveat, TEXT, st.booleans(), TEXT),
 )
 def test_any_snapshot_survives_the_file(
