@@ -47,9 +47,9 @@ LINT = os.path.join(os.path.dirname(sys.executable), "urdf-lint")
 _TRANSMISSION = re.compile(rb"  <transmission.*?</transmission>\n", re.DOTALL)
 VERSION = "import sys; from importlib.metadata import version; print(version(sys.argv[1]))"
 NOTES = """\
-The goals in process and of the command are missed. The rates are of a busy machine: the ratios compare
-better. Before and after the last changes to the lint of a file, same findings for 2,949 files, by
-instructions: 7 % fewer for the file of 118 kB, 5 % fewer for public files.
+The goals in process and of the command are missed. Before and after the last changes to the lint of a
+file, same findings for 2,949 files, by instructions: 7 % fewer for the file of 118 kB, 5 % fewer for
+public files.
 
 In one process a tenth of the time is libxml2 and the offsets of the tags, a third is the schema, the
 claims and the tree of links, and half is some 230 rules: one of them, the search for names that
