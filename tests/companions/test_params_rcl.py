@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from params_corpus import POLICIES, ROBOT, declared, facts, files, is_respelled
+from params_corpus import POLICIES, ROBOT, declared, facts, files, is_filled, is_respelled
 from paths import SUPPORT
 from real_robots import spread
 
@@ -154,8 +154,13 @@ def differences(before: dict[str, Any], after: dict[str, Any]) -> Iterator[str]:
 def is_same(key: str, old: Any, new: Any) -> Any:
     if isinstance(old, str) and isinstance(new, str):
         # nav2_common's ReplaceString puts the robot's namespace in its place.
-        bare = re.sub(r"^/?<robot_namespace>/?", "", old)
-        return any(is_respelled(it, new) for it in (old, bare, f"/{bare}"))
+        bare = re.sub(r"^/?<robot_namespace>/?|\$\{prefix\}", "", old)
+        no_prefix = key.endswith("tf_frame_prefix") and (old, new) == ("~", "/")
+        return (
+            no_prefix
+            or is_filled(old, new)
+            or any(is_respelled(it, new) for it in (old, bare, f"/{bare}"))
+        )
     if isinstance(old, list) and isinstance(new, list) and len(old) == len(new):
         return all(is_same(key, *pair) for pair in zip(old, new, strict=True))
     return (
