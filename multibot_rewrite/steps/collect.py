@@ -57,9 +57,20 @@ def collect(
     ``urdf_declarations`` is what the URDF beside an SRDF declares; ``apart`` says that frames are not
     spelled as links are.
     """
+    format_ = _format(document, tree, SRDF if urdf_declarations else "")
+    claims, hosts = _walk(document, tree, format_)
+    release = tree.vocabulary.release
+    claims = below_models(claims, document.source, release)
+    declared = _declared(claims, urdf_declarations)
+    inventory = Inventory(document, claims, hosts, declared, format_, [], release)
+    rules = names_in_rules(claims, inventory.served)
+    return inventory._replace(names=resolved_names(claims, declared, apart, rules))
+
+
+def _walk(document: Document, tree: Tree, format_: str) -> tuple[list[Claim], list[Host]]:
+    """The claims and hosts along the tree of one format."""
     claims: list[Claim] = []
     hosts: list[Host] = []
-    format_ = _format(document, tree, SRDF if urdf_declarations else "")
     nothing: dict[str, TreeNode] = {}
     below: dict[etree._Element | None, dict[str, TreeNode]]
     below = {None: {str(document.root.tag): tree.formats[format_]}}
@@ -86,12 +97,7 @@ def collect(
                 claims.append(Claim(site, element, start, attribute, value))
         if text is not None:
             claims += _text_claim(text, element, start)
-    claims = below_models(claims, document.source, tree.vocabulary.release)
-    declared = _declared(claims, urdf_declarations)
-    release = tree.vocabulary.release
-    inventory = Inventory(document, claims, hosts, declared, format_, [], release)
-    rules = names_in_rules(claims, inventory.served)
-    return inventory._replace(names=resolved_names(claims, declared, apart, rules))
+    return claims, hosts
 
 
 def _format(document: Document, tree: Tree, likely: str) -> str:
