@@ -169,3 +169,10 @@ def test_a_call_from_a_program_leaves_its_imports_alone(tmp_path: Path) -> None:
     before = list(sys.meta_path)
     main([str(tmp_path / "no.urdf")])
     assert sys.meta_path == before
+
+
+def test_a_source_of_the_same_size_and_another_time_is_read(linted: Copy) -> None:
+    path, name = linted.package / "lint/check.py", f"{PACKAGE}.lint.check"
+    assert name in linted.lint()[1]
+    os.utime(path, ns=(0, path.stat().st_mtime_ns + 10**9))
+    assert name not in linted.lint()[1]
