@@ -29,7 +29,7 @@ FLOORS = (
     ("rewriters",),
     ("readback", "steps"),
     ("checks", "sources", "remap"),
-    ("pipeline", "reports", "graph", "companions", "interfaces"),
+    ("pipeline", "reports", "graph", "companions"),
     ("library", "evidence"),
     ("closure",),
     ("fleets", "lint"),
