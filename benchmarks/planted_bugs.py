@@ -31,7 +31,17 @@ ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "planted-bugs.md"
 HARMLESS = ROOT / "fixtures" / "harmless_bugs.tsv"
 PACKAGE = "multibot_rewrite"
-COPIED = (PACKAGE, "tools", "tests", "fixtures", "docs", "examples", "share", "benchmarks", "resource")
+COPIED = (
+    PACKAGE,
+    "tools",
+    "tests",
+    "fixtures",
+    "docs",
+    "examples",
+    "share",
+    "benchmarks",
+    "resource",
+)
 # "." are the modules that are in no room.
 ROOMS = (
     "rewriters", "steps", "checks", "readback", "findings", "reports", "remap", "graph", "lint",

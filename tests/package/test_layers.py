@@ -30,6 +30,7 @@ FLOORS = (
     ("readback", "steps"),
     ("checks", "sources", "remap"),
     ("pipeline", "reports", "graph", "companions"),
+    ("rules",),
     ("library", "evidence"),
     ("closure",),
     ("fleets", "lint"),

@@ -12,9 +12,9 @@ from functools import cache
 import pytest
 from paths import FIXTURES, ROOT
 
-from multibot_rewrite.lint.beside.parameter_files import DECLARED, YAML
-from multibot_rewrite.lint.beside.parameter_owners import Owners, owners
 from multibot_rewrite.releases import RELEASES
+from multibot_rewrite.rules.files.parameter_files import DECLARED, YAML
+from multibot_rewrite.rules.files.parameter_owners import Owners, owners
 from tools.interfaces.parameter_comparison import (
     DEFAULT,
     MISSING,

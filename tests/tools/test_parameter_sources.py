@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from multibot_rewrite.lint.beside.parameter_files import file_parameters
+from multibot_rewrite.rules.files.parameter_files import file_parameters
 from tools.interfaces.cpp import read_cpp
 from tools.interfaces.declared_parameters import (
     cpp_parameters,

@@ -12,10 +12,10 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 
 from multibot_rewrite.bounded import load_yaml
-from multibot_rewrite.lint.beside.parameter_files import EMPTY, NO_DEFAULT, YAML
-from multibot_rewrite.lint.beside.parameter_owners import Owners
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import has_release
+from multibot_rewrite.rules.files.parameter_files import EMPTY, NO_DEFAULT, YAML
+from multibot_rewrite.rules.files.parameter_owners import Owners
 from tools.interfaces.parameter_facts import ParameterFact
 
 ID = "<id>"

@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from importlib.resources import files
 from pathlib import Path
 
-from multibot_rewrite.lint.beside.parameter_owners import owners
 from multibot_rewrite.releases import RELEASES
+from multibot_rewrite.rules.files.parameter_owners import owners
 from tools.interfaces.launch_comparison import (
     launch_differences,
     launch_files,

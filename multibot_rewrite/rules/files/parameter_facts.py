@@ -13,13 +13,13 @@ from functools import lru_cache
 from importlib.resources import files
 
 from multibot_rewrite.companions.params.known_nodes import KnownNode
-from multibot_rewrite.lint.beside.parameter_files import READ, YAML, file_parameters
-from multibot_rewrite.lint.beside.parameter_owners import owners
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.outside import outside
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import has_release
 from multibot_rewrite.remap.nodl.lookup import Identity, file_of, find_interfaces, load
+from multibot_rewrite.rules.files.parameter_files import READ, YAML, file_parameters
+from multibot_rewrite.rules.files.parameter_owners import owners
 from multibot_rewrite.sources.packages import entries, package_folder
 from multibot_rewrite.sources.read import read_file
 
@@ -87,7 +87,7 @@ def nodl_parameters(package: str, node: str) -> tuple[tuple[str, str], ...]:
 @lru_cache
 def known_facts() -> Mapping[str, tuple[Fact, ...]]:
     """The facts of ``parameters.tsv`` by package."""
-    text = files("multibot_rewrite.lint.beside").joinpath("parameters.tsv").read_text("utf-8")
+    text = files("multibot_rewrite.rules.files").joinpath("parameters.tsv").read_text("utf-8")
     below, found = owners().below, dict[str, list[Fact]]()
     for line in text.splitlines():
         package, path, type_, bounds, releases, how, source = line.split("\t")
