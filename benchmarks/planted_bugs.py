@@ -34,7 +34,7 @@ PACKAGE = "multibot_rewrite"
 COPIED = (PACKAGE, "tests", "fixtures", "docs", "examples", "share", "benchmarks", "resource")
 # "." are the modules that are in no room.
 ROOMS = (
-    "rewriters", "steps", "checks", "readback", "findings", "reports", "remap", "graph", "lint",
+    "rewriters", "steps", "checks", "readback", "findings", "reports", "knowledge", "remap", "graph", "lint",
     "companions", "evidence", "closure", "fleets", "launch", "sources", "cli", "rosnames", "interfaces",
     "naming.py", ".",
 )  # fmt: skip

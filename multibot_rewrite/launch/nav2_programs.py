@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 
-from multibot_rewrite.remap.programs import LIFECYCLE_MANAGER as MANAGER
-from multibot_rewrite.remap.programs import PROGRAMS, SLAM, Program, container_of
+from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER as MANAGER
+from multibot_rewrite.knowledge.programs import PROGRAMS, SLAM, Program, container_of
 
 __all__ = ["MANAGER", "SLAM", "Program", "container_of", "program", "with_program"]
 

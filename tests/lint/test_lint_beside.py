@@ -12,6 +12,7 @@ import pytest
 from paths import FIXTURES, ROBOTS
 
 from multibot_rewrite.interfaces.parameter_facts import read_parameters
+from multibot_rewrite.knowledge.nodl.lookup import INDEX
 from multibot_rewrite.lint.beside.bounds import beyond
 from multibot_rewrite.lint.beside.kinds import BRIDGE, MOVEIT, PARAMS, RVIZ, kind_of
 from multibot_rewrite.lint.beside.parameter_table import table
@@ -21,7 +22,6 @@ from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.run import lint_files
 from multibot_rewrite.releases import RELEASES
-from multibot_rewrite.remap.nodl.lookup import INDEX
 
 SHIPPED = Path(kind_of.__code__.co_filename).parent / "parameters.tsv"
 CONTROLLERS = """\

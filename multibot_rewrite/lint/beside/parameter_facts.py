@@ -16,11 +16,11 @@ from multibot_rewrite.companions.params.known_nodes import KnownNode
 from multibot_rewrite.interfaces.parameter_comparison import owners
 from multibot_rewrite.interfaces.parameter_facts import READ, YAML
 from multibot_rewrite.interfaces.parameter_files import file_parameters
+from multibot_rewrite.knowledge.nodl.lookup import Identity, file_of, find_interfaces, load
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.outside import outside
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import has_release
-from multibot_rewrite.remap.nodl.lookup import Identity, file_of, find_interfaces, load
 from multibot_rewrite.sources.packages import entries, package_folder
 from multibot_rewrite.sources.read import read_file
 
