@@ -31,6 +31,7 @@ FLOORS = (
     ("readback", "steps"),
     ("checks", "sources", "remap"),
     ("pipeline", "reports", "graph", "companions", "interfaces"),
+    ("rules",),
     ("library", "evidence"),
     ("closure",),
     ("fleets", "lint"),

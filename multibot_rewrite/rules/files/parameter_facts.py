@@ -1,7 +1,7 @@
 """The parameters that nodes declare: by the sources of their packages where those are there, else by
 installed NoDL documents and by what is known.
 
-``parameters.tsv`` is made by ``python -m multibot_rewrite.lint.beside.parameter_table``.
+``parameters.tsv`` is made by ``python -m multibot_rewrite.rules.files.parameter_table``.
 """
 
 from __future__ import annotations
@@ -88,7 +88,7 @@ def nodl_parameters(package: str, node: str) -> tuple[tuple[str, str], ...]:
 @lru_cache
 def known_facts() -> Mapping[str, tuple[Fact, ...]]:
     """The facts of ``parameters.tsv`` by package."""
-    text = files("multibot_rewrite.lint.beside").joinpath("parameters.tsv").read_text("utf-8")
+    text = files("multibot_rewrite.rules.files").joinpath("parameters.tsv").read_text("utf-8")
     below, found = owners().below, dict[str, list[Fact]]()
     for line in text.splitlines():
         package, path, type_, bounds, releases, how, source = line.split("\t")
