@@ -1,6 +1,6 @@
 """The nodes of Nav2 that its launch file starts, and the programs of them.
 
-Source: as ``remap.programs``; lifecycle_msgs msg/Transition.msg.
+Source: as ``knowledge.programs``; lifecycle_msgs msg/Transition.msg.
 """
 
 from __future__ import annotations
