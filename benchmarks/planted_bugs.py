@@ -44,8 +44,8 @@ COPIED = (
 )
 # "." are the modules that are in no room.
 ROOMS = (
-    "rewriters", "steps", "checks", "readback", "findings", "reports", "remap", "graph", "lint",
-    "companions", "evidence", "closure", "fleets", "launch", "sources", "cli", "rosnames",
+    "rewriters", "steps", "checks", "readback", "findings", "reports", "knowledge", "remap", "graph",
+    "lint", "companions", "evidence", "closure", "fleets", "launch", "sources", "cli", "rosnames",
     "naming.py", ".",
 )  # fmt: skip
 # A bug in one of these could reach beyond the copy: they kill processes or delete folders.

@@ -11,12 +11,12 @@ from pathlib import Path
 import pytest
 from paths import FIXTURES, ROBOTS
 
+from multibot_rewrite.knowledge.nodl.lookup import INDEX
 from multibot_rewrite.lint.beside.kinds import BRIDGE, MOVEIT, PARAMS, RVIZ, kind_of
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.run import lint_files
 from multibot_rewrite.releases import RELEASES
-from multibot_rewrite.remap.nodl.lookup import INDEX
 from multibot_rewrite.rules.files.bounds import beyond
 from tools.interfaces.known_parameter_table import table
 from tools.interfaces.parameter_facts import read_parameters

@@ -26,6 +26,7 @@ FLOORS = (
     ("bounded", "gc_pause", "lazy", "model", "nearest", "plural", "printable", "version"),
     ("findings", "rosnames", "naming", "policy", "config", "arguments", "releases"),
     ("controller_ways",),
+    ("knowledge",),
     ("rewriters",),
     ("readback", "steps"),
     ("checks", "sources", "remap"),

@@ -9,7 +9,8 @@ from functools import cache
 from paths import FIXTURES
 
 from multibot_rewrite.graph.snapshot import GraphEndpoint
-from multibot_rewrite.remap.records import ACTION, SERVICE, TOPIC, NodeFacts, NodeTable
+from multibot_rewrite.knowledge.records import ACTION, SERVICE, TOPIC, NodeFacts
+from multibot_rewrite.remap.records import NodeTable
 from multibot_rewrite.remap.table import parsed
 from multibot_rewrite.rosnames import bind, resolve_bound
 from tools.interfaces.compare import is_same

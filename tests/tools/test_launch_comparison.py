@@ -27,7 +27,7 @@ from tools.interfaces.parameter_tables import LaunchFact, launch_lines, read_lau
 from tools.interfaces.records import Place
 
 TABLES = FIXTURES / "interfaces"
-STACKS = (ROOT / "multibot_rewrite" / "remap" / "stacks.yaml").read_text()
+STACKS = (ROOT / "multibot_rewrite" / "knowledge" / "stacks.yaml").read_text()
 EXCEPTIONS = {
     LaunchDifference(*words): why
     for *words, why in (

@@ -1,13 +1,13 @@
-"""What the sources of a release say against what ``remap/nodes.yaml`` says, both ways."""
+"""What the sources of a release say against what ``knowledge/nodes.yaml`` says, both ways."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
 
+from multibot_rewrite.knowledge.node_library import NodeLibrary
+from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.node_library import NodeLibrary
-from multibot_rewrite.remap.records import Endpoint
 from tools.interfaces.records import Class, Fact
 
 # Parts of nodes.yaml that come from rclcpp and rclcpp_lifecycle, which are not read.

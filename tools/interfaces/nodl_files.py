@@ -8,9 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.remap.nodl.writing import UNKNOWN_QOS, NodlFile, document_of
-from multibot_rewrite.remap.records import (
+from multibot_rewrite.knowledge.nodl.writing import UNKNOWN_QOS, NodlFile, document_of
+from multibot_rewrite.knowledge.records import (
     ACTION,
     CALLS,
     PUBLISHES,
@@ -20,6 +19,7 @@ from multibot_rewrite.remap.records import (
     TOPIC,
     Endpoint,
 )
+from multibot_rewrite.model import UsageError
 from tools.interfaces.records import Fact
 
 # What has no "/action/" in its type is a topic or a service.

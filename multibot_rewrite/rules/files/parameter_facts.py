@@ -13,11 +13,11 @@ from functools import lru_cache
 from importlib.resources import files
 
 from multibot_rewrite.companions.params.known_nodes import KnownNode
+from multibot_rewrite.knowledge.nodl.lookup import Identity, file_of, find_interfaces, load
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.outside import outside
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import has_release
-from multibot_rewrite.remap.nodl.lookup import Identity, file_of, find_interfaces, load
 from multibot_rewrite.rules.files.parameter_files import READ, YAML, file_parameters
 from multibot_rewrite.rules.files.parameter_owners import owners
 from multibot_rewrite.sources.packages import entries, package_folder
