@@ -1,12 +1,9 @@
 """Known nodes and stacks of nodes, from ``nodes.yaml``, ``controllers.yaml``, ``arms.yaml``,
 ``stacks.yaml`` and files of users.
-
-``python -m multibot_rewrite.knowledge.stacks`` prints their reference page.
 """
 
 from __future__ import annotations
 
-import sys
 from functools import lru_cache
 from importlib.resources import files
 
@@ -82,9 +79,3 @@ def every_release() -> NodeLibrary:
         text = files("multibot_rewrite.knowledge").joinpath(name).read_text(encoding="utf-8")
         library = extend(library, text, name)
     return library
-
-
-if __name__ == "__main__":
-    from multibot_rewrite.knowledge.stacks_page import page
-
-    sys.stdout.write(page(every_release()))
