@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.companions.params.known_nodes import KnownNodes
 from multibot_rewrite.controller_ways import controller_way
 from multibot_rewrite.evidence.filling import filled
 from multibot_rewrite.evidence.launch_records import LaunchedNode, LaunchGraph, LaunchNote
@@ -20,6 +19,7 @@ from multibot_rewrite.evidence.records import Given, GivenNode, Place
 from multibot_rewrite.evidence.simulated_managers import Published, simulated_managers
 from multibot_rewrite.evidence.spawners import Spawned, spawned_in, texts_of
 from multibot_rewrite.evidence.static_transforms import with_static_transform
+from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rosnames import expand

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.companions.params.known_nodes import load_known_nodes
 from multibot_rewrite.evidence.hardware import with_hardware
 from multibot_rewrite.evidence.launch_records import LaunchOrder
 from multibot_rewrite.findings.finding import Finding
@@ -34,6 +33,7 @@ from multibot_rewrite.graph.transforms import STATE_PUBLISHER, Edge, Edges, edge
 from multibot_rewrite.knowledge.node_library import with_included
 from multibot_rewrite.knowledge.nodl.facts import KnownNodes, nodes_of
 from multibot_rewrite.knowledge.nodl.lookup import find_interfaces
+from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in, user_stack
 from multibot_rewrite.library import rewrite_all

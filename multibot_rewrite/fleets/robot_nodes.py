@@ -7,7 +7,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from lxml.etree import _Element
 
-from multibot_rewrite.companions.params.known_nodes import load_known_nodes
 from multibot_rewrite.evidence.hardware import with_hardware
 from multibot_rewrite.evidence.launch_records import LaunchOrder
 from multibot_rewrite.evidence.launched import without_robot
@@ -27,6 +26,7 @@ from multibot_rewrite.fleets.member import Member
 from multibot_rewrite.fleets.output_file import params_of
 from multibot_rewrite.fleets.shared_nodes import apart
 from multibot_rewrite.knowledge.nodl.facts import declared
+from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
 from multibot_rewrite.record import NamedTuple
 

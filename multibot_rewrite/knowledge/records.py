@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from multibot_rewrite.record import NamedTuple
 
 TOPIC, SERVICE, ACTION = "topic", "service", "action"
@@ -11,6 +13,9 @@ ROLES = (PUBLISHES, SUBSCRIBES, SERVES, CALLS)
 MANAGER = "controller_manager"
 # Topics that image_transport's plugins derive from a base name.
 TRANSPORTS = ("compressed", "compressedDepth", "theora", "zstd")
+
+
+NO_TYPES: Mapping[str, str] = {}
 
 
 class Endpoint(NamedTuple):
@@ -65,6 +70,45 @@ class FrameParameter(NamedTuple):
     releases: str = ""
     source: tuple[str, ...] = ()
     given: bool = False
+
+
+class Param(NamedTuple):
+    """A parameter by its dotted path: what its value is, and its default.
+
+    ``releases`` are release words (``multibot_rewrite.releases``), ``absolute`` those in which a
+    relative topic in it is not resolved in the robot's namespace, ``deprecated`` those that warn of
+    it, both empty for none; ``source`` are the places where it can be read. ``own`` is true for a
+    frame that the node itself makes, so no description has it.
+    """
+
+    path: str
+    kind: str
+    default: str = ""
+    is_list: bool = False
+    releases: str = ""
+    absolute: str = ""
+    note: str = ""
+    source: tuple[str, ...] = ()
+    deprecated: str = ""
+    own: bool = False
+
+
+class NodeParameters(NamedTuple):
+    """A node in parameter files: ``params`` in each of their forms, ``types`` are controller types,
+    ``known_by`` parameters that identify the node if its section has another name. ``strips`` are the
+    releases in which the node takes off a slash that a frame starts with, empty for none;
+    ``deprecated_types`` has those of types."""
+
+    name: str
+    package: str
+    params: tuple[Param, ...] = ()
+    aliases: tuple[str, ...] = ()
+    types: tuple[str, ...] = ()
+    known_by: tuple[str, ...] = ()
+    releases: str = ""
+    source: tuple[str, ...] = ()
+    strips: str = ""
+    deprecated_types: Mapping[str, str] = NO_TYPES
 
 
 class SentTransform(NamedTuple):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, NoReturn, TypeAlias
+from typing import TYPE_CHECKING, NoReturn, TypeAlias, TypeVar
 
 from multibot_rewrite.bounded import compose_yaml
 from multibot_rewrite.model import UsageError
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 _BOOLEAN = "tag:yaml.org,2002:bool"
 _NULL = "tag:yaml.org,2002:null"
 _LINE = "\n"
+Known = TypeVar("Known")
 Value: TypeAlias = "str | bool | Mapping[str, YamlItem] | tuple[YamlItem, ...] | None"
 
 
@@ -126,6 +127,21 @@ def flag_of(keys: Mapping[str, YamlItem], key: str, otherwise: bool = False) -> 
     value = keys[key].value
     if not isinstance(value, bool):
         wrong(keys[key], f"{key} is {_shape(keys[key])}; write true or false")
+    return value
+
+
+def known_word(item: YamlItem, what: str, known: Mapping[str, Known]) -> Known:
+    """What a word stands for; one that is not known is an error."""
+    name = word(item, what)
+    if name not in known:
+        wrong(item, unknown(what, name, known))
+    return known[name]
+
+
+def one_of(item: YamlItem, what: str, value: str, allowed: Sequence[str]) -> str:
+    """The value, which has to be one of those."""
+    if value not in allowed:
+        wrong(item, unknown(what, value, allowed))
     return value
 
 

@@ -11,7 +11,7 @@ import re
 import pytest
 from made_params import codes, made, section
 
-from multibot_rewrite.companions.params.known_nodes import built_in_nodes
+from multibot_rewrite.knowledge.parameters import built_in_nodes
 
 DRIVES = ("diff_drive_controller", "mecanum_drive_controller", "omni_wheel_drive_controller")
 

@@ -15,7 +15,6 @@ from launched_nodes import AT
 
 from multibot_rewrite.cli import check_launch
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.companions.params.known_nodes import load_known_nodes
 from multibot_rewrite.evidence.launch_records import (
     LaunchedNode,
     LaunchGraph,
@@ -26,6 +25,7 @@ from multibot_rewrite.evidence.launch_snapshot import would_run
 from multibot_rewrite.evidence.running import Knowledge
 from multibot_rewrite.graph.doctor.diagnose import diagnose
 from multibot_rewrite.graph.snapshot import Snapshot
+from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.stacks import built_in
 
 TF = (("/tf", "tf"), ("/tf_static", "tf_static"))

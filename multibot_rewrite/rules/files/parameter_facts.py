@@ -12,11 +12,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from importlib.resources import files
 
-from multibot_rewrite.companions.params.known_nodes import KnownNode
 from multibot_rewrite.interfaces.parameter_comparison import owners
 from multibot_rewrite.interfaces.parameter_facts import READ, YAML
 from multibot_rewrite.interfaces.parameter_files import file_parameters
 from multibot_rewrite.knowledge.nodl.lookup import Identity, file_of, find_interfaces, load
+from multibot_rewrite.knowledge.parameters import KnownNode
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.outside import outside
 from multibot_rewrite.record import NamedTuple

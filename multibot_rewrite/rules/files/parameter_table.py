@@ -10,9 +10,9 @@ import sys
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
-from multibot_rewrite.companions.params.known_nodes import built_in_nodes
 from multibot_rewrite.interfaces.parameter_comparison import owners
 from multibot_rewrite.interfaces.parameter_facts import ParameterFact, read_parameters
+from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.releases import NEWEST_LTS, RELEASES
 
 Row = tuple[str, ...]
