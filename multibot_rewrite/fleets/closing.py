@@ -109,7 +109,7 @@ def closing(plan: FleetPlan, fleet: Fleet, texts: Sequence[OutputText]) -> Itera
     ``fleet`` has all nodes that are started, ``texts`` are the files that were made.
     """
     yield from tf_conflicts(plan, fleet, texts)
-    known = load_known_nodes(plan.file.parameters, plan.file.distro)
+    known = load_known_nodes(plan.file.nodes, plan.file.distro)
     for group in group_robots(plan):
         robot = group.robots[0]
         evidence = plan.evidence[node_sources(robot.spec)]

@@ -56,7 +56,7 @@ def _params(plan: FleetPlan, group: RobotGroup, path: str) -> Companion:
     """A ROS parameter file; what the robot's other parameter files set is not inserted in it."""
     read = params_of(group.robots[0].spec)
     others = [document for it, document in read.items() if it != path]
-    known = load_known_nodes(plan.file.parameters, plan.file.distro)
+    known = load_known_nodes(plan.file.nodes, plan.file.distro)
     evidence = plan.evidence[node_sources(group.robots[0].spec)]
     nodes = evidence.nodes
     bare = at_run_time(plan.fleet.naming, evidence.given, known)

@@ -179,7 +179,7 @@ def _in_files(
 ) -> Iterator[Finding]:
     """Every robot's own files; of files that differ only in names the first."""
     by_name = {it.robot.spec.name: it for it in robots}
-    known = load_known_nodes(plan.file.parameters, plan.file.distro)
+    known = load_known_nodes(plan.file.nodes, plan.file.distro)
     words: dict[str, str] = {}
     for it in robots:
         words.update(dict.fromkeys(it.words, it.robot.spec.name))

@@ -62,7 +62,7 @@ def robot_nodes(
 
     Raises InputError for a parameter file that cannot be read.
     """
-    parameters = load_known_nodes(file.parameters, file.distro)
+    parameters = load_known_nodes(file.nodes, file.distro)
     read = given_nodes(params_of(spec).values(), parameters)
     own = tuple(without_robot(it, spec.words) for it in read)
     known, stack = _known(own, file), stack_nodes(spec, file)

@@ -133,23 +133,23 @@ def _loaded(node: NodeFacts, stack: Stack) -> NodeFacts:
     return node if kept else node._replace(container=stack.container)
 
 
-def extend(library: NodeLibrary, text: str, file: str) -> NodeLibrary:
+def extend(library: NodeLibrary, text: str, file: str, own: bool = False) -> NodeLibrary:
     """``library`` with what a YAML text adds or changes.
 
     What an entry says of a known node's endpoints replaces what was known, what it says of its
-    parameters is added.
+    parameters is added. ``own`` says that the text is of this package.
     """
-    top = table(read_yaml_with_lines(text, file), "the file", FILE_KEYS)
+    top = table(read_yaml_with_lines(text, file, own), "the file", FILE_KEYS)
     new = {key: table(top[key], key) for key in ("parts", "nodes", "stacks") if key in top}
     parts = {**library.parts, **{name: _part(it) for name, it in new.get("parts", {}).items()}}
     nodes, parameters = dict(library.nodes), dict(library.parameters)
     for name, item in new.get("nodes", {}).items():
         keys = table(item, f"node {name!r}", ENTRY_OF_NODE)
         # A node in its own namespace is known by its last name in parameter files.
-        own = name.rpartition("/")[2]
-        found = read_parameters(own, keys, parameters.get(own))
+        last = name.rpartition("/")[2]
+        found = read_parameters(last, keys, parameters.get(last))
         if not keys.keys().isdisjoint(PARAMETER_KEYS):
-            parameters[own] = found
+            parameters[last] = found
         if not keys.keys().isdisjoint(GRAPH_KEYS):
             nodes[name] = read_node(name, item, keys, parts, found.params)
     known = {*library.stacks, *new.get("stacks", {})}

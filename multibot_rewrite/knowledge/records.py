@@ -29,7 +29,7 @@ class Endpoint(NamedTuple):
     not. ``remapped`` is its name after the remap rule of the stack's usual launch file: the table's
     rule must lead there, since only the first match counts. ``condition`` is what its node's parameters
     must hold for it to exist (``remap.conditions``), for where these are known. ``named_from`` is what
-    nodes.yaml calls it, if a stack gives it another name. ``above`` are the releases in which its node
+    its entry calls it, if a stack gives it another name. ``above`` are the releases in which its node
     resolves a relative name from its parameter in the namespace above its own.
     ``releases`` are release words (see ``multibot_rewrite.releases``), ``source`` the places where it
     can be read. ``by`` names the helper node, as what follows the name of its node, with a ``*`` for
@@ -138,7 +138,7 @@ class NodeFacts(NamedTuple):
     whose process it always runs in. ``when`` is the condition under which it is started, empty for
     always. No rule reaches ``frames`` and ``fixed``. ``sends`` are the transforms it publishes. ``ids``
     are words in <> of its names, with the parameter that lists what they stand for. ``claims`` are the
-    interfaces that a controller needs. ``known`` is its name in nodes.yaml if it has another one.
+    interfaces that a controller needs. ``known`` is its name in its entry if it has another one.
     ``origin`` is where a robot's own files name it (``file:line``), or its stack. ``releases`` and
     ``source`` as in ``Endpoint``. ``nodl`` are further names of its NoDL document, such as its
     executable; ``interface`` is the NoDL file that its endpoints are from, empty for the library.

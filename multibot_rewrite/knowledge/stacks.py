@@ -85,7 +85,7 @@ def every_release() -> NodeLibrary:
     """The nodes and stacks that this package knows, of all releases."""
     library = NodeLibrary({}, {}, {})
     for path in _files():
-        library = extend(library, read_text(path), os.path.basename(path))
+        library = extend(library, read_text(path), os.path.basename(path), own=True)
     return library
 
 
