@@ -39,9 +39,9 @@ from multibot_rewrite.knowledge.yaml_with_lines import (
 )
 from multibot_rewrite.rosnames import check_node_name
 
-# A node with none of these is known by its parameters alone: nobody says what it publishes.
-GRAPH_KEYS = (*ROLES, "with", "host", "plugin", "claims")
-GRAPH_WORDS = ("shared", "note", "when", "frames", "sends", "ids", "fixed", "nodl", "apart")
+# A node with parameters and none of these is known by them alone: nobody says what it publishes.
+GRAPH_KEYS = (*ROLES, "with", "host", "plugin", "claims", "frames", "sends", "ids", "nodl")
+GRAPH_WORDS = ("shared", "note", "when", "fixed", "apart")
 SENT_KEYS = ("child", "if")
 CLAIM_KINDS = ("command", "state")
 CLAIM_KEYS = (*CLAIM_KINDS, "if", "releases")

@@ -148,9 +148,10 @@ def extend(library: NodeLibrary, text: str, file: str, own: bool = False) -> Nod
         # A node in its own namespace is known by its last name in parameter files.
         last = name.rpartition("/")[2]
         found = read_parameters(last, keys, parameters.get(last))
-        if not keys.keys().isdisjoint(PARAMETER_KEYS):
+        in_files = not keys.keys().isdisjoint(PARAMETER_KEYS)
+        if in_files:
             parameters[last] = found
-        if not keys.keys().isdisjoint(GRAPH_KEYS):
+        if not (in_files and keys.keys().isdisjoint(GRAPH_KEYS)):
             nodes[name] = read_node(name, item, keys, parts, found.params)
     known = {*library.stacks, *new.get("stacks", {})}
     grown = library._replace(
