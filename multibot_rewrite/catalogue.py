@@ -124,8 +124,8 @@ HOMES: tuple[Home, ...] = (
         "what a robot's files say of its nodes",
         (
             "evidence.nodes",
-            "evidence.launch_findings",
-            "evidence.spawner_managers",
+            "producers.launch.findings",
+            "producers.launch.spawner_managers",
             "fleets.launched_files",
             "fleets.loaded_files",
             "fleets.yarp_files",

@@ -33,6 +33,7 @@ FLOORS = (
     ("pipeline", "reports", "graph", "companions"),
     ("rules",),
     ("library", "evidence"),
+    ("producers",),
     ("closure",),
     ("fleets", "lint"),
     ("proposal", "view"),

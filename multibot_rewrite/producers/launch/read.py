@@ -6,15 +6,15 @@ import os
 import sys
 from typing import Any
 
-from multibot_rewrite.evidence.launch_records import LaunchGraph, LaunchOrder
 from multibot_rewrite.evidence.records import Place
-from multibot_rewrite.launch.door import of_launch, of_launch_ros
-from multibot_rewrite.launch.graph.commands import faults, read_commands
-from multibot_rewrite.launch.graph.describe import Visit, failure
-from multibot_rewrite.launch.graph.made_files import keep_sources
-from multibot_rewrite.launch.graph.packages import add_sources
-from multibot_rewrite.launch.graph.places import keep_places
-from multibot_rewrite.launch.graph.visit import visit_all
+from multibot_rewrite.producers.launch.commands import faults, read_commands
+from multibot_rewrite.producers.launch.describe import Visit, failure
+from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
+from multibot_rewrite.producers.launch.made_files import keep_sources
+from multibot_rewrite.producers.launch.places import keep_places
+from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder
+from multibot_rewrite.producers.launch.source_packages import add_sources
+from multibot_rewrite.producers.launch.visit import visit_all
 
 
 class UnreadableError(Exception):

@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterator
 
-from multibot_rewrite.evidence.launch_records import LaunchedNode
 from multibot_rewrite.knowledge.records import (
     PUBLISHES,
     SERVES,
@@ -18,6 +17,7 @@ from multibot_rewrite.knowledge.records import (
     TOPIC,
     Endpoint,
 )
+from multibot_rewrite.producers.launch.records import LaunchedNode
 
 _ROW = re.compile(r"(?P<name>[^@]+)@(?P<type>[\w/]+)(?P<way>[@\[\]]?)(?P<gz>.*)")
 _ROLES = {"[": (PUBLISHES,), "]": (SUBSCRIBES,), "@": (PUBLISHES, SUBSCRIBES)}

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite import UsageError
-from multibot_rewrite.evidence.launch_records import launch_order
+from multibot_rewrite.producers.launch.records import launch_order
 
 
 def package(folder: Path, *files: str) -> Path:

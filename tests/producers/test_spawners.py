@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 from launched_nodes import AMCL, AT, launched, runs, started
 
-from multibot_rewrite.evidence.launch_records import LaunchedNode, ParameterText
-from multibot_rewrite.evidence.spawners import active, controller_files, spawned_in
+from multibot_rewrite.producers.launch.records import LaunchedNode, ParameterText
+from multibot_rewrite.producers.launch.spawners import active, controller_files, spawned_in
 
 DRIVE, ARM = "diff_drive_controller/DiffDriveController", "pid_controller/PidController"
 MANAGER_FILE = ParameterText(

@@ -18,19 +18,19 @@ from multibot_rewrite.companions.params.known_nodes import KnownNodes
 from multibot_rewrite.companions.params.sections import raw_sections
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.controller_ways import controller_way
-from multibot_rewrite.evidence.bridge_rows import bridge_rows
-from multibot_rewrite.evidence.launch_findings import launch_findings
-from multibot_rewrite.evidence.launch_records import LaunchedNode, LaunchGraph, ParameterText
 from multibot_rewrite.evidence.nodes import MANAGER
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import GivenNode, Place
 from multibot_rewrite.evidence.remapped import remapped
-from multibot_rewrite.evidence.spawner_managers import under_managers
-from multibot_rewrite.evidence.spawners import Spawned, is_spawner, spawned_in, texts_of
-from multibot_rewrite.evidence.static_transforms import with_static_transform
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.model import InputError
+from multibot_rewrite.producers.launch.bridge_rows import bridge_rows
+from multibot_rewrite.producers.launch.findings import launch_findings
+from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, ParameterText
+from multibot_rewrite.producers.launch.spawner_managers import under_managers
+from multibot_rewrite.producers.launch.spawners import Spawned, is_spawner, spawned_in, texts_of
+from multibot_rewrite.producers.launch.static_transforms import with_static_transform
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rosnames import expand
 
@@ -74,8 +74,8 @@ class _Pair(NamedTuple):
 
 @cache
 def programs() -> Programs:
-    """Those of ``launch_programs.yaml``."""
-    text = files("multibot_rewrite.evidence").joinpath("launch_programs.yaml").read_text("utf-8")
+    """Those of ``programs.yaml``."""
+    text = files(__package__).joinpath("programs.yaml").read_text("utf-8")
     data = load_yaml(text)
     passing, simulators = (frozenset(data[it]) for it in ("passing", "simulators"))
     return Programs(data["nodes"], data["names"], passing, simulators, data["stamped"])

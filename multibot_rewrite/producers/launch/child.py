@@ -7,11 +7,11 @@ import subprocess
 import sys
 from functools import lru_cache
 
-from multibot_rewrite.evidence.launch_records import LaunchGraph, LaunchOrder, graph_of, to_json
-from multibot_rewrite.evidence.system_model import is_system_model, read_system_model
 from multibot_rewrite.model import InputError
+from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder, graph_of, to_json
+from multibot_rewrite.producers.launch.system_model import is_system_model, read_system_model
 
-_MODULE = "multibot_rewrite.launch.graph"
+_MODULE = "multibot_rewrite.producers.launch"
 SECONDS = 120
 NO_LAUNCH = 3
 INSTALL = "source ROS 2 (. /opt/ros/jazzy/setup.bash), or give a system_model.yaml of play_launch"

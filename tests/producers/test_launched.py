@@ -6,8 +6,10 @@ import pytest
 from launched_nodes import AMCL, AT, launched, runs, started
 
 from multibot_rewrite import InputError, UsageError
-from multibot_rewrite.evidence.launch_child import launch_graph
-from multibot_rewrite.evidence.launch_records import (
+from multibot_rewrite.evidence.records import Place
+from multibot_rewrite.fleets.fleet import facts_of
+from multibot_rewrite.producers.launch.child import launch_graph
+from multibot_rewrite.producers.launch.records import (
     LaunchedNode,
     LaunchGraph,
     LaunchNote,
@@ -18,9 +20,7 @@ from multibot_rewrite.evidence.launch_records import (
     order_of,
     to_json,
 )
-from multibot_rewrite.evidence.records import Place
-from multibot_rewrite.evidence.ros_arguments import ros2_run, ros_arguments
-from multibot_rewrite.fleets.fleet import facts_of
+from multibot_rewrite.producers.launch.ros_arguments import ros2_run, ros_arguments
 from multibot_rewrite.releases import NEWEST_LTS
 
 PUBLISHER = "robot_state_publisher"

@@ -16,8 +16,8 @@ from functools import lru_cache
 from types import MappingProxyType
 from typing import Any
 
-from multibot_rewrite.launch.door import of_launch
 from multibot_rewrite.model import MultibotError
+from multibot_rewrite.producers.launch.door import of_launch
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.sources.access import SECONDS
 from multibot_rewrite.sources.expand import expand

@@ -10,9 +10,9 @@ import argparse
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NoReturn
 
-from multibot_rewrite.evidence.launch_records import LaunchedNode, LaunchNote, ParameterText
 from multibot_rewrite.evidence.records import Place
-from multibot_rewrite.evidence.ros_arguments import ros_arguments
+from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchNote, ParameterText
+from multibot_rewrite.producers.launch.ros_arguments import ros_arguments
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rosnames import expand
 

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
 
-from multibot_rewrite.evidence.launch_records import LaunchedNode, ParameterText
 from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.model import InputError
+from multibot_rewrite.producers.launch.records import LaunchedNode, ParameterText
 from multibot_rewrite.readback.nodes import ReadNode
 from multibot_rewrite.readback.reading import read
 from multibot_rewrite.readback.xml import read_xml, values_at

@@ -16,17 +16,17 @@ from launched_nodes import AT
 from multibot_rewrite.cli import check_launch
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.companions.params.known_nodes import load_known_nodes
-from multibot_rewrite.evidence.launch_records import (
+from multibot_rewrite.graph.doctor.diagnose import diagnose
+from multibot_rewrite.graph.snapshot import Snapshot
+from multibot_rewrite.knowledge.stacks import built_in
+from multibot_rewrite.producers.launch.records import (
     LaunchedNode,
     LaunchGraph,
     LaunchNote,
     ParameterText,
 )
-from multibot_rewrite.evidence.launch_snapshot import would_run
-from multibot_rewrite.evidence.running import Knowledge
-from multibot_rewrite.graph.doctor.diagnose import diagnose
-from multibot_rewrite.graph.snapshot import Snapshot
-from multibot_rewrite.knowledge.stacks import built_in
+from multibot_rewrite.producers.launch.running import Knowledge
+from multibot_rewrite.producers.launch.snapshot import would_run
 
 TF = (("/tf", "tf"), ("/tf_static", "tf_static"))
 URDF = '<robot name="r"><link name="base_link"/><link name="laser"/><joint name="j" type="fixed">\

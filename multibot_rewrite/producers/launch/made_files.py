@@ -11,7 +11,7 @@ from collections.abc import Callable
 from functools import wraps
 from typing import Any
 
-from multibot_rewrite.launch.door import of_launch, of_launch_ros
+from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 
 _MAKERS = ("RewrittenYaml", "ReplaceString")
 _KEPT = "multibot_made_of"

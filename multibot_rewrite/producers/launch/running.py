@@ -12,15 +12,15 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from multibot_rewrite.companions.params.known_nodes import KnownNodes
 from multibot_rewrite.controller_ways import controller_way
 from multibot_rewrite.evidence.filling import filled
-from multibot_rewrite.evidence.launch_records import LaunchedNode, LaunchGraph, LaunchNote
-from multibot_rewrite.evidence.launched import document_of, has_sections, known_node, passes
-from multibot_rewrite.evidence.launched import programs as known_programs
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import Given, GivenNode, Place
-from multibot_rewrite.evidence.simulated_managers import Published, simulated_managers
-from multibot_rewrite.evidence.spawners import Spawned, spawned_in, texts_of
-from multibot_rewrite.evidence.static_transforms import with_static_transform
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
+from multibot_rewrite.producers.launch.of_robot import document_of, has_sections, known_node, passes
+from multibot_rewrite.producers.launch.of_robot import programs as known_programs
+from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, LaunchNote
+from multibot_rewrite.producers.launch.simulated_managers import Published, simulated_managers
+from multibot_rewrite.producers.launch.spawners import Spawned, spawned_in, texts_of
+from multibot_rewrite.producers.launch.static_transforms import with_static_transform
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rosnames import expand
 

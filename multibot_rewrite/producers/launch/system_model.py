@@ -16,15 +16,15 @@ import yaml
 
 from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.companions.yaml_text import line_of, pairs, read_yaml
-from multibot_rewrite.evidence.launch_records import (
+from multibot_rewrite.evidence.records import Place
+from multibot_rewrite.model import InputError
+from multibot_rewrite.producers.launch.records import (
     LaunchedNode,
     LaunchGraph,
     LaunchNote,
     ParameterText,
 )
-from multibot_rewrite.evidence.records import Place
-from multibot_rewrite.evidence.spawners import controller_files
-from multibot_rewrite.model import InputError
+from multibot_rewrite.producers.launch.spawners import controller_files
 from multibot_rewrite.sources.read import read_file
 
 _ENDS = (".yaml", ".yml")

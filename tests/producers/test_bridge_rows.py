@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from launched_nodes import launched, runs, started
 
-from multibot_rewrite.evidence.bridge_rows import bridge_rows
+from multibot_rewrite.producers.launch.bridge_rows import bridge_rows
 
 BRIDGE = ("ros_gz_bridge", "parameter_bridge", "bridge")
 

@@ -16,10 +16,10 @@ from paths import ROOT
 
 from multibot_rewrite import InputError
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.evidence.launch_child import launch_graph
-from multibot_rewrite.evidence.launch_records import LaunchedNode, LaunchGraph, LaunchOrder
 from multibot_rewrite.launch import missing
-from multibot_rewrite.launch.door import of_launch_ros
+from multibot_rewrite.producers.launch.child import launch_graph
+from multibot_rewrite.producers.launch.door import of_launch_ros
+from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, LaunchOrder
 
 
 def without() -> str:

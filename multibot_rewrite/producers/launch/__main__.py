@@ -1,4 +1,4 @@
-"""The process that reads a launch file: ``python -m multibot_rewrite.launch.graph``.
+"""The process that reads a launch file: ``python -m multibot_rewrite.producers.launch``.
 
 Standard input has the order, standard output gets the graph; what the launch file prints goes to
 standard error. Exit code 3: launch or launch_ros is missing.
@@ -10,8 +10,8 @@ import os
 import sys
 import tempfile
 
-from multibot_rewrite.evidence.launch_records import order_of, to_json
-from multibot_rewrite.launch.graph.read import UnreadableError, read_graph
+from multibot_rewrite.producers.launch.read import UnreadableError, read_graph
+from multibot_rewrite.producers.launch.records import order_of, to_json
 
 NO_LAUNCH, UNREADABLE = 3, 4
 

@@ -18,7 +18,7 @@ from multibot_rewrite.knowledge.records import PUBLISHES, SUBSCRIBES
 from multibot_rewrite.sources.read import read_file
 
 if TYPE_CHECKING:
-    from multibot_rewrite.evidence.running import RunningNode
+    from multibot_rewrite.producers.launch.running import RunningNode
 
 _BRIDGE = "ros_gz_bridge"
 _WORD = re.compile(r"(?P<topic>[^@]+)@(?P<type>[^@\[\]]+)(?P<way>[@\[\]])[^@\[\]]+")

@@ -11,11 +11,6 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from lxml import etree
 
-from multibot_rewrite.evidence.bridges import bridged_by, is_bridge
-from multibot_rewrite.evidence.launch_records import LaunchGraph, LaunchNote
-from multibot_rewrite.evidence.launched import programs
-from multibot_rewrite.evidence.running import DESCRIPTION, Knowledge, RunningNode, running_nodes
-from multibot_rewrite.evidence.static_transforms import STATIC
 from multibot_rewrite.graph.snapshot import (
     EXPECTED,
     Caveat,
@@ -38,6 +33,16 @@ from multibot_rewrite.knowledge.records import (
 )
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
+from multibot_rewrite.producers.launch.bridges import bridged_by, is_bridge
+from multibot_rewrite.producers.launch.of_robot import programs
+from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchNote
+from multibot_rewrite.producers.launch.running import (
+    DESCRIPTION,
+    Knowledge,
+    RunningNode,
+    running_nodes,
+)
+from multibot_rewrite.producers.launch.static_transforms import STATIC
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import has_release
 from multibot_rewrite.rosnames import (

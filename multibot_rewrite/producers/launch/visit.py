@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from types import MappingProxyType
 from typing import Any
 
-from multibot_rewrite.launch.graph.describe import (
+from multibot_rewrite.producers.launch.describe import (
     Visit,
     component,
     failure,
@@ -19,8 +19,7 @@ from multibot_rewrite.launch.graph.describe import (
     process,
     text,
 )
-from multibot_rewrite.launch.graph.places import place_of
-from multibot_rewrite.launch.later import resolved
+from multibot_rewrite.producers.launch.places import place_of
 
 # They only change the context, or give further entities.
 _EXECUTED = (
@@ -103,7 +102,8 @@ def _pass(entity: Any, seen: Visit) -> None:
 def _node(entity: Any, seen: Visit) -> Iterable[Any] | None:
     if not is_wanted(entity, seen.context):
         return None
-    instead = resolved(entity, seen.context)
+    # launch/later.py: an action for a robot gets its options when it runs, or others run in its place.
+    instead = entity.resolve(seen.context) if type(entity).__name__ == "OfRobot" else None
     if instead is None:
         seen.nodes.append(node(entity, seen))
         _ended(entity, seen)
