@@ -42,8 +42,9 @@ from multibot_rewrite.rosnames import (
     read_remap,
     resolve_bound,
 )
+from multibot_rewrite.system.conventions import CLOCK
 
-CLOCK, CLOCK_TYPE = "/clock", "rosgraph_msgs/msg/Clock"
+CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
 TF, TF_STATIC, TF_TYPE = "/tf", "/tf_static", "tf2_msgs/msg/TFMessage"
 _CLASSIC = ("gazebo_ros", "spawn_entity.py")
 _PREFIX_SWITCH = "tf_frame_prefix_enable"

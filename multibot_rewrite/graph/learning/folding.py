@@ -16,9 +16,9 @@ from multibot_rewrite.remap.records import (
     Endpoint,
 )
 from multibot_rewrite.remap.targets import TRANSPORTS
+from multibot_rewrite.system.conventions import CLOCK
 
 IMAGE = "sensor_msgs/msg/Image"
-CLOCK = "/clock"
 _HIDDEN = "/_action/"
 _SEND_GOAL = "_SendGoal"
 

@@ -17,7 +17,6 @@ from multibot_rewrite.graph.learning.choosing import (
     namespace_prefix,
 )
 from multibot_rewrite.graph.learning.folding import (
-    CLOCK,
     EndpointId,
     Seen,
     fold_actions,
@@ -42,6 +41,7 @@ from multibot_rewrite.remap.records import (
     NodeFacts,
 )
 from multibot_rewrite.rosnames import expand
+from multibot_rewrite.system.conventions import CLOCK
 
 FROM_HELPER = "asked for by transform_listener_impl_<address>"
 SHARED_PROCESS = "its process has several nodes, each gets the endpoints of the helper nodes there"

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from multibot_rewrite.graph.learning.folding import CLOCK
 from multibot_rewrite.graph.learning.learn import EVERY_NODE, LearnedNode
 from multibot_rewrite.graph.snapshot import GraphEndpoint, Qos, Snapshot
 from multibot_rewrite.record import NamedTuple
@@ -19,6 +18,7 @@ from multibot_rewrite.remap.nodl.writing import DEFAULT, UNKNOWN_QOS, NodlFile, 
 from multibot_rewrite.remap.records import TOPIC, Endpoint
 from multibot_rewrite.remap.targets import TRANSPORTS
 from multibot_rewrite.rosnames import expand
+from multibot_rewrite.system.conventions import CLOCK
 
 KEEP_LAST = "KEEP_LAST"
 

@@ -12,7 +12,6 @@ from multibot_rewrite.companions.params.name_sites import params_at
 from multibot_rewrite.companions.params.rcl_parameters import Value, value_of
 from multibot_rewrite.companions.params.sections import (
     ANY,
-    PLACEHOLDER,
     controller_types,
     identify_node,
     raw_sections,
@@ -26,6 +25,7 @@ from multibot_rewrite.lint.facts.typos import meant_name
 from multibot_rewrite.model import InputError
 from multibot_rewrite.nearest import MISTYPED, Guesses
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.conventions import PLACEHOLDER
 
 # What every node has, or every controller and plugin; prefixes end in a dot.
 _EVERYWHERE = re.compile(
