@@ -11,8 +11,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.records import (
+from multibot_rewrite.knowledge.records import (
     ACTION,
     CALLS,
     PUBLISHES,
@@ -21,6 +20,7 @@ from multibot_rewrite.remap.records import (
     SUBSCRIBES,
     TOPIC,
 )
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.system.conventions import (
     READ_BY_EVERY_NODE,
     SENT_BY_EVERY_NODE,

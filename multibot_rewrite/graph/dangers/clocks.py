@@ -12,7 +12,7 @@ from multibot_rewrite.graph.dangers.seen import Seen, and_then, is_viewer, last_
 from multibot_rewrite.graph.rules.declaration import danger_rule
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.wording import shorten
-from multibot_rewrite.remap.records import TOPIC
+from multibot_rewrite.knowledge.records import TOPIC
 from multibot_rewrite.system.conventions import CLOCK
 
 # They compare the time of messages with their own clock, and subscribe to /clock with use_sim_time.

@@ -23,8 +23,8 @@ from multibot_rewrite.graph.dangers.seen import (
 from multibot_rewrite.graph.rules.causes import in_namespaces_above
 from multibot_rewrite.graph.rules.declaration import danger_rule
 from multibot_rewrite.graph.snapshot import GraphEndpoint
+from multibot_rewrite.knowledge.records import ACTION, SERVICE, TOPIC
 from multibot_rewrite.nearest import CHOICE, COMPARED, MISTYPED, nearest
-from multibot_rewrite.remap.records import ACTION, SERVICE, TOPIC
 from multibot_rewrite.system.conventions import EVERYBODYS, chooses
 
 ABSENT = "is that robot started, and is its name right?"

@@ -19,8 +19,8 @@ from multibot_rewrite.graph.plan_file import to_yaml as plan_to_yaml
 from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER
+from multibot_rewrite.knowledge.node_library import NodeLibrary
 from multibot_rewrite.naming import LAYOUTS
-from multibot_rewrite.remap.node_library import NodeLibrary
 from multibot_rewrite.system.conventions import BODY_FRAMES, WORLD_FRAMES
 
 STACK = "seen"

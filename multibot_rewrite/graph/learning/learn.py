@@ -24,12 +24,8 @@ from multibot_rewrite.graph.learning.folding import (
     fold_parts,
 )
 from multibot_rewrite.graph.snapshot import GraphEndpoint, Snapshot
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.naming import TF_TOPICS
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.bridged_topics import TF_TYPE
-from multibot_rewrite.remap.node_library import NodeLibrary
-from multibot_rewrite.remap.records import (
+from multibot_rewrite.knowledge.node_library import NodeLibrary
+from multibot_rewrite.knowledge.records import (
     ACTION,
     PUBLISHES,
     ROLES,
@@ -40,6 +36,10 @@ from multibot_rewrite.remap.records import (
     Endpoint,
     NodeFacts,
 )
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.naming import TF_TOPICS
+from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.remap.bridged_topics import TF_TYPE
 from multibot_rewrite.rosnames import expand
 from multibot_rewrite.system.conventions import CLOCK
 

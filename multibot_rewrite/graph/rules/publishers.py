@@ -11,7 +11,7 @@ from multibot_rewrite.graph.rules.comparison import View
 from multibot_rewrite.graph.rules.declaration import graph_rule
 from multibot_rewrite.graph.rules.similar_names import similar
 from multibot_rewrite.graph.snapshot import GraphEndpoint
-from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, TOPIC
+from multibot_rewrite.knowledge.records import PUBLISHES, SUBSCRIBES, TOPIC
 from multibot_rewrite.system.conventions import EVERYBODYS
 
 # In the names of Nav2's costmap nodes.

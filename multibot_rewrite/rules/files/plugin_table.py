@@ -1,4 +1,4 @@
-"""``python -m multibot_rewrite.lint.beside.plugin_table TABLES``: the parameters of Nav2's plugins.
+"""``python -m multibot_rewrite.rules.files.plugin_table TABLES``: the parameters of Nav2's plugins.
 
 TABLES is the folder with ``parameters_RELEASE.tsv``. Of each plugin of ``plugin_owners.yaml``, each
 parameter: plugin, path below the plugin's name, type, releases (empty for all), how it was found, where

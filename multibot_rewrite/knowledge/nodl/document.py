@@ -10,8 +10,7 @@ import re
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.records import (
+from multibot_rewrite.knowledge.records import (
     ACTION,
     CALLS,
     PUBLISHES,
@@ -21,7 +20,7 @@ from multibot_rewrite.remap.records import (
     TOPIC,
     Endpoint,
 )
-from multibot_rewrite.remap.yaml_with_lines import (
+from multibot_rewrite.knowledge.yaml_with_lines import (
     YamlItem,
     entries_of,
     read_yaml_with_lines,
@@ -31,6 +30,7 @@ from multibot_rewrite.remap.yaml_with_lines import (
     word_of,
     wrong,
 )
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rosnames import check_full_name, check_topic_name, expand
 
 VERSION = "2"

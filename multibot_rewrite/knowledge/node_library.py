@@ -5,11 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TypeVar
 
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.releases import share_release
-from multibot_rewrite.remap.endpoint_entries import checked_endpoint, endpoints_of
-from multibot_rewrite.remap.fact_words import (
+from multibot_rewrite.knowledge.endpoint_entries import checked_endpoint, endpoints_of
+from multibot_rewrite.knowledge.fact_words import (
     FACT_KEYS,
     check_apart,
     condition_of,
@@ -18,7 +15,7 @@ from multibot_rewrite.remap.fact_words import (
     text_and_words,
     variants,
 )
-from multibot_rewrite.remap.records import (
+from multibot_rewrite.knowledge.records import (
     ROLES,
     Claim,
     Endpoint,
@@ -26,7 +23,7 @@ from multibot_rewrite.remap.records import (
     NodeFacts,
     SentTransform,
 )
-from multibot_rewrite.remap.yaml_with_lines import (
+from multibot_rewrite.knowledge.yaml_with_lines import (
     YamlItem,
     entries,
     entries_of,
@@ -40,6 +37,9 @@ from multibot_rewrite.remap.yaml_with_lines import (
     words_of,
     wrong,
 )
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.releases import share_release
 from multibot_rewrite.rosnames import check_node_name
 
 NODE_WORDS = (

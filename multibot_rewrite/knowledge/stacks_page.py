@@ -1,19 +1,19 @@
-"""The reference page of nodes and stacks, printed by ``python -m multibot_rewrite.remap.stacks``."""
+"""The page of nodes and stacks, printed by ``python -m multibot_rewrite.knowledge.stacks``."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
 from multibot_rewrite.controller_ways import CONTROLLER_WAYS, ControllerWay
-from multibot_rewrite.remap.node_library import NodeLibrary, Stack
-from multibot_rewrite.remap.records import Endpoint, NodeFacts
+from multibot_rewrite.knowledge.node_library import NodeLibrary, Stack
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 
 HEAD = """\
 # Nodes and stacks
 
 The topics, services and actions of known nodes, and the stacks of nodes that are started together.
 Generated from `nodes.yaml`, `controllers.yaml`, `arms.yaml` and `stacks.yaml` of
-`multibot_rewrite/remap/` by `python -m multibot_rewrite.remap.stacks > docs/stacks.md`.
+`multibot_rewrite/knowledge/` by `python -m multibot_rewrite.knowledge.stacks > docs/stacks.md`.
 
 Select a stack, or a single node, with `--stack`. Every robot runs robot_state_publisher besides;
 the stack `no_robot_state_publisher` leaves it out, for robots whose tf comes from something else.

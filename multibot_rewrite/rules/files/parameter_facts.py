@@ -1,7 +1,7 @@
 """The parameters that nodes declare: by the sources of their packages where those are there, else by
 installed NoDL documents and by what is known.
 
-``parameters.tsv`` is made by ``python -m multibot_rewrite.lint.beside.parameter_table``.
+``parameters.tsv`` is made by ``python -m multibot_rewrite.rules.files.parameter_table``.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from multibot_rewrite.companions.params.known_nodes import KnownNode
 from multibot_rewrite.interfaces.parameter_comparison import owners
 from multibot_rewrite.interfaces.parameter_facts import READ, YAML
 from multibot_rewrite.interfaces.parameter_files import file_parameters
+from multibot_rewrite.knowledge.nodl.lookup import Identity, file_of, find_interfaces, load
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.outside import outside
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import has_release
-from multibot_rewrite.remap.nodl.lookup import Identity, file_of, find_interfaces, load
 from multibot_rewrite.sources.packages import entries, package_folder
 from multibot_rewrite.sources.read import read_file
 
@@ -88,7 +88,7 @@ def nodl_parameters(package: str, node: str) -> tuple[tuple[str, str], ...]:
 @lru_cache
 def known_facts() -> Mapping[str, tuple[Fact, ...]]:
     """The facts of ``parameters.tsv`` by package."""
-    text = files("multibot_rewrite.lint.beside").joinpath("parameters.tsv").read_text("utf-8")
+    text = files("multibot_rewrite.rules.files").joinpath("parameters.tsv").read_text("utf-8")
     below, found = owners().below, dict[str, list[Fact]]()
     for line in text.splitlines():
         package, path, type_, bounds, releases, how, source = line.split("\t")

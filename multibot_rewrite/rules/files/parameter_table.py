@@ -1,4 +1,4 @@
-"""``python -m multibot_rewrite.lint.beside.parameter_table TABLES``: the known parameters.
+"""``python -m multibot_rewrite.rules.files.parameter_table TABLES``: the known parameters.
 
 TABLES is the folder with ``parameters_RELEASE.tsv``. Of the packages of known nodes, each parameter:
 package, path, type, bounds, releases (empty for all), how it was found, where it can be read last.

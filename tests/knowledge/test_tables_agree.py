@@ -1,4 +1,4 @@
-"""What is known of a node stands in two tables: its names in remap/*.yaml, its parameters in
+"""What is known of a node stands in two tables: its names in knowledge/*.yaml, its parameters in
 companions/params/params.yaml. They may not say two things of one node, in any release."""
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ from multibot_rewrite.companions.params.known_nodes import (
     Param,
     built_in_nodes,
 )
+from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.releases import RELEASES
-from multibot_rewrite.remap.records import NodeFacts
-from multibot_rewrite.remap.stacks import built_in
 
 # Without a section in parameter files: a Lua file, a file of its own, no parameters but actions.
 NO_PARAMETERS = {"cartographer_node", "rviz2", "ros_gz_bridge", "trajectory_until_node"}

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from multibot_rewrite.lazy import lazy_compile
-from multibot_rewrite.remap.fact_words import (
+from multibot_rewrite.knowledge.fact_words import (
     FACT_KEYS,
     check_apart,
     checked_condition,
@@ -14,7 +13,7 @@ from multibot_rewrite.remap.fact_words import (
     source_of,
     variants,
 )
-from multibot_rewrite.remap.records import (
+from multibot_rewrite.knowledge.records import (
     ACTION,
     PUBLISHES,
     ROLES,
@@ -23,7 +22,7 @@ from multibot_rewrite.remap.records import (
     TOPIC,
     Endpoint,
 )
-from multibot_rewrite.remap.yaml_with_lines import (
+from multibot_rewrite.knowledge.yaml_with_lines import (
     YamlItem,
     flag_of,
     table,
@@ -32,6 +31,7 @@ from multibot_rewrite.remap.yaml_with_lines import (
     words_of,
     wrong,
 )
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.rosnames import check_full_name, check_topic_name, expand
 
 ENDPOINT_WORDS = ("type", "parameter", "remapped", "when", "fixed", "note", "by")

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
+from multibot_rewrite.knowledge.by_release import in_release
+from multibot_rewrite.knowledge.node_library import NodeLibrary, extend, stack_of
+from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.releases import RELEASES
-from multibot_rewrite.remap.by_release import in_release
-from multibot_rewrite.remap.node_library import NodeLibrary, extend, stack_of
-from multibot_rewrite.remap.records import NodeFacts
 
 NOTHING = NodeLibrary({}, {}, {})
 DOCK = """

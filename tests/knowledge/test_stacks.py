@@ -10,18 +10,18 @@ import pytest
 from paths import ROOT
 
 from multibot_rewrite.fleets.fleet import NO_STATE_PUBLISHER
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.remap.node_library import NodeLibrary, extend, stack_of
-from multibot_rewrite.remap.records import ACTION, SERVICE, TOPIC, Endpoint, NodeFacts
-from multibot_rewrite.remap.stacks import (
+from multibot_rewrite.knowledge.node_library import NodeLibrary, extend, stack_of
+from multibot_rewrite.knowledge.records import ACTION, SERVICE, TOPIC, Endpoint, NodeFacts
+from multibot_rewrite.knowledge.stacks import (
     built_in,
     every_release,
     load_nodes,
     load_stack,
     user_stack,
 )
-from multibot_rewrite.remap.stacks_page import page
+from multibot_rewrite.knowledge.stacks_page import page
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.rosnames import expand
 
 WANTED = {
@@ -358,6 +358,6 @@ def test_a_file_that_cannot_be_read_is_reported(tmp_path: Path) -> None:
 
 
 def test_yaml_is_loaded_where_a_stack_is_asked_for_only() -> None:
-    code = "import sys, multibot_rewrite.remap.stacks; print('yaml' in sys.modules)"
+    code = "import sys, multibot_rewrite.knowledge.stacks; print('yaml' in sys.modules)"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert run.stdout == "False\n"

@@ -1,7 +1,7 @@
 """Known nodes and stacks of nodes, from ``nodes.yaml``, ``controllers.yaml``, ``arms.yaml``,
 ``stacks.yaml`` and files of users.
 
-``python -m multibot_rewrite.remap.stacks`` prints their reference page.
+``python -m multibot_rewrite.knowledge.stacks`` prints their reference page.
 """
 
 from __future__ import annotations
@@ -11,10 +11,10 @@ from functools import lru_cache
 from importlib.resources import files
 
 from multibot_rewrite.bounded import read_text
+from multibot_rewrite.knowledge.by_release import in_release
+from multibot_rewrite.knowledge.node_library import NodeLibrary, extend, stack_of
+from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.model import UsageError
-from multibot_rewrite.remap.by_release import in_release
-from multibot_rewrite.remap.node_library import NodeLibrary, extend, stack_of
-from multibot_rewrite.remap.records import NodeFacts
 
 BUILT_IN = ("nodes.yaml", "controllers.yaml", "arms.yaml", "stacks.yaml")
 
@@ -79,12 +79,12 @@ def every_release() -> NodeLibrary:
     """The nodes and stacks that this package knows, of all releases."""
     library = NodeLibrary({}, {}, {})
     for name in BUILT_IN:
-        text = files("multibot_rewrite.remap").joinpath(name).read_text(encoding="utf-8")
+        text = files("multibot_rewrite.knowledge").joinpath(name).read_text(encoding="utf-8")
         library = extend(library, text, name)
     return library
 
 
 if __name__ == "__main__":
-    from multibot_rewrite.remap.stacks_page import page
+    from multibot_rewrite.knowledge.stacks_page import page
 
     sys.stdout.write(page(every_release()))

@@ -9,11 +9,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.node_library import NodeLibrary, stack_of
-from multibot_rewrite.remap.nodl.document import Document, Parameter
-from multibot_rewrite.remap.nodl.lookup import (
+from multibot_rewrite.knowledge.node_library import NodeLibrary, stack_of
+from multibot_rewrite.knowledge.nodl.document import Document, Parameter
+from multibot_rewrite.knowledge.nodl.lookup import (
     Identity,
     Interfaces,
     file_of,
@@ -21,16 +19,18 @@ from multibot_rewrite.remap.nodl.lookup import (
     load,
     shown,
 )
-from multibot_rewrite.remap.records import (
+from multibot_rewrite.knowledge.records import (
     SERVES,
     SERVICE,
     SUBSCRIBES,
     TOPIC,
+    TRANSPORTS,
     Endpoint,
     FrameParameter,
     NodeFacts,
 )
-from multibot_rewrite.remap.targets import TRANSPORTS
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rosnames import expand
 
 EVERY_NODE = "every_node"

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from multibot_rewrite.knowledge.node_library import NodeLibrary, Stack
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.releases import RELEASES, has_release, releases_with, since_version
-from multibot_rewrite.remap.node_library import NodeLibrary, Stack
-from multibot_rewrite.remap.records import Endpoint, NodeFacts
 
 
 def in_release(library: NodeLibrary, release: str) -> NodeLibrary:

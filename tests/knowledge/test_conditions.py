@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from multibot_rewrite.knowledge.conditions import holds, parse_condition
 from multibot_rewrite.model import UsageError
-from multibot_rewrite.remap.conditions import holds, parse_condition
 
 VALUES: dict[str, object] = {
     "on": True,

@@ -12,8 +12,8 @@ from typing import NamedTuple
 import pytest
 from paths import FIXTURES
 
-from multibot_rewrite.remap.records import Endpoint
-from multibot_rewrite.remap.stacks import built_in
+from multibot_rewrite.knowledge.records import Endpoint
+from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.rosnames import expand
 
 LEAST_FACTS = 600

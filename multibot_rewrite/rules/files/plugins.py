@@ -1,6 +1,6 @@
 """Nav2's plugins in a section of a parameter file, and the parameters that each has below its name.
 
-``plugins.tsv`` is made by ``python -m multibot_rewrite.lint.beside.plugin_table``. Sources: pluginlib
+``plugins.tsv`` is made by ``python -m multibot_rewrite.rules.files.plugin_table``. Sources: pluginlib
 loads the class that ``NAME.plugin`` says; dwb_local_planner.cpp (resolveCriticClassName) and
 critic_manager.cpp of nav2_mppi_controller make the classes of critics of their names;
 nav2_rotation_shim_controller.cpp gives its controller its own name, from Lyrical on
@@ -14,7 +14,7 @@ from functools import lru_cache
 from importlib.resources import files
 
 from multibot_rewrite.companions.params.rcl_parameters import Value
-from multibot_rewrite.lint.beside.parameter_facts import Fact, make_facts
+from multibot_rewrite.rules.files.parameter_facts import Fact, make_facts
 
 DWB = "dwb_core::DWBLocalPlanner"
 MPPI = "nav2_mppi_controller::MPPIController"
@@ -35,7 +35,7 @@ Values = Mapping[str, Value | None]
 @lru_cache
 def plugin_facts() -> Mapping[str, tuple[Fact, ...]]:
     """The facts of ``plugins.tsv`` by plugin."""
-    text = files("multibot_rewrite.lint.beside").joinpath("plugins.tsv").read_text("utf-8")
+    text = files("multibot_rewrite.rules.files").joinpath("plugins.tsv").read_text("utf-8")
     found: dict[str, list[Fact]] = {}
     for line in text.splitlines():
         plugin, path, type_, releases, how, source = line.split("\t")

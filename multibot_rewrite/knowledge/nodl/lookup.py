@@ -11,9 +11,9 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.bounded import read_text
+from multibot_rewrite.knowledge.nodl.document import Document, Include, parse
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.nodl.document import Document, Include, parse
 
 INDEX = os.path.join("share", "ament_index", "resource_index", "nodl")
 SUFFIXES = (".nodl.yaml", ".nodl.yml", ".nodl.json")
