@@ -11,7 +11,13 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint
-from multibot_rewrite.knowledge.records import (
+from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.conventions import (
+    READ_BY_EVERY_NODE,
+    SENT_BY_EVERY_NODE,
+    tool_patterns,
+)
+from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
     PUBLISHES,
@@ -19,12 +25,6 @@ from multibot_rewrite.knowledge.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
-)
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.system.conventions import (
-    READ_BY_EVERY_NODE,
-    SENT_BY_EVERY_NODE,
-    tool_patterns,
 )
 
 TOOLS, SHARED = "/tools", "/shared"

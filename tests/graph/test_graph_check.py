@@ -39,10 +39,10 @@ from multibot_rewrite.graph.snapshot import (
     Qos,
     Snapshot,
 )
-from multibot_rewrite.knowledge.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.table import build_table
+from multibot_rewrite.system.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
 
 LAYOUTS = ("L1", "L2", "L3", "L4")
 

@@ -28,18 +28,7 @@ from multibot_rewrite.graph.snapshot import (
 )
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.knowledge.node_library import NodeLibrary, stack_of
-from multibot_rewrite.knowledge.records import (
-    ACTION,
-    CALLS,
-    PUBLISHES,
-    SERVES,
-    SERVICE,
-    SUBSCRIBES,
-    TOPIC,
-    TRANSPORTS,
-    Endpoint,
-    NodeFacts,
-)
+from multibot_rewrite.knowledge.records import TRANSPORTS, Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in, user_stack
 from multibot_rewrite.model import ProofError, UsageError
 from multibot_rewrite.naming import Naming, make_naming
@@ -48,6 +37,15 @@ from multibot_rewrite.remap.bridged_topics import TF_TYPE
 from multibot_rewrite.remap.records import Table
 from multibot_rewrite.remap.table import build_table, expanded, parsed
 from multibot_rewrite.rosnames import bind, expand, resolve_bound
+from multibot_rewrite.system.records import (
+    ACTION,
+    CALLS,
+    PUBLISHES,
+    SERVES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+)
 
 LAYOUTS = ("L1", "L2", "L3", "L4")
 ROBOTS = ("robot1", "robot2")

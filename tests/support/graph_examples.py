@@ -52,8 +52,8 @@ from multibot_rewrite.graph.snapshot import (
     Snapshot,
 )
 from multibot_rewrite.graph.states import Controller, NodeState, Parameter
-from multibot_rewrite.knowledge.records import ACTION, PUBLISHES, SERVICE, SUBSCRIBES, TOPIC
 from multibot_rewrite.system.conventions import SENT_BY_EVERY_NODE
+from multibot_rewrite.system.records import ACTION, PUBLISHES, SERVICE, SUBSCRIBES, TOPIC
 
 LINE = re.compile(r"(planned|running|as planned): (.+)")
 NODE = re.compile(

@@ -12,9 +12,9 @@ from multibot_rewrite.graph.bags.recording import RecordedTopic, Recording
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint
 from multibot_rewrite.graph.rules.ownership import NameOwnership, frame_ownership, name_ownership
 from multibot_rewrite.graph.wording import SEVERAL, shorten
-from multibot_rewrite.knowledge.records import PUBLISHES, TOPIC
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.system.conventions import EVERYBODYS
+from multibot_rewrite.system.records import PUBLISHES, TOPIC
 
 # Topics of one robot and of another are as often, unless something is wrong: so many times.
 RATIO = 3.0

@@ -25,8 +25,8 @@ from multibot_rewrite.graph.rules.declaration import danger_rule
 from multibot_rewrite.graph.snapshot import GraphEndpoint
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.wording import shorten
-from multibot_rewrite.knowledge.records import ACTION, TOPIC
 from multibot_rewrite.system.conventions import EVERYBODYS, OF_EVERY_NODE, chooses, team
+from multibot_rewrite.system.records import ACTION, TOPIC
 
 
 @danger_rule(

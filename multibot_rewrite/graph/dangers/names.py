@@ -23,9 +23,9 @@ from multibot_rewrite.graph.dangers.seen import (
 from multibot_rewrite.graph.rules.causes import in_namespaces_above
 from multibot_rewrite.graph.rules.declaration import danger_rule
 from multibot_rewrite.graph.snapshot import GraphEndpoint
-from multibot_rewrite.knowledge.records import ACTION, SERVICE, TOPIC
 from multibot_rewrite.nearest import CHOICE, COMPARED, MISTYPED, nearest
 from multibot_rewrite.system.conventions import EVERYBODYS, chooses
+from multibot_rewrite.system.records import ACTION, SERVICE, TOPIC
 
 ABSENT = "is that robot started, and is its name right?"
 _DIGITS = re.compile(r"_?\d+")

@@ -8,8 +8,8 @@ from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.graph.dangers import words
 from multibot_rewrite.graph.dangers.seen import Ends, Seen, at_work, last_word, nodes_of
 from multibot_rewrite.graph.rules.declaration import danger_rule
-from multibot_rewrite.knowledge.records import TOPIC
 from multibot_rewrite.system.conventions import chooses
+from multibot_rewrite.system.records import TOPIC
 
 # Of Nav2, between its controller and the robot: they limit velocities, and stop before obstacles.
 _LIMITS = ("velocity_smoother", "collision_monitor")

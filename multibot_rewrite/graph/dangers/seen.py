@@ -9,9 +9,9 @@ from functools import cache, partial
 from multibot_rewrite.graph.dangers import words
 from multibot_rewrite.graph.rules.tf_trees import tree_topic
 from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphFrame, Snapshot
-from multibot_rewrite.knowledge.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES, TOPIC
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.system.conventions import EVERYBODYS, only_looks
+from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES, TOPIC
 
 # In the order of the fields of Ends.
 _PLACE = {role: at for at, role in enumerate((PUBLISHES, SUBSCRIBES, SERVES, CALLS))}

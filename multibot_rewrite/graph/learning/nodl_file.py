@@ -14,10 +14,11 @@ from multibot_rewrite.graph.snapshot import GraphEndpoint, Qos, Snapshot
 from multibot_rewrite.knowledge.node_library import NodeLibrary
 from multibot_rewrite.knowledge.nodl.document import POLICIES
 from multibot_rewrite.knowledge.nodl.writing import DEFAULT, UNKNOWN_QOS, NodlFile, document_of
-from multibot_rewrite.knowledge.records import TOPIC, TRANSPORTS, Endpoint
+from multibot_rewrite.knowledge.records import TRANSPORTS, Endpoint
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rosnames import expand
 from multibot_rewrite.system.conventions import CLOCK
+from multibot_rewrite.system.records import TOPIC
 
 KEEP_LAST = "KEEP_LAST"
 

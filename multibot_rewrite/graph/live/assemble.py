@@ -16,9 +16,9 @@ from multibot_rewrite.graph.snapshot import (
     GraphFrame,
     GraphNode,
 )
-from multibot_rewrite.knowledge.records import PUBLISHES, TOPIC
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.system.conventions import SENT_BY_EVERY_NODE
+from multibot_rewrite.system.records import PUBLISHES, TOPIC
 
 # Participants announce themselves every 3 s: a shorter quiet time proves nothing.
 QUIET_SECONDS = 3.5

@@ -17,8 +17,8 @@ from multibot_rewrite.graph.rules.tf_senders import described_robots, sent_by_ro
 from multibot_rewrite.graph.rules.tf_trees import frames_in
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER
 from multibot_rewrite.graph.wording import shorten
-from multibot_rewrite.knowledge.records import PUBLISHES, TOPIC
 from multibot_rewrite.system.conventions import USUAL_FRAMES
+from multibot_rewrite.system.records import PUBLISHES, TOPIC
 
 
 @graph_rule(

@@ -11,8 +11,8 @@ from multibot_rewrite.graph.rules.comparison import View
 from multibot_rewrite.graph.rules.declaration import graph_rule
 from multibot_rewrite.graph.rules.similar_names import similar
 from multibot_rewrite.graph.snapshot import GraphEndpoint
-from multibot_rewrite.knowledge.records import PUBLISHES, SUBSCRIBES, TOPIC
 from multibot_rewrite.system.conventions import EVERYBODYS
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
 
 # In the names of Nav2's costmap nodes.
 COSTMAP = "costmap"

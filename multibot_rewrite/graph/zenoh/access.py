@@ -12,9 +12,9 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
 from multibot_rewrite.graph.zenoh.tokens import SPACE
-from multibot_rewrite.knowledge.records import ACTION, PUBLISHES, SERVES
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.system.conventions import OF_EVERY_NODE, SENT_BY_ANY_NODE
+from multibot_rewrite.system.records import ACTION, PUBLISHES, SERVES
 
 Rule = dict[str, object]
 IN, OUT = "ingress", "egress"
