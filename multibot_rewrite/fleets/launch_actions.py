@@ -1,5 +1,4 @@
-"""A planned fleet -> what its launch file starts, robot by robot; ``launch_python`` and ``launch_xml``
-write it down.
+"""A planned fleet -> what its launch file starts, robot by robot; ``launch_python`` writes it down.
 
 What only runs under a condition that no file answers, and nodes whose program is not known, are left
 to the reader: they are named in the file.

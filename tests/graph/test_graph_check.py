@@ -27,7 +27,7 @@ from small_fleet import LINKS, NODES, ROBOTS, healthy, plan
 
 from multibot_rewrite.findings.finding import INCONCLUSIVE
 from multibot_rewrite.graph.check import ABSENCE, ALL_RULES, check
-from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, expect, spelled
+from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, expect
 from multibot_rewrite.graph.rules.comparison import make_view
 from multibot_rewrite.graph.rules.in_enclaves import without_enclave
 from multibot_rewrite.graph.rules.ownership import name_ownership

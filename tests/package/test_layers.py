@@ -32,7 +32,7 @@ FLOORS = (
     ("rewriters",),
     ("readback", "steps"),
     ("checks", "sources", "remap"),
-    ("pipeline", "reports", "graph", "companions", "interfaces"),
+    ("pipeline", "reports", "graph", "companions"),
     ("rules",),
     ("library", "evidence"),
     ("closure",),

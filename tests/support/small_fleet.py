@@ -7,7 +7,7 @@ from graph_cases import (
     sent,
 )
 
-from multibot_rewrite.graph.expectation import Expectation, expect, spelled
+from multibot_rewrite.graph.expectation import Expectation, expect
 from multibot_rewrite.graph.snapshot import GraphFrame, Snapshot
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.naming import make_naming
