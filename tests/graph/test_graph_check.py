@@ -39,7 +39,7 @@ from multibot_rewrite.graph.snapshot import (
     Qos,
     Snapshot,
 )
-from multibot_rewrite.naming import make_naming
+from multibot_rewrite.naming import make_naming, spelled
 from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.table import build_table
 from multibot_rewrite.system.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC

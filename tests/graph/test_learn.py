@@ -36,6 +36,7 @@ from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.bridged_topics import TF_TYPE
 from multibot_rewrite.remap.records import Table
 from multibot_rewrite.remap.table import build_table, parsed
+from multibot_rewrite.remap.targets import expanded
 from multibot_rewrite.rosnames import bind, expand, resolve_bound
 from multibot_rewrite.system.records import (
     ACTION,
