@@ -32,10 +32,10 @@ from multibot_rewrite.graph.live.request import RosUnusable
 from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.watching import Outcome, Verdict, final
+from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
 from multibot_rewrite.releases import release_here
-from multibot_rewrite.remap.stacks import built_in
 
 WORDS = {
     Verdict.PLANNED: "nothing wrong seen",

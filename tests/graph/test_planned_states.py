@@ -31,7 +31,7 @@ from multibot_rewrite.graph.snapshot import (
 )
 from multibot_rewrite.graph.states import NodeState, Parameter
 from multibot_rewrite.model import InputError
-from multibot_rewrite.remap.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
 
 PLAN = """\
 layout: frames-per-robot

@@ -18,7 +18,8 @@ from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphNode, Snapshot
-from multibot_rewrite.remap.records import NodeFacts, NodeRule, NodeTable
+from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.remap.records import NodeRule, NodeTable
 
 TF = ("/tf", "/tf_static")
 _EKF = "robot_localization/ekf_node"
