@@ -37,7 +37,7 @@ from multibot_rewrite.graph.plan_file import from_yaml, to_yaml
 from multibot_rewrite.graph.questions import questions
 from multibot_rewrite.graph.snapshot import Caveat, GraphFrame, Snapshot, from_json, to_json
 from multibot_rewrite.graph.states import Controller, NodeState
-from multibot_rewrite.knowledge.records import PUBLISHES, SERVES, SUBSCRIBES
+from multibot_rewrite.system.records import PUBLISHES, SERVES, SUBSCRIBES
 
 EMPTY = Snapshot((), (), (), environment())
 

@@ -25,7 +25,7 @@ from multibot_rewrite.graph.doctor.diagnose import diagnose
 from multibot_rewrite.graph.doctor.robots import guess_robots
 from multibot_rewrite.graph.doctor.seen_plan import seen_plan
 from multibot_rewrite.graph.snapshot import GraphFrame, GraphNode, Snapshot
-from multibot_rewrite.knowledge.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
+from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
 
 IMU = "sensor_msgs/msg/Imu"
 EMPTY = Snapshot((), (), (), environment())

@@ -26,8 +26,8 @@ from multibot_rewrite.graph.snapshot import (
 )
 from multibot_rewrite.graph.states import Controller, NodeState, Parameter
 from multibot_rewrite.graph.zenoh.cdr import read_header_frame
-from multibot_rewrite.knowledge.records import PUBLISHES, TOPIC
 from multibot_rewrite.model import InputError
+from multibot_rewrite.system.records import PUBLISHES, TOPIC
 
 SCAN, JOINTS = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/JointState"
 TWO_ROBOTS = """\

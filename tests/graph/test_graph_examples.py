@@ -10,7 +10,7 @@ from multibot_rewrite.graph.bags.rules import RULES as OF_RECORDINGS
 from multibot_rewrite.graph.check import RULES, check
 from multibot_rewrite.graph.dangers.find import DANGERS
 from multibot_rewrite.graph.snapshot import GraphFrame
-from multibot_rewrite.knowledge.records import ACTION, CALLS, SERVICE
+from multibot_rewrite.system.records import ACTION, CALLS, SERVICE
 
 EXAMPLE = """\
 planned: frames of robot1 on /robot1/tf: base_link, laser

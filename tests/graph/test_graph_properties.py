@@ -26,7 +26,11 @@ from multibot_rewrite.graph.snapshot import (
     from_json,
     to_json,
 )
-from multibot_rewrite.knowledge.records import (
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
+from multibot_rewrite.naming import Naming, affix, make_naming, spelled
+from multibot_rewrite.releases import NEWEST_LTS
+from multibot_rewrite.remap.table import build_table
+from multibot_rewrite.system.records import (
     CALLS,
     PUBLISHES,
     ROLES,
@@ -34,12 +38,7 @@ from multibot_rewrite.knowledge.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
-    Endpoint,
-    NodeFacts,
 )
-from multibot_rewrite.naming import Naming, affix, make_naming, spelled
-from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.remap.table import build_table
 
 pytestmark = pytest.mark.slow
 

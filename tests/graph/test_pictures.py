@@ -46,7 +46,7 @@ from multibot_rewrite.graph.pictures.text import clipped, columns, visible
 from multibot_rewrite.graph.plan_file import to_yaml
 from multibot_rewrite.graph.snapshot import Caveat, GraphFrame, GraphNode, Snapshot, to_json
 from multibot_rewrite.graph.watching import Verdict
-from multibot_rewrite.knowledge.records import PUBLISHES
+from multibot_rewrite.system.records import PUBLISHES
 
 LEAKY = ("/robot1/cmd_vel", "/cmd_vel", "collision_monitor")
 CROSSED = ("/robot2/scan", "/robot1/scan", "amcl")

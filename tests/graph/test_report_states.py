@@ -27,7 +27,7 @@ from multibot_rewrite.graph.plan_file import to_yaml
 from multibot_rewrite.graph.rehearsal import with_substitutes
 from multibot_rewrite.graph.rules.comparison import make_view
 from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphNode, to_json
-from multibot_rewrite.knowledge.records import ACTION, SERVES
+from multibot_rewrite.system.records import ACTION, SERVES
 
 GRAPHS = ROOT / "fixtures" / "graphs"
 

@@ -18,7 +18,7 @@ from multibot_rewrite.graph.expectation import (
 from multibot_rewrite.graph.pictures.scene import Scene, make_scene
 from multibot_rewrite.graph.snapshot import Caveat, Snapshot
 from multibot_rewrite.graph.watching import Outcome, Verdict
-from multibot_rewrite.knowledge.records import PUBLISHES, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
 
 FIRST, SECOND = "/fleet_a/robot1", "/fleet_a/robot2"
 OPEN_END = Finding("MF801", WARNING, "/robot2/amcl reads scan2, which nothing sends")

@@ -14,7 +14,7 @@ from multibot_rewrite.graph.rules.comparison import View
 from multibot_rewrite.graph.rules.planned_states import clock_not_planned, planned_clocks
 from multibot_rewrite.graph.snapshot import GraphEndpoint, Snapshot
 from multibot_rewrite.graph.states import NodeState
-from multibot_rewrite.knowledge.records import CALLS, PUBLISHES
+from multibot_rewrite.system.records import CALLS, PUBLISHES
 
 # Who sends, and who calls: what a danger is about.
 _ACTING = (PUBLISHES, CALLS)

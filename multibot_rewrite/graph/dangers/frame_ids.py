@@ -18,9 +18,9 @@ from multibot_rewrite.graph.dangers.seen import (
 )
 from multibot_rewrite.graph.rules.declaration import danger_rule
 from multibot_rewrite.graph.wording import SEVERAL, shorten
-from multibot_rewrite.knowledge.records import TOPIC
 from multibot_rewrite.nearest import MISTYPED, nearest
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.records import TOPIC
 
 # What a robot measures is in its own frames. A pose, a path or a marker may be in another robot's.
 _MEASURED = ("sensor_msgs/", "nav_msgs/msg/Odometry", "stereo_msgs/", "radar_msgs/")

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.graph.dangers.seen import EVERYBODYS, Ends, Seen, is_viewer, nodes_of
+from multibot_rewrite.graph.dangers.seen import Ends, Seen, is_viewer, nodes_of
 from multibot_rewrite.graph.rules.declaration import danger_rule
 from multibot_rewrite.graph.rules.type_and_qos import STAMPED, qos_conflicts
 from multibot_rewrite.graph.snapshot import ZENOH, GraphEndpoint
 from multibot_rewrite.graph.wording import shorten
-from multibot_rewrite.knowledge.records import TOPIC
+from multibot_rewrite.system.conventions import EVERYBODYS
+from multibot_rewrite.system.records import TOPIC
 
 
 @danger_rule(

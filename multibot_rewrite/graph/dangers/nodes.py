@@ -10,7 +10,7 @@ from multibot_rewrite.graph.dangers.seen import Seen, and_then, is_viewer, nodes
 from multibot_rewrite.graph.rules.declaration import danger_rule
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.wording import SEVERAL, shorten
-from multibot_rewrite.knowledge.records import SERVICE
+from multibot_rewrite.system.records import SERVICE
 
 # So many doubled nodes are two robots rather than two nodes.
 MANY = 3

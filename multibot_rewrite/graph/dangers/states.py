@@ -11,7 +11,7 @@ from multibot_rewrite.graph.questions import SIM_TIME
 from multibot_rewrite.graph.rules.declaration import danger_rule
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.wording import SEVERAL, shorten
-from multibot_rewrite.knowledge.records import SERVICE
+from multibot_rewrite.system.records import SERVICE
 
 ACTIVE = "active"
 

@@ -17,9 +17,8 @@ from multibot_rewrite.graph.dangers.seen import (
 )
 from multibot_rewrite.graph.rules.declaration import danger_rule
 from multibot_rewrite.graph.wording import SEVERAL, shorten
+from multibot_rewrite.system.conventions import WORLD_FRAMES
 
-# Above every robot: theirs and everybody's.
-WORLD = ("map", "world", "earth")
 _STATIC = "static_transform_publisher"
 
 
@@ -128,7 +127,7 @@ def _twice(seen: Seen, senders: Iterable[str]) -> list[str]:
 
 def _bare_frames(seen: Seen, tree: Tree) -> list[str]:
     children = unique(edge.child for edge in tree.edges)
-    return [it for it in children if not seen.owners.frames.get(it) and it not in WORLD]
+    return [it for it in children if not seen.owners.frames.get(it) and it not in WORLD_FRAMES]
 
 
 def _named_frames(seen: Seen, tree: Tree) -> Iterator[str]:

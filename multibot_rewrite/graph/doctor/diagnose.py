@@ -14,10 +14,10 @@ from multibot_rewrite.graph.doctor.robots import GuessedRobot, guess_robots, own
 from multibot_rewrite.graph.rules.tf_trees import tree_topic
 from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.wording import SEVERAL, shorten
-from multibot_rewrite.knowledge.records import PUBLISHES, TOPIC
 from multibot_rewrite.naming import LAYOUTS, Layout
 from multibot_rewrite.plural import plural
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.records import PUBLISHES, TOPIC
 
 
 class Diagnosis(NamedTuple):

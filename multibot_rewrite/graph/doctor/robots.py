@@ -12,12 +12,12 @@ from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping
 
 from multibot_rewrite.graph.dangers.seen import Owners, unique
-from multibot_rewrite.graph.expectation import USUAL_FRAMES
 from multibot_rewrite.graph.rules.ownership import SEPARATORS
 from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.tool_nodes import is_tool
-from multibot_rewrite.knowledge.records import TOPIC
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.conventions import USUAL_FRAMES
+from multibot_rewrite.system.records import TOPIC
 
 # Topics of a robot's body: two of them are enough, or one of tf.
 BODY = (

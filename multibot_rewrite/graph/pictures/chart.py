@@ -13,8 +13,8 @@ from multibot_rewrite.graph.pictures.simplify import (
 )
 from multibot_rewrite.graph.pictures.states import FAULTY, MISSING
 from multibot_rewrite.graph.pictures.text import counted
-from multibot_rewrite.knowledge.records import CALLS, PUBLISHES
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.records import CALLS, PUBLISHES
 
 
 class Cluster(NamedTuple):

@@ -9,7 +9,7 @@ from multibot_rewrite.graph.pictures.mermaid import COLOURS
 from multibot_rewrite.graph.pictures.scene import DrawnName, DrawnNode, Scene
 from multibot_rewrite.graph.pictures.states import MISSING, OK, UNEXPECTED
 from multibot_rewrite.graph.pictures.text import counted, visible
-from multibot_rewrite.knowledge.records import ACTION, SERVICE, TOPIC
+from multibot_rewrite.system.records import ACTION, SERVICE, TOPIC
 
 # With more dot takes minutes, and the picture is not readable.
 MOST_EDGES = 3000

@@ -11,8 +11,8 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from multibot_rewrite.graph.pictures.scene import DrawnEdge, DrawnGroup, DrawnName, DrawnNode
 from multibot_rewrite.graph.pictures.states import FAULTY, STATES
-from multibot_rewrite.knowledge.records import PUBLISHES, SERVES
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.records import PUBLISHES, SERVES
 
 ROW, NODE_ROW, TOP = 24, 34, 40
 SWEEPS = 6

@@ -17,7 +17,7 @@ from multibot_rewrite.graph.pictures.states import (
     UNEXPECTED,
 )
 from multibot_rewrite.graph.pictures.text import counted, visible
-from multibot_rewrite.knowledge.records import ACTION, SERVICE, TOPIC
+from multibot_rewrite.system.records import ACTION, SERVICE, TOPIC
 
 # The limits of Mermaid (config.schema.yaml: maxEdges, maxTextSize).
 MOST_EDGES, MOST_LETTERS = 500, 50_000

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from multibot_rewrite.graph.pictures.scene import DrawnEdge, DrawnGroup, DrawnName
 from multibot_rewrite.graph.pictures.states import FAULTY, MISSING, OK
-from multibot_rewrite.knowledge.records import SERVES
+from multibot_rewrite.system.records import SERVES
 
 # So many services of a node without a client are drawn as one.
 MERGE_FROM = 3

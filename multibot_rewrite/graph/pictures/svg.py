@@ -19,8 +19,8 @@ from multibot_rewrite.graph.pictures.states import (
 )
 from multibot_rewrite.graph.pictures.text import clipped, columns, counted, visible
 from multibot_rewrite.graph.pictures.tf_tree_rows import FrameTree
-from multibot_rewrite.knowledge.records import ACTION, SERVICE
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.records import ACTION, SERVICE
 
 # What each state means, for the legend and the tooltips.
 MEANINGS = {

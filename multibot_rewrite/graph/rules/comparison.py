@@ -12,8 +12,8 @@ from multibot_rewrite.graph.rules.tf_copies import without_bridged
 from multibot_rewrite.graph.rules.tf_trees import TfTree, tf_trees
 from multibot_rewrite.graph.snapshot import GraphEndpoint, Snapshot
 from multibot_rewrite.graph.tool_nodes import is_tool
-from multibot_rewrite.knowledge.records import PUBLISHES, TOPIC
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.records import PUBLISHES, TOPIC
 
 # Node, kind, role and name of an endpoint.
 EndpointKey = tuple[str, str, str, str]

@@ -18,7 +18,7 @@ from multibot_rewrite.graph.rules.causes import (
 from multibot_rewrite.graph.rules.comparison import View
 from multibot_rewrite.graph.rules.declaration import graph_rule
 from multibot_rewrite.graph.rules.similar_names import similar
-from multibot_rewrite.knowledge.records import CALLS, PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
 
 TO_DO = {
     PUBLISHES: "publish",

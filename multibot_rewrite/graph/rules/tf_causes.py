@@ -19,7 +19,7 @@ from multibot_rewrite.graph.rules.tf_senders import (
 from multibot_rewrite.graph.rules.tf_trees import TfTree, tree_topic
 from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.graph.wording import shorten
-from multibot_rewrite.knowledge.records import PUBLISHES
+from multibot_rewrite.system.records import PUBLISHES
 
 JOINT_STATES, TF = "sensor_msgs/msg/JointState", "tf2_msgs/msg/TFMessage"
 

@@ -15,7 +15,7 @@ from multibot_rewrite.graph.rules.tf_senders import planned_transforms, senders_
 from multibot_rewrite.graph.rules.tf_trees import TfTree, tree_topic
 from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.graph.wording import shorten
-from multibot_rewrite.knowledge.records import PUBLISHES
+from multibot_rewrite.system.records import PUBLISHES
 
 
 @graph_rule(
