@@ -27,7 +27,6 @@ from multibot_rewrite.graph.snapshot import (
 )
 from multibot_rewrite.graph.states import NodeState
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER, Edge, edges_in, sent_by
-from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
 from multibot_rewrite.record import NamedTuple
@@ -42,6 +41,7 @@ from multibot_rewrite.rosnames import (
     read_remap,
     resolve_bound,
 )
+from multibot_rewrite.system.wording import SEVERAL, shorten
 
 CLOCK, CLOCK_TYPE = "/clock", "rosgraph_msgs/msg/Clock"
 TF, TF_STATIC, TF_TYPE = "/tf", "/tf_static", "tf2_msgs/msg/TFMessage"

@@ -6,10 +6,10 @@ from collections.abc import Iterable
 from enum import IntEnum
 
 from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, Finding
-from multibot_rewrite.graph.check import ABSENCE, doubts
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.snapshot import CHANGING, Snapshot
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.rules.check import ABSENCE, doubts
 
 
 class Verdict(IntEnum):

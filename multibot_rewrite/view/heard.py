@@ -8,9 +8,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import acos, degrees, dist
 
 from multibot_rewrite.checks.rotation import inverse, matrix_of_quaternion, product
-from multibot_rewrite.graph.rules.tf_trees import tree_topic
 from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.index import tree_topic
 from multibot_rewrite.view.models import Joint
 
 # Frames that are where the world is, whoever has them (REP 105).

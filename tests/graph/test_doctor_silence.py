@@ -166,7 +166,7 @@ def test_a_namespace_with_odometry_alone_is_no_robot() -> None:
 
 def test_what_is_called_after_a_robot_inside_another_namespace_is_not_its_own() -> None:
     graph = added("/fleet/monitor", (PUBLISHES, "/fleet/pose_robot1", ODOMETRY))(nav2_with_tools())
-    assert diagnose(graph).owners.names["/fleet/pose_robot1"] == ""
+    assert diagnose(graph).whose.robot("/fleet/pose_robot1") == ""
 
 
 def test_the_plan_of_what_is_seen_leaves_out_what_every_node_has() -> None:

@@ -9,7 +9,6 @@ from graph_cases import as_planned, environment, qos, sent
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.expectation import (
     Expectation,
     PlannedEndpoint,
@@ -40,6 +39,7 @@ from multibot_rewrite.remap.records import (
     NodeFacts,
 )
 from multibot_rewrite.remap.table import build_table
+from multibot_rewrite.rules.check import check
 
 pytestmark = pytest.mark.slow
 

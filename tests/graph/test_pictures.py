@@ -25,7 +25,6 @@ from paths import ROOT
 
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.findings.finding import INCONCLUSIVE
-from multibot_rewrite.graph.check import RULES
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.pictures.dot import to_dot
 from multibot_rewrite.graph.pictures.layout import NODE_ROW, ROW, lay_out
@@ -47,6 +46,7 @@ from multibot_rewrite.graph.plan_file import to_yaml
 from multibot_rewrite.graph.snapshot import Caveat, GraphFrame, GraphNode, Snapshot, to_json
 from multibot_rewrite.graph.watching import Verdict
 from multibot_rewrite.remap.records import PUBLISHES
+from multibot_rewrite.rules.check import RULES
 
 LEAKY = ("/robot1/cmd_vel", "/cmd_vel", "collision_monitor")
 CROSSED = ("/robot2/scan", "/robot1/scan", "amcl")

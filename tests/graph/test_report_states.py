@@ -25,9 +25,9 @@ from multibot_rewrite.graph.pictures.scene import BRIDGE, Scene
 from multibot_rewrite.graph.pictures.states import CLASH, MISSING, OK, UNEXPECTED, robots_of
 from multibot_rewrite.graph.plan_file import to_yaml
 from multibot_rewrite.graph.rehearsal import with_substitutes
-from multibot_rewrite.graph.rules.comparison import make_view
 from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphNode, to_json
 from multibot_rewrite.remap.records import ACTION, SERVES
+from multibot_rewrite.rules.pair.comparison import make_view
 
 GRAPHS = ROOT / "fixtures" / "graphs"
 

@@ -10,7 +10,6 @@ import pytest
 from declared_graph import endpoints, facts
 from nav2_graphs import environment
 
-from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.expectation import Expectation, expect
 from multibot_rewrite.graph.snapshot import GraphNode, Snapshot
 from multibot_rewrite.naming import make_naming
@@ -19,6 +18,7 @@ from multibot_rewrite.remap.node_library import stack_of
 from multibot_rewrite.remap.records import NodeFacts, Table
 from multibot_rewrite.remap.stacks import built_in
 from multibot_rewrite.remap.table import build_table
+from multibot_rewrite.rules.check import check
 
 SYSTEMS = {
     "nav2": ("robot_state", "nav2", "ros2_control"),

@@ -141,7 +141,7 @@ def test_a_start_loads_no_more_than_it_needs() -> None:
 
 def test_a_check_pays_for_no_source_that_it_does_not_look_at() -> None:
     there = loaded("import multibot_rewrite.cli.check")
-    assert "multibot_rewrite.graph.check" in there
+    assert "multibot_rewrite.rules.check" in there
     sources = ("live.child", "snapshot_file", "zenoh.observe", "zenoh.session")
     late = {*LATE, "lxml", "subprocess", "urllib.request"}
     assert there & {*late, *(f"multibot_rewrite.graph.{it}" for it in sources)} == set()

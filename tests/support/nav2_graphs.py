@@ -11,7 +11,6 @@ from graph_cases import bridge
 from paths import ROBOTS
 
 from multibot_rewrite.cli import multibot
-from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
 from multibot_rewrite.graph.pictures.scene import Scene, make_scene
 from multibot_rewrite.graph.plan_file import from_yaml
@@ -24,6 +23,7 @@ from multibot_rewrite.graph.snapshot import (
     Snapshot,
 )
 from multibot_rewrite.remap.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
+from multibot_rewrite.rules.check import check
 
 ROVER = ROBOTS / "rover.urdf"
 LAYOUTS = ("L1", "L2", "L3", "L4")

@@ -10,10 +10,10 @@ from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.findings.rule import Rule, declare
 from multibot_rewrite.graph.bags.recording import RecordedTopic, Recording
 from multibot_rewrite.graph.expectation import EVERYWHERE, Expectation, PlannedEndpoint
-from multibot_rewrite.graph.rules.ownership import NameOwnership, frame_ownership, name_ownership
-from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import PUBLISHES, TOPIC
+from multibot_rewrite.system.ownership import NameOwnership, frame_ownership, name_ownership
+from multibot_rewrite.system.wording import SEVERAL, shorten
 
 # Topics of one robot and of another are as often, unless something is wrong: so many times.
 RATIO = 3.0

@@ -7,17 +7,16 @@ from collections.abc import Iterator, Sequence
 
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.graph.bags.recording import RECORDER, is_recorded
-from multibot_rewrite.graph.check import inconclusive_where_in_doubt
-from multibot_rewrite.graph.dangers.find import find_dangers
-from multibot_rewrite.graph.dangers.seen import TF, Owners
-from multibot_rewrite.graph.doctor.robots import GuessedRobot, guess_robots, owners_of
-from multibot_rewrite.graph.rules.tf_trees import tree_topic
+from multibot_rewrite.graph.doctor.robots import GuessedRobot, guess_robots, whose_by_guess
 from multibot_rewrite.graph.snapshot import Snapshot
-from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.naming import LAYOUTS, Layout
 from multibot_rewrite.plural import plural
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import PUBLISHES, TOPIC
+from multibot_rewrite.rules.check import inconclusive_where_in_doubt
+from multibot_rewrite.rules.find import judge
+from multibot_rewrite.system.index import TF, Index, index, tree_topic
+from multibot_rewrite.system.wording import SEVERAL, shorten
 
 
 class Diagnosis(NamedTuple):
@@ -30,7 +29,7 @@ class Diagnosis(NamedTuple):
 
     graph: Snapshot
     robots: tuple[GuessedRobot, ...]
-    owners: Owners
+    whose: Index
     layout: Layout | None
     tf: tuple[tuple[str, tuple[str, ...]], ...]
     findings: tuple[Finding, ...]
@@ -39,10 +38,10 @@ class Diagnosis(NamedTuple):
 def diagnose(graph: Snapshot) -> Diagnosis:
     """Look at a graph without a plan."""
     robots = guess_robots(graph)
-    owners = owners_of(graph, robots)
-    found = inconclusive_where_in_doubt(find_dangers(graph, owners), graph)
+    seen = index(graph, whose_by_guess(robots))
+    found = inconclusive_where_in_doubt(judge(seen), graph)
     tf = tuple(_tf_senders(graph))
-    return Diagnosis(graph, robots, owners, _layout(robots, owners, tf), tf, tuple(found))
+    return Diagnosis(graph, robots, seen, _layout(robots, seen, tf), tf, tuple(found))
 
 
 def _tf_senders(graph: Snapshot) -> Iterator[tuple[str, tuple[str, ...]]]:
@@ -55,11 +54,11 @@ def _tf_senders(graph: Snapshot) -> Iterator[tuple[str, tuple[str, ...]]]:
 
 
 def _layout(
-    robots: Sequence[GuessedRobot], owners: Owners, tf: Sequence[tuple[str, tuple[str, ...]]]
+    robots: Sequence[GuessedRobot], seen: Index, tf: Sequence[tuple[str, tuple[str, ...]]]
 ) -> Layout | None:
     if not robots:
         return None
-    own_tf = any(owners.names.get(topic) for topic, _ in tf)
+    own_tf = any(seen.robot(topic) for topic, _ in tf)
     own_frames = any(robot.before or robot.behind for robot in robots)
     namespaces = any(robot.namespace for robot in robots)
     wanted = (own_frames, own_tf, namespaces)
@@ -82,7 +81,7 @@ def survey(seen: Diagnosis) -> Iterator[str]:
         if nodes_ == (RECORDER,):
             yield f"tf on {topic}"
             continue
-        by_robot = Counter(seen.owners.names.get(node, "") or "no robot" for node in nodes_)
+        by_robot = Counter(seen.whose.robot(node) or "no robot" for node in nodes_)
         yield f"tf on {topic}: {plural(len(nodes_), 'node')} of {shorten(by_robot, SEVERAL)}"
 
 

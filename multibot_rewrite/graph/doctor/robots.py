@@ -10,14 +10,14 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping
+from functools import cache
 
-from multibot_rewrite.graph.dangers.seen import Owners, unique
 from multibot_rewrite.graph.expectation import USUAL_FRAMES
-from multibot_rewrite.graph.rules.ownership import SEPARATORS
 from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import TOPIC
+from multibot_rewrite.system.ownership import SEPARATORS, Whose
 
 # Topics of a robot's body: two of them are enough, or one of tf.
 BODY = (
@@ -154,24 +154,24 @@ def with_frames(robot: GuessedRobot, frames: Iterable[str]) -> GuessedRobot:
     return robot._replace(before=way[0], behind=way[1]) if times.get(way) else robot
 
 
-def owners_of(graph: Snapshot, robots: Iterable[GuessedRobot]) -> Owners:
-    """Whose each name of the graph is."""
+def whose_by_guess(robots: Iterable[GuessedRobot]) -> Whose:
+    """Whose each name is, by how the robots show."""
     known = tuple(robots)
     there = [it for it in known if not it.only_frames]
     by_word = {it.namespace or it.name: it for it in there}
     by_word |= {it.name: it for it in there}
-    ends = (name for end in graph.endpoints for name in (end.name, end.node))
-    senders = (node for edge in graph.frames for node in (*edge.publishers, edge.topic))
-    names = unique((*(node.name for node in graph.nodes), *ends, *senders))
-    frames = unique(it for edge in graph.frames for it in (edge.child, edge.parent))
-    of_names = {name: _whose(name, by_word) for name in names}
-    of_frames = {frame: _whose_frame(frame, known) for frame in frames}
-    return Owners(
+    of_name = cache(lambda name: _whose(name, by_word))
+    of_frame = cache(lambda frame: _whose_frame(frame, known))
+
+    def name_of(robot: GuessedRobot | None) -> str:
+        return robot.name if robot else ""
+
+    return Whose(
         tuple(sorted(it.name for it in known)),
-        {name: robot.name if robot else "" for name, robot in of_names.items()},
-        {frame: robot.name if robot else "" for frame, robot in of_frames.items()},
-        {name: _plain(name, robot) for name, robot in of_names.items()},
-        {frame: _plain_frame(frame, robot) for frame, robot in of_frames.items()},
+        cache(lambda name: name_of(of_name(name))),
+        cache(lambda name: _plain(name, of_name(name))),
+        cache(lambda frame: name_of(of_frame(frame))),
+        cache(lambda frame: _plain_frame(frame, of_frame(frame))),
     )
 
 

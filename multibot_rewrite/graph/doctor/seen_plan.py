@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from multibot_rewrite.graph.dangers.seen import EVERYBODYS, unique
 from multibot_rewrite.graph.doctor.diagnose import Diagnosis
 from multibot_rewrite.graph.doctor.robots import GuessedRobot
 from multibot_rewrite.graph.expectation import (
@@ -13,9 +12,9 @@ from multibot_rewrite.graph.expectation import (
     PlannedEndpoint,
     PlannedRobot,
 )
-from multibot_rewrite.graph.rules.tf_trees import tree_topic
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.naming import DEFAULT_LAYOUT, SHARED_FRAMES, TF_TOPICS
+from multibot_rewrite.system.index import EVERYBODYS, tree_topic, unique
 
 # The robot of a graph in which no name has a robot's.
 NAMELESS = GuessedRobot("robot1", "")
@@ -29,9 +28,8 @@ def seen_plan(seen: Diagnosis) -> Expectation:
     planned = tuple(robot for robot in planned if robot.nodes)
     owned = {node for robot in planned for node in robot.nodes}
     shared = tuple(node for node in nodes if node not in owned)
-    names = seen.owners.names
     topics = unique(end.name for end in seen.graph.endpoints if end.kind == "topic")
-    bare = (it for it in topics if not names.get(it) and "/_" not in it)
+    bare = (it for it in topics if not seen.whose.robot(it) and "/_" not in it)
     return Expectation(
         seen.layout.name if seen.layout else DEFAULT_LAYOUT,
         planned,
@@ -49,22 +47,22 @@ def robots_to_plan(seen: Diagnosis) -> tuple[GuessedRobot, ...]:
 
 def _robot(seen: Diagnosis, robot: GuessedRobot, nodes: Iterable[str]) -> PlannedRobot:
     """Frames without a robot's name are those of the robot on whose topic they are."""
-    names, frames = seen.owners.names, seen.owners.frames
+    whose = seen.whose
     mine = "" if robot is NAMELESS else robot.name
-    topics = [topic for topic, _ in seen.tf if names.get(topic, "") == mine]
+    topics = [topic for topic, _ in seen.tf if whose.robot(topic) == mine]
     shared = f"/{TF_TOPICS[0]}"
     tf = next(iter(topics), shared)
     own = {
         it
         for edge in seen.graph.frames
         for it in (edge.child, edge.parent)
-        if frames.get(it) == robot.name
+        if whose.frame_robot(it) == robot.name
         or not mine
-        or (not frames.get(it) and tree_topic(edge.topic) == tf != shared)
+        or (not whose.frame_robot(it) and tree_topic(edge.topic) == tf != shared)
     }
     return PlannedRobot(
         robot.name,
-        tuple(node for node in nodes if names.get(node, "") == mine),
+        tuple(node for node in nodes if whose.robot(node) == mine),
         tuple(sorted(own - set(SHARED_FRAMES))),
         tf,
     )
@@ -74,6 +72,6 @@ def _endpoints(seen: Diagnosis, nodes: Iterable[str]) -> Iterator[PlannedEndpoin
     for end in seen.graph.endpoints:
         common = end.name in ALWAYS or end.type.startswith(_PARAMETERS) or "/_" in end.name
         if end.node in nodes and not common:
-            code = seen.owners.plain_names.get(end.name, end.name)
+            code = seen.whose.plain(end.name)
             own = (end.node, end.kind, end.role, end.name)
             yield PlannedEndpoint(*own, end.type, code)

@@ -9,8 +9,6 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from xml.sax.saxutils import quoteattr
 
-from multibot_rewrite.graph.dangers.tf_topics import root_of
-from multibot_rewrite.graph.dangers.transforms import WORLD
 from multibot_rewrite.graph.doctor.diagnose import Diagnosis
 from multibot_rewrite.graph.doctor.robots import GuessedRobot
 from multibot_rewrite.graph.doctor.seen_plan import NAMELESS, robots_to_plan, seen_plan
@@ -22,6 +20,8 @@ from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER
 from multibot_rewrite.naming import LAYOUTS
 from multibot_rewrite.remap.node_library import NodeLibrary
+from multibot_rewrite.rules.system.tf_topics import root_of
+from multibot_rewrite.rules.system.transforms import WORLD
 
 STACK = "seen"
 FLEET_FILE, NODES_FILE, DESCRIPTION, PLAN_FILE = (
@@ -62,8 +62,9 @@ def _nodes(seen: Diagnosis, robot: GuessedRobot) -> list[str]:
     if mine and not robot.namespace:
         return []
     times = Counter(node.name for node in seen.graph.nodes)
-    names = seen.owners.names
-    own = (it for it in times if names.get(it, "") == mine and not is_tool(it) and times[it] == 1)
+    own = (
+        it for it in times if seen.whose.robot(it) == mine and not is_tool(it) and times[it] == 1
+    )
     return sorted(it for it in own if it.startswith(f"{robot.namespace}/"))
 
 
@@ -92,10 +93,10 @@ def _fleet(seen: Diagnosis, nodes: Sequence[str], learned: bool) -> Iterator[str
 
 def _description(seen: Diagnosis, robot: GuessedRobot) -> Iterator[str]:
     """The frames of a robot below its base, as links and joints."""
-    plain = seen.owners.plain_frames
-    edges = {plain[it.child]: it for it in _edges(seen, robot) if plain[it.parent] not in WORLD}
-    edges = {child: it for child, it in edges.items() if plain[it.parent] != "odom"}
-    parents = {child: plain[it.parent] for child, it in edges.items()}
+    plain = seen.whose.plain_frame
+    edges = {plain(it.child): it for it in _edges(seen, robot) if plain(it.parent) not in WORLD}
+    edges = {child: it for child, it in edges.items() if plain(it.parent) != "odom"}
+    parents = {child: plain(it.parent) for child, it in edges.items()}
     root = _base(parents)
     yield '<?xml version="1.0"?>'
     yield "<!-- The frames that were heard on tf: put your own description in its place. -->"
@@ -112,10 +113,10 @@ def _description(seen: Diagnosis, robot: GuessedRobot) -> Iterator[str]:
 
 def _edges(seen: Diagnosis, robot: GuessedRobot) -> list[GraphFrame]:
     """Those with the robot's name; where frames have none, those on its topic or on all."""
-    frames, names = seen.owners.frames, seen.owners.names
-    named = [it for it in seen.graph.frames if frames.get(it.child) == robot.name]
-    bare = [it for it in seen.graph.frames if not frames.get(it.child)]
-    own = [it for it in bare if names.get(it.topic) == robot.name]
+    whose = seen.whose
+    named = [it for it in seen.graph.frames if whose.frame_robot(it.child) == robot.name]
+    bare = [it for it in seen.graph.frames if not whose.frame_robot(it.child)]
+    own = [it for it in bare if whose.robot(it.topic) == robot.name]
     return named or own or bare
 
 

@@ -16,8 +16,8 @@ from multibot_rewrite.graph.pictures.page_sections import (
 from multibot_rewrite.graph.pictures.scene import FindingRow, Scene
 from multibot_rewrite.graph.pictures.svg import Ids, safe
 from multibot_rewrite.graph.watching import Verdict
-from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.wording import SEVERAL, shorten
 
 # By whether the verdict is good, and whether there is a plan.
 NOTHING = {

@@ -11,7 +11,6 @@ from html import escape
 from importlib.resources import files
 
 from multibot_rewrite.findings.rule import Rule
-from multibot_rewrite.graph.check import ALL_RULES
 from multibot_rewrite.graph.pictures.drawings import graphs, trees
 from multibot_rewrite.graph.pictures.explanations import explanations
 from multibot_rewrite.graph.pictures.finding_list import Sources, filters, finding_list
@@ -29,9 +28,10 @@ from multibot_rewrite.graph.pictures.svg import Ids, safe
 from multibot_rewrite.graph.pictures.text import counted
 from multibot_rewrite.graph.snapshot import QUIET, ZENOH
 from multibot_rewrite.graph.watching import Verdict
-from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.naming import LAYOUTS
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.rules.check import ALL_RULES
+from multibot_rewrite.system.wording import SEVERAL, shorten
 
 # The CSS class of a verdict; a good one with findings is not drawn as good.
 LOOKS = {Verdict.PLANNED: "good", Verdict.INCONCLUSIVE: "unsure", Verdict.WRONG: "bad"}

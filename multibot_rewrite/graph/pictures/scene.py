@@ -24,12 +24,12 @@ from multibot_rewrite.graph.pictures.states import (
     worst,
 )
 from multibot_rewrite.graph.pictures.tf_tree_rows import FrameTree, make_frame_trees
-from multibot_rewrite.graph.rules.comparison import EndpointKey, View, make_view
 from multibot_rewrite.graph.snapshot import Environment, GraphEndpoint, Snapshot
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.watching import WORDS, Outcome, judge
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import ACTION, SERVICE, TOPIC
+from multibot_rewrite.rules.pair.comparison import EndpointKey, View, make_view
 
 # Packages with the types of endpoints that every node has: logging, parameters, life cycle; and
 # tf, which has its own picture.

@@ -6,10 +6,10 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.graph.check import ALL_RULES
-from multibot_rewrite.graph.rules.comparison import View
-from multibot_rewrite.graph.rules.tf_trees import tree_topic
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.rules.check import ALL_RULES
+from multibot_rewrite.rules.pair.comparison import View
+from multibot_rewrite.system.index import tree_topic
 
 OK, LEAK, CROSS_TALK, MISSING = "ok", "leak", "cross-talk", "missing"
 UNEXPECTED, CLASH = "unexpected", "clash"

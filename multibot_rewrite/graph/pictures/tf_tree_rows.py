@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.graph.check import ALL_RULES
 from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.graph.pictures.states import CLASH, MISSING, OK, States
-from multibot_rewrite.graph.rules.comparison import View
-from multibot_rewrite.graph.rules.tf_trees import tree_topic
 from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.rules.check import ALL_RULES
+from multibot_rewrite.rules.pair.comparison import View
+from multibot_rewrite.system.index import tree_topic
 
 
 class FrameRow(NamedTuple):

@@ -1,0 +1,1 @@
+"""One system: what runs on some robots, and whose each of its names is."""
