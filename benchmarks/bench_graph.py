@@ -39,11 +39,11 @@ from multibot_rewrite.graph.snapshot import (
     from_json,
     to_json,
 )
+from multibot_rewrite.knowledge.node_library import stack_of
+from multibot_rewrite.knowledge.records import PUBLISHES, SUBSCRIBES, TOPIC
+from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.remap.node_library import stack_of
-from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, TOPIC
-from multibot_rewrite.remap.stacks import built_in
 from multibot_rewrite.remap.table import build_table
 from multibot_rewrite.rules.check import check
 

@@ -34,9 +34,9 @@ PACKAGE = "multibot_rewrite"
 COPIED = (PACKAGE, "tests", "fixtures", "docs", "examples", "share", "benchmarks", "resource")
 # "." are the modules that are in no room.
 ROOMS = (
-    "rewriters", "steps", "checks", "readback", "findings", "reports", "remap", "graph", "lint",
-    "companions", "evidence", "closure", "fleets", "launch", "sources", "cli", "rosnames", "interfaces",
-    "naming.py", ".",
+    "rewriters", "steps", "checks", "readback", "findings", "reports", "knowledge", "remap", "graph",
+    "lint", "companions", "evidence", "closure", "fleets", "launch", "sources", "cli", "rosnames",
+    "interfaces", "naming.py", ".",
 )  # fmt: skip
 # A bug in one of these could reach beyond the copy: they kill processes or delete folders.
 UNSAFE = (

@@ -189,7 +189,7 @@ HOMES: tuple[Home, ...] = (
         "dangers of any system: time and states",
         ("rules.system.clocks", "rules.system.states"),
     ),
-    Home("MG6", "recordings", ("graph.bags.rules",)),
+    Home("MG6", "recordings", ("rules.recording",)),
     Home("MR1", "remap tables", ("remap.table_checks", "remap.way_checks")),
 )
 

@@ -15,8 +15,8 @@ from multibot_rewrite.evidence.launch_records import LaunchOrder, order_in_words
 from multibot_rewrite.evidence.launch_snapshot import would_run
 from multibot_rewrite.evidence.running import Knowledge
 from multibot_rewrite.fleets.fleet import known_nodes
-from multibot_rewrite.graph.doctor.diagnose import diagnose
 from multibot_rewrite.graph.snapshot import Snapshot
+from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.releases import release_here
 
 

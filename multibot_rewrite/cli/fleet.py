@@ -14,9 +14,9 @@ from multibot_rewrite.config import configured_vocabulary
 from multibot_rewrite.evidence.launch_records import launch_order
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.fleet import Fleet, make_fleet
+from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.releases import release_here
-from multibot_rewrite.remap.records import NodeFacts
 
 # Options that name files to write.
 WRITTEN = ("output", "sros2", "save_snapshot", "report", "dot", "mermaid")

@@ -27,10 +27,10 @@ from multibot_rewrite.graph.rehearsal import (
 )
 from multibot_rewrite.graph.snapshot import Snapshot, to_json
 from multibot_rewrite.graph.transforms import Edges, with_odometry
+from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.plural import plural
 from multibot_rewrite.remap.ways import WAYS
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.system.wording import SEVERAL, shorten
 
 # Below the ports that a system gives away by itself.
 _DOMAINS = 100

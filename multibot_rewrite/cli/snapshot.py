@@ -24,9 +24,7 @@ from multibot_rewrite.graph.snapshot import (
     to_json,
 )
 from multibot_rewrite.graph.states import NodeState
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.plural import plural
-from multibot_rewrite.remap.records import (
+from multibot_rewrite.knowledge.records import (
     ACTION,
     CALLS,
     PUBLISHES,
@@ -35,6 +33,8 @@ from multibot_rewrite.remap.records import (
     SUBSCRIBES,
     TOPIC,
 )
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.plural import plural
 
 ROSGRAPH = "rosgraph"
 COLUMNS = (

@@ -13,8 +13,8 @@ from multibot_rewrite.closure.gap import Gap
 from multibot_rewrite.evidence.claims import Claimed, claimed_twice, claims_of
 from multibot_rewrite.evidence.hardware import COMMAND, Exported
 from multibot_rewrite.evidence.records import GivenNode, Place
+from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.nearest import Guesses
-from multibot_rewrite.remap.records import NodeFacts
 
 INTERFACE, TWICE, CONTESTED = "interface", "claimed twice", "contested"
 PLACEHOLDER = re.compile(r"<|\$\(|\{")

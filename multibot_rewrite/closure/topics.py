@@ -6,9 +6,9 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from multibot_rewrite.closure.gap import Gap
 from multibot_rewrite.evidence.records import Place
+from multibot_rewrite.knowledge.records import ACTION, CALLS, PUBLISHES, SERVES, SUBSCRIBES, TOPIC
 from multibot_rewrite.nearest import nearest
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.records import ACTION, CALLS, PUBLISHES, SERVES, SUBSCRIBES, TOPIC
 
 # What people, planners of missions, scenes and tools send, by the last word of the name.
 OUTSIDE = frozenset(

@@ -10,7 +10,14 @@ import re
 from collections.abc import Collection, Iterator
 
 from multibot_rewrite.evidence.launch_records import LaunchedNode
-from multibot_rewrite.remap.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC, Endpoint
+from multibot_rewrite.knowledge.records import (
+    PUBLISHES,
+    SERVES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+    Endpoint,
+)
 
 _ROW = re.compile(r"(?P<name>[^@]+)@(?P<type>[\w/]+)(?P<way>[@\[\]]?)(?P<gz>.*)")
 _ROLES = {"[": (PUBLISHES,), "]": (SUBSCRIBES,), "@": (PUBLISHES, SUBSCRIBES)}

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import yaml
 
 from multibot_rewrite.bounded import load_yaml
-from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES
+from multibot_rewrite.knowledge.records import PUBLISHES, SUBSCRIBES
 from multibot_rewrite.sources.read import read_file
 
 if TYPE_CHECKING:

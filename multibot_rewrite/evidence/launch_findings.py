@@ -8,7 +8,7 @@ from multibot_rewrite.evidence.launch_records import LaunchedNode, LaunchGraph
 from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
-from multibot_rewrite.remap.records import NodeFacts
+from multibot_rewrite.knowledge.records import NodeFacts
 
 _ROBOTS = """\
 robots:

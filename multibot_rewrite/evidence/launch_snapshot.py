@@ -27,11 +27,19 @@ from multibot_rewrite.graph.snapshot import (
 )
 from multibot_rewrite.graph.states import NodeState
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER, Edge, edges_in, sent_by
+from multibot_rewrite.graph.wording import SEVERAL, shorten
+from multibot_rewrite.knowledge.records import (
+    ACTION,
+    PUBLISHES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+    Endpoint,
+)
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import has_release
-from multibot_rewrite.remap.records import ACTION, PUBLISHES, SERVICE, SUBSCRIBES, TOPIC, Endpoint
 from multibot_rewrite.rosnames import (
     BoundNode,
     NameFault,
@@ -41,7 +49,6 @@ from multibot_rewrite.rosnames import (
     read_remap,
     resolve_bound,
 )
-from multibot_rewrite.system.wording import SEVERAL, shorten
 
 CLOCK, CLOCK_TYPE = "/clock", "rosgraph_msgs/msg/Clock"
 TF, TF_STATIC, TF_TYPE = "/tf", "/tf_static", "tf2_msgs/msg/TFMessage"

@@ -29,9 +29,9 @@ from multibot_rewrite.evidence.spawner_managers import under_managers
 from multibot_rewrite.evidence.spawners import Spawned, is_spawner, spawned_in, texts_of
 from multibot_rewrite.evidence.static_transforms import with_static_transform
 from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.model import InputError
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.records import Endpoint, NodeFacts
 from multibot_rewrite.rosnames import expand
 
 _CAMEL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")

@@ -20,8 +20,8 @@ from multibot_rewrite.evidence.records import Given, GivenNode, Place
 from multibot_rewrite.evidence.simulated_managers import Published, simulated_managers
 from multibot_rewrite.evidence.spawners import Spawned, spawned_in, texts_of
 from multibot_rewrite.evidence.static_transforms import with_static_transform
+from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.records import MANAGER, NodeFacts
 from multibot_rewrite.rosnames import expand
 
 Rules = tuple[tuple[str, str], ...]

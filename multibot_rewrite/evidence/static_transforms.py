@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
-from multibot_rewrite.remap.records import FrameParameter, NodeFacts, SentTransform
+from multibot_rewrite.knowledge.records import FrameParameter, NodeFacts, SentTransform
 
 STATIC = "static_transform_publisher"
 _PARENT, _CHILD = "frame_id", "child_frame_id"

@@ -43,9 +43,10 @@ from multibot_rewrite.fleets.yarp_files import yarp_files
 from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.graph.enclaves import to_policy
 from multibot_rewrite.graph.plan_file import to_yaml
+from multibot_rewrite.knowledge.records import PUBLISHES
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.records import PUBLISHES, Table
+from multibot_rewrite.remap.records import Table
 from multibot_rewrite.remap.table_formats import launch, standing_by_robot
 from multibot_rewrite.sources.read import is_xacro
 

@@ -24,15 +24,16 @@ from multibot_rewrite.fleets.relays import Relay, relays
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_nodes import node_sources
 from multibot_rewrite.fleets.rviz_outputs import RvizOutput, window_path
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.programs import (
+from multibot_rewrite.knowledge.programs import (
     LIFECYCLE_MANAGER,
     PROGRAMS,
     Program,
     activates_itself,
     program_of,
 )
-from multibot_rewrite.remap.records import PUBLISHES, EndpointName, NodeFacts
+from multibot_rewrite.knowledge.records import PUBLISHES, NodeFacts
+from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.remap.records import EndpointName
 from multibot_rewrite.remap.started import SPAWN, Started, spawner_arguments
 from multibot_rewrite.remap.ways import COMPONENT, SPAWNER
 

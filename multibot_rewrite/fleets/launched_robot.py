@@ -11,7 +11,7 @@ from multibot_rewrite.evidence.launched import Launched, as_launched, with_launc
 from multibot_rewrite.evidence.nodes import RobotNodes, nodes_of
 from multibot_rewrite.evidence.records import GivenNode
 from multibot_rewrite.evidence.remapped import under_plugin
-from multibot_rewrite.remap.records import MANAGER, NodeFacts
+from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
 from multibot_rewrite.rosnames import RemapRule
 from multibot_rewrite.sources.own_names import filled
 

@@ -26,9 +26,9 @@ from multibot_rewrite.fleets.launched_robot import (
 from multibot_rewrite.fleets.member import Member
 from multibot_rewrite.fleets.output_file import params_of
 from multibot_rewrite.fleets.shared_nodes import apart
+from multibot_rewrite.knowledge.nodl.facts import declared
+from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.nodl.facts import declared
-from multibot_rewrite.remap.records import MANAGER, NodeFacts
 
 MOVE_GROUP, WORLD = "move_group", "world"
 # What decides the nodes of a robot.

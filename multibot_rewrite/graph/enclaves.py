@@ -12,8 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint
 from multibot_rewrite.graph.tool_nodes import TOOL_NODES
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.records import (
+from multibot_rewrite.knowledge.records import (
     ACTION,
     CALLS,
     PUBLISHES,
@@ -22,6 +21,7 @@ from multibot_rewrite.remap.records import (
     SUBSCRIBES,
     TOPIC,
 )
+from multibot_rewrite.record import NamedTuple
 
 TOOLS, SHARED = "/tools", "/shared"
 VERSION = "0.2.0"

@@ -19,9 +19,9 @@ from multibot_rewrite.graph.snapshot import (
     GraphEndpoint,
     GraphNode,
 )
+from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.system.wording import SEVERAL, shorten
 
 MAX_DOMAIN = 232
 RANGES = ("OFF", "LOCALHOST", "SUBNET", "SYSTEM_DEFAULT")

@@ -6,9 +6,10 @@ from collections.abc import Container, Iterable, Iterator, Mapping, Sequence, Se
 from typing import TYPE_CHECKING
 
 from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS, Naming, spelled
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.records import EndpointName, NodeFacts, Table
+from multibot_rewrite.remap.records import EndpointName, Table
 from multibot_rewrite.remap.ways import HOST, PLUGIN, PROCESS, deliveries
 
 if TYPE_CHECKING:

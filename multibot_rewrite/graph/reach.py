@@ -9,8 +9,8 @@ from collections import defaultdict
 
 from multibot_rewrite.graph.environment import machine
 from multibot_rewrite.graph.snapshot import ZENOH, Snapshot
+from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.plural import plural
-from multibot_rewrite.system.wording import shorten
 
 LOCALHOST = "LOCALHOST"
 MERGED = "looks-merged"

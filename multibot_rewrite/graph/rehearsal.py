@@ -13,14 +13,7 @@ from typing import Any
 
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedTopic
 from multibot_rewrite.graph.transforms import Edge, Edges
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.applied_rules import (
-    RunningNode,
-    bound_to,
-    is_stand_in,
-    running_nodes,
-)
-from multibot_rewrite.remap.records import (
+from multibot_rewrite.knowledge.records import (
     ACTION,
     CALLS,
     PUBLISHES,
@@ -28,10 +21,15 @@ from multibot_rewrite.remap.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
-    EndpointName,
-    NodeTable,
-    Table,
 )
+from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.remap.applied_rules import (
+    RunningNode,
+    bound_to,
+    is_stand_in,
+    running_nodes,
+)
+from multibot_rewrite.remap.records import EndpointName, NodeTable, Table
 from multibot_rewrite.remap.started import ros_arguments
 from multibot_rewrite.remap.targets import ACTION_PARTS
 from multibot_rewrite.remap.ways import Pair

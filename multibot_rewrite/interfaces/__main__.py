@@ -22,9 +22,9 @@ from multibot_rewrite.interfaces.nodl_files import nodl_of
 from multibot_rewrite.interfaces.records import joined
 from multibot_rewrite.interfaces.scope import indexed
 from multibot_rewrite.interfaces.table import to_table
+from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.releases import RELEASES
-from multibot_rewrite.remap.stacks import built_in
 
 
 def main(arguments: list[str]) -> int:

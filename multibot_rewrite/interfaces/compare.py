@@ -1,4 +1,4 @@
-"""What the sources of a release say against what ``remap/nodes.yaml`` says, both ways."""
+"""What the sources of a release say against what ``knowledge/nodes.yaml`` says, both ways."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ import re
 from collections.abc import Iterable, Iterator
 
 from multibot_rewrite.interfaces.records import Class, Fact
+from multibot_rewrite.knowledge.node_library import NodeLibrary
+from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.node_library import NodeLibrary
-from multibot_rewrite.remap.records import Endpoint
 
 # Parts of nodes.yaml that come from rclcpp and rclcpp_lifecycle, which are not read.
 NOT_READ = ("every_node", "lifecycle")

@@ -10,8 +10,8 @@ from pathlib import Path
 
 from multibot_rewrite.interfaces.compare import differences, excepted, exceptions_of
 from multibot_rewrite.interfaces.table import from_table
+from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.releases import RELEASES
-from multibot_rewrite.remap.stacks import built_in
 
 TEXT = """\
 ## Endpoints
@@ -20,7 +20,7 @@ Made by `python -m multibot_rewrite.interfaces.endpoints_page fixtures`. `python
 multibot_rewrite.interfaces FOLDER...` reads checkouts, C++ and Python, and prints what known nodes
 declare: topics, services, actions, tf, whose node has them (its own, tf2's helper, a private one),
 the parameter that sets the name and the condition. A *difference* is an endpoint that only the sources
-or only `remap/nodes.yaml` have, another node that has it, or one that exists with a plugin or mode
+or only `knowledge/nodes.yaml` have, another node that has it, or one that exists with a plugin or mode
 only. *Corrected* are those of the table before it was compared (`endpoints_corrected.tsv`), *excepted*
 those with a reason in `fixtures/interfaces_exceptions.tsv`.
 

@@ -9,9 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from multibot_rewrite.interfaces.records import Fact
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.remap.nodl.writing import UNKNOWN_QOS, NodlFile, document_of
-from multibot_rewrite.remap.records import (
+from multibot_rewrite.knowledge.nodl.writing import UNKNOWN_QOS, NodlFile, document_of
+from multibot_rewrite.knowledge.records import (
     ACTION,
     CALLS,
     PUBLISHES,
@@ -21,6 +20,7 @@ from multibot_rewrite.remap.records import (
     TOPIC,
     Endpoint,
 )
+from multibot_rewrite.model import UsageError
 
 # What has no "/action/" in its type is a topic or a service.
 KIND = {PUBLISHES: TOPIC, SUBSCRIBES: TOPIC, SERVES: SERVICE, CALLS: SERVICE}

@@ -72,7 +72,7 @@ def _row(tables: Path, release: str, facts: tuple[ParameterFact, ...]) -> str:
 def _launches(tables: Path, release: str) -> str:
     """The row of a release about launch files."""
     facts = read_launches(_text(tables / f"launch_{release}.tsv"))
-    stacks = files("multibot_rewrite.remap").joinpath("stacks.yaml").read_text("utf-8")
+    stacks = files("multibot_rewrite.knowledge").joinpath("stacks.yaml").read_text("utf-8")
     left = sum(
         1
         for stack, paths in launch_files().items()

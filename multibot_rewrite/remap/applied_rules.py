@@ -8,8 +8,9 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping
 
 from multibot_rewrite.controller_ways import ControllerWay, controller_way
+from multibot_rewrite.knowledge.records import MANAGER, PUBLISHES, Endpoint
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.records import MANAGER, PUBLISHES, Endpoint, NodeTable, Table
+from multibot_rewrite.remap.records import NodeTable, Table
 from multibot_rewrite.remap.ways import (
     COMPONENT,
     PLUGIN,

@@ -11,21 +11,11 @@ from typing import TypeAlias
 
 from multibot_rewrite.controller_ways import controller_way
 from multibot_rewrite.gc_pause import gc_paused
+from multibot_rewrite.knowledge.records import ACTION, TOPIC, Endpoint, NodeFacts
 from multibot_rewrite.naming import NAMESPACE, Naming
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.applied_rules import is_stand_in
-from multibot_rewrite.remap.records import (
-    ACTION,
-    TOPIC,
-    Endpoint,
-    EndpointName,
-    Home,
-    NodeFacts,
-    NodeRule,
-    NodeTable,
-    Pairs,
-    Table,
-)
+from multibot_rewrite.remap.records import EndpointName, Home, NodeRule, NodeTable, Pairs, Table
 from multibot_rewrite.remap.table_checks import (
     PROBE,
     SHARED_NODE,

@@ -93,7 +93,7 @@ def rules_in(home: etree._Element | None) -> list[RemapRule]:
     """The remap rules in a plugin's ROS settings that rcl applies, in its order."""
     if home is None:
         return []
-    arguments = (it for it in home.iterchildren("argument") if _flag(it) in _REMAPS)
+    arguments = (it for it in home.iterchildren("argument") if _flag(it) in ("", *_REMAPS))
     rules = (split_remap(text_of(it)) for it in (*arguments, *home.iterchildren("remapping")))
     return [it for it in rules if it is not None]
 

@@ -1,1 +1,1 @@
-"""What is asked of a system, and of a plan beside it: one rule a fault, whoever asks."""
+"""Rules that several commands ask: one a fault, whoever asks."""

@@ -9,6 +9,7 @@ from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.graph.bags.recording import is_recorded
+from multibot_rewrite.rules.index import Index
 from multibot_rewrite.rules.system import (
     clocks,
     commands,
@@ -24,7 +25,6 @@ from multibot_rewrite.rules.system import (
 from multibot_rewrite.rules.system import (
     states as states_,
 )
-from multibot_rewrite.system.index import Index
 
 _MODULES = (
     nodes, names, matching, commands, relays, sharing, transforms, tf_topics, frame_ids, clocks,

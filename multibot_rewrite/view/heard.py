@@ -10,7 +10,7 @@ from math import acos, degrees, dist
 from multibot_rewrite.checks.rotation import inverse, matrix_of_quaternion, product
 from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.system.index import tree_topic
+from multibot_rewrite.rules.index import tree_topic
 from multibot_rewrite.view.models import Joint
 
 # Frames that are where the world is, whoever has them (REP 105).

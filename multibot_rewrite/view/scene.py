@@ -15,8 +15,8 @@ from multibot_rewrite.library import Prepared
 from multibot_rewrite.model import Change
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.reports.changes import list_changes
+from multibot_rewrite.rules.index import tree_topic
 from multibot_rewrite.steps.document import Document
-from multibot_rewrite.system.index import tree_topic
 from multibot_rewrite.view.heard import HeardTree, LinkFrames, heard_trees
 from multibot_rewrite.view.models import Model, load_model
 from multibot_rewrite.view.sdf_model import declared, line_of, load_sdf

@@ -24,9 +24,9 @@ from multibot_rewrite.evidence.launch_records import (
 )
 from multibot_rewrite.evidence.launch_snapshot import would_run
 from multibot_rewrite.evidence.running import Knowledge
-from multibot_rewrite.graph.doctor.diagnose import diagnose
 from multibot_rewrite.graph.snapshot import Snapshot
-from multibot_rewrite.remap.stacks import built_in
+from multibot_rewrite.knowledge.stacks import built_in
+from multibot_rewrite.live.diagnose import diagnose
 
 TF = (("/tf", "tf"), ("/tf_static", "tf_static"))
 URDF = '<robot name="r"><link name="base_link"/><link name="laser"/><joint name="j" type="fixed">\

@@ -21,11 +21,11 @@ from healthy_systems import (
     nav2_with_tools,
 )
 
-from multibot_rewrite.graph.doctor.diagnose import diagnose
-from multibot_rewrite.graph.doctor.robots import guess_robots
-from multibot_rewrite.graph.doctor.seen_plan import seen_plan
 from multibot_rewrite.graph.snapshot import GraphFrame, GraphNode, Snapshot
-from multibot_rewrite.remap.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
+from multibot_rewrite.knowledge.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
+from multibot_rewrite.live.diagnose import diagnose
+from multibot_rewrite.live.seen_plan import seen_plan
+from multibot_rewrite.rules.guess import guess_robots
 
 IMU = "sensor_msgs/msg/Imu"
 EMPTY = Snapshot((), (), (), environment())

@@ -12,7 +12,6 @@ from healthy_systems import SYSTEMS, plan
 
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.graph.doctor.diagnose import diagnose
 from multibot_rewrite.graph.live.headers import HeaderSamples, sensor_topics
 from multibot_rewrite.graph.merging import Look, merged
 from multibot_rewrite.graph.snapshot import (
@@ -24,12 +23,13 @@ from multibot_rewrite.graph.snapshot import (
 )
 from multibot_rewrite.graph.states import Controller, NodeState, Parameter
 from multibot_rewrite.graph.zenoh.cdr import read_header_frame
+from multibot_rewrite.knowledge.records import PUBLISHES, TOPIC
+from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.model import InputError
-from multibot_rewrite.remap.records import PUBLISHES, TOPIC
 from multibot_rewrite.rules.check import check
 from multibot_rewrite.rules.find import judge
-from multibot_rewrite.system.index import index
-from multibot_rewrite.system.ownership import Whose
+from multibot_rewrite.rules.index import index
+from multibot_rewrite.rules.ownership import Whose
 
 SCAN, JOINTS = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/JointState"
 TWO_ROBOTS = """\

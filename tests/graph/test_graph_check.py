@@ -35,20 +35,14 @@ from multibot_rewrite.graph.snapshot import (
     Qos,
     Snapshot,
 )
+from multibot_rewrite.knowledge.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.remap.records import (
-    PUBLISHES,
-    SERVES,
-    SERVICE,
-    SUBSCRIBES,
-    TOPIC,
-)
 from multibot_rewrite.remap.table import build_table
 from multibot_rewrite.rules.check import ABSENCE, ALL_RULES, check
+from multibot_rewrite.rules.ownership import name_ownership
 from multibot_rewrite.rules.pair.comparison import make_view
 from multibot_rewrite.rules.pair.in_enclaves import without_enclave
-from multibot_rewrite.system.ownership import name_ownership
 
 LAYOUTS = ("L1", "L2", "L3", "L4")
 

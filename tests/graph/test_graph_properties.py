@@ -25,9 +25,7 @@ from multibot_rewrite.graph.snapshot import (
     from_json,
     to_json,
 )
-from multibot_rewrite.naming import Naming, affix, make_naming, spelled
-from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.remap.records import (
+from multibot_rewrite.knowledge.records import (
     CALLS,
     PUBLISHES,
     ROLES,
@@ -38,6 +36,8 @@ from multibot_rewrite.remap.records import (
     Endpoint,
     NodeFacts,
 )
+from multibot_rewrite.naming import Naming, affix, make_naming, spelled
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.table import build_table
 from multibot_rewrite.rules.check import check
 

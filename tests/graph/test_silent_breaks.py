@@ -24,7 +24,7 @@ from graph_examples import read_example
 from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.graph.expectation import Expectation, PlannedTopic
 from multibot_rewrite.graph.snapshot import GraphFrame, Snapshot
-from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, TOPIC
+from multibot_rewrite.knowledge.records import PUBLISHES, SUBSCRIBES, TOPIC
 from multibot_rewrite.rules.check import check
 
 LAYOUTS = ("frames-per-robot", "tf-per-robot", "both", "postfix")

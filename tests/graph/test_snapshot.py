@@ -53,8 +53,8 @@ from multibot_rewrite.graph.snapshot import (
     incomplete,
     to_json,
 )
+from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.model import InputError, UsageError
-from multibot_rewrite.system.wording import SEVERAL, shorten
 
 QOS = Qos("UNKNOWN", 0, "RELIABLE", "VOLATILE", math.inf, 10.0, "AUTOMATIC", math.inf)
 HIDDEN = Caveat("nothing-seen", True, "no node was seen")

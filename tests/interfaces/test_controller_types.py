@@ -10,8 +10,8 @@ import pytest
 from paths import FIXTURES
 
 from multibot_rewrite.companions.params.known_nodes import built_in_nodes
+from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.releases import RELEASES
-from multibot_rewrite.remap.stacks import built_in
 
 ROWS = [
     line.split("\t")

@@ -24,8 +24,8 @@ from multibot_rewrite.interfaces.compare import (
 from multibot_rewrite.interfaces.endpoints_page import page
 from multibot_rewrite.interfaces.records import Fact
 from multibot_rewrite.interfaces.table import from_table
+from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.releases import RELEASES
-from multibot_rewrite.remap.stacks import built_in
 
 EXCEPTIONS = exceptions_of((FIXTURES / "interfaces_exceptions.tsv").read_text())
 LEAST_FACTS = 400

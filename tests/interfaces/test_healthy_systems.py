@@ -12,11 +12,12 @@ from nav2_graphs import environment
 
 from multibot_rewrite.graph.expectation import Expectation, expect
 from multibot_rewrite.graph.snapshot import GraphNode, Snapshot
+from multibot_rewrite.knowledge.node_library import stack_of
+from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.releases import NEWEST_LTS, RELEASES
-from multibot_rewrite.remap.node_library import stack_of
-from multibot_rewrite.remap.records import NodeFacts, Table
-from multibot_rewrite.remap.stacks import built_in
+from multibot_rewrite.remap.records import Table
 from multibot_rewrite.remap.table import build_table
 from multibot_rewrite.rules.check import check
 

@@ -27,7 +27,7 @@ from multibot_rewrite.interfaces.records import Place
 from multibot_rewrite.releases import RELEASES
 
 TABLES = FIXTURES / "interfaces"
-STACKS = (ROOT / "multibot_rewrite" / "remap" / "stacks.yaml").read_text()
+STACKS = (ROOT / "multibot_rewrite" / "knowledge" / "stacks.yaml").read_text()
 EXCEPTIONS = {
     LaunchDifference(*words): why
     for *words, why in (

@@ -13,12 +13,7 @@ from lxml import etree
 from paths import FIXTURES
 
 from multibot_rewrite.findings.finding import ERROR
-from multibot_rewrite.library import rewrite_all
-from multibot_rewrite.naming import make_naming
-from multibot_rewrite.readback.reading import Reading, read
-from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.remap.plugin_nodes import plugin_nodes
-from multibot_rewrite.remap.records import (
+from multibot_rewrite.knowledge.records import (
     ACTION,
     CALLS,
     PUBLISHES,
@@ -28,10 +23,13 @@ from multibot_rewrite.remap.records import (
     TOPIC,
     Endpoint,
     NodeFacts,
-    NodeRule,
-    NodeTable,
-    Table,
 )
+from multibot_rewrite.library import rewrite_all
+from multibot_rewrite.naming import make_naming
+from multibot_rewrite.readback.reading import Reading, read
+from multibot_rewrite.releases import NEWEST_LTS
+from multibot_rewrite.remap.plugin_nodes import plugin_nodes
+from multibot_rewrite.remap.records import NodeRule, NodeTable, Table
 from multibot_rewrite.remap.table import build_table
 from multibot_rewrite.remap.table_formats import FORMS, as_data
 from multibot_rewrite.rewriters.builtin import builtin_tree

@@ -6,9 +6,7 @@ from collections.abc import Sequence
 
 import pytest
 
-from multibot_rewrite.naming import make_naming
-from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.remap.records import (
+from multibot_rewrite.knowledge.records import (
     ACTION,
     CALLS,
     PUBLISHES,
@@ -18,9 +16,10 @@ from multibot_rewrite.remap.records import (
     TOPIC,
     Endpoint,
     NodeFacts,
-    NodeTable,
-    Table,
 )
+from multibot_rewrite.naming import make_naming
+from multibot_rewrite.releases import NEWEST_LTS
+from multibot_rewrite.remap.records import NodeTable, Table
 from multibot_rewrite.remap.table import build_table
 
 ROBOTS = ("robot1", "robot2")

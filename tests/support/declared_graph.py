@@ -12,7 +12,8 @@ from multibot_rewrite.graph.snapshot import GraphEndpoint
 from multibot_rewrite.interfaces.compare import is_same
 from multibot_rewrite.interfaces.records import Fact
 from multibot_rewrite.interfaces.table import from_table
-from multibot_rewrite.remap.records import ACTION, SERVICE, TOPIC, NodeFacts, NodeTable
+from multibot_rewrite.knowledge.records import ACTION, SERVICE, TOPIC, NodeFacts
+from multibot_rewrite.remap.records import NodeTable
 from multibot_rewrite.remap.table import parsed
 from multibot_rewrite.rosnames import bind, resolve_bound
 

@@ -33,7 +33,6 @@ from collections.abc import Iterable, Iterator
 
 from graph_cases import environment, qos
 
-from multibot_rewrite.graph.doctor.robots import GuessedRobot, whose_by_guess, with_frames
 from multibot_rewrite.graph.expectation import (
     ALWAYS,
     Expectation,
@@ -52,8 +51,9 @@ from multibot_rewrite.graph.snapshot import (
     Snapshot,
 )
 from multibot_rewrite.graph.states import Controller, NodeState, Parameter
-from multibot_rewrite.remap.records import ACTION, PUBLISHES, SERVICE, SUBSCRIBES, TOPIC
-from multibot_rewrite.system.index import Index, index
+from multibot_rewrite.knowledge.records import ACTION, PUBLISHES, SERVICE, SUBSCRIBES, TOPIC
+from multibot_rewrite.rules.guess import GuessedRobot, whose_by_guess, with_frames
+from multibot_rewrite.rules.index import Index, index
 
 LINE = re.compile(r"(planned|running|as planned): (.+)")
 NODE = re.compile(

@@ -10,8 +10,8 @@ from multibot_rewrite.evidence.launched import Launched, with_launched
 from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.fleets.fleet import facts_of, known_nodes
 from multibot_rewrite.fleets.launched_robot import given_with, nodes_with
+from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.remap.records import NodeFacts
 
 AT = Place("/ws/bringup.launch.py", 12)
 

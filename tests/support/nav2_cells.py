@@ -36,8 +36,8 @@ from multibot_rewrite.graph.questions import questions
 from multibot_rewrite.graph.rehearsal import with_substitutes
 from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.states import NodeState
+from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.releases import has_release
-from multibot_rewrite.remap.stacks import load_nodes
 from multibot_rewrite.rules.check import check
 
 HERE = Path(__file__).parent

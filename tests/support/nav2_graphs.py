@@ -12,7 +12,6 @@ from paths import ROBOTS
 
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
-from multibot_rewrite.graph.pictures.scene import Scene, make_scene
 from multibot_rewrite.graph.plan_file import from_yaml
 from multibot_rewrite.graph.snapshot import (
     Caveat,
@@ -22,7 +21,8 @@ from multibot_rewrite.graph.snapshot import (
     GraphNode,
     Snapshot,
 )
-from multibot_rewrite.remap.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
+from multibot_rewrite.knowledge.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
+from multibot_rewrite.pages.scene import Scene, make_scene
 from multibot_rewrite.rules.check import check
 
 ROVER = ROBOTS / "rover.urdf"

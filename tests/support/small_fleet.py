@@ -9,9 +9,7 @@ from graph_cases import (
 
 from multibot_rewrite.graph.expectation import Expectation, expect, spelled
 from multibot_rewrite.graph.snapshot import GraphFrame, Snapshot
-from multibot_rewrite.naming import make_naming
-from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.remap.records import (
+from multibot_rewrite.knowledge.records import (
     PUBLISHES,
     SERVES,
     SERVICE,
@@ -20,6 +18,8 @@ from multibot_rewrite.remap.records import (
     Endpoint,
     NodeFacts,
 )
+from multibot_rewrite.naming import make_naming
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.table import build_table
 
 ROBOTS = ("robot1", "robot2")

@@ -26,10 +26,10 @@ from multibot_rewrite.companions.yaml_text import (
 )
 from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.knowledge.stacks import apart_nodes, is_apart
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import spelled
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.stacks import apart_nodes, is_apart
 
 PARAMETERS = "ros__parameters"
 MANAGER = "controller_manager"

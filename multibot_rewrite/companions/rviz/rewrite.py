@@ -32,10 +32,10 @@ from multibot_rewrite.companions.rviz.values import RvizRobot, frame_of, item_sp
 from multibot_rewrite.companions.yaml_blocks import as_item, blocks, cut_out, is_block, newline
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, replaced, spliced
 from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.knowledge.records import TOPIC
 from multibot_rewrite.model import ProofError, UsageError
 from multibot_rewrite.naming import TF_TOPICS, Naming
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.records import TOPIC
 from multibot_rewrite.remap.targets import target_of
 
 __all__ = ["RvizRobot", "RvizText", "rewrite_rviz", "start_command", "world_frame"]

@@ -17,10 +17,10 @@ from multibot_rewrite.bounded import load_yaml, read_text
 from multibot_rewrite.graph.bags.recording import RECORDER, RecordedTopic, Recording
 from multibot_rewrite.graph.live.assemble import TF_TYPES, numbers_of
 from multibot_rewrite.graph.snapshot import Caveat, GraphFrame, Qos
+from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.graph.zenoh.cdr import read_header_frame, read_tf
 from multibot_rewrite.model import InputError, MultibotError
 from multibot_rewrite.printable import one_line
-from multibot_rewrite.system.wording import SEVERAL, shorten
 
 if TYPE_CHECKING:
     from rosbags.interfaces import Connection

@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
 
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.records import (
+from multibot_rewrite.knowledge.records import (
     ACTION,
     CALLS,
     PUBLISHES,
     SERVES,
     SERVICE,
     TOPIC,
+    TRANSPORTS,
     Endpoint,
 )
-from multibot_rewrite.remap.targets import TRANSPORTS
+from multibot_rewrite.record import NamedTuple
 
 IMAGE = "sensor_msgs/msg/Image"
 CLOCK = "/clock"

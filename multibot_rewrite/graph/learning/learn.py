@@ -25,12 +25,8 @@ from multibot_rewrite.graph.learning.folding import (
     fold_parts,
 )
 from multibot_rewrite.graph.snapshot import GraphEndpoint, Snapshot
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.naming import TF_TOPICS
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.bridged_topics import TF_TYPE
-from multibot_rewrite.remap.node_library import NodeLibrary
-from multibot_rewrite.remap.records import (
+from multibot_rewrite.knowledge.node_library import NodeLibrary
+from multibot_rewrite.knowledge.records import (
     ACTION,
     PUBLISHES,
     ROLES,
@@ -41,6 +37,10 @@ from multibot_rewrite.remap.records import (
     Endpoint,
     NodeFacts,
 )
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.naming import TF_TOPICS
+from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.remap.bridged_topics import TF_TYPE
 from multibot_rewrite.rosnames import expand
 
 FROM_HELPER = "asked for by transform_listener_impl_<address>"

@@ -16,8 +16,8 @@ from multibot_rewrite.graph.snapshot import (
     GraphFrame,
     GraphNode,
 )
+from multibot_rewrite.knowledge.records import PUBLISHES, TOPIC
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.records import PUBLISHES, TOPIC
 
 # Participants announce themselves every 3 s: a shorter quiet time proves nothing.
 QUIET_SECONDS = 3.5

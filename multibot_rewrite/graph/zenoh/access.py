@@ -18,8 +18,8 @@ from multibot_rewrite.graph.expectation import (
     PlannedRobot,
 )
 from multibot_rewrite.graph.zenoh.tokens import SPACE
+from multibot_rewrite.knowledge.records import ACTION, PUBLISHES, SERVES
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.records import ACTION, PUBLISHES, SERVES
 
 Rule = dict[str, object]
 IN, OUT = "ingress", "egress"

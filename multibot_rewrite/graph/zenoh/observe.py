@@ -22,13 +22,13 @@ from multibot_rewrite.graph.snapshot import (
     Environment,
     Snapshot,
 )
+from multibot_rewrite.graph.wording import FEW, SEVERAL, shorten
 from multibot_rewrite.graph.zenoh import tokens
 from multibot_rewrite.graph.zenoh.session import NoRouter, RouterSession, opened
 from multibot_rewrite.graph.zenoh.tf import ZenohTf
 from multibot_rewrite.graph.zenoh.tokens import SPACE, Token, read_token
 from multibot_rewrite.plural import plural
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.system.wording import FEW, SEVERAL, shorten
 
 POLL_SECONDS = 0.05
 # A watched graph is shown so long after a change, because changes come in groups, but not later.

@@ -15,8 +15,7 @@ from functools import lru_cache
 from math import inf
 
 from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphNode, Qos
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.records import (
+from multibot_rewrite.knowledge.records import (
     ACTION,
     CALLS,
     PUBLISHES,
@@ -25,6 +24,7 @@ from multibot_rewrite.remap.records import (
     SUBSCRIBES,
     TOPIC,
 )
+from multibot_rewrite.record import NamedTuple
 
 SPACE = "@ros2_lv"
 NODE = "NN"

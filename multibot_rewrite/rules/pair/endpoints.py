@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.graph.expectation import PlannedEndpoint
-from multibot_rewrite.remap.records import CALLS, PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
+from multibot_rewrite.knowledge.records import CALLS, PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
 from multibot_rewrite.rules.declaration import graph_rule
 from multibot_rewrite.rules.pair.causes import (
     DOES,

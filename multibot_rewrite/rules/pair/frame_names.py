@@ -8,15 +8,15 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.graph.snapshot import GraphFrame
+from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.rules.declaration import graph_rule
+from multibot_rewrite.rules.ownership import SEPARATORS, without_tag_once
 from multibot_rewrite.rules.pair.causes import Cause, caused, tf_rule
 from multibot_rewrite.rules.pair.comparison import View
 from multibot_rewrite.rules.pair.frame_prefixes import added_prefixes, robot_behind_prefix
 from multibot_rewrite.rules.pair.similar_names import similar
 from multibot_rewrite.rules.pair.tf_senders import sent_by_robot, state_publisher, where_set
 from multibot_rewrite.rules.pair.tf_trees import TfTree, frames_in
-from multibot_rewrite.system.ownership import SEPARATORS, without_tag_once
-from multibot_rewrite.system.wording import shorten
 
 
 @graph_rule(

@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Iterable
 
 from multibot_rewrite.graph.expectation import PlannedRobot
-from multibot_rewrite.system.ownership import NameOwnership
+from multibot_rewrite.rules.ownership import NameOwnership
 
 
 def added_prefixes(robot: PlannedRobot, names: Iterable[str]) -> dict[str, str]:

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.enclaves import enclave_of
 from multibot_rewrite.graph.snapshot import GraphNode
+from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.rules.declaration import graph_rule
 from multibot_rewrite.rules.pair.comparison import View
-from multibot_rewrite.system.wording import shorten
 
 
 @graph_rule(

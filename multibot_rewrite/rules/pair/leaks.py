@@ -8,7 +8,8 @@ from collections.abc import Iterator
 from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.graph.expectation import EVERYWHERE, PlannedEndpoint
 from multibot_rewrite.graph.snapshot import LISTENER
-from multibot_rewrite.remap.records import SUBSCRIBES, TOPIC
+from multibot_rewrite.graph.wording import SEVERAL, shorten
+from multibot_rewrite.knowledge.records import SUBSCRIBES, TOPIC
 from multibot_rewrite.rules.declaration import graph_rule
 from multibot_rewrite.rules.pair.causes import (
     DOES,
@@ -21,7 +22,6 @@ from multibot_rewrite.rules.pair.causes import (
 )
 from multibot_rewrite.rules.pair.comparison import View
 from multibot_rewrite.rules.pair.tf_copies import copying_nodes
-from multibot_rewrite.system.wording import SEVERAL, shorten
 
 
 @graph_rule(

@@ -8,10 +8,10 @@ from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, WARNING, Find
 from multibot_rewrite.graph.expectation import EVERYWHERE, PlannedRobot
 from multibot_rewrite.graph.reach import hidden_from_here, why_not_seen
 from multibot_rewrite.graph.tool_nodes import is_tool
+from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.rules.declaration import graph_rule
 from multibot_rewrite.rules.pair.causes import Cause, caused, plugin_of, why_other_name
 from multibot_rewrite.rules.pair.comparison import View
-from multibot_rewrite.system.wording import shorten
 
 
 @graph_rule(

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.expectation import EVERYWHERE
 from multibot_rewrite.graph.snapshot import GraphEndpoint
-from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, TOPIC
+from multibot_rewrite.knowledge.records import PUBLISHES, SUBSCRIBES, TOPIC
 from multibot_rewrite.rules.declaration import graph_rule
 from multibot_rewrite.rules.pair.causes import in_namespaces_above, use_absolute
 from multibot_rewrite.rules.pair.comparison import View

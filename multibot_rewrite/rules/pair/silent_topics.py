@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from multibot_rewrite.graph.expectation import PlannedRobot
-from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES
+from multibot_rewrite.knowledge.records import PUBLISHES, SUBSCRIBES
 from multibot_rewrite.rules.pair.comparison import View
 
 

@@ -6,7 +6,9 @@ from collections.abc import Iterator, Sequence, Set
 
 from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.graph.snapshot import GraphFrame
-from multibot_rewrite.remap.records import PUBLISHES
+from multibot_rewrite.graph.wording import shorten
+from multibot_rewrite.knowledge.records import PUBLISHES
+from multibot_rewrite.rules.index import tree_topic
 from multibot_rewrite.rules.pair.causes import Cause, caused
 from multibot_rewrite.rules.pair.comparison import View
 from multibot_rewrite.rules.pair.name_variants import name_variants
@@ -19,8 +21,6 @@ from multibot_rewrite.rules.pair.tf_senders import (
     where_set,
 )
 from multibot_rewrite.rules.pair.tf_trees import TfTree
-from multibot_rewrite.system.index import tree_topic
-from multibot_rewrite.system.wording import shorten
 
 JOINT_STATES, TF = "sensor_msgs/msg/JointState", "tf2_msgs/msg/TFMessage"
 

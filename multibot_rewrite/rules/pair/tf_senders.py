@@ -8,9 +8,9 @@ from multibot_rewrite.graph.expectation import Expectation, PlannedRobot
 from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.rules.index import tree_topic
 from multibot_rewrite.rules.pair.comparison import View
 from multibot_rewrite.rules.pair.tf_trees import TfTree
-from multibot_rewrite.system.index import tree_topic
 
 
 class Sent(NamedTuple):

@@ -8,8 +8,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.system.index import tree_topic
-from multibot_rewrite.system.ownership import NameOwnership
+from multibot_rewrite.rules.index import tree_topic
+from multibot_rewrite.rules.ownership import NameOwnership
 
 
 class TfTree(NamedTuple):

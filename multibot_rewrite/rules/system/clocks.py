@@ -9,10 +9,10 @@ from fnmatch import translate
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.tool_nodes import is_tool
-from multibot_rewrite.remap.records import TOPIC
+from multibot_rewrite.graph.wording import shorten
+from multibot_rewrite.knowledge.records import TOPIC
 from multibot_rewrite.rules.declaration import danger_rule
-from multibot_rewrite.system.index import Index, and_then, is_viewer, last_word, nodes_of
-from multibot_rewrite.system.wording import shorten
+from multibot_rewrite.rules.index import Index, and_then, is_viewer, last_word, nodes_of
 
 CLOCK = "/clock"
 # They compare the time of messages with their own clock, and subscribe to /clock with use_sim_time.

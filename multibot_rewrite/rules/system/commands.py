@@ -8,12 +8,11 @@ from collections.abc import Iterable, Iterator
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.graph.snapshot import GraphEndpoint
 from multibot_rewrite.graph.tool_nodes import is_tool
-from multibot_rewrite.remap.records import ACTION, TOPIC
+from multibot_rewrite.graph.wording import shorten
+from multibot_rewrite.knowledge.records import ACTION, TOPIC
+from multibot_rewrite.rules import words
 from multibot_rewrite.rules.declaration import danger_rule
-from multibot_rewrite.rules.system.names import ABSENT, alike, nobody_in
-from multibot_rewrite.rules.system.sharing import own_namespace
-from multibot_rewrite.system import words
-from multibot_rewrite.system.index import (
+from multibot_rewrite.rules.index import (
     EVERYBODYS,
     TF,
     Ends,
@@ -26,7 +25,8 @@ from multibot_rewrite.system.index import (
     nodes_of,
     robots_of,
 )
-from multibot_rewrite.system.wording import shorten
+from multibot_rewrite.rules.system.names import ABSENT, alike, nobody_in
+from multibot_rewrite.rules.system.sharing import own_namespace
 
 _OWN_SUBJECT = ("/clock", "/rosout", "/parameter_events")
 

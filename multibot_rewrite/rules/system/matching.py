@@ -6,11 +6,11 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.snapshot import ZENOH, GraphEndpoint
-from multibot_rewrite.remap.records import TOPIC
+from multibot_rewrite.graph.wording import shorten
+from multibot_rewrite.knowledge.records import TOPIC
 from multibot_rewrite.rules.declaration import danger_rule
+from multibot_rewrite.rules.index import EVERYBODYS, Ends, Index, is_viewer, nodes_of
 from multibot_rewrite.rules.pair.type_and_qos import STAMPED, qos_conflicts
-from multibot_rewrite.system.index import EVERYBODYS, Ends, Index, is_viewer, nodes_of
-from multibot_rewrite.system.wording import shorten
 
 
 @danger_rule(

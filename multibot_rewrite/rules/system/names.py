@@ -9,12 +9,11 @@ from itertools import islice, zip_longest
 
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.graph.snapshot import GraphEndpoint
+from multibot_rewrite.knowledge.records import ACTION, SERVICE, TOPIC
 from multibot_rewrite.nearest import CHOICE, COMPARED, MISTYPED, nearest
-from multibot_rewrite.remap.records import ACTION, SERVICE, TOPIC
+from multibot_rewrite.rules import words
 from multibot_rewrite.rules.declaration import danger_rule
-from multibot_rewrite.rules.pair.causes import in_namespaces_above
-from multibot_rewrite.system import words
-from multibot_rewrite.system.index import (
+from multibot_rewrite.rules.index import (
     EVERYBODYS,
     TF,
     Ends,
@@ -27,6 +26,7 @@ from multibot_rewrite.system.index import (
     nodes_of,
     robots_of,
 )
+from multibot_rewrite.rules.pair.causes import in_namespaces_above
 
 ABSENT = "is that robot started, and is its name right?"
 _DIGITS = re.compile(r"_?\d+")

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from multibot_rewrite.findings.finding import ERROR, Finding
-from multibot_rewrite.remap.records import TOPIC
+from multibot_rewrite.knowledge.records import TOPIC
+from multibot_rewrite.rules import words
 from multibot_rewrite.rules.declaration import danger_rule
-from multibot_rewrite.system import words
-from multibot_rewrite.system.index import Ends, Index, at_work, last_word, nodes_of
+from multibot_rewrite.rules.index import Ends, Index, at_work, last_word, nodes_of
 
 # Of Nav2, between its controller and the robot: they limit velocities, and stop before obstacles.
 _LIMITS = ("velocity_smoother", "collision_monitor")

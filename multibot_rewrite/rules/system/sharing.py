@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.graph.wording import shorten
+from multibot_rewrite.rules import words
 from multibot_rewrite.rules.declaration import danger_rule
-from multibot_rewrite.system import words
-from multibot_rewrite.system.index import (
+from multibot_rewrite.rules.index import (
     Ends,
     Index,
     and_then,
@@ -16,7 +17,6 @@ from multibot_rewrite.system.index import (
     nodes_of,
     robots_of,
 )
-from multibot_rewrite.system.wording import shorten
 
 
 def own_namespace(seen: Index, name: str, robot: str) -> str:

@@ -6,8 +6,9 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.findings.finding import ERROR, Finding
+from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.rules.declaration import danger_rule
-from multibot_rewrite.system.index import (
+from multibot_rewrite.rules.index import (
     Index,
     is_viewer,
     last_word,
@@ -15,7 +16,6 @@ from multibot_rewrite.system.index import (
     robots_of,
     unique,
 )
-from multibot_rewrite.system.wording import shorten
 
 TF = "tf"
 

@@ -6,8 +6,9 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.findings.finding import ERROR, Finding
+from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import danger_rule
-from multibot_rewrite.system.index import (
+from multibot_rewrite.rules.index import (
     Index,
     Tree,
     and_then,
@@ -16,7 +17,6 @@ from multibot_rewrite.system.index import (
     robots_of,
     unique,
 )
-from multibot_rewrite.system.wording import SEVERAL, shorten
 
 # Above every robot: theirs and everybody's.
 WORLD = ("map", "world", "earth")

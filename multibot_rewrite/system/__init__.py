@@ -1,1 +1,0 @@
-"""One system: what runs on some robots, and whose each of its names is."""
