@@ -40,12 +40,12 @@ from multibot_rewrite.graph.snapshot import (
     to_json,
 )
 from multibot_rewrite.knowledge.node_library import stack_of
-from multibot_rewrite.knowledge.records import PUBLISHES, SUBSCRIBES, TOPIC
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.table import build_table
 from multibot_rewrite.rules.check import check
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
 
 PAGE = Path(__file__).parent.parent / "docs" / "benchmark-graph.md"
 COMMAND = [sys.executable, "-m", "multibot_rewrite.cli.multibot", "check"]

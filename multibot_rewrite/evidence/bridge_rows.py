@@ -10,14 +10,8 @@ import re
 from collections.abc import Collection, Iterator
 
 from multibot_rewrite.evidence.launch_records import LaunchedNode
-from multibot_rewrite.knowledge.records import (
-    PUBLISHES,
-    SERVES,
-    SERVICE,
-    SUBSCRIBES,
-    TOPIC,
-    Endpoint,
-)
+from multibot_rewrite.knowledge.records import Endpoint
+from multibot_rewrite.system.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
 
 _ROW = re.compile(r"(?P<name>[^@]+)@(?P<type>[\w/]+)(?P<way>[@\[\]]?)(?P<gz>.*)")
 _ROLES = {"[": (PUBLISHES,), "]": (SUBSCRIBES,), "@": (PUBLISHES, SUBSCRIBES)}

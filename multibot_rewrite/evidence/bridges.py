@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 import yaml
 
 from multibot_rewrite.bounded import load_yaml
-from multibot_rewrite.knowledge.records import PUBLISHES, SUBSCRIBES
 from multibot_rewrite.sources.read import read_file
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
 
 if TYPE_CHECKING:
     from multibot_rewrite.evidence.running import RunningNode

@@ -28,14 +28,7 @@ from multibot_rewrite.graph.snapshot import (
 from multibot_rewrite.graph.states import NodeState
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER, Edge, edges_in, sent_by
 from multibot_rewrite.graph.wording import SEVERAL, shorten
-from multibot_rewrite.knowledge.records import (
-    ACTION,
-    PUBLISHES,
-    SERVICE,
-    SUBSCRIBES,
-    TOPIC,
-    Endpoint,
-)
+from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
 from multibot_rewrite.record import NamedTuple
@@ -49,8 +42,10 @@ from multibot_rewrite.rosnames import (
     read_remap,
     resolve_bound,
 )
+from multibot_rewrite.system.conventions import CLOCK
+from multibot_rewrite.system.records import ACTION, PUBLISHES, SERVICE, SUBSCRIBES, TOPIC
 
-CLOCK, CLOCK_TYPE = "/clock", "rosgraph_msgs/msg/Clock"
+CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
 TF, TF_STATIC, TF_TYPE = "/tf", "/tf_static", "tf2_msgs/msg/TFMessage"
 _CLASSIC = ("gazebo_ros", "spawn_entity.py")
 _PREFIX_SWITCH = "tf_frame_prefix_enable"

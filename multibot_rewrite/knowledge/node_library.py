@@ -16,7 +16,6 @@ from multibot_rewrite.knowledge.fact_words import (
     variants,
 )
 from multibot_rewrite.knowledge.records import (
-    ROLES,
     Claim,
     Endpoint,
     FrameParameter,
@@ -41,6 +40,7 @@ from multibot_rewrite.model import UsageError
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import share_release
 from multibot_rewrite.rosnames import check_node_name
+from multibot_rewrite.system.records import ROLES
 
 NODE_WORDS = (
     *("package", "host", "plugin", "shared", "note", "when"),

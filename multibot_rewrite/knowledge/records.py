@@ -4,10 +4,6 @@ from __future__ import annotations
 
 from multibot_rewrite.record import NamedTuple
 
-TOPIC, SERVICE, ACTION = "topic", "service", "action"
-KINDS = (TOPIC, SERVICE, ACTION)
-PUBLISHES, SUBSCRIBES, SERVES, CALLS = "publishes", "subscribes", "serves", "calls"
-ROLES = (PUBLISHES, SUBSCRIBES, SERVES, CALLS)
 MANAGER = "controller_manager"
 # Topics that image_transport's plugins derive from a base name.
 TRANSPORTS = ("compressed", "compressedDepth", "theora", "zstd")

@@ -9,7 +9,6 @@ from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.graph.bags.recording import RECORDER, is_recorded
 from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.wording import SEVERAL, shorten
-from multibot_rewrite.knowledge.records import PUBLISHES, TOPIC
 from multibot_rewrite.naming import LAYOUTS, Layout
 from multibot_rewrite.plural import plural
 from multibot_rewrite.record import NamedTuple
@@ -17,6 +16,7 @@ from multibot_rewrite.rules.check import inconclusive_where_in_doubt
 from multibot_rewrite.rules.find import judge
 from multibot_rewrite.rules.guess import GuessedRobot, guess_robots, whose_by_guess
 from multibot_rewrite.rules.index import TF, Index, index, tree_topic
+from multibot_rewrite.system.records import PUBLISHES, TOPIC
 
 
 class Diagnosis(NamedTuple):

@@ -4,17 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from multibot_rewrite.graph.expectation import (
-    ALWAYS,
-    Expectation,
-    PlannedEndpoint,
-    PlannedRobot,
-)
+from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.live.diagnose import Diagnosis
-from multibot_rewrite.naming import DEFAULT_LAYOUT, SHARED_FRAMES, TF_TOPICS
+from multibot_rewrite.naming import DEFAULT_LAYOUT, TF_TOPICS
 from multibot_rewrite.rules.guess import GuessedRobot
-from multibot_rewrite.rules.index import EVERYBODYS, tree_topic, unique
+from multibot_rewrite.rules.index import tree_topic, unique
+from multibot_rewrite.system.conventions import EVERYBODYS, SENT_BY_EVERY_NODE, WORLD_FRAMES
 
 # The robot of a graph in which no name has a robot's.
 NAMELESS = GuessedRobot("robot1", "")
@@ -35,7 +31,7 @@ def seen_plan(seen: Diagnosis) -> Expectation:
         planned,
         shared,
         tuple(sorted({*bare, *EVERYBODYS})),
-        tuple(sorted(SHARED_FRAMES)),
+        tuple(sorted(WORLD_FRAMES)),
         tuple(dict.fromkeys(_endpoints(seen, {*owned, *shared}))),
     )
 
@@ -63,14 +59,16 @@ def _robot(seen: Diagnosis, robot: GuessedRobot, nodes: Iterable[str]) -> Planne
     return PlannedRobot(
         robot.name,
         tuple(node for node in nodes if whose.robot(node) == mine),
-        tuple(sorted(own - set(SHARED_FRAMES))),
+        tuple(sorted(own - set(WORLD_FRAMES))),
         tf,
     )
 
 
 def _endpoints(seen: Diagnosis, nodes: Iterable[str]) -> Iterator[PlannedEndpoint]:
     for end in seen.graph.endpoints:
-        common = end.name in ALWAYS or end.type.startswith(_PARAMETERS) or "/_" in end.name
+        common = (
+            end.name in SENT_BY_EVERY_NODE or end.type.startswith(_PARAMETERS) or "/_" in end.name
+        )
         if end.node in nodes and not common:
             code = seen.whose.plain(end.name)
             own = (end.node, end.kind, end.role, end.name)

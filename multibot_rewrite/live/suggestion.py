@@ -21,7 +21,7 @@ from multibot_rewrite.live.seen_plan import NAMELESS, robots_to_plan, seen_plan
 from multibot_rewrite.naming import LAYOUTS
 from multibot_rewrite.rules.guess import GuessedRobot
 from multibot_rewrite.rules.system.tf_topics import root_of
-from multibot_rewrite.rules.system.transforms import WORLD
+from multibot_rewrite.system.conventions import BODY_FRAMES, WORLD_FRAMES
 
 STACK = "seen"
 FLEET_FILE, NODES_FILE, DESCRIPTION, PLAN_FILE = (
@@ -31,7 +31,6 @@ FLEET_FILE, NODES_FILE, DESCRIPTION, PLAN_FILE = (
     "plan.yaml",
 )
 FILES = (FLEET_FILE, NODES_FILE, DESCRIPTION, PLAN_FILE)
-_BASES = ("base_footprint", "base_link")
 HEAD = """\
 # A first fleet file, from what was seen in the running graph. Before you use it:
 # - put your robot's own URDF or xacro in place of robot.urdf, which has only the frames heard
@@ -94,7 +93,9 @@ def _fleet(seen: Diagnosis, nodes: Sequence[str], learned: bool) -> Iterator[str
 def _description(seen: Diagnosis, robot: GuessedRobot) -> Iterator[str]:
     """The frames of a robot below its base, as links and joints."""
     plain = seen.whose.plain_frame
-    edges = {plain(it.child): it for it in _edges(seen, robot) if plain(it.parent) not in WORLD}
+    edges = {
+        plain(it.child): it for it in _edges(seen, robot) if plain(it.parent) not in WORLD_FRAMES
+    }
     edges = {child: it for child, it in edges.items() if plain(it.parent) != "odom"}
     parents = {child: plain(it.parent) for child, it in edges.items()}
     root = _base(parents)
@@ -123,9 +124,9 @@ def _edges(seen: Diagnosis, robot: GuessedRobot) -> list[GraphFrame]:
 def _base(parents: Mapping[str, str]) -> str:
     """The frame to begin with: the root of the tree that has a usual base, else any root."""
     known = {*parents, *parents.values()}
-    base = next((it for it in _BASES if it in known), "")
+    base = next((it for it in BODY_FRAMES if it in known), "")
     root = root_of(base, parents) if base else ""
-    return root or min((it for it in known if it not in parents), default=_BASES[1])
+    return root or min((it for it in known if it not in parents), default=BODY_FRAMES[1])
 
 
 def _below(root: str, parents: Mapping[str, str]) -> Iterable[str]:

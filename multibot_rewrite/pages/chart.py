@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.knowledge.records import CALLS, PUBLISHES
 from multibot_rewrite.pages.scene import DrawnEdge, DrawnGroup, DrawnName, DrawnNode, Scene
 from multibot_rewrite.pages.simplify import (
     has_faults,
@@ -15,6 +14,7 @@ from multibot_rewrite.pages.simplify import (
 from multibot_rewrite.pages.states import FAULTY, MISSING
 from multibot_rewrite.pages.text import counted
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.records import CALLS, PUBLISHES
 
 
 class Cluster(NamedTuple):

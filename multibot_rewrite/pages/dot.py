@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from multibot_rewrite.knowledge.records import ACTION, SERVICE, TOPIC
 from multibot_rewrite.pages.chart import Chart, largest_fitting
 from multibot_rewrite.pages.mermaid import COLOURS
 from multibot_rewrite.pages.scene import DrawnName, DrawnNode, Scene
 from multibot_rewrite.pages.states import MISSING, OK, UNEXPECTED
 from multibot_rewrite.pages.text import counted, visible
+from multibot_rewrite.system.records import ACTION, SERVICE, TOPIC
 
 # With more dot takes minutes, and the picture is not readable.
 MOST_EDGES = 3000

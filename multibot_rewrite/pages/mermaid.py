@@ -6,7 +6,6 @@ import re
 from collections import defaultdict
 from collections.abc import Iterator
 
-from multibot_rewrite.knowledge.records import ACTION, SERVICE, TOPIC
 from multibot_rewrite.pages.chart import Chart, largest_fitting
 from multibot_rewrite.pages.scene import DrawnName, Scene
 from multibot_rewrite.pages.states import (
@@ -18,6 +17,7 @@ from multibot_rewrite.pages.states import (
     UNEXPECTED,
 )
 from multibot_rewrite.pages.text import counted, visible
+from multibot_rewrite.system.records import ACTION, SERVICE, TOPIC
 
 # The limits of Mermaid (config.schema.yaml: maxEdges, maxTextSize).
 MOST_EDGES, MOST_LETTERS = 500, 50_000

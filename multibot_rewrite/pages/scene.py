@@ -11,7 +11,6 @@ from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, rob
 from multibot_rewrite.graph.patterns import fitted
 from multibot_rewrite.graph.snapshot import Environment, GraphEndpoint, Snapshot
 from multibot_rewrite.graph.tool_nodes import is_tool
-from multibot_rewrite.knowledge.records import ACTION, SERVICE, TOPIC
 from multibot_rewrite.live.watching import WORDS, Outcome, judge
 from multibot_rewrite.pages.states import (
     FAULTY,
@@ -30,6 +29,7 @@ from multibot_rewrite.pages.states import (
 from multibot_rewrite.pages.tf_tree_rows import FrameTree, make_frame_trees
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules.pair.comparison import EndpointKey, View, make_view
+from multibot_rewrite.system.records import ACTION, SERVICE, TOPIC
 
 # Packages with the types of endpoints that every node has: logging, parameters, life cycle; and
 # tf, which has its own picture.

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable
 
-from multibot_rewrite.knowledge.records import SERVES
 from multibot_rewrite.pages.scene import DrawnEdge, DrawnGroup, DrawnName
 from multibot_rewrite.pages.states import FAULTY, MISSING, OK
+from multibot_rewrite.system.records import SERVES
 
 # So many services of a node without a client are drawn as one.
 MERGE_FROM = 3

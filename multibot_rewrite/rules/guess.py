@@ -12,12 +12,12 @@ from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from functools import cache
 
-from multibot_rewrite.graph.expectation import USUAL_FRAMES
 from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.tool_nodes import is_tool
-from multibot_rewrite.knowledge.records import TOPIC
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules.ownership import SEPARATORS, Whose
+from multibot_rewrite.system.conventions import USUAL_FRAMES
+from multibot_rewrite.system.records import TOPIC
 
 # Topics of a robot's body: two of them are enough, or one of tf.
 BODY = (

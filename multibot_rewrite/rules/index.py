@@ -2,25 +2,17 @@
 
 from __future__ import annotations
 
-import re
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from fnmatch import translate
-from functools import cache, lru_cache, partial
+from functools import cache, partial
 
 from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphFrame, Snapshot
-from multibot_rewrite.knowledge.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES, TOPIC
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules import words
 from multibot_rewrite.rules.ownership import Whose
+from multibot_rewrite.system.conventions import EVERYBODYS, only_looks
+from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES, TOPIC
 
-# They look, or pass on what a person asks for: no part of a robot, and no sender of their own.
-VIEWERS = (
-    "rviz*", "rqt*", "foxglove_*", "rosbridge*", "rosapi*", "rosbag2_recorder*", "tf2_*", "view_frames",
-    "launch_ros_*", "_*_daemon_*", "_ros2cli_*", "*_rclcpp_node", "spawner_*",
-)  # fmt: skip
-_VIEWER = re.compile("|".join(map(translate, VIEWERS)))
-EVERYBODYS = ("/rosout", "/parameter_events", "/diagnostics", "/diagnostics_agg", "/bond", "/clock")
 # In the order of the fields of Ends.
 _PLACE = {role: at for at, role in enumerate((PUBLISHES, SUBSCRIBES, SERVES, CALLS))}
 TF = "tf2_msgs/msg/TFMessage"
@@ -150,13 +142,7 @@ def nodes_of(ends: Iterable[GraphEndpoint]) -> tuple[str, ...]:
 
 def is_viewer(node: str) -> bool:
     """Does the node only look, or pass on what a person asks for?"""
-    return _only_looks(last_word(node))
-
-
-# A fleet has a handful of such words, each in many nodes.
-@lru_cache(maxsize=4096)
-def _only_looks(word: str) -> bool:
-    return bool(_VIEWER.fullmatch(word))
+    return only_looks(last_word(node))
 
 
 def is_hidden(node: str) -> bool:

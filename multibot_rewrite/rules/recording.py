@@ -9,11 +9,12 @@ from typing import Any
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.findings.rule import Rule, declare
 from multibot_rewrite.graph.bags.recording import RecordedTopic, Recording
-from multibot_rewrite.graph.expectation import EVERYWHERE, Expectation, PlannedEndpoint
+from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint
 from multibot_rewrite.graph.wording import SEVERAL, shorten
-from multibot_rewrite.knowledge.records import PUBLISHES, TOPIC
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules.ownership import NameOwnership, frame_ownership, name_ownership
+from multibot_rewrite.system.conventions import EVERYBODYS
+from multibot_rewrite.system.records import PUBLISHES, TOPIC
 
 # Topics of one robot and of another are as often, unless something is wrong: so many times.
 RATIO = 3.0
@@ -127,7 +128,7 @@ class _Planned(NamedTuple):
 
     def robot(self, topic: str) -> str:
         """Whose topic it is; empty for one of all robots."""
-        return "" if topic in (*self.plan.shared_topics, *EVERYWHERE) else self.names.robot(topic)
+        return "" if topic in (*self.plan.shared_topics, *EVERYBODYS) else self.names.robot(topic)
 
 
 def compare(plan: Expectation, found: Recording) -> list[Finding]:
@@ -144,7 +145,7 @@ def _planned(plan: Expectation) -> _Planned:
     names = name_ownership(plan)
     ends: dict[str, list[PlannedEndpoint]] = defaultdict(list)
     plain: dict[str, dict[str, str]] = defaultdict(dict)
-    shared = {*plan.shared_topics, *EVERYWHERE}
+    shared = {*plan.shared_topics, *EVERYBODYS}
     for end in plan.endpoints:
         if end.kind == TOPIC:
             ends[end.name].append(end)
@@ -183,7 +184,7 @@ def _type(planned: _Planned, topic: RecordedTopic) -> Iterator[Finding]:
 
 
 def _without_robot(planned: _Planned, topic: RecordedTopic) -> Iterator[Finding]:
-    shared = topic.name in (*planned.plan.shared_topics, *EVERYWHERE)
+    shared = topic.name in (*planned.plan.shared_topics, *EVERYBODYS)
     if shared or topic.name in planned.ends or planned.names.robot(topic.name):
         return
     segments = topic.name.strip("/").split("/")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from fnmatch import translate
 
 # They set a robot in motion: of these types always, of the second ones where the name says so.
 _ALWAYS = (
@@ -35,21 +34,6 @@ ODOMETRY, JOINTS = "nav_msgs/msg/Odometry", "sensor_msgs/msg/JointState"
 DESCRIPTION = "robot_description"
 # The node of `ros2 bag play`.
 PLAYER = "rosbag2_player"
-# Nodes that send one after another, by an order among themselves: as many as one sender.
-_TEAMS = {
-    "Nav2": (
-        "controller_server", "behavior_server", "recoveries_server", "velocity_smoother",
-        "collision_monitor", "docking_server", "following_server", "bt_navigator", "route_server",
-        "planner_server", "waypoint_follower", "lifecycle_manager*", "*costmap*",
-    ),
-    "MoveIt": ("move_group*", "servo*", "moveit_*"),
-}  # fmt: skip
-_TEAM = {
-    team: re.compile("|".join(translate(f"*{it}*") for it in nodes))
-    for team, nodes in _TEAMS.items()
-}
-# Between several senders and a robot: they choose one.
-_CHOOSES = re.compile(r"mux|prioriti|arbit|selector|switch|twist_manager")
 
 
 def moves(name: str, type_: str) -> bool:
@@ -77,15 +61,3 @@ def is_of_one_robot(plain: str, type_: str) -> bool:
     description?"""
     sensors = type_.startswith(_SENSOR_PACKAGES)
     return sensors or moves(plain, type_) or plain.endswith(DESCRIPTION)
-
-
-def team(node: str) -> str:
-    """The node's name, or that of the nodes that it takes turns with."""
-    last = node.rpartition("/")[2]
-    found = (name for name, pattern in _TEAM.items() if pattern.fullmatch(last))
-    return next(found, node)
-
-
-def chooses(node: str) -> bool:
-    """Does the node choose between several senders, like twist_mux?"""
-    return bool(_CHOOSES.search(node.rpartition("/")[2]))

@@ -33,11 +33,11 @@ from multibot_rewrite.graph.plan_file import from_yaml, to_yaml
 from multibot_rewrite.graph.questions import questions
 from multibot_rewrite.graph.snapshot import Caveat, GraphFrame, Snapshot, from_json, to_json
 from multibot_rewrite.graph.states import Controller, NodeState
-from multibot_rewrite.knowledge.records import PUBLISHES, SERVES, SUBSCRIBES
 from multibot_rewrite.live.diagnose import diagnose, survey
 from multibot_rewrite.live.seen_plan import seen_plan
 from multibot_rewrite.rules.check import check
 from multibot_rewrite.rules.guess import guess_robots
+from multibot_rewrite.system.records import PUBLISHES, SERVES, SUBSCRIBES
 
 EMPTY = Snapshot((), (), (), environment())
 

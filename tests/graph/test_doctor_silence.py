@@ -22,10 +22,10 @@ from healthy_systems import (
 )
 
 from multibot_rewrite.graph.snapshot import GraphFrame, GraphNode, Snapshot
-from multibot_rewrite.knowledge.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.live.seen_plan import seen_plan
 from multibot_rewrite.rules.guess import guess_robots
+from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
 
 IMU = "sensor_msgs/msg/Imu"
 EMPTY = Snapshot((), (), (), environment())

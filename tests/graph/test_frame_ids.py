@@ -23,13 +23,13 @@ from multibot_rewrite.graph.snapshot import (
 )
 from multibot_rewrite.graph.states import Controller, NodeState, Parameter
 from multibot_rewrite.graph.zenoh.cdr import read_header_frame
-from multibot_rewrite.knowledge.records import PUBLISHES, TOPIC
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.model import InputError
 from multibot_rewrite.rules.check import check
 from multibot_rewrite.rules.find import judge
 from multibot_rewrite.rules.index import index
 from multibot_rewrite.rules.ownership import Whose
+from multibot_rewrite.system.records import PUBLISHES, TOPIC
 
 SCAN, JOINTS = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/JointState"
 TWO_ROBOTS = """\

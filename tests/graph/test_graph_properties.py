@@ -25,7 +25,12 @@ from multibot_rewrite.graph.snapshot import (
     from_json,
     to_json,
 )
-from multibot_rewrite.knowledge.records import (
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
+from multibot_rewrite.naming import Naming, affix, make_naming, spelled
+from multibot_rewrite.releases import NEWEST_LTS
+from multibot_rewrite.remap.table import build_table
+from multibot_rewrite.rules.check import check
+from multibot_rewrite.system.records import (
     CALLS,
     PUBLISHES,
     ROLES,
@@ -33,13 +38,7 @@ from multibot_rewrite.knowledge.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
-    Endpoint,
-    NodeFacts,
 )
-from multibot_rewrite.naming import Naming, affix, make_naming, spelled
-from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.remap.table import build_table
-from multibot_rewrite.rules.check import check
 
 pytestmark = pytest.mark.slow
 

@@ -28,7 +28,6 @@ from multibot_rewrite.findings.finding import INCONCLUSIVE
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.plan_file import to_yaml
 from multibot_rewrite.graph.snapshot import Caveat, GraphFrame, GraphNode, Snapshot, to_json
-from multibot_rewrite.knowledge.records import PUBLISHES
 from multibot_rewrite.live.watching import Verdict
 from multibot_rewrite.pages.dot import to_dot
 from multibot_rewrite.pages.layout import NODE_ROW, ROW, lay_out
@@ -47,6 +46,7 @@ from multibot_rewrite.pages.states import (
 )
 from multibot_rewrite.pages.text import clipped, columns, visible
 from multibot_rewrite.rules.check import RULES
+from multibot_rewrite.system.records import PUBLISHES
 
 LEAKY = ("/robot1/cmd_vel", "/cmd_vel", "collision_monitor")
 CROSSED = ("/robot2/scan", "/robot1/scan", "amcl")

@@ -29,9 +29,9 @@ from multibot_rewrite.graph.snapshot import (
     to_json as graph_json,
 )
 from multibot_rewrite.graph.states import NodeState, Parameter
-from multibot_rewrite.knowledge.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
 from multibot_rewrite.model import InputError
 from multibot_rewrite.rules.check import check
+from multibot_rewrite.system.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
 
 PLAN = """\
 layout: frames-per-robot

@@ -34,7 +34,6 @@ from collections.abc import Iterable, Iterator
 from graph_cases import environment, qos
 
 from multibot_rewrite.graph.expectation import (
-    ALWAYS,
     Expectation,
     PlannedEndpoint,
     PlannedParameter,
@@ -51,9 +50,10 @@ from multibot_rewrite.graph.snapshot import (
     Snapshot,
 )
 from multibot_rewrite.graph.states import Controller, NodeState, Parameter
-from multibot_rewrite.knowledge.records import ACTION, PUBLISHES, SERVICE, SUBSCRIBES, TOPIC
 from multibot_rewrite.rules.guess import GuessedRobot, whose_by_guess, with_frames
 from multibot_rewrite.rules.index import Index, index
+from multibot_rewrite.system.conventions import SENT_BY_EVERY_NODE
+from multibot_rewrite.system.records import ACTION, PUBLISHES, SERVICE, SUBSCRIBES, TOPIC
 
 LINE = re.compile(r"(planned|running|as planned): (.+)")
 NODE = re.compile(
@@ -160,7 +160,7 @@ def _words(pattern: re.Pattern[str], lines: Iterable[str]) -> Iterator[tuple[str
 
 def read_plan(lines: list[str]) -> Expectation:
     """What the lines plan."""
-    shared = defaultdict(list, {"topic": [*ALWAYS, "/clock"], "frame": ["map"]})
+    shared = defaultdict(list, {"topic": [*SENT_BY_EVERY_NODE, "/clock"], "frame": ["map"]})
     for kind, name in _words(SHARED, lines):
         shared[kind].append(name)
     nodes = list(dict.fromkeys(node for node, *_ in _words(NODE, lines)))

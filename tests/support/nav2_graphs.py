@@ -21,9 +21,9 @@ from multibot_rewrite.graph.snapshot import (
     GraphNode,
     Snapshot,
 )
-from multibot_rewrite.knowledge.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
 from multibot_rewrite.pages.scene import Scene, make_scene
 from multibot_rewrite.rules.check import check
+from multibot_rewrite.system.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
 
 ROVER = ROBOTS / "rover.urdf"
 LAYOUTS = ("L1", "L2", "L3", "L4")

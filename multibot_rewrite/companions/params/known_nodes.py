@@ -33,6 +33,7 @@ from multibot_rewrite.knowledge.yaml_with_lines import (
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import has_release
+from multibot_rewrite.system.conventions import SENT_FRAMES
 
 NAME_KINDS = (
     *("frame", "link", "joint", "sensor", "gpio", "component"),
@@ -143,7 +144,7 @@ def built_in_nodes(release: str) -> KnownNodes:
         .joinpath("params.yaml")
         .read_text(encoding="utf-8")
     )
-    return _known({}, {}, frozenset(), text, "params.yaml", release)
+    return _known({}, {}, frozenset(SENT_FRAMES), text, "params.yaml", release)
 
 
 def load_known_nodes(path: str, release: str) -> KnownNodes:

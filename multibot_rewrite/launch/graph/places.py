@@ -10,8 +10,8 @@ from types import FrameType
 from typing import Any
 
 from multibot_rewrite.evidence.records import Place
-from multibot_rewrite.interfaces.launch_files import launched_nodes
 from multibot_rewrite.launch.door import of_launch, of_launch_ros
+from multibot_rewrite.launch.graph.launch_files import launched_nodes
 
 _KEPT = "multibot_place"
 # What makes actions for a launch file, and what reads launch files: neither is one.

@@ -10,12 +10,12 @@ from multibot_rewrite.graph.expectation import PlannedState
 from multibot_rewrite.graph.questions import SIM_TIME
 from multibot_rewrite.graph.snapshot import GraphEndpoint, Snapshot
 from multibot_rewrite.graph.states import NodeState
-from multibot_rewrite.knowledge.records import CALLS, PUBLISHES
 from multibot_rewrite.rules.find import DANGERS, judge
 from multibot_rewrite.rules.index import index
 from multibot_rewrite.rules.ownership import whose_by_plan
 from multibot_rewrite.rules.pair.comparison import View
 from multibot_rewrite.rules.pair.planned_states import clock_not_planned, planned_clocks
+from multibot_rewrite.system.records import CALLS, PUBLISHES
 
 # Who sends, and who calls: what a danger is about.
 _ACTING = (PUBLISHES, CALLS)

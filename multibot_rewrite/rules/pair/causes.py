@@ -6,11 +6,11 @@ import re
 from collections.abc import Iterator
 
 from multibot_rewrite.graph.expectation import PlannedEndpoint, PlannedRobot
-from multibot_rewrite.knowledge.records import ACTION, CALLS, PUBLISHES, SERVES, SUBSCRIBES
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.ways import COMPONENT, HOST, PLUGIN, SPAWNER
 from multibot_rewrite.rosnames import check_topic_name, expand
 from multibot_rewrite.rules.pair.comparison import View
+from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SERVES, SUBSCRIBES
 
 # What a node does with a name, by the role of its endpoint.
 DOES = {

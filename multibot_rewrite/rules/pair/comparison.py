@@ -8,12 +8,12 @@ from collections.abc import Iterable, Mapping, Set
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
 from multibot_rewrite.graph.snapshot import GraphEndpoint, Snapshot
 from multibot_rewrite.graph.tool_nodes import is_tool
-from multibot_rewrite.knowledge.records import PUBLISHES, TOPIC
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules.ownership import NameOwnership, frame_ownership, name_ownership
 from multibot_rewrite.rules.pair.similar_names import probable_matches
 from multibot_rewrite.rules.pair.tf_copies import without_bridged
 from multibot_rewrite.rules.pair.tf_trees import TfTree, tf_trees
+from multibot_rewrite.system.records import PUBLISHES, TOPIC
 
 # Node, kind, role and name of an endpoint.
 EndpointKey = tuple[str, str, str, str]

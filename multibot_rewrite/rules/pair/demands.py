@@ -10,10 +10,10 @@ from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.expectation import PlannedTopic
 from multibot_rewrite.graph.snapshot import GraphEndpoint
 from multibot_rewrite.graph.wording import SEVERAL, shorten
-from multibot_rewrite.knowledge.records import PUBLISHES, TOPIC
 from multibot_rewrite.rules.declaration import graph_rule
 from multibot_rewrite.rules.pair.causes import DOES
 from multibot_rewrite.rules.pair.comparison import View
+from multibot_rewrite.system.records import PUBLISHES, TOPIC
 
 # How the nodes of ros_gz_bridge are called.
 _BRIDGES = ("bridge", "parameter_bridge")

@@ -6,7 +6,6 @@ from collections.abc import Iterator
 
 from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.graph.expectation import PlannedEndpoint
-from multibot_rewrite.knowledge.records import CALLS, PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
 from multibot_rewrite.rules.declaration import graph_rule
 from multibot_rewrite.rules.pair.causes import (
     DOES,
@@ -19,6 +18,7 @@ from multibot_rewrite.rules.pair.causes import (
 )
 from multibot_rewrite.rules.pair.comparison import View
 from multibot_rewrite.rules.pair.similar_names import similar
+from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
 
 TO_DO = {
     PUBLISHES: "publish",

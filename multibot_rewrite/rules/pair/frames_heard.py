@@ -6,10 +6,9 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence, Set
 
 from multibot_rewrite.findings.finding import ERROR, Finding
-from multibot_rewrite.graph.expectation import USUAL_FRAMES, PlannedRobot
+from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER
 from multibot_rewrite.graph.wording import shorten
-from multibot_rewrite.knowledge.records import PUBLISHES, TOPIC
 from multibot_rewrite.rules.declaration import graph_rule
 from multibot_rewrite.rules.pair.comparison import View
 from multibot_rewrite.rules.pair.frame_prefixes import added_prefixes, robot_behind_prefix
@@ -18,6 +17,8 @@ from multibot_rewrite.rules.pair.silent_topics import silent_topics
 from multibot_rewrite.rules.pair.tf_causes import JOINT_STATES
 from multibot_rewrite.rules.pair.tf_senders import described_robots, sent_by_robot, state_publisher
 from multibot_rewrite.rules.pair.tf_trees import frames_in
+from multibot_rewrite.system.conventions import USUAL_FRAMES
+from multibot_rewrite.system.records import PUBLISHES, TOPIC
 
 
 @graph_rule(

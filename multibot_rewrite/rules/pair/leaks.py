@@ -6,10 +6,9 @@ from collections import Counter, defaultdict
 from collections.abc import Iterator
 
 from multibot_rewrite.findings.finding import ERROR, Finding
-from multibot_rewrite.graph.expectation import EVERYWHERE, PlannedEndpoint
+from multibot_rewrite.graph.expectation import PlannedEndpoint
 from multibot_rewrite.graph.snapshot import LISTENER
 from multibot_rewrite.graph.wording import SEVERAL, shorten
-from multibot_rewrite.knowledge.records import SUBSCRIBES, TOPIC
 from multibot_rewrite.rules.declaration import graph_rule
 from multibot_rewrite.rules.pair.causes import (
     DOES,
@@ -22,6 +21,8 @@ from multibot_rewrite.rules.pair.causes import (
 )
 from multibot_rewrite.rules.pair.comparison import View
 from multibot_rewrite.rules.pair.tf_copies import copying_nodes
+from multibot_rewrite.system.conventions import EVERYBODYS
+from multibot_rewrite.system.records import SUBSCRIBES, TOPIC
 
 
 @graph_rule(
@@ -53,7 +54,7 @@ def leaked_name(view: View) -> Iterator[Finding]:
 
 
 def _unplanned_leaks(view: View) -> Iterator[Finding]:
-    shared = {*view.plan.shared_topics, *EVERYWHERE}
+    shared = {*view.plan.shared_topics, *EVERYBODYS}
     not_remapped = _missing_by_name_without_rules(view)
     for node, robot in view.robot_of.items():
         for name in dict.fromkeys(e.name for e in view.unplanned_endpoints.get(node, ())):
@@ -93,7 +94,7 @@ def _why_leaked(view: View, node: str, name: str, planned: PlannedEndpoint | Non
 
 def _planned_leaks(view: View) -> Iterator[Finding]:
     """A name that the plan itself has for several robots, because no remap rule changes it."""
-    shared = {*view.plan.shared_topics, *EVERYWHERE, *_shared_tf(view)}
+    shared = {*view.plan.shared_topics, *EVERYBODYS, *_shared_tf(view)}
     nodes: dict[str, dict[str, None]] = defaultdict(dict)
     relays = copying_nodes(view.plan)
     for key in view.planned:

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding
-from multibot_rewrite.graph.expectation import EVERYWHERE, PlannedRobot
+from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.graph.reach import hidden_from_here, why_not_seen
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.rules.declaration import graph_rule
 from multibot_rewrite.rules.pair.causes import Cause, caused, plugin_of, why_other_name
 from multibot_rewrite.rules.pair.comparison import View
+from multibot_rewrite.system.conventions import EVERYBODYS
 
 
 @graph_rule(
@@ -150,7 +151,7 @@ def unplanned_node(view: View) -> Iterator[Finding]:
 
 def _foreign_names(view: View, node: str, robot: str) -> str:
     """The names of a node that do not hold its robot's name: these may disturb other robots."""
-    shared = {*view.plan.shared_topics, *EVERYWHERE}
+    shared = {*view.plan.shared_topics, *EVERYBODYS}
     names = dict.fromkeys(e.name for e in view.by_node.get(node, ()) if "/_" not in e.name)
     foreign = [n for n in names if n not in shared and view.ownership.robot(n) != robot]
     return f"; it uses {shorten(foreign)}, without the name of {robot}" if foreign else ""

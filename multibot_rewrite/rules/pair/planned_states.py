@@ -11,11 +11,11 @@ from multibot_rewrite.graph.questions import SIM_TIME
 from multibot_rewrite.graph.reach import machines
 from multibot_rewrite.graph.states import NodeState, parameter_text, parameter_value
 from multibot_rewrite.graph.wording import FEW, SEVERAL, shorten
-from multibot_rewrite.knowledge.records import SUBSCRIBES
 from multibot_rewrite.rules.declaration import graph_rule
 from multibot_rewrite.rules.pair.comparison import View
+from multibot_rewrite.system.conventions import CLOCK
+from multibot_rewrite.system.records import SUBSCRIBES
 
-CLOCK = "/clock"
 # A planned parameter, and its value there.
 Difference = tuple[PlannedParameter, str]
 

@@ -6,13 +6,13 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.graph.expectation import EVERYWHERE
 from multibot_rewrite.graph.snapshot import GraphEndpoint
-from multibot_rewrite.knowledge.records import PUBLISHES, SUBSCRIBES, TOPIC
 from multibot_rewrite.rules.declaration import graph_rule
 from multibot_rewrite.rules.pair.causes import in_namespaces_above, use_absolute
 from multibot_rewrite.rules.pair.comparison import View
 from multibot_rewrite.rules.pair.similar_names import similar
+from multibot_rewrite.system.conventions import EVERYBODYS
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
 
 # In the names of Nav2's costmap nodes.
 COSTMAP = "costmap"
@@ -154,7 +154,7 @@ def _unplanned_publishers(view: View) -> Mapping[str, Publishers]:
     matches = set(view.probable_matches.values())
     for node, ends in view.unplanned_endpoints.items():
         for end in ends if node not in matches else ():
-            if (end.kind, end.role) == (TOPIC, PUBLISHES) and end.name not in EVERYWHERE:
+            if (end.kind, end.role) == (TOPIC, PUBLISHES) and end.name not in EVERYBODYS:
                 plain = view.ownership.without_robot(end.name, view.ownership.robot(end.name))
                 found[view.ownership.robot(node)].setdefault(plain, []).append(end)
     return found

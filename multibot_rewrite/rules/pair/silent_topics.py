@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from multibot_rewrite.graph.expectation import PlannedRobot
-from multibot_rewrite.knowledge.records import PUBLISHES, SUBSCRIBES
 from multibot_rewrite.rules.pair.comparison import View
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
 
 
 def silent_topics(view: View, robot: PlannedRobot, type_: str) -> set[str]:

@@ -7,7 +7,6 @@ from collections.abc import Iterator, Sequence, Set
 from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.graph.wording import shorten
-from multibot_rewrite.knowledge.records import PUBLISHES
 from multibot_rewrite.rules.index import tree_topic
 from multibot_rewrite.rules.pair.causes import Cause, caused
 from multibot_rewrite.rules.pair.comparison import View
@@ -21,6 +20,7 @@ from multibot_rewrite.rules.pair.tf_senders import (
     where_set,
 )
 from multibot_rewrite.rules.pair.tf_trees import TfTree
+from multibot_rewrite.system.records import PUBLISHES
 
 JOINT_STATES, TF = "sensor_msgs/msg/JointState", "tf2_msgs/msg/TFMessage"
 

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping
 
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.snapshot import GraphFrame
-from multibot_rewrite.knowledge.records import PUBLISHES, SUBSCRIBES
 from multibot_rewrite.rules.index import tree_topic
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
 
 _TF, _GLOBAL = "/tf", ("/tf", "/tf_static")
 

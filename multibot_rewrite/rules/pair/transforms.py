@@ -9,7 +9,6 @@ from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.graph.wording import shorten
-from multibot_rewrite.knowledge.records import PUBLISHES
 from multibot_rewrite.rules.declaration import graph_rule
 from multibot_rewrite.rules.index import tree_topic
 from multibot_rewrite.rules.pair.causes import Cause, caused, plugin_of, tf_rule
@@ -17,6 +16,7 @@ from multibot_rewrite.rules.pair.comparison import View
 from multibot_rewrite.rules.pair.tf_causes import why_disconnected
 from multibot_rewrite.rules.pair.tf_senders import planned_transforms, senders_there
 from multibot_rewrite.rules.pair.tf_trees import TfTree
+from multibot_rewrite.system.records import PUBLISHES
 
 
 @graph_rule(

@@ -11,10 +11,10 @@ from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.graph.expectation import PlannedEndpoint
 from multibot_rewrite.graph.snapshot import ZENOH, GraphEndpoint, Qos
 from multibot_rewrite.graph.wording import shorten
-from multibot_rewrite.knowledge.records import PUBLISHES, SUBSCRIBES, TOPIC
 from multibot_rewrite.rules.declaration import graph_rule
 from multibot_rewrite.rules.pair.causes import DOES, caused, plugin_of
 from multibot_rewrite.rules.pair.comparison import View
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
 
 # The words of each policy, the weakest first; any other word does not say what is in force.
 RELIABILITY = ("BEST_EFFORT", "RELIABLE")

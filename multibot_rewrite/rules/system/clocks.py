@@ -10,11 +10,11 @@ from fnmatch import translate
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.wording import shorten
-from multibot_rewrite.knowledge.records import TOPIC
 from multibot_rewrite.rules.declaration import danger_rule
 from multibot_rewrite.rules.index import Index, and_then, is_viewer, last_word, nodes_of
+from multibot_rewrite.system.conventions import CLOCK
+from multibot_rewrite.system.records import TOPIC
 
-CLOCK = "/clock"
 # They compare the time of messages with their own clock, and subscribe to /clock with use_sim_time.
 _TIMED = (
     "robot_state_publisher*", "amcl*", "ekf*", "ukf*", "*slam_toolbox*", "cartographer_node*",

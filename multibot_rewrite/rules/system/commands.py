@@ -9,11 +9,9 @@ from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.graph.snapshot import GraphEndpoint
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.wording import shorten
-from multibot_rewrite.knowledge.records import ACTION, TOPIC
 from multibot_rewrite.rules import words
 from multibot_rewrite.rules.declaration import danger_rule
 from multibot_rewrite.rules.index import (
-    EVERYBODYS,
     TF,
     Ends,
     Index,
@@ -27,8 +25,8 @@ from multibot_rewrite.rules.index import (
 )
 from multibot_rewrite.rules.system.names import ABSENT, alike, nobody_in
 from multibot_rewrite.rules.system.sharing import own_namespace
-
-_OWN_SUBJECT = ("/clock", "/rosout", "/parameter_events")
+from multibot_rewrite.system.conventions import EVERYBODYS, OF_EVERY_NODE, chooses, team
+from multibot_rewrite.system.records import ACTION, TOPIC
 
 
 @danger_rule(
@@ -228,9 +226,9 @@ def several_command_senders(seen: Index) -> Iterator[Finding]:
         readers = nodes_of(at_work(ends.subscribers))
         # A program to look with that sends velocities is a joystick.
         senders = nodes_of(ends.publishers)
-        teams = {words.team(node): node for node in reversed(senders)}
+        teams = {team(node): node for node in reversed(senders)}
         played = any(last_word(node).startswith(words.PLAYER) for node in senders)
-        if not readers or len(teams) < 2 or played or all(map(words.chooses, readers)):
+        if not readers or len(teams) < 2 or played or all(map(chooses, readers)):
             continue
         # A sender of another robot is a rule of its own.
         if len(robots_of(seen, senders)) > 1:
@@ -273,7 +271,7 @@ def bag_beside_a_robot(seen: Index) -> Iterator[Finding]:
         players = [it for it in nodes_of(ends.publishers) if last_word(it).startswith(words.PLAYER)]
         others = [it for it in nodes_of(at_work(ends.publishers)) if it not in players]
         obeyed = words.moves(seen.plain(ends.name), ends.type) and _obeyed(ends)
-        if players and ends.name not in _OWN_SUBJECT and (others or obeyed):
+        if players and ends.name not in OF_EVERY_NODE and (others or obeyed):
             mixed.setdefault(players[0], []).append(ends.name)
     for player, names in mixed.items():
         message = f"plays {shorten(sorted(names))} into the running system"

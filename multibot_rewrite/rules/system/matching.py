@@ -7,10 +7,11 @@ from collections.abc import Iterable, Iterator, Mapping
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.snapshot import ZENOH, GraphEndpoint
 from multibot_rewrite.graph.wording import shorten
-from multibot_rewrite.knowledge.records import TOPIC
 from multibot_rewrite.rules.declaration import danger_rule
-from multibot_rewrite.rules.index import EVERYBODYS, Ends, Index, is_viewer, nodes_of
+from multibot_rewrite.rules.index import Ends, Index, is_viewer, nodes_of
 from multibot_rewrite.rules.pair.type_and_qos import STAMPED, qos_conflicts
+from multibot_rewrite.system.conventions import EVERYBODYS
+from multibot_rewrite.system.records import TOPIC
 
 
 @danger_rule(

@@ -9,12 +9,9 @@ from itertools import islice, zip_longest
 
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.graph.snapshot import GraphEndpoint
-from multibot_rewrite.knowledge.records import ACTION, SERVICE, TOPIC
 from multibot_rewrite.nearest import CHOICE, COMPARED, MISTYPED, nearest
-from multibot_rewrite.rules import words
 from multibot_rewrite.rules.declaration import danger_rule
 from multibot_rewrite.rules.index import (
-    EVERYBODYS,
     TF,
     Ends,
     Index,
@@ -27,6 +24,8 @@ from multibot_rewrite.rules.index import (
     robots_of,
 )
 from multibot_rewrite.rules.pair.causes import in_namespaces_above
+from multibot_rewrite.system.conventions import EVERYBODYS, chooses
+from multibot_rewrite.system.records import ACTION, SERVICE, TOPIC
 
 ABSENT = "is that robot started, and is its name right?"
 _DIGITS = re.compile(r"_?\d+")
@@ -73,7 +72,7 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
             if is_viewer(end.node):
                 continue
             # What chooses between several inputs seldom has all of them.
-            offered = unheard if words.chooses(end.node) else published
+            offered = unheard if chooses(end.node) else published
             other = _published_instead(seen, end, offered, unheard)
             if other:
                 yield _missed_topic(seen, end, published[other])

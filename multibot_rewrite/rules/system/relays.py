@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from multibot_rewrite.findings.finding import ERROR, Finding
-from multibot_rewrite.knowledge.records import TOPIC
 from multibot_rewrite.rules import words
 from multibot_rewrite.rules.declaration import danger_rule
 from multibot_rewrite.rules.index import Ends, Index, at_work, last_word, nodes_of
+from multibot_rewrite.system.conventions import chooses
+from multibot_rewrite.system.records import TOPIC
 
 # Of Nav2, between its controller and the robot: they limit velocities, and stop before obstacles.
 _LIMITS = ("velocity_smoother", "collision_monitor")
@@ -110,7 +111,7 @@ def _mux_left_out(seen: Index) -> Iterator[Finding]:
     """A driver that reads an input of a mux whose output nobody reads."""
     chosen = [it for it in _velocities(seen) if not at_work(it.subscribers)]
     for ends in chosen:
-        for mux in filter(words.chooses, nodes_of(ends.publishers)):
+        for mux in filter(chooses, nodes_of(ends.publishers)):
             for given in _velocities(seen):
                 readers = nodes_of(at_work(given.subscribers))
                 drivers = [it for it in readers if it != mux]

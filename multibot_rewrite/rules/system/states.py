@@ -9,9 +9,9 @@ from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.questions import SIM_TIME
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.wording import SEVERAL, shorten
-from multibot_rewrite.knowledge.records import SERVICE
 from multibot_rewrite.rules.declaration import danger_rule
 from multibot_rewrite.rules.index import Index, is_viewer
+from multibot_rewrite.system.records import SERVICE
 
 ACTIVE = "active"
 

@@ -16,6 +16,7 @@ from multibot_rewrite.rules.index import (
     robots_of,
     unique,
 )
+from multibot_rewrite.system.conventions import BODY_FRAMES
 
 TF = "tf"
 
@@ -119,7 +120,7 @@ running: transform base_link -> laser on /robot1/tf_static by /robot1/robot_stat
 )
 def tf_tree_in_pieces(seen: Index) -> Iterator[Finding]:
     """By the usual names of these frames (REP 105); other pieces may be meant."""
-    bases = ("base_link", "base_footprint")
+    bases = BODY_FRAMES[::-1]
     for tree in seen.trees:
         above: dict[str, str] = {edge.child: edge.parent for edge in tree.edges}
         if len({(edge.child, edge.parent) for edge in tree.edges}) > len(above):

@@ -17,9 +17,8 @@ from multibot_rewrite.rules.index import (
     robots_of,
     unique,
 )
+from multibot_rewrite.system.conventions import WORLD_FRAMES
 
-# Above every robot: theirs and everybody's.
-WORLD = ("map", "world", "earth")
 _STATIC = "static_transform_publisher"
 
 
@@ -128,7 +127,7 @@ def _twice(seen: Index, senders: Iterable[str]) -> list[str]:
 
 def _bare_frames(seen: Index, tree: Tree) -> list[str]:
     children = unique(edge.child for edge in tree.edges)
-    return [it for it in children if not seen.frame_robot(it) and it not in WORLD]
+    return [it for it in children if not seen.frame_robot(it) and it not in WORLD_FRAMES]
 
 
 def _named_frames(seen: Index, tree: Tree) -> Iterator[str]:
