@@ -12,13 +12,14 @@ from pathlib import Path
 import pytest
 import yaml
 from launched_nodes import AT
+from multibot_rewrite.graph.doctor.diagnose import diagnose
 
 from multibot_rewrite.cli import check_launch
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.companions.params.known_nodes import load_known_nodes
-from multibot_rewrite.graph.doctor.diagnose import diagnose
 from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.knowledge.stacks import built_in
+from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.producers.launch.records import (
     LaunchedNode,
     LaunchGraph,
