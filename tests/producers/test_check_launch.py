@@ -12,7 +12,6 @@ from pathlib import Path
 import pytest
 import yaml
 from launched_nodes import AT
-from multibot_rewrite.graph.doctor.diagnose import diagnose
 
 from multibot_rewrite.cli import check_launch
 from multibot_rewrite.cli.multibot import main
