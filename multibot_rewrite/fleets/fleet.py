@@ -6,7 +6,6 @@ import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.evidence.hardware import with_hardware
-from multibot_rewrite.evidence.launch_records import LaunchOrder
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.bridged import bridged_as
 from multibot_rewrite.fleets.launched_robot import (
@@ -40,6 +39,7 @@ from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import Naming, make_naming
 from multibot_rewrite.policy import Policy
+from multibot_rewrite.producers.launch.records import LaunchOrder
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.bridged_topics import bridged_topics
 from multibot_rewrite.remap.plugin_nodes import plugin_nodes

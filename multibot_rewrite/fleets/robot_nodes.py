@@ -8,11 +8,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from lxml.etree import _Element
 
 from multibot_rewrite.evidence.hardware import with_hardware
-from multibot_rewrite.evidence.launch_records import LaunchOrder
-from multibot_rewrite.evidence.launched import without_robot
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import GivenNode
-from multibot_rewrite.evidence.spawners import Spawned
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.fleet import facts_of, known_nodes
 from multibot_rewrite.fleets.fleet_file import FleetFile, RobotSpec, Sources
@@ -28,6 +25,9 @@ from multibot_rewrite.fleets.shared_nodes import apart
 from multibot_rewrite.knowledge.nodl.facts import declared
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
+from multibot_rewrite.producers.launch.of_robot import without_robot
+from multibot_rewrite.producers.launch.records import LaunchOrder
+from multibot_rewrite.producers.launch.spawners import Spawned
 from multibot_rewrite.record import NamedTuple
 
 MOVE_GROUP, WORLD = "move_group", "world"

@@ -2,7 +2,7 @@
 
 A file of a user has the same form. The whole of it:
 
-    sent: [FRAME...]           frames that nodes publish, so no description has them
+    sent: [FRAME...]           frames that nodes publish, beside the usual ones
     guesses: {KIND: [WORD...]} last words of parameters that no entry lists, and what they suggest
     parts: {NAME: ...}         endpoints that many nodes have; a node has them by ``with``
     nodes: {NAME: ...}         a node by its usual name, ``above/name`` in a namespace of its own

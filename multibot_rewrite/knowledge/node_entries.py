@@ -16,7 +16,6 @@ from multibot_rewrite.knowledge.fact_words import (
 )
 from multibot_rewrite.knowledge.parameter_entries import has_default
 from multibot_rewrite.knowledge.records import (
-    ROLES,
     Claim,
     Endpoint,
     FrameParameter,
@@ -38,6 +37,7 @@ from multibot_rewrite.knowledge.yaml_with_lines import (
     wrong,
 )
 from multibot_rewrite.rosnames import check_node_name
+from multibot_rewrite.system.records import ROLES
 
 # A node with parameters and none of these is known by them alone: nobody says what it publishes.
 GRAPH_KEYS = (*ROLES, "with", "host", "plugin", "claims", "frames", "sends", "ids", "nodl")

@@ -18,7 +18,7 @@ from multibot_rewrite.knowledge.parameter_entries import (
     read_guesses,
     read_parameters,
 )
-from multibot_rewrite.knowledge.records import ROLES, Endpoint, NodeFacts, NodeParameters
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts, NodeParameters
 from multibot_rewrite.knowledge.yaml_with_lines import (
     YamlItem,
     entries,
@@ -37,6 +37,7 @@ from multibot_rewrite.knowledge.yaml_with_lines import (
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import share_release
+from multibot_rewrite.system.records import ROLES
 
 STACK_KEYS = ("about", "include", "container", "nodes", "releases")
 ENTRY_KEYS = ("node", "as", "plugin", "shared", "when", "with", "names", "remaps", "releases")

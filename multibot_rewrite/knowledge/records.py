@@ -6,10 +6,6 @@ from collections.abc import Mapping
 
 from multibot_rewrite.record import NamedTuple
 
-TOPIC, SERVICE, ACTION = "topic", "service", "action"
-KINDS = (TOPIC, SERVICE, ACTION)
-PUBLISHES, SUBSCRIBES, SERVES, CALLS = "publishes", "subscribes", "serves", "calls"
-ROLES = (PUBLISHES, SUBSCRIBES, SERVES, CALLS)
 MANAGER = "controller_manager"
 # Topics that image_transport's plugins derive from a base name.
 TRANSPORTS = ("compressed", "compressedDepth", "theora", "zstd")

@@ -14,6 +14,7 @@ from multibot_rewrite.knowledge.by_release import in_release
 from multibot_rewrite.knowledge.node_library import NodeLibrary, extend, stack_of
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.system.conventions import SENT_FRAMES
 
 HERE = os.path.dirname(__file__)
 # What the others refer to is read first.
@@ -83,7 +84,7 @@ def apart_nodes(release: str) -> frozenset[str]:
 @lru_cache
 def every_release() -> NodeLibrary:
     """The nodes and stacks that this package knows, of all releases."""
-    library = NodeLibrary({}, {}, {})
+    library = NodeLibrary({}, {}, {}, sent=frozenset(SENT_FRAMES))
     for path in _files():
         library = extend(library, read_text(path), os.path.basename(path), own=True)
     return library

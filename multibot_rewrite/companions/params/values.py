@@ -18,7 +18,7 @@ from multibot_rewrite.companions.names.node_topics import (
 from multibot_rewrite.companions.names.placeholders import filled, is_robot
 from multibot_rewrite.companions.names.rename_map import is_declared
 from multibot_rewrite.companions.params.name_sites import NameSite, SectionNames
-from multibot_rewrite.companions.params.sections import PLACEHOLDER, ParamSection
+from multibot_rewrite.companions.params.sections import ParamSection
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, found_at, pairs, replaced
 from multibot_rewrite.findings.finding import WARNING, Finding
@@ -28,6 +28,7 @@ from multibot_rewrite.knowledge.parameters import KnownNodes, is_absolute
 from multibot_rewrite.knowledge.records import Param
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import RELEASES, has_release
+from multibot_rewrite.system.conventions import PLACEHOLDER
 
 # Controllers make an empty prefix of it; an empty parameter may stand for the namespace.
 NO_PREFIX = "/"

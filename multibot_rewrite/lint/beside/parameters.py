@@ -11,7 +11,6 @@ from multibot_rewrite.companions.params.name_sites import params_at
 from multibot_rewrite.companions.params.rcl_parameters import Value, value_of
 from multibot_rewrite.companions.params.sections import (
     ANY,
-    PLACEHOLDER,
     controller_types,
     identify_node,
     raw_sections,
@@ -26,6 +25,7 @@ from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules.files.bounds import beyond
 from multibot_rewrite.rules.files.parameter_facts import Fact, facts_of_node, of_release
 from multibot_rewrite.rules.files.plugins import RENAMED, plugins_in
+from multibot_rewrite.system.conventions import PLACEHOLDER
 
 # What every node has, or every controller and plugin; prefixes end in a dot.
 _EVERYWHERE = re.compile(
