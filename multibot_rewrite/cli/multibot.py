@@ -6,16 +6,12 @@ import sys
 from collections.abc import Sequence
 from functools import partial
 
-from multibot_rewrite.cli.bundle import use_bundle
+from multibot_rewrite.cli.dispatch import run
+from multibot_rewrite.cli.process import PROGRAM, guarded
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command; returns the exit code."""
-    if arguments is None:
-        use_bundle()
-    from multibot_rewrite.cli.dispatch import run  # from the bundle
-    from multibot_rewrite.cli.process import PROGRAM, guarded
-
     words = sys.argv[1:] if arguments is None else arguments
     return guarded(PROGRAM, partial(run, words), own_process=arguments is None)
 

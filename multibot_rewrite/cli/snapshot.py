@@ -26,7 +26,7 @@ from multibot_rewrite.graph.snapshot import (
 from multibot_rewrite.graph.states import NodeState
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
-from multibot_rewrite.remap.records import (
+from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
     PUBLISHES,

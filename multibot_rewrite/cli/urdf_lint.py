@@ -7,7 +7,8 @@ import sys
 from collections.abc import Sequence
 from functools import partial
 
-from multibot_rewrite.cli.bundle import use_bundle
+from multibot_rewrite.cli.declared.description import LINT
+from multibot_rewrite.cli.process import guarded, start
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -15,10 +16,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if arguments is None:
         # A short process of its own: nothing it makes needs the collector of cycles.
         gc.disable()
-        use_bundle()
-    from multibot_rewrite.cli.declared.description import LINT  # from the bundle
-    from multibot_rewrite.cli.process import guarded, start
-
     words = sys.argv[1:] if arguments is None else arguments
     return guarded(LINT.name, partial(start, LINT, words), own_process=arguments is None)
 

@@ -7,9 +7,9 @@ from collections.abc import Iterable, Mapping
 from multibot_rewrite.companions.names.rename_map import NO_OWN, CompanionNames
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT, FileTemplate
 from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.records import NodeFacts
 from multibot_rewrite.remap.targets import placed
 from multibot_rewrite.rewriters.forms import Declared
 

@@ -19,7 +19,6 @@ from multibot_rewrite.companions.params.rcl_parameters import Value, value_of
 from multibot_rewrite.companions.params.sections import (
     ANY,
     MANAGER,
-    PLACEHOLDER,
     RawSection,
     identify_node,
     pattern_of,
@@ -31,6 +30,7 @@ from multibot_rewrite.model import InputError
 from multibot_rewrite.nearest import nearest
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rosnames import check_node_name
+from multibot_rewrite.system.conventions import PLACEHOLDER
 
 OWN_TYPE = "type"
 TYPE = f".{OWN_TYPE}"

@@ -33,8 +33,8 @@ from multibot_rewrite.fleets.value_checks import (
     check_value,
     holds_twice,
 )
-from multibot_rewrite.graph.expectation import USUAL_FRAMES
 from multibot_rewrite.naming import Naming
+from multibot_rewrite.system.conventions import USUAL_FRAMES
 
 # A word twice in a row, as in robot1/robot1/scan.
 _DOUBLED = re.compile(

@@ -8,7 +8,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, cast
 
 from multibot_rewrite.companions.rviz.colours import read_colour
-from multibot_rewrite.evidence.launch_records import LaunchOrder, launch_order
 from multibot_rewrite.fleets.cell_file import Cell, cell_of, with_cell
 from multibot_rewrite.fleets.checked_yaml import Path
 from multibot_rewrite.fleets.fleet import facts_of
@@ -19,6 +18,7 @@ from multibot_rewrite.fleets.robot_choice import ALL, Choice, with_robots
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.naming import NAMESPACE, Naming, make_naming
 from multibot_rewrite.policy import Policy
+from multibot_rewrite.producers.launch.records import LaunchOrder, launch_order
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import chosen_release
 from multibot_rewrite.sources.own_names import filled, name_robot

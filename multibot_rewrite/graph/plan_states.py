@@ -7,8 +7,8 @@ from typing import Any
 
 from multibot_rewrite.graph.expectation import PlannedParameter, PlannedState
 from multibot_rewrite.graph.states import parameter_text, parameter_value
+from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.model import InputError
-from multibot_rewrite.remap.yaml_with_lines import unknown
 
 KEYS = ("lifecycle", "host", "parameters")
 # lifecycle_msgs/msg/State, the primary ones.

@@ -11,8 +11,8 @@ from multibot_rewrite.companions.params.known_nodes import load_known_nodes
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import GivenNode
+from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.remap.stacks import load_nodes
 
 
 def given(text: str) -> list[GivenNode]:

@@ -17,11 +17,11 @@ from multibot_rewrite.companions.params.known_nodes import built_in_nodes
 from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.knowledge.node_library import stack_of
+from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.remap.node_library import stack_of
-from multibot_rewrite.remap.stacks import built_in
 
 LINKS = ("base_link", "tool0", "camera_link")
 JOINTS = ("j1", "j2", "finger.left", "y", "1")

@@ -36,11 +36,11 @@ from multibot_rewrite.companions.params.rewrite import nodes_without_section, re
 from multibot_rewrite.companions.params.sections import raw_sections
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, fill_template
 from multibot_rewrite.companions.yaml_text import quoted, read_yaml
+from multibot_rewrite.knowledge.node_library import extend, stack_of
+from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.remap.node_library import extend, stack_of
-from multibot_rewrite.remap.stacks import built_in
 
 
 def value(node: str, line: str, policy: tuple[str, str] = L2, distro: str = "jazzy") -> str:

@@ -21,9 +21,9 @@ from multibot_rewrite.fleets.build import Outputs, make_outputs
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import plan_fleet
 from multibot_rewrite.graph.transforms import sent_by
+from multibot_rewrite.knowledge.stacks import load_nodes, load_stack
 from multibot_rewrite.model import InputError
 from multibot_rewrite.remap.records import Table
-from multibot_rewrite.remap.stacks import load_nodes, load_stack
 from multibot_rewrite.remap.started import started
 from multibot_rewrite.remap.ways import HOST, deliveries
 

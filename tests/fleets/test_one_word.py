@@ -19,8 +19,8 @@ from multibot_rewrite.evidence.records import GivenNode
 from multibot_rewrite.fleets.fleet import expected
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.graph.expectation import PlannedRobot
+from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.remap.records import NodeTable
-from multibot_rewrite.remap.stacks import built_in
 from multibot_rewrite.rosnames import bind, parse_remap, resolve_bound
 
 

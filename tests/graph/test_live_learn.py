@@ -13,11 +13,11 @@ import live_fleet
 import pytest
 
 from multibot_rewrite.graph.snapshot import Snapshot, from_json
+from multibot_rewrite.knowledge.node_library import stack_of
+from multibot_rewrite.knowledge.stacks import user_stack
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.remap.node_library import stack_of
 from multibot_rewrite.remap.records import NodeTable, Table
-from multibot_rewrite.remap.stacks import user_stack
 from multibot_rewrite.remap.started import arguments, started
 from multibot_rewrite.remap.table import build_table
 

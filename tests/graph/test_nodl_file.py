@@ -16,9 +16,9 @@ from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.graph.learning.learn import learn
 from multibot_rewrite.graph.learning.nodl_file import to_nodl
 from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphNode, Qos, Snapshot, to_json
+from multibot_rewrite.knowledge.nodl.writing import NodlFile
+from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.remap.nodl.writing import NodlFile
-from multibot_rewrite.remap.stacks import built_in
 
 HEALTHY = str(FIXTURES / "graphs" / "healthy.json")
 INF = math.inf

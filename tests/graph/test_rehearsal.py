@@ -26,13 +26,21 @@ from multibot_rewrite.graph.rehearsal import (
 )
 from multibot_rewrite.graph.snapshot import Snapshot, from_json
 from multibot_rewrite.graph.transforms import Edge, edges_of, frames_of, with_odometry
+from multibot_rewrite.knowledge.node_library import stack_of
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
+from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.library import rewrite
 from multibot_rewrite.naming import Naming, make_naming
 from multibot_rewrite.readback.reading import read
 from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.remap.node_library import stack_of
 from multibot_rewrite.remap.plugin_nodes import plugin_nodes
-from multibot_rewrite.remap.records import (
+from multibot_rewrite.remap.records import Home, NodeRule, NodeTable, Table
+from multibot_rewrite.remap.table import build_table
+from multibot_rewrite.remap.ways import WAYS
+from multibot_rewrite.rewriters.builtin import builtin_tree
+from multibot_rewrite.steps.collect import Inventory, collect
+from multibot_rewrite.steps.document import read_document
+from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
     PUBLISHES,
@@ -40,19 +48,7 @@ from multibot_rewrite.remap.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
-    Endpoint,
-    Home,
-    NodeFacts,
-    NodeRule,
-    NodeTable,
-    Table,
 )
-from multibot_rewrite.remap.stacks import built_in
-from multibot_rewrite.remap.table import build_table
-from multibot_rewrite.remap.ways import WAYS
-from multibot_rewrite.rewriters.builtin import builtin_tree
-from multibot_rewrite.steps.collect import Inventory, collect
-from multibot_rewrite.steps.document import read_document
 
 ROVER = ROBOTS / "rover.urdf"
 LASER = "sensor_msgs/msg/LaserScan"

@@ -440,7 +440,7 @@ ASKING = re.compile(
 # The cache itself, what decides which files are linted, processes; what only marked functions call.
 ALLOWED = (
     "lint/cache/", "lint/config/", "lint/workers.py", "lint/run.py", "lint/__main__.py",
-    "lint/beside/kinds.py", "lint/beside/parameter_table.py", "lint/beside/plugin_table.py",
+    "lint/beside/kinds.py", "rules/files/parameter_table.py", "rules/files/plugin_table.py",
     "sources/child/", "sources/processes.py", "sources/packages.py", "sources/access.py",
 )  # fmt: skip
 PACKAGE_DATA = ("files(", "(_FOLDER, file)")

@@ -23,14 +23,19 @@ FLOORS = (
     ("record",),
     ("outside",),
     ("bounded", "gc_pause", "lazy", "model", "nearest", "plural", "printable", "version"),
-    ("findings", "rosnames", "naming", "policy", "config", "arguments", "releases"),
+    ("findings", "rosnames", "policy", "config", "arguments", "releases"),
+    ("system",),
+    ("naming",),
     ("controller_ways",),
+    ("knowledge",),
     ("rewriters",),
     ("readback", "steps"),
     ("checks", "sources", "remap"),
-    ("pipeline", "reports", "graph", "companions", "interfaces"),
-    ("library", "evidence"),
-    ("closure",),
+    ("pipeline", "reports", "graph", "companions"),
+    ("rules",),
+    ("library", "evidence", "live"),
+    ("producers",),
+    ("closure", "pages"),
     ("fleets", "lint"),
     ("proposal", "view"),
     ("__init__", "launch", "catalogue"),
@@ -140,7 +145,7 @@ def test_a_start_loads_no_more_than_it_needs() -> None:
 
 def test_a_check_pays_for_no_source_that_it_does_not_look_at() -> None:
     there = loaded("import multibot_rewrite.cli.check")
-    assert "multibot_rewrite.graph.check" in there
+    assert "multibot_rewrite.rules.check" in there
     sources = ("live.child", "snapshot_file", "zenoh.observe", "zenoh.session")
     late = {*LATE, "lxml", "subprocess", "urllib.request"}
     assert there & {*late, *(f"multibot_rewrite.graph.{it}" for it in sources)} == set()

@@ -13,7 +13,7 @@ PUBLIC = ("library.py", "fleets/scripts.py", "releases.py")
 # `python -m` prints what the newest LTS has; a lint without a command has no other.
 NEWEST = {
     *("releases.py", "cli/declared/shared.py"),
-    *("companions/params/page.py", "lint/config/settings.py", "lint/beside/parameter_table.py"),
+    *("companions/params/page.py", "lint/config/settings.py"),
 }
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef

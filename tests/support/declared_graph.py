@@ -9,12 +9,14 @@ from functools import cache
 from paths import FIXTURES
 
 from multibot_rewrite.graph.snapshot import GraphEndpoint
-from multibot_rewrite.interfaces.compare import is_same
-from multibot_rewrite.interfaces.records import Fact
-from multibot_rewrite.interfaces.table import from_table
-from multibot_rewrite.remap.records import ACTION, SERVICE, TOPIC, NodeFacts, NodeTable
+from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.remap.records import NodeTable
 from multibot_rewrite.remap.table import parsed
 from multibot_rewrite.rosnames import bind, resolve_bound
+from multibot_rewrite.system.records import ACTION, SERVICE, TOPIC
+from tools.interfaces.compare import is_same
+from tools.interfaces.records import Fact
+from tools.interfaces.table import from_table
 
 # What rclcpp gives every node, and rclcpp_lifecycle those that have it (their node.cpp).
 SERVICES = ("get_parameters", "set_parameters", "list_parameters", "describe_parameters",

@@ -11,17 +11,14 @@ from functools import lru_cache
 from importlib.resources import files
 
 from multibot_rewrite.bounded import read_text
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.releases import has_release
-from multibot_rewrite.remap.fact_words import (
+from multibot_rewrite.knowledge.fact_words import (
     FACT_KEYS,
     check_apart,
     releases_of,
     source_of,
     variants,
 )
-from multibot_rewrite.remap.yaml_with_lines import (
+from multibot_rewrite.knowledge.yaml_with_lines import (
     YamlItem,
     flag_of,
     read_yaml_with_lines,
@@ -33,6 +30,10 @@ from multibot_rewrite.remap.yaml_with_lines import (
     words_of,
     wrong,
 )
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.releases import has_release
+from multibot_rewrite.system.conventions import SENT_FRAMES
 
 NAME_KINDS = (
     *("frame", "link", "joint", "sensor", "gpio", "component"),
@@ -143,7 +144,7 @@ def built_in_nodes(release: str) -> KnownNodes:
         .joinpath("params.yaml")
         .read_text(encoding="utf-8")
     )
-    return _known({}, {}, frozenset(), text, "params.yaml", release)
+    return _known({}, {}, frozenset(SENT_FRAMES), text, "params.yaml", release)
 
 
 def load_known_nodes(path: str, release: str) -> KnownNodes:

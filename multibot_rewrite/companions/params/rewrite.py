@@ -55,7 +55,7 @@ from multibot_rewrite.companions.template import (
 from multibot_rewrite.companions.yaml_text import Splice, YamlText
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.gc_pause import gc_paused
-from multibot_rewrite.remap.records import NodeFacts
+from multibot_rewrite.knowledge.records import NodeFacts
 
 Page = tuple[ParamSection, SectionNames]
 

@@ -26,16 +26,15 @@ from multibot_rewrite.companions.yaml_text import (
 )
 from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.knowledge.stacks import apart_nodes, is_apart
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import spelled
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.stacks import apart_nodes, is_apart
+from multibot_rewrite.system.conventions import PLACEHOLDER
 
 PARAMETERS = "ros__parameters"
 MANAGER = "controller_manager"
 ANY = ("*", "**")
-# Placeholders that a launch file replaces.
-PLACEHOLDER = re.compile(r"[<${]")
 _TO_DO = f"put each node's parameters below {PARAMETERS}:"
 _PATTERN = re.compile(r"/[A-Za-z0-9_/*]+")
 _MARK = re.compile(r"[&*][^\s*\[\]{},/:]")

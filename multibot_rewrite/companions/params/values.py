@@ -26,13 +26,14 @@ from multibot_rewrite.companions.params.known_nodes import (
     is_absolute,
 )
 from multibot_rewrite.companions.params.name_sites import NameSite, SectionNames
-from multibot_rewrite.companions.params.sections import PLACEHOLDER, ParamSection
+from multibot_rewrite.companions.params.sections import ParamSection
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, found_at, pairs, replaced
 from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import RELEASES, has_release
+from multibot_rewrite.system.conventions import PLACEHOLDER
 
 # Controllers make an empty prefix of it; an empty parameter may stand for the namespace.
 NO_PREFIX = "/"

@@ -6,9 +6,10 @@ from collections.abc import Iterator, Sequence
 from textwrap import wrap
 
 from multibot_rewrite.graph.learning.learn import LearnedNode
+from multibot_rewrite.knowledge.node_library import NodeLibrary, extend, stack_of
+from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.model import ProofError, UsageError
-from multibot_rewrite.remap.node_library import NodeLibrary, extend, stack_of
-from multibot_rewrite.remap.records import ROLES, Endpoint
+from multibot_rewrite.system.records import ROLES
 
 HEAD = """\
 # Nodes as they were seen in a running graph, written by multibot learn for --nodes.

@@ -13,7 +13,7 @@ from typing import Any
 from multibot_rewrite.graph.live import assemble
 from multibot_rewrite.graph.snapshot import UNKNOWN_NODE, GraphEndpoint, Qos
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.records import (
+from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
     PUBLISHES,

@@ -33,7 +33,7 @@ from multibot_rewrite.graph.snapshot import (
     record_from,
 )
 from multibot_rewrite.model import InputError
-from multibot_rewrite.remap.records import (
+from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
     PUBLISHES,

@@ -16,7 +16,7 @@ from math import inf
 
 from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphNode, Qos
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.records import (
+from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
     PUBLISHES,

@@ -12,20 +12,20 @@ from multibot_rewrite.companions.params.name_sites import params_at
 from multibot_rewrite.companions.params.rcl_parameters import Value, value_of
 from multibot_rewrite.companions.params.sections import (
     ANY,
-    PLACEHOLDER,
     controller_types,
     identify_node,
     raw_sections,
 )
 from multibot_rewrite.companions.yaml_text import YamlText, pairs
-from multibot_rewrite.lint.beside.bounds import beyond
-from multibot_rewrite.lint.beside.parameter_facts import Fact, facts_of_node, of_release
-from multibot_rewrite.lint.beside.plugins import RENAMED, plugins_in
 from multibot_rewrite.lint.beside.records import Beside, Remark
 from multibot_rewrite.lint.facts.typos import meant_name
 from multibot_rewrite.model import InputError
 from multibot_rewrite.nearest import MISTYPED, Guesses
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.rules.files.bounds import beyond
+from multibot_rewrite.rules.files.parameter_facts import Fact, facts_of_node, of_release
+from multibot_rewrite.rules.files.plugins import RENAMED, plugins_in
+from multibot_rewrite.system.conventions import PLACEHOLDER
 
 # What every node has, or every controller and plugin; prefixes end in a dot.
 _EVERYWHERE = re.compile(

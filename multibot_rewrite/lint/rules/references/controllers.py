@@ -147,7 +147,7 @@ def _found_in(subject: Subject, path: str, is_sure: bool) -> Iterator[tuple[str,
     from multibot_rewrite.companions.yaml_text import read_yaml
     from multibot_rewrite.evidence.hardware import exported
     from multibot_rewrite.evidence.parameter_files import given_nodes
-    from multibot_rewrite.remap.stacks import load_nodes
+    from multibot_rewrite.knowledge.stacks import load_nodes
 
     release, document = subject.settings.distro, subject.document
     try:

@@ -1,0 +1,2 @@
+"""What is wrong in files beside a description: ``urdf-lint`` asks it of files that it reads, ``build``
+of those that it rewrites."""

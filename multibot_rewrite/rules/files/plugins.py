@@ -1,0 +1,105 @@
+"""Nav2's plugins in a section of a parameter file, and the parameters that each has below its name.
+
+``plugins.tsv`` is made by ``python -m tools.interfaces.plugin_table``. Sources: pluginlib
+loads the class that ``NAME.plugin`` says; dwb_local_planner.cpp (resolveCriticClassName) and
+critic_manager.cpp of nav2_mppi_controller make the classes of critics of their names;
+nav2_rotation_shim_controller.cpp gives its controller its own name, from Lyrical on
+``primary_controller`` below it; collision_monitor_node.cpp (configurePolygons, configureSources).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from importlib.resources import files
+
+from multibot_rewrite.companions.params.rcl_parameters import Value
+from multibot_rewrite.rules.files.parameter_facts import Fact, make_facts
+
+DWB = "dwb_core::DWBLocalPlanner"
+MPPI = "nav2_mppi_controller::MPPIController"
+SHIM = "nav2_rotation_shim_controller::RotationShimController"
+# Lists of the collision monitor -> the class of what they name.
+LISTED = {
+    "polygons": "nav2_collision_monitor::Polygon",
+    "observation_sources": "nav2_collision_monitor::Source",
+}
+# Older names that no supported release reads: obstacle_layer.cpp of Foxy and of Galactic.
+RENAMED = {"obstacle_range": "obstacle_max_range", "raytrace_range": "raytrace_max_range"}
+_PLUGIN, _PRIMARY = ".plugin", ".primary_controller"
+_CRITICS, _NAMESPACES = ".critics", ".default_critic_namespaces"
+
+Values = Mapping[str, Value | None]
+
+
+@lru_cache
+def plugin_facts() -> Mapping[str, tuple[Fact, ...]]:
+    """The facts of ``plugins.tsv`` by plugin."""
+    text = files("multibot_rewrite.rules.files").joinpath("plugins.tsv").read_text("utf-8")
+    found: dict[str, list[Fact]] = {}
+    for line in text.splitlines():
+        plugin, path, type_, releases, how, source = line.split("\t")
+        found.setdefault(plugin, []).extend(make_facts(path, type_, "", releases, how, source))
+    return {plugin: tuple(facts) for plugin, facts in found.items()}
+
+
+def plugins_in(values: Values) -> dict[str, tuple[str, tuple[Fact, ...]]]:
+    """The name of each plugin of a section -> its class and what it declares: nothing for one that is
+    not known, or loads one that is not known."""
+    found: dict[str, tuple[str, tuple[Fact, ...]]] = {}
+    for name, class_ in (*_listed(values), *_classes(values)):
+        facts = plugin_facts().get(class_, ())
+        if class_ == SHIM:
+            facts = _with_primary(facts, values, name)
+        found[name] = (class_, facts)
+    return found
+
+
+def _listed(values: Values) -> Iterator[tuple[str, str]]:
+    """The polygons and sources of a collision monitor, which is told by having both."""
+    if all(it in values for it in LISTED):
+        for path, class_ in LISTED.items():
+            yield from ((it, class_) for it in _list(values, path))
+
+
+def _classes(values: Values) -> Iterator[tuple[str, str]]:
+    for path, value in values.items():
+        name = path.removesuffix(_PLUGIN)
+        if name == path or not isinstance(value, str):
+            continue
+        class_ = value.replace("/", "::")
+        yield name, class_
+        own = class_
+        if class_ == SHIM and isinstance(values.get(name + _PRIMARY), str):
+            own = _text(values, name + _PRIMARY)
+        for critic in _list(values, name + _CRITICS):
+            yield f"{name}.{critic}", _critic(own, critic, name, values)
+
+
+def _with_primary(facts: tuple[Fact, ...], values: Values, name: str) -> tuple[Fact, ...]:
+    """What a controller around another one declares, and what that one does below the same name."""
+    class_ = _text(values, name + _PRIMARY)
+    if not class_:  # it has a name of its own, or the file does not say it
+        return facts if name + _PRIMARY + _PLUGIN in values else ()
+    inner = plugin_facts().get(class_, ())
+    return (*facts, *inner) if inner else ()
+
+
+def _critic(controller: str, critic: str, name: str, values: Values) -> str:
+    if controller == MPPI:
+        return f"mppi::critics::{critic}"
+    if controller != DWB or name + _NAMESPACES in values:
+        return ""
+    class_ = _text(values, f"{name}.{critic}.class") or critic
+    class_ = class_ if "::" in class_ else f"dwb_critics::{class_}"
+    return class_ if class_ in plugin_facts() else f"{class_}Critic"
+
+
+def _text(values: Values, path: str) -> str:
+    value = values.get(path)
+    return value.replace("/", "::") if isinstance(value, str) else ""
+
+
+def _list(values: Values, path: str) -> list[str]:
+    value = values.get(path)
+    return [str(it) for it in value] if isinstance(value, list) else []
