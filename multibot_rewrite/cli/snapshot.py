@@ -24,7 +24,9 @@ from multibot_rewrite.graph.snapshot import (
     to_json,
 )
 from multibot_rewrite.graph.states import NodeState
-from multibot_rewrite.knowledge.records import (
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.plural import plural
+from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
     PUBLISHES,
@@ -33,8 +35,6 @@ from multibot_rewrite.knowledge.records import (
     SUBSCRIBES,
     TOPIC,
 )
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.plural import plural
 
 ROSGRAPH = "rosgraph"
 COLUMNS = (

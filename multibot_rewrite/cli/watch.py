@@ -12,7 +12,7 @@ from multibot_rewrite.cli.tables import Grid, render
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.snapshot import CHANGING, Snapshot
-from multibot_rewrite.graph.watching import WORDS, Verdict, WatchState, with_found
+from multibot_rewrite.live.watching import WORDS, Verdict, WatchState, with_found
 from multibot_rewrite.plural import plural
 
 # As many findings as a screen holds beside the robots.

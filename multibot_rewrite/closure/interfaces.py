@@ -6,7 +6,6 @@ activated) and its chaining: a controller's own interfaces are called ``CONTROLL
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.closure.gap import Gap
@@ -15,9 +14,9 @@ from multibot_rewrite.evidence.hardware import COMMAND, Exported
 from multibot_rewrite.evidence.records import GivenNode, Place
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.nearest import Guesses
+from multibot_rewrite.system.conventions import PLACEHOLDER
 
 INTERFACE, TWICE, CONTESTED = "interface", "claimed twice", "contested"
-PLACEHOLDER = re.compile(r"<|\$\(|\{")
 
 
 def interface_gaps(

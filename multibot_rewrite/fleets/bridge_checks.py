@@ -14,7 +14,6 @@ from multibot_rewrite.companions.bridge_entry import (
     KEYS,
     MODEL_SLOT,
     PART,
-    PLACEHOLDER,
     ROS,
     SERVICE,
     TYPES,
@@ -29,6 +28,7 @@ from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.bridge_types import not_converted
 from multibot_rewrite.nearest import did_you_mean
+from multibot_rewrite.system.conventions import PLACEHOLDER
 
 SKIPPED_ENTRY = declare(
     "MF502",

@@ -16,7 +16,6 @@ from multibot_rewrite.companions.bridge_entry import (
     GZ_MODEL,
     MODEL_SLOT,
     PART,
-    PLACEHOLDER,
     ROS,
     SERVICE,
     BridgeEntry,
@@ -42,6 +41,7 @@ from multibot_rewrite.fleets.bridge_checks import entry_findings, model_of, othe
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import POSTFIX
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.conventions import PLACEHOLDER
 
 # gz topics of the whole simulation, like those below /world.
 WORLD = frozenset({"clock", "stats"})

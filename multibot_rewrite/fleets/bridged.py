@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from multibot_rewrite.graph.expectation import PlannedTopic
-from multibot_rewrite.knowledge.records import PUBLISHES, SUBSCRIBES
 from multibot_rewrite.remap.bridged_topics import BridgedTopic
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
 
 # With nothing said, a row goes both ways.
 BOTH = (PUBLISHES, SUBSCRIBES)

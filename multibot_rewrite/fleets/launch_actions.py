@@ -30,11 +30,12 @@ from multibot_rewrite.knowledge.programs import (
     activates_itself,
     program_of,
 )
-from multibot_rewrite.knowledge.records import PUBLISHES, NodeFacts
+from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import EndpointName
 from multibot_rewrite.remap.started import SPAWN, Started, spawner_arguments
 from multibot_rewrite.remap.ways import COMPONENT, SPAWNER
+from multibot_rewrite.system.records import PUBLISHES
 
 STATE, JOINT_STATES, BRIDGE = "robot_state_publisher", "joint_state_publisher", "bridge.yaml"
 # Started by hand, or once for all robots.

@@ -16,9 +16,9 @@ from multibot_rewrite.fleets.bridge_file import below
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.output_file import yaml_of
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
-from multibot_rewrite.knowledge.records import PUBLISHES, TOPIC
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.bridged_topics import DIRECTIONS, bridged_topics
+from multibot_rewrite.system.records import PUBLISHES, TOPIC
 
 PLAIN, STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
 COMMAND = "cmd_vel"

@@ -6,8 +6,8 @@ from collections import Counter
 from collections.abc import Collection, Iterator, Mapping
 
 from multibot_rewrite.graph.snapshot import Snapshot
-from multibot_rewrite.knowledge.records import SERVES, SERVICE
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.records import SERVES, SERVICE
 
 GET_STATE = "lifecycle_msgs/srv/GetState"
 GET_PARAMETERS = "rcl_interfaces/srv/GetParameters"

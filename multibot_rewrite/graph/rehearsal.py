@@ -13,15 +13,6 @@ from typing import Any
 
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedTopic
 from multibot_rewrite.graph.transforms import Edge, Edges
-from multibot_rewrite.knowledge.records import (
-    ACTION,
-    CALLS,
-    PUBLISHES,
-    SERVES,
-    SERVICE,
-    SUBSCRIBES,
-    TOPIC,
-)
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.applied_rules import (
     RunningNode,
@@ -34,6 +25,15 @@ from multibot_rewrite.remap.started import ros_arguments
 from multibot_rewrite.remap.targets import ACTION_PARTS
 from multibot_rewrite.remap.ways import Pair
 from multibot_rewrite.rosnames import resolve_bound
+from multibot_rewrite.system.records import (
+    ACTION,
+    CALLS,
+    PUBLISHES,
+    SERVES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+)
 
 TF = "tf2_msgs/msg/TFMessage"
 # The types used in place of one that is not installed.

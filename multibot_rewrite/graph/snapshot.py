@@ -28,9 +28,9 @@ from multibot_rewrite.graph.json_values import (
     unexpected,
 )
 from multibot_rewrite.graph.states import NodeState
-from multibot_rewrite.knowledge.records import KINDS, ROLES
 from multibot_rewrite.model import InputError
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.records import KINDS, ROLES
 
 SCHEMA = 1
 # Why the observation ended: all expected nodes are there, the graph no longer changes, the timeout

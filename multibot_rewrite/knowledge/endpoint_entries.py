@@ -13,15 +13,7 @@ from multibot_rewrite.knowledge.fact_words import (
     source_of,
     variants,
 )
-from multibot_rewrite.knowledge.records import (
-    ACTION,
-    PUBLISHES,
-    ROLES,
-    SERVICE,
-    SUBSCRIBES,
-    TOPIC,
-    Endpoint,
-)
+from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.knowledge.yaml_with_lines import (
     YamlItem,
     flag_of,
@@ -33,6 +25,7 @@ from multibot_rewrite.knowledge.yaml_with_lines import (
 )
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.rosnames import check_full_name, check_topic_name, expand
+from multibot_rewrite.system.records import ACTION, PUBLISHES, ROLES, SERVICE, SUBSCRIBES, TOPIC
 
 ENDPOINT_WORDS = ("type", "parameter", "remapped", "when", "fixed", "note", "by")
 ENDPOINT_OTHERS = ("also", "types", "transport", "helper", "if", "above")

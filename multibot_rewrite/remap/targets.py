@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from multibot_rewrite.knowledge.records import ACTION, SERVICE, TOPIC, TRANSPORTS, Endpoint
+from multibot_rewrite.knowledge.records import TRANSPORTS, Endpoint
 from multibot_rewrite.naming import NAMESPACE, Naming, spelled
+from multibot_rewrite.system.records import ACTION, SERVICE, TOPIC
 
 # What an action is made of (rcl_action names.c): three services and two topics.
 ACTION_PARTS = (

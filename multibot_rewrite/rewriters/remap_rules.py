@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from lxml import etree
 
 from multibot_rewrite.model import Claim, UsageError
-from multibot_rewrite.naming import SHARED_TOPICS, TF_TOPICS, TOPIC_KINDS
+from multibot_rewrite.naming import TF_TOPICS, TOPIC_KINDS
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.forms import NamePart, remap
 from multibot_rewrite.rewriters.own_defaults import filled
@@ -21,6 +21,7 @@ from multibot_rewrite.rewriters.spelling import Rules
 from multibot_rewrite.rewriters.text import text_at, text_of
 from multibot_rewrite.rewriters.vocabulary import VocabularySection
 from multibot_rewrite.rosnames import RemapRule, expand, remapped_node, split_remap
+from multibot_rewrite.system.conventions import SHARED_TOPICS
 
 FORMS = ("remap", "argument")
 # Of a parameter whose value is a topic, or what topics are below.

@@ -247,7 +247,7 @@ BAD: dict[str, tuple[str, ...]] = {
     "separator-kind": (f"separators: {{lnk: /}}\n{ONE}", "1: separator kind 'lnk' is not known"),
     "world": (
         f"world: odom\n{ONE}",
-        "1: world 'odom' is not a shared frame (map, world); add it to shared_frames",
+        "1: world 'odom' is not a shared frame (earth, map, utm, world); add it to shared_frames",
     ),
     "pose-word": (
         "robots:\n  - {name: a, description: rover.urdf, pose: {x: one}}\n",

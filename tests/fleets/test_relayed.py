@@ -18,11 +18,11 @@ from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.findings.finding import NOTE
 from multibot_rewrite.fleets.fleet import expected
 from multibot_rewrite.fleets.scripts import LoadedFleet
-from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphFrame, Snapshot
-from multibot_rewrite.knowledge.records import PUBLISHES, SUBSCRIBES, TOPIC
 from multibot_rewrite.remap.bridged_topics import TF_TYPE
+from multibot_rewrite.rules.check import check
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
 
 RVIZ = "Visualization Manager:\n  Displays: []\n  Global Options: {Fixed Frame: map}\n"
 

@@ -14,9 +14,9 @@ from multibot_rewrite.fleets.closed_plan import closed_plan
 from multibot_rewrite.fleets.fleet import expected
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
-from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.snapshot import GraphNode, Snapshot
+from multibot_rewrite.rules.check import check
 
 # A drive that is a ROS node, and a sensor whose topic a bridge has to carry.
 DESCRIPTION = """\

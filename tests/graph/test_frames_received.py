@@ -6,8 +6,8 @@ import pytest
 from graph_cases import healthy, read_plan
 
 from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.snapshot import Caveat, Snapshot
+from multibot_rewrite.rules.check import check
 
 LAYOUTS = ("frames-per-robot", "tf-per-robot", "both", "postfix")
 

@@ -15,9 +15,9 @@ from paths import ROOT
 from pytest import CaptureFixture, MonkeyPatch
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.graph.check import RULES
 from multibot_rewrite.graph.plan_file import from_yaml
 from multibot_rewrite.graph.snapshot import Snapshot, from_json, to_json
+from multibot_rewrite.rules.check import RULES
 
 ids = [f"{case.layout}-{case.code}" for case in CASES]
 

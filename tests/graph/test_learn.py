@@ -28,7 +28,17 @@ from multibot_rewrite.graph.snapshot import (
 )
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.knowledge.node_library import NodeLibrary, stack_of
-from multibot_rewrite.knowledge.records import (
+from multibot_rewrite.knowledge.records import TRANSPORTS, Endpoint, NodeFacts
+from multibot_rewrite.knowledge.stacks import built_in, user_stack
+from multibot_rewrite.model import ProofError, UsageError
+from multibot_rewrite.naming import Naming, make_naming
+from multibot_rewrite.releases import NEWEST_LTS
+from multibot_rewrite.remap.bridged_topics import TF_TYPE
+from multibot_rewrite.remap.records import Table
+from multibot_rewrite.remap.table import build_table, parsed
+from multibot_rewrite.remap.targets import expanded
+from multibot_rewrite.rosnames import bind, expand, resolve_bound
+from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
     PUBLISHES,
@@ -36,18 +46,7 @@ from multibot_rewrite.knowledge.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
-    TRANSPORTS,
-    Endpoint,
-    NodeFacts,
 )
-from multibot_rewrite.knowledge.stacks import built_in, user_stack
-from multibot_rewrite.model import ProofError, UsageError
-from multibot_rewrite.naming import Naming, make_naming
-from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.remap.bridged_topics import TF_TYPE
-from multibot_rewrite.remap.records import Table
-from multibot_rewrite.remap.table import build_table, expanded, parsed
-from multibot_rewrite.rosnames import bind, expand, resolve_bound
 
 LAYOUTS = ("L1", "L2", "L3", "L4")
 ROBOTS = ("robot1", "robot2")

@@ -19,9 +19,9 @@ from graph_cases import sent
 from graph_faults import FAULTS, LIVE
 from healthy_systems import SYSTEMS
 
-from multibot_rewrite.graph.doctor.diagnose import diagnose
 from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.snapshot_file import read_snapshot
+from multibot_rewrite.live.diagnose import diagnose
 
 pytestmark = pytest.mark.live
 

@@ -36,7 +36,7 @@ from multibot_rewrite.graph.snapshot import (
     Snapshot,
     to_json,
 )
-from multibot_rewrite.knowledge.records import PUBLISHES, TOPIC
+from multibot_rewrite.system.records import PUBLISHES, TOPIC
 
 pytestmark = pytest.mark.live
 

@@ -129,7 +129,9 @@ def test_an_edited_plan_is_what_counts(plan: Path, capsys: pytest.CaptureFixture
         pytest.param("robots:", "robts:", "'robots' is missing", id="no-robots"),
         pytest.param("subscribes, topic", "hears, topic", "'hears'", id="role"),
         pytest.param("    tf: ", "    tfs: ", "'tf' is missing", id="no-tf"),
-        pytest.param("[map, world]", "map", "shared_frames is not a list", id="no-list"),
+        pytest.param(
+            "[earth, map, utm, world]", "map", "shared_frames is not a list", id="no-list"
+        ),
         pytest.param("topic, /robot1", "topic, robot1", "is not a full name", id="relative"),
         pytest.param("layout:", "layout: [", "not valid YAML", id="no-yaml"),
         pytest.param("    tf: /robot1/tf", "    tf:", "tf: None is not a full name", id="tf"),

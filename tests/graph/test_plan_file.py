@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 from graph_cases import environment, qos
 
-from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.expectation import PlannedEndpoint, PlannedTopic
 from multibot_rewrite.graph.plan_file import read_plan, to_json, to_yaml
 from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphNode, Snapshot
 from multibot_rewrite.model import InputError
+from multibot_rewrite.rules.check import check
 
 PLAN = """\
 layout: both

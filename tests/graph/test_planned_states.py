@@ -14,7 +14,6 @@ from paths import ROBOTS
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.fleets.built_states import with_built
-from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.expectation import Expectation, PlannedParameter, PlannedState
 from multibot_rewrite.graph.live import ask
 from multibot_rewrite.graph.live.answers import AGAIN_SECONDS, Answers
@@ -30,8 +29,9 @@ from multibot_rewrite.graph.snapshot import (
     to_json as graph_json,
 )
 from multibot_rewrite.graph.states import NodeState, Parameter
-from multibot_rewrite.knowledge.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
 from multibot_rewrite.model import InputError
+from multibot_rewrite.rules.check import check
+from multibot_rewrite.system.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
 
 PLAN = """\
 layout: frames-per-robot

@@ -12,11 +12,11 @@ from looks import ONE, TWO, end, look, node
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, Finding
-from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.plan_file import read_plan
 from multibot_rewrite.graph.reach import machines
 from multibot_rewrite.graph.snapshot import Caveat, GraphEndpoint, Snapshot, to_json
-from multibot_rewrite.graph.watching import Verdict, judge
+from multibot_rewrite.live.watching import Verdict, judge
+from multibot_rewrite.rules.check import check
 
 # A second process of the machine of robot1.
 BESIDE = ONE[:8] + "cccccccccccccccc"

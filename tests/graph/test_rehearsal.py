@@ -27,17 +27,7 @@ from multibot_rewrite.graph.rehearsal import (
 from multibot_rewrite.graph.snapshot import Snapshot, from_json
 from multibot_rewrite.graph.transforms import Edge, edges_of, frames_of, with_odometry
 from multibot_rewrite.knowledge.node_library import stack_of
-from multibot_rewrite.knowledge.records import (
-    ACTION,
-    CALLS,
-    PUBLISHES,
-    SERVES,
-    SERVICE,
-    SUBSCRIBES,
-    TOPIC,
-    Endpoint,
-    NodeFacts,
-)
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.library import rewrite
 from multibot_rewrite.naming import Naming, make_naming
@@ -50,6 +40,15 @@ from multibot_rewrite.remap.ways import WAYS
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.steps.collect import Inventory, collect
 from multibot_rewrite.steps.document import read_document
+from multibot_rewrite.system.records import (
+    ACTION,
+    CALLS,
+    PUBLISHES,
+    SERVES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+)
 
 ROVER = ROBOTS / "rover.urdf"
 LASER = "sensor_msgs/msg/LaserScan"

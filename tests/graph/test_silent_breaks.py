@@ -22,10 +22,10 @@ from graph_cases import (
 from graph_examples import read_example
 
 from multibot_rewrite.findings.finding import ERROR, Finding
-from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.expectation import Expectation, PlannedTopic
 from multibot_rewrite.graph.snapshot import GraphFrame, Snapshot
-from multibot_rewrite.knowledge.records import PUBLISHES, SUBSCRIBES, TOPIC
+from multibot_rewrite.rules.check import check
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
 
 LAYOUTS = ("frames-per-robot", "tf-per-robot", "both", "postfix")
 # Those in which frames have the robot's name.

@@ -8,10 +8,10 @@ import pytest
 from graph_cases import environment, moved, without_node
 from small_fleet import healthy, plan
 
-from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.snapshot import CHANGING, Caveat, GraphEndpoint, GraphNode, Snapshot
-from multibot_rewrite.graph.watching import Progress, Verdict, WatchState, final, with_found
-from multibot_rewrite.knowledge.records import PUBLISHES, TOPIC
+from multibot_rewrite.live.watching import Progress, Verdict, WatchState, final, with_found
+from multibot_rewrite.rules.check import check
+from multibot_rewrite.system.records import PUBLISHES, TOPIC
 
 ROBOT2 = ("/robot2/driver", "/robot2/robot_state_publisher")
 

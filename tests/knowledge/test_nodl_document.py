@@ -11,8 +11,8 @@ import yaml
 from nodl_schema_file import nodl_validator
 
 from multibot_rewrite.knowledge.nodl.document import parse
-from multibot_rewrite.knowledge.records import ACTION, SERVES, SERVICE, SUBSCRIBES, TOPIC
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.system.records import ACTION, SERVES, SERVICE, SUBSCRIBES, TOPIC
 
 # Written by hand after the schema of ros-tooling/nodl: each key of it once.
 WHOLE = """\

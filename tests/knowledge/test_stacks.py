@@ -11,7 +11,7 @@ from paths import ROOT
 
 from multibot_rewrite.fleets.fleet import NO_STATE_PUBLISHER
 from multibot_rewrite.knowledge.node_library import NodeLibrary, extend, stack_of
-from multibot_rewrite.knowledge.records import ACTION, SERVICE, TOPIC, Endpoint, NodeFacts
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import (
     built_in,
     load_nodes,
@@ -21,6 +21,7 @@ from multibot_rewrite.knowledge.stacks import (
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.rosnames import expand
+from multibot_rewrite.system.records import ACTION, SERVICE, TOPIC
 
 WANTED = {
     "robot_state": {"robot_state_publisher", "joint_state_publisher"},

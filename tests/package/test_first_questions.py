@@ -13,7 +13,7 @@ from paths import ROBOTS, ROOT
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.graph.plan_file import read_plan
 from multibot_rewrite.graph.snapshot import Snapshot, to_json
-from multibot_rewrite.knowledge.records import PUBLISHES
+from multibot_rewrite.system.records import PUBLISHES
 
 EXAMPLE = ROOT / "examples" / "namespace_and_prefix"
 

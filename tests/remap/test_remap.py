@@ -13,17 +13,7 @@ from lxml import etree
 from paths import FIXTURES
 
 from multibot_rewrite.findings.finding import ERROR
-from multibot_rewrite.knowledge.records import (
-    ACTION,
-    CALLS,
-    PUBLISHES,
-    SERVES,
-    SERVICE,
-    SUBSCRIBES,
-    TOPIC,
-    Endpoint,
-    NodeFacts,
-)
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.readback.reading import Reading, read
@@ -33,6 +23,15 @@ from multibot_rewrite.remap.records import NodeRule, NodeTable, Table
 from multibot_rewrite.remap.table import build_table
 from multibot_rewrite.remap.table_formats import FORMS, as_data
 from multibot_rewrite.rewriters.builtin import builtin_tree
+from multibot_rewrite.system.records import (
+    ACTION,
+    CALLS,
+    PUBLISHES,
+    SERVES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+)
 
 ROBOTS = ("robot1", "robot2")
 LAYOUTS = ("L1", "L2", "L3", "L4")

@@ -17,7 +17,7 @@ from healthy_systems import (
 
 from multibot_rewrite.findings.finding import ERROR, WARNING
 from multibot_rewrite.graph.snapshot import GraphNode, Snapshot
-from multibot_rewrite.knowledge.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
+from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
 
 JOY, BOOL = "sensor_msgs/msg/Joy", "std_msgs/msg/Bool"
 LISTED = "/controller_manager/list_controllers"

@@ -9,10 +9,11 @@ from functools import cache
 from paths import FIXTURES
 
 from multibot_rewrite.graph.snapshot import GraphEndpoint
-from multibot_rewrite.knowledge.records import ACTION, SERVICE, TOPIC, NodeFacts
+from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.remap.records import NodeTable
 from multibot_rewrite.remap.table import parsed
 from multibot_rewrite.rosnames import bind, resolve_bound
+from multibot_rewrite.system.records import ACTION, SERVICE, TOPIC
 from tools.interfaces.compare import is_same
 from tools.interfaces.records import Fact
 from tools.interfaces.table import from_table

@@ -16,7 +16,7 @@ from healthy_systems import (
 
 from multibot_rewrite.findings.finding import ERROR
 from multibot_rewrite.graph.snapshot import GraphFrame, Snapshot
-from multibot_rewrite.knowledge.records import SUBSCRIBES
+from multibot_rewrite.system.records import SUBSCRIBES
 
 CHANGE_STATE = "lifecycle_msgs/srv/ChangeState"
 TRAJECTORY = "trajectory_msgs/msg/JointTrajectory"

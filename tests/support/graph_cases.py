@@ -27,7 +27,7 @@ from multibot_rewrite.graph.snapshot import (
     Snapshot,
     to_json,
 )
-from multibot_rewrite.knowledge.records import PUBLISHES, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
 
 # As a user names them: messages hold the paths.
 GRAPHS, ROVER = "fixtures/graphs", "fixtures/robots/rover.urdf"

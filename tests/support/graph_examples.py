@@ -33,10 +33,7 @@ from collections.abc import Iterable, Iterator
 
 from graph_cases import environment, qos
 
-from multibot_rewrite.graph.dangers.seen import Owners
-from multibot_rewrite.graph.doctor.robots import GuessedRobot, owners_of, with_frames
 from multibot_rewrite.graph.expectation import (
-    ALWAYS,
     Expectation,
     PlannedEndpoint,
     PlannedParameter,
@@ -53,7 +50,10 @@ from multibot_rewrite.graph.snapshot import (
     Snapshot,
 )
 from multibot_rewrite.graph.states import Controller, NodeState, Parameter
-from multibot_rewrite.knowledge.records import ACTION, PUBLISHES, SERVICE, SUBSCRIBES, TOPIC
+from multibot_rewrite.rules.guess import GuessedRobot, whose_by_guess, with_frames
+from multibot_rewrite.rules.index import Index, index
+from multibot_rewrite.system.conventions import SENT_BY_EVERY_NODE
+from multibot_rewrite.system.records import ACTION, PUBLISHES, SERVICE, SUBSCRIBES, TOPIC
 
 LINE = re.compile(r"(planned|running|as planned): (.+)")
 NODE = re.compile(
@@ -100,14 +100,14 @@ def read_example(text: str) -> tuple[Expectation, Snapshot]:
     return read_plan(planned), read_graph(running)
 
 
-def read_danger(text: str) -> tuple[Snapshot, Owners]:
-    """The graph of an example without a plan, and whose its names are."""
+def read_danger(text: str) -> Index:
+    """The graph of an example without a plan."""
     plan, graph = read_example(text)
     assert not plan.endpoints, "a danger needs no plan: begin its lines with running:"
     robots = sorted({*ROBOT.findall(text)})
     frames = [name for frame in graph.frames for name in (frame.child, frame.parent)]
     guessed = (with_frames(GuessedRobot(it, f"/{it}"), frames) for it in robots)
-    return graph, owners_of(graph, tuple(guessed))
+    return index(graph, whose_by_guess(guessed))
 
 
 def read_states(lines: list[str]) -> tuple[NodeState, ...]:
@@ -160,7 +160,7 @@ def _words(pattern: re.Pattern[str], lines: Iterable[str]) -> Iterator[tuple[str
 
 def read_plan(lines: list[str]) -> Expectation:
     """What the lines plan."""
-    shared = defaultdict(list, {"topic": [*ALWAYS, "/clock"], "frame": ["map"]})
+    shared = defaultdict(list, {"topic": [*SENT_BY_EVERY_NODE, "/clock"], "frame": ["map"]})
     for kind, name in _words(SHARED, lines):
         shared[kind].append(name)
     nodes = list(dict.fromkeys(node for node, *_ in _words(NODE, lines)))

@@ -18,7 +18,7 @@ from multibot_rewrite.cli import multibot
 from multibot_rewrite.graph.expectation import Expectation, PlannedRobot
 from multibot_rewrite.graph.plan_file import from_yaml
 from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphFrame, GraphNode, Snapshot
-from multibot_rewrite.knowledge.records import (
+from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
     PUBLISHES,

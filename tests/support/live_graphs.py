@@ -12,7 +12,7 @@ from importlib import import_module
 from typing import Any
 
 from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphNode, Snapshot
-from multibot_rewrite.knowledge.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
+from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
 
 LISTS = {
     PUBLISHES: "publishers",

@@ -33,7 +33,7 @@ from healthy_systems import (
 
 from multibot_rewrite.findings.finding import ERROR, WARNING
 from multibot_rewrite.graph.snapshot import GraphNode
-from multibot_rewrite.knowledge.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
+from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
 
 
 def name_rows() -> tuple[Fault, ...]:

@@ -11,9 +11,7 @@ from graph_cases import bridge
 from paths import ROBOTS
 
 from multibot_rewrite.cli import multibot
-from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
-from multibot_rewrite.graph.pictures.scene import Scene, make_scene
 from multibot_rewrite.graph.plan_file import from_yaml
 from multibot_rewrite.graph.snapshot import (
     Caveat,
@@ -23,7 +21,9 @@ from multibot_rewrite.graph.snapshot import (
     GraphNode,
     Snapshot,
 )
-from multibot_rewrite.knowledge.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
+from multibot_rewrite.pages.scene import Scene, make_scene
+from multibot_rewrite.rules.check import check
+from multibot_rewrite.system.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
 
 ROVER = ROBOTS / "rover.urdf"
 LAYOUTS = ("L1", "L2", "L3", "L4")

@@ -6,19 +6,19 @@ import nav2_graphs
 from nav2_graphs import TEXT
 
 from multibot_rewrite.findings.finding import WARNING, Finding
-from multibot_rewrite.graph.check import check
-from multibot_rewrite.graph.doctor.diagnose import diagnose
-from multibot_rewrite.graph.doctor.seen_plan import seen_plan
 from multibot_rewrite.graph.expectation import (
     Expectation,
     PlannedEndpoint,
     PlannedRobot,
     PlannedTopic,
 )
-from multibot_rewrite.graph.pictures.scene import Scene, make_scene
 from multibot_rewrite.graph.snapshot import Caveat, Snapshot
-from multibot_rewrite.graph.watching import Outcome, Verdict
-from multibot_rewrite.knowledge.records import PUBLISHES, SUBSCRIBES, TOPIC
+from multibot_rewrite.live.diagnose import diagnose
+from multibot_rewrite.live.seen_plan import seen_plan
+from multibot_rewrite.live.watching import Outcome, Verdict
+from multibot_rewrite.pages.scene import Scene, make_scene
+from multibot_rewrite.rules.check import check
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
 
 FIRST, SECOND = "/fleet_a/robot1", "/fleet_a/robot2"
 OPEN_END = Finding("MF801", WARNING, "/robot2/amcl reads scan2, which nothing sends")

@@ -7,20 +7,13 @@ from graph_cases import (
     sent,
 )
 
-from multibot_rewrite.graph.expectation import Expectation, expect, spelled
+from multibot_rewrite.graph.expectation import Expectation, expect
 from multibot_rewrite.graph.snapshot import GraphFrame, Snapshot
-from multibot_rewrite.knowledge.records import (
-    PUBLISHES,
-    SERVES,
-    SERVICE,
-    SUBSCRIBES,
-    TOPIC,
-    Endpoint,
-    NodeFacts,
-)
-from multibot_rewrite.naming import make_naming
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
+from multibot_rewrite.naming import make_naming, spelled
 from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.table import build_table
+from multibot_rewrite.system.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
 
 ROBOTS = ("robot1", "robot2")
 NODES = (

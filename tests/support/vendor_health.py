@@ -15,11 +15,11 @@ from nav2_graphs import environment
 from vendor_systems import OTHER, ROBOT, Outcome, Started
 
 from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphNode, Snapshot
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.remap.records import NodeRule, NodeTable
+from multibot_rewrite.rules.check import check
 
 TF = ("/tf", "/tf_static")
 _EKF = "robot_localization/ekf_node"

@@ -10,7 +10,6 @@ import pytest
 from declared_graph import endpoints, facts
 from nav2_graphs import environment
 
-from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.expectation import Expectation, expect
 from multibot_rewrite.graph.snapshot import GraphNode, Snapshot
 from multibot_rewrite.knowledge.node_library import stack_of
@@ -20,6 +19,7 @@ from multibot_rewrite.naming import make_naming
 from multibot_rewrite.releases import NEWEST_LTS, RELEASES
 from multibot_rewrite.remap.records import Table
 from multibot_rewrite.remap.table import build_table
+from multibot_rewrite.rules.check import check
 
 SYSTEMS = {
     "nav2": ("robot_state", "nav2", "ros2_control"),

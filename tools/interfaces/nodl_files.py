@@ -9,7 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from multibot_rewrite.knowledge.nodl.writing import UNKNOWN_QOS, NodlFile, document_of
-from multibot_rewrite.knowledge.records import (
+from multibot_rewrite.knowledge.records import Endpoint
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
     PUBLISHES,
@@ -17,9 +19,7 @@ from multibot_rewrite.knowledge.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
-    Endpoint,
 )
-from multibot_rewrite.model import UsageError
 from tools.interfaces.records import Fact
 
 # What has no "/action/" in its type is a topic or a service.

@@ -36,10 +36,11 @@ def page() -> str:
     library = every_release()
     parts = [HEAD, *(_controllers(it) for it in CONTROLLER_WAYS), "\n## Stacks\n"]
     parts += [_stack(name, stack) for name, stack in library.stacks.items()]
+    nodes = sorted(library.nodes.values(), key=lambda it: it.name.lower())
     parts.append(REACH)
-    parts += [row for node in library.nodes.values() for row in _reach(node)]
+    parts += [row for node in nodes for row in _reach(node)]
     parts.append("\n## Nodes\n")
-    parts += [_node(node, library) for node in library.nodes.values()]
+    parts += [_node(node, library) for node in nodes]
     parts.append("\n## Parts\n\nGroups of names that many nodes have.\n")
     parts += [f"\n### {name}\n{_table(found)}" for name, found in library.parts.items()]
     return "".join(parts)

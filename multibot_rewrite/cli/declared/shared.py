@@ -15,14 +15,9 @@ from multibot_rewrite.cli.options import (
 )
 from multibot_rewrite.findings.finding import LEVELS
 from multibot_rewrite.findings.formats import FORMATS
-from multibot_rewrite.naming import (
-    DEFAULT_LAYOUT,
-    LAYOUTS,
-    SEPARATORS,
-    SHARED_FRAMES,
-    SHARED_TOPICS,
-)
+from multibot_rewrite.naming import DEFAULT_LAYOUT, LAYOUTS, SEPARATORS
 from multibot_rewrite.releases import NEWEST_LTS, RELEASES, VARIABLE
+from multibot_rewrite.system.conventions import SHARED_TOPICS, WORLD_FRAMES
 
 # argparse's word for an option that leaves what is there alone.
 SUPPRESS = "==SUPPRESS=="
@@ -56,7 +51,7 @@ NAMING = OptionGroup(
         several(
             "--shared-frames",
             "A,B",
-            f"frames that all robots share; default: {','.join(SHARED_FRAMES)}",
+            f"frames that all robots share; default: {','.join(WORLD_FRAMES)}",
         ),
         several(
             "--shared-topics",

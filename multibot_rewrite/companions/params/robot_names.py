@@ -10,11 +10,12 @@ import yaml
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.names.by_kind import is_plain
 from multibot_rewrite.companions.params.name_sites import SectionNames
-from multibot_rewrite.companions.params.sections import ANY, PLACEHOLDER, ParamSection
+from multibot_rewrite.companions.params.sections import ANY, ParamSection
 from multibot_rewrite.companions.params.values import is_filled
 from multibot_rewrite.companions.yaml_text import YamlText, found_at
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.system.conventions import PLACEHOLDER
 
 _IN_VALUE = re.compile(r"<[^>]*>|\$\([^)]*\)|\$?\{[^}]*\}")
 

@@ -6,17 +6,12 @@ import re
 from collections.abc import Iterator, Sequence
 
 from multibot_rewrite.companions.params.name_sites import SectionNames
-from multibot_rewrite.companions.params.sections import (
-    ANY,
-    PLACEHOLDER,
-    ParamSection,
-    flattened,
-    pattern_of,
-)
+from multibot_rewrite.companions.params.sections import ANY, ParamSection, flattened, pattern_of
 from multibot_rewrite.companions.yaml_text import YamlText, found_at, line_of
 from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.rosnames import check_node_name
+from multibot_rewrite.system.conventions import PLACEHOLDER
 
 SHARED_NODE = declare(
     "MF103",

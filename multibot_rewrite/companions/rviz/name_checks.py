@@ -9,7 +9,7 @@ import yaml
 from multibot_rewrite.companions.names.placeholders import without_robot
 from multibot_rewrite.companions.names.rename_map import is_declared
 from multibot_rewrite.companions.rviz.display_groups import Robots
-from multibot_rewrite.companions.rviz.read_config import RvizConfig, RvizItem, ValuePlace, rviz_data
+from multibot_rewrite.companions.rviz.read_config import RvizConfig, RvizItem, ValuePlace
 from multibot_rewrite.companions.rviz.values import (
     FRAME,
     JOINT,
@@ -22,6 +22,7 @@ from multibot_rewrite.companions.yaml_text import found_at, is_text, pairs
 from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.nearest import MISTYPED, did_you_mean
+from multibot_rewrite.system.conventions import SENT_FRAMES
 
 # Titles of displays and windows: never names of links.
 _TITLES = ("Name", "Class")
@@ -146,7 +147,7 @@ def _undeclared(config: RvizConfig, place: ValuePlace, robots: Robots) -> Iterat
     if place.word not in (FRAME, LINK, JOINT) or not naming.layout.frames:
         return
     bare = str(place.node.value).strip("/")
-    if not bare or "<" in bare or bare in naming.shared_frames or bare in rviz_data()["frames"]:
+    if not bare or "<" in bare or bare in naming.shared_frames or bare in SENT_FRAMES:
         return
     if any(is_declared(robot.names, place.word, bare) for robot in robots):
         return

@@ -32,11 +32,12 @@ from multibot_rewrite.companions.rviz.values import RvizRobot, frame_of, item_sp
 from multibot_rewrite.companions.yaml_blocks import as_item, blocks, cut_out, is_block, newline
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, replaced, spliced
 from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.knowledge.records import TOPIC
 from multibot_rewrite.model import ProofError, UsageError
 from multibot_rewrite.naming import TF_TOPICS, Naming
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.targets import target_of
+from multibot_rewrite.system.conventions import WORLD_FRAMES
+from multibot_rewrite.system.records import TOPIC
 
 __all__ = ["RvizRobot", "RvizText", "rewrite_rviz", "start_command", "world_frame"]
 
@@ -91,9 +92,9 @@ def rewrite_rviz(
 
 
 def world_frame(naming: Naming) -> str:
-    """The frame that all robots share: map, else world, else any other shared frame."""
+    """The frame that all robots share: map, else another of the world, else any other."""
     shared = sorted(naming.shared_frames)
-    return next((frame for frame in ("map", "world", *shared) if frame in shared), "")
+    return next((frame for frame in (*WORLD_FRAMES, *shared) if frame in shared), "")
 
 
 def start_command(made: RvizText, file: str) -> list[str]:

@@ -15,8 +15,8 @@ from multibot_rewrite.graph.snapshot import (
     Qos,
     Snapshot,
 )
-from multibot_rewrite.knowledge.records import PUBLISHES, TOPIC
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.records import PUBLISHES, TOPIC
 
 # In place of the RMW: such a snapshot has no nodes, so only the rules about frames ask it.
 ROSBAG = "rosbag2"

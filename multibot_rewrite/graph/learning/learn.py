@@ -17,7 +17,6 @@ from multibot_rewrite.graph.learning.choosing import (
     namespace_prefix,
 )
 from multibot_rewrite.graph.learning.folding import (
-    CLOCK,
     EndpointId,
     Seen,
     fold_actions,
@@ -26,7 +25,14 @@ from multibot_rewrite.graph.learning.folding import (
 )
 from multibot_rewrite.graph.snapshot import GraphEndpoint, Snapshot
 from multibot_rewrite.knowledge.node_library import NodeLibrary
-from multibot_rewrite.knowledge.records import (
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.naming import TF_TOPICS
+from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.remap.bridged_topics import TF_TYPE
+from multibot_rewrite.rosnames import expand
+from multibot_rewrite.system.conventions import CLOCK
+from multibot_rewrite.system.records import (
     ACTION,
     PUBLISHES,
     ROLES,
@@ -34,14 +40,7 @@ from multibot_rewrite.knowledge.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
-    Endpoint,
-    NodeFacts,
 )
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.naming import TF_TOPICS
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.bridged_topics import TF_TYPE
-from multibot_rewrite.rosnames import expand
 
 FROM_HELPER = "asked for by transform_listener_impl_<address>"
 SHARED_PROCESS = "its process has several nodes, each gets the endpoints of the helper nodes there"

@@ -9,15 +9,16 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from multibot_rewrite.graph.learning.folding import CLOCK
 from multibot_rewrite.graph.learning.learn import EVERY_NODE, LearnedNode
 from multibot_rewrite.graph.snapshot import GraphEndpoint, Qos, Snapshot
 from multibot_rewrite.knowledge.node_library import NodeLibrary
 from multibot_rewrite.knowledge.nodl.document import POLICIES
 from multibot_rewrite.knowledge.nodl.writing import DEFAULT, UNKNOWN_QOS, NodlFile, document_of
-from multibot_rewrite.knowledge.records import TOPIC, TRANSPORTS, Endpoint
+from multibot_rewrite.knowledge.records import TRANSPORTS, Endpoint
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rosnames import expand
+from multibot_rewrite.system.conventions import CLOCK
+from multibot_rewrite.system.records import TOPIC
 
 KEEP_LAST = "KEEP_LAST"
 

@@ -16,8 +16,9 @@ from multibot_rewrite.graph.snapshot import (
     GraphFrame,
     GraphNode,
 )
-from multibot_rewrite.knowledge.records import PUBLISHES, TOPIC
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.conventions import SENT_BY_EVERY_NODE
+from multibot_rewrite.system.records import PUBLISHES, TOPIC
 
 # Participants announce themselves every 3 s: a shorter quiet time proves nothing.
 QUIET_SECONDS = 3.5
@@ -29,8 +30,6 @@ STARVED = 1 / 3
 BURST_SECONDS = 0.5
 # The second replaces the first in a rehearsal on a machine without tf2_msgs.
 TF_TYPES = ("tf2_msgs/msg/TFMessage", "geometry_msgs/msg/TransformStamped")
-# Almost every node publishes one of these, so few queries show which nodes share a process.
-COMMON_TOPICS = ("/parameter_events", "/rosout")
 NO_ENCLAVES: Mapping[str, str] = {}
 # Of transforms: below a micrometre.
 _DIGITS = 9
@@ -127,7 +126,8 @@ def topics_to_query(
     for end in endpoints:
         if end.kind == TOPIC:
             sides[end.name].add(end.role)
-    wanted = {*COMMON_TOPICS, *requested}
+    # Almost every node publishes one of these, so few queries show which nodes share a process.
+    wanted = {*SENT_BY_EVERY_NODE, *requested}
     return sorted(
         topic
         for topic, types in topics.items()

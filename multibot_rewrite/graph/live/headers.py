@@ -12,8 +12,8 @@ from collections.abc import Callable, Iterable, Iterator
 
 from multibot_rewrite.graph.snapshot import LISTENER, Caveat, GraphEndpoint, HeardFrame
 from multibot_rewrite.graph.zenoh.cdr import read_header_frame
-from multibot_rewrite.knowledge.records import PUBLISHES, TOPIC
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.records import PUBLISHES, TOPIC
 
 # Their headers name frames of tf; where there are too many topics the first ones matter most.
 PACKAGES = (

@@ -34,8 +34,8 @@ from multibot_rewrite.graph.snapshot import (
     to_json,
 )
 from multibot_rewrite.graph.states import NodeState
-from multibot_rewrite.knowledge.records import ACTION, CALLS, SERVES
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.records import ACTION, CALLS, SERVES
 
 # The shortest pause between two polls. A pause is also so many times as long as a poll took: a
 # large fleet is polled less often, even less where the graph is not watched.

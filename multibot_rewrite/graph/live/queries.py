@@ -12,7 +12,8 @@ from typing import Any
 
 from multibot_rewrite.graph.live import assemble
 from multibot_rewrite.graph.snapshot import UNKNOWN_NODE, GraphEndpoint, Qos
-from multibot_rewrite.knowledge.records import (
+from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
     PUBLISHES,
@@ -21,7 +22,6 @@ from multibot_rewrite.knowledge.records import (
     SUBSCRIBES,
     TOPIC,
 )
-from multibot_rewrite.record import NamedTuple
 
 # Kind and role of the answer, and the query: (node, name, namespace) -> names and types.
 NodeQuery = tuple[str, str, Callable[..., Any]]

@@ -10,7 +10,7 @@ from multibot_rewrite.graph.live.assemble import TF_TYPES, ReceivedTransform, nu
 from multibot_rewrite.graph.live.voices import Mark, Voices
 from multibot_rewrite.graph.snapshot import Caveat, GraphEndpoint
 from multibot_rewrite.graph.wording import SEVERAL, shorten
-from multibot_rewrite.knowledge.records import PUBLISHES
+from multibot_rewrite.system.records import PUBLISHES
 
 # As long as tf2 keeps a transform.
 FORGET_SECONDS = 10.0

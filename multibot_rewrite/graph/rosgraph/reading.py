@@ -32,7 +32,8 @@ from multibot_rewrite.graph.snapshot import (
     Snapshot,
     record_from,
 )
-from multibot_rewrite.knowledge.records import (
+from multibot_rewrite.model import InputError
+from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
     PUBLISHES,
@@ -41,7 +42,6 @@ from multibot_rewrite.knowledge.records import (
     SUBSCRIBES,
     TOPIC,
 )
-from multibot_rewrite.model import InputError
 
 # nodl_observe writes no limit as the largest int32, rosgraph_monitor as 0.
 _NO_LIMIT = 2**31 - 1

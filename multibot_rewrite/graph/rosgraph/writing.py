@@ -16,7 +16,7 @@ from multibot_rewrite.graph.rosgraph.messages import (
     UNKNOWN,
 )
 from multibot_rewrite.graph.snapshot import GraphEndpoint, Qos, Snapshot
-from multibot_rewrite.knowledge.records import (
+from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
     PUBLISHES,

@@ -12,7 +12,7 @@ from multibot_rewrite.graph.snapshot import Caveat, GraphEndpoint
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.graph.zenoh.cdr import read_tf
 from multibot_rewrite.graph.zenoh.session import RouterSession
-from multibot_rewrite.knowledge.records import PUBLISHES
+from multibot_rewrite.system.records import PUBLISHES
 
 POLL_SECONDS = 0.05
 # tf has 10 Hz or more: all that a publisher sends has come twice. A silent one is waited for longer.

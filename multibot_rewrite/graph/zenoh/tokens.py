@@ -15,7 +15,8 @@ from functools import lru_cache
 from math import inf
 
 from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphNode, Qos
-from multibot_rewrite.knowledge.records import (
+from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
     PUBLISHES,
@@ -24,7 +25,6 @@ from multibot_rewrite.knowledge.records import (
     SUBSCRIBES,
     TOPIC,
 )
-from multibot_rewrite.record import NamedTuple
 
 SPACE = "@ros2_lv"
 NODE = "NN"

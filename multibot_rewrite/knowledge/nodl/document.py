@@ -10,16 +10,7 @@ import re
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 
-from multibot_rewrite.knowledge.records import (
-    ACTION,
-    CALLS,
-    PUBLISHES,
-    SERVES,
-    SERVICE,
-    SUBSCRIBES,
-    TOPIC,
-    Endpoint,
-)
+from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.knowledge.yaml_with_lines import (
     YamlItem,
     entries_of,
@@ -32,6 +23,15 @@ from multibot_rewrite.knowledge.yaml_with_lines import (
 )
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rosnames import check_full_name, check_topic_name, expand
+from multibot_rewrite.system.records import (
+    ACTION,
+    CALLS,
+    PUBLISHES,
+    SERVES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+)
 
 VERSION = "2"
 # Key of a document -> kind and role of its endpoints.

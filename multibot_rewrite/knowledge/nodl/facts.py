@@ -19,19 +19,11 @@ from multibot_rewrite.knowledge.nodl.lookup import (
     load,
     shown,
 )
-from multibot_rewrite.knowledge.records import (
-    SERVES,
-    SERVICE,
-    SUBSCRIBES,
-    TOPIC,
-    TRANSPORTS,
-    Endpoint,
-    FrameParameter,
-    NodeFacts,
-)
+from multibot_rewrite.knowledge.records import TRANSPORTS, Endpoint, FrameParameter, NodeFacts
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rosnames import expand
+from multibot_rewrite.system.records import SERVES, SERVICE, SUBSCRIBES, TOPIC
 
 EVERY_NODE = "every_node"
 # An endpoint of the library alone keeps its rule, and is not asked for: the document may be partial.

@@ -8,16 +8,16 @@ from collections.abc import Iterator
 import yaml
 
 from multibot_rewrite.closure.moveit import moveit_gaps
-from multibot_rewrite.companions.params.known_nodes import built_in_nodes
-from multibot_rewrite.companions.params.sections import PLACEHOLDER
 from multibot_rewrite.companions.yaml_text import YamlText, line_of, read_yaml
 from multibot_rewrite.evidence.parameter_files import given_nodes
+from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.lint.beside.kinds import PARAMS, is_beside, kind_of
 from multibot_rewrite.lint.beside.records import Beside, Remark
 from multibot_rewrite.model import InputError
 from multibot_rewrite.sources.packages import entries
 from multibot_rewrite.sources.read import read_file
+from multibot_rewrite.system.conventions import PLACEHOLDER
 
 
 def unknown_controllers(beside: Beside) -> Iterator[Remark]:

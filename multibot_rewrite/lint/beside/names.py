@@ -10,10 +10,10 @@ from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.moveit.file_kind import find_kind
 from multibot_rewrite.companions.moveit.name_sites import find_names as moveit_names
 from multibot_rewrite.companions.names.rename_map import KINDS, CompanionNames
-from multibot_rewrite.companions.params.known_nodes import built_in_nodes
 from multibot_rewrite.companions.params.name_sites import find_names
-from multibot_rewrite.companions.params.sections import PLACEHOLDER, identify_sections, raw_sections
+from multibot_rewrite.companions.params.sections import identify_sections, raw_sections
 from multibot_rewrite.companions.rviz.read_config import every, read_config, value
+from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.lint.beside.kinds import PARAMS, RVIZ
 from multibot_rewrite.lint.beside.records import Beside, Remark
 from multibot_rewrite.lint.beside.robots import NO_ROBOTS, robots_of
@@ -22,9 +22,9 @@ from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.nearest import HINTED
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.conventions import PLACEHOLDER, SENT_FRAMES
 
 FRAME_WORDS, JOINT_WORDS = ("frame", "link"), ("joint",)
-AT_RUN_TIME = frozenset(("odom", "map", "world", "earth", "utm"))
 _AS_WRITTEN = make_naming("tf-per-robot")
 
 
@@ -47,7 +47,7 @@ def misspelled_frames(beside: Beside) -> Iterator[Remark]:
     meant: dict[str, str] = {}
     for it in names:
         name = it.text.strip("/").rpartition("/")[2]
-        if name in AT_RUN_TIME or any(name in declared[kind] for kind in ("link", "frame")):
+        if name in SENT_FRAMES or any(name in declared[kind] for kind in ("link", "frame")):
             continue
         if name not in meant:
             meant[name] = meant_name(name, links) if len(meant) < HINTED else ""
