@@ -8,13 +8,9 @@ from fnmatch import fnmatchcase
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.graph.dangers.find import DANGERS, find_dangers
 from multibot_rewrite.graph.dangers.seen import Owners
-from multibot_rewrite.graph.expectation import PlannedState
-from multibot_rewrite.graph.questions import SIM_TIME
 from multibot_rewrite.graph.rules.comparison import View
 from multibot_rewrite.graph.rules.planned_states import clock_not_planned, planned_clocks
-from multibot_rewrite.graph.snapshot import GraphEndpoint, Snapshot
-from multibot_rewrite.graph.states import NodeState
-from multibot_rewrite.system.records import CALLS, PUBLISHES
+from multibot_rewrite.system.records import CALLS, PUBLISHES, SIM_TIME, End, System
 
 # Who sends, and who calls: what a danger is about.
 _ACTING = (PUBLISHES, CALLS)
@@ -36,20 +32,17 @@ def dangers_beside(view: View, found: Sequence[Finding]) -> Iterator[Finding]:
             yield danger
 
 
-def _without_planned(view: View) -> Snapshot:
+def _without_planned(view: View) -> System:
     """The graph without the states that the plan has: they are compared with it."""
-    planned = {it.node: it for it in view.plan.states}
-    states = (_not_planned(it, planned.get(it.node)) for it in view.graph.states)
-    return view.graph._replace(states=tuple(states))
-
-
-def _not_planned(seen: NodeState, planned: PlannedState | None) -> NodeState:
-    if planned is None:
-        return seen
-    timed = any(it.name == SIM_TIME for it in planned.parameters)
-    return seen._replace(
-        lifecycle="" if planned.lifecycle else seen.lifecycle,
-        sim_time=None if timed else seen.sim_time,
+    states = {it.node for it in view.plan.states if it.lifecycle}
+    timed = dict(planned_clocks(view.plan.states))
+    return view.graph._replace(
+        nodes=tuple(
+            it._replace(lifecycle="") if it.name in states else it for it in view.graph.nodes
+        ),
+        parameters=tuple(
+            it for it in view.graph.parameters if it.name != SIM_TIME or it.node not in timed
+        ),
     )
 
 
@@ -61,12 +54,12 @@ def _names_of_missing(view: View) -> Iterator[str]:
 def _owners(view: View) -> Owners:
     """Whose each name is, by the plan."""
     graph, whose, frames_of = view.graph, view.ownership, view.frame_ownership
-    used = dict.fromkeys((*view.by_name, *(edge.topic for edge in graph.frames)))
-    senders = (it for edge in graph.frames for it in edge.publishers)
+    used = dict.fromkeys((*view.by_name, *(edge.topic for edge in graph.edges)))
+    senders = (it for edge in graph.edges for it in edge.publishers)
     nodes = dict.fromkeys((*view.seen, *view.by_node, *senders))
     shared = {*view.plan.shared_nodes, *view.plan.shared_topics}
     names = {it: "" if it in shared else whose.robot(it) for it in (*nodes, *used)}
-    frames = {it: frames_of.robot(it) for edge in graph.frames for it in (edge.child, edge.parent)}
+    frames = {it: frames_of.robot(it) for edge in graph.edges for it in (edge.child, edge.parent)}
     return Owners(
         tuple(sorted(it.name for it in view.plan.robots)),
         names,
@@ -89,7 +82,7 @@ def _is_used_as_planned(view: View, name: str) -> bool:
     return bool(ends) and all(_is_planned(view, it) for it in ends)
 
 
-def _is_planned(view: View, end: GraphEndpoint) -> bool:
+def _is_planned(view: View, end: End) -> bool:
     if (end.node, end.kind, end.role, end.name) in view.planned:
         return True
     senders = (it.senders for it in view.plan.topics if it.name == end.name)

@@ -25,7 +25,7 @@ from multibot_rewrite.graph.dangers import (
     states as states_,
 )
 from multibot_rewrite.graph.dangers.seen import Owners, Seen, look_at
-from multibot_rewrite.graph.snapshot import Snapshot
+from multibot_rewrite.system.records import System
 
 _MODULES = (
     nodes, names, matching, commands, relays, sharing, transforms, tf_topics, frame_ids, clocks,
@@ -36,7 +36,7 @@ DANGERS = {it.code: it for it in sorted(_FOUND, key=lambda it: it.code)}
 TF_DANGERS = {it.code: it for it in DANGERS.values() if it in vars(transforms).values()}
 
 
-def find_dangers(graph: Snapshot, owners: Owners) -> list[Finding]:
+def find_dangers(graph: System, owners: Owners) -> list[Finding]:
     """All findings in the order of the rules; empty for a system that is as it should be."""
     with gc_paused():
         seen = look_at(graph, owners)

@@ -8,10 +8,18 @@ from functools import cache, partial
 
 from multibot_rewrite.graph.dangers import words
 from multibot_rewrite.graph.rules.tf_trees import tree_topic
-from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphFrame, Snapshot
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.system.conventions import EVERYBODYS, only_looks
-from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.records import (
+    CALLS,
+    PUBLISHES,
+    SERVES,
+    SUBSCRIBES,
+    TOPIC,
+    Edge,
+    End,
+    System,
+)
 
 # In the order of the fields of Ends.
 _PLACE = {role: at for at, role in enumerate((PUBLISHES, SUBSCRIBES, SERVES, CALLS))}
@@ -43,10 +51,10 @@ class Ends(NamedTuple):
     kind: str
     name: str
     type: str
-    publishers: tuple[GraphEndpoint, ...]
-    subscribers: tuple[GraphEndpoint, ...]
-    servers: tuple[GraphEndpoint, ...]
-    clients: tuple[GraphEndpoint, ...]
+    publishers: tuple[End, ...]
+    subscribers: tuple[End, ...]
+    servers: tuple[End, ...]
+    clients: tuple[End, ...]
 
 
 class Tree(NamedTuple):
@@ -57,7 +65,7 @@ class Tree(NamedTuple):
     """
 
     topic: str
-    edges: tuple[GraphFrame, ...]
+    edges: tuple[Edge, ...]
     senders: tuple[str, ...]
     listeners: tuple[str, ...]
 
@@ -70,7 +78,7 @@ class Seen(NamedTuple):
     each (robot, kind, name without the robot's).
     """
 
-    graph: Snapshot
+    graph: System
     owners: Owners
     names: Mapping[tuple[str, str], Ends]
     topics: tuple[Ends, ...]
@@ -91,9 +99,9 @@ class Seen(NamedTuple):
         return self.owners.plain_names.get(name, name)
 
 
-def look_at(graph: Snapshot, owners: Owners) -> Seen:
+def look_at(graph: System, owners: Owners) -> Seen:
     """The look-ups that the rules share, made once."""
-    names = {(it.kind, it.name): it for it in _ends(graph.endpoints)}
+    names = {(it.kind, it.name): it for it in _ends(graph.ends)}
     topics = [it for it in names.values() if it.kind == TOPIC]
     plain = owners.plain_names
     return Seen(
@@ -116,8 +124,8 @@ def _by_robot(
     }
 
 
-def _ends(endpoints: Iterable[GraphEndpoint]) -> Iterator[Ends]:
-    found: dict[tuple[str, str], tuple[list[GraphEndpoint], ...]] = {}
+def _ends(endpoints: Iterable[End]) -> Iterator[Ends]:
+    found: dict[tuple[str, str], tuple[list[End], ...]] = {}
     for end in endpoints:
         key = (end.kind, end.name)
         if "/_" in end.name:
@@ -131,13 +139,13 @@ def _ends(endpoints: Iterable[GraphEndpoint]) -> Iterator[Ends]:
         yield Ends(kind, name, first.type, *map(tuple, sides))
 
 
-def _trees(graph: Snapshot, names: Iterable[Ends]) -> Iterator[Tree]:
+def _trees(graph: System, names: Iterable[Ends]) -> Iterator[Tree]:
     topics: dict[str, list[Ends]] = defaultdict(list)
-    edges: dict[str, list[GraphFrame]] = defaultdict(list)
+    edges: dict[str, list[Edge]] = defaultdict(list)
     for ends in names:
         if ends.type == TF:
             topics[tree_topic(ends.name)].append(ends)
-    for frame in graph.frames:
+    for frame in graph.edges:
         edges[tree_topic(frame.topic)].append(frame)
     for topic in dict.fromkeys((*edges, *topics)):
         own = topics.get(topic, ())
@@ -152,7 +160,7 @@ def unique(names: Iterable[str]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(names))
 
 
-def nodes_of(ends: Iterable[GraphEndpoint]) -> tuple[str, ...]:
+def nodes_of(ends: Iterable[End]) -> tuple[str, ...]:
     """The nodes of some endpoints, each once, in the order of their names."""
     return tuple(sorted({end.node for end in ends}))
 
@@ -172,7 +180,7 @@ def is_spawner(node: str) -> bool:
     return last_word(node).startswith("spawner_")
 
 
-def at_work(ends: Iterable[GraphEndpoint]) -> list[GraphEndpoint]:
+def at_work(ends: Iterable[End]) -> list[End]:
     """The endpoints of nodes that do more than look."""
     return [end for end in ends if not is_viewer(end.node)]
 

@@ -12,12 +12,11 @@ from multibot_rewrite.graph.dangers.find import find_dangers
 from multibot_rewrite.graph.dangers.seen import TF, Owners
 from multibot_rewrite.graph.doctor.robots import GuessedRobot, guess_robots, owners_of
 from multibot_rewrite.graph.rules.tf_trees import tree_topic
-from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.naming import LAYOUTS, Layout
 from multibot_rewrite.plural import plural
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.system.records import PUBLISHES, TOPIC
+from multibot_rewrite.system.records import PUBLISHES, TOPIC, System
 
 
 class Diagnosis(NamedTuple):
@@ -28,7 +27,7 @@ class Diagnosis(NamedTuple):
     that send on each tf topic.
     """
 
-    graph: Snapshot
+    graph: System
     robots: tuple[GuessedRobot, ...]
     owners: Owners
     layout: Layout | None
@@ -36,7 +35,7 @@ class Diagnosis(NamedTuple):
     findings: tuple[Finding, ...]
 
 
-def diagnose(graph: Snapshot) -> Diagnosis:
+def diagnose(graph: System) -> Diagnosis:
     """Look at a graph without a plan."""
     robots = guess_robots(graph)
     owners = owners_of(graph, robots)
@@ -45,10 +44,10 @@ def diagnose(graph: Snapshot) -> Diagnosis:
     return Diagnosis(graph, robots, owners, _layout(robots, owners, tf), tf, tuple(found))
 
 
-def _tf_senders(graph: Snapshot) -> Iterator[tuple[str, tuple[str, ...]]]:
+def _tf_senders(graph: System) -> Iterator[tuple[str, tuple[str, ...]]]:
     """The nodes that publish on each tf topic or its tf_static."""
     nodes: dict[str, set[str]] = {}
-    for end in graph.endpoints:
+    for end in graph.ends:
         if (end.kind, end.role, end.type) == (TOPIC, PUBLISHES, TF):
             nodes.setdefault(tree_topic(end.name), set()).add(end.node)
     return ((topic, tuple(sorted(nodes[topic]))) for topic in sorted(nodes))

@@ -26,7 +26,7 @@ def seen_plan(seen: Diagnosis) -> Expectation:
     owned = {node for robot in planned for node in robot.nodes}
     shared = tuple(node for node in nodes if node not in owned)
     names = seen.owners.names
-    topics = unique(end.name for end in seen.graph.endpoints if end.kind == "topic")
+    topics = unique(end.name for end in seen.graph.ends if end.kind == "topic")
     bare = (it for it in topics if not names.get(it) and "/_" not in it)
     return Expectation(
         seen.layout.name if seen.layout else DEFAULT_LAYOUT,
@@ -52,7 +52,7 @@ def _robot(seen: Diagnosis, robot: GuessedRobot, nodes: Iterable[str]) -> Planne
     tf = next(iter(topics), shared)
     own = {
         it
-        for edge in seen.graph.frames
+        for edge in seen.graph.edges
         for it in (edge.child, edge.parent)
         if frames.get(it) == robot.name
         or not mine
@@ -67,7 +67,7 @@ def _robot(seen: Diagnosis, robot: GuessedRobot, nodes: Iterable[str]) -> Planne
 
 
 def _endpoints(seen: Diagnosis, nodes: Iterable[str]) -> Iterator[PlannedEndpoint]:
-    for end in seen.graph.endpoints:
+    for end in seen.graph.ends:
         common = (
             end.name in SENT_BY_EVERY_NODE or end.type.startswith(_PARAMETERS) or "/_" in end.name
         )

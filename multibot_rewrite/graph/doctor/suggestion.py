@@ -16,12 +16,12 @@ from multibot_rewrite.graph.doctor.seen_plan import NAMELESS, robots_to_plan, se
 from multibot_rewrite.graph.learning.learn import learn
 from multibot_rewrite.graph.learning.nodes_file import to_yaml as nodes_to_yaml
 from multibot_rewrite.graph.plan_file import to_yaml as plan_to_yaml
-from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER
 from multibot_rewrite.knowledge.node_library import NodeLibrary
 from multibot_rewrite.naming import LAYOUTS
 from multibot_rewrite.system.conventions import BODY_FRAMES, WORLD_FRAMES
+from multibot_rewrite.system.records import Edge
 
 STACK = "seen"
 FLEET_FILE, NODES_FILE, DESCRIPTION, PLAN_FILE = (
@@ -111,11 +111,11 @@ def _description(seen: Diagnosis, robot: GuessedRobot) -> Iterator[str]:
     yield "</robot>"
 
 
-def _edges(seen: Diagnosis, robot: GuessedRobot) -> list[GraphFrame]:
+def _edges(seen: Diagnosis, robot: GuessedRobot) -> list[Edge]:
     """Those with the robot's name; where frames have none, those on its topic or on all."""
     frames, names = seen.owners.frames, seen.owners.names
-    named = [it for it in seen.graph.frames if frames.get(it.child) == robot.name]
-    bare = [it for it in seen.graph.frames if not frames.get(it.child)]
+    named = [it for it in seen.graph.edges if frames.get(it.child) == robot.name]
+    bare = [it for it in seen.graph.edges if not frames.get(it.child)]
     own = [it for it in bare if names.get(it.topic) == robot.name]
     return named or own or bare
 

@@ -27,11 +27,11 @@ from multibot_rewrite.graph.pictures.scene import Scene
 from multibot_rewrite.graph.pictures.states import MISSING
 from multibot_rewrite.graph.pictures.svg import Ids, safe
 from multibot_rewrite.graph.pictures.text import counted
-from multibot_rewrite.graph.snapshot import QUIET, ZENOH
 from multibot_rewrite.graph.watching import Verdict
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.naming import LAYOUTS
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.records import QUIET, ZENOH
 
 # The CSS class of a verdict; a good one with findings is not drawn as good.
 LOOKS = {Verdict.PLANNED: "good", Verdict.INCONCLUSIVE: "unsure", Verdict.WRONG: "bad"}

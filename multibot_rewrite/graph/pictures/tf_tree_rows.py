@@ -10,8 +10,8 @@ from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.graph.pictures.states import CLASH, MISSING, OK, States
 from multibot_rewrite.graph.rules.comparison import View
 from multibot_rewrite.graph.rules.tf_trees import tree_topic
-from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.records import Edge
 
 
 class FrameRow(NamedTuple):
@@ -73,9 +73,7 @@ class _Forest(NamedTuple):
     robots: Mapping[str, str]
 
 
-def _forest(
-    view: View, topic: str, edges: Sequence[GraphFrame], home: Sequence[PlannedRobot]
-) -> _Forest:
+def _forest(view: View, topic: str, edges: Sequence[Edge], home: Sequence[PlannedRobot]) -> _Forest:
     static = {(edge.parent, edge.child): edge.static for edge in edges}
     children: dict[str, list[str]] = defaultdict(list)
     for parent, child in sorted(static):

@@ -19,9 +19,8 @@ from multibot_rewrite.graph.rules.causes import (
 from multibot_rewrite.graph.rules.comparison import View
 from multibot_rewrite.graph.rules.declaration import graph_rule
 from multibot_rewrite.graph.rules.tf_copies import copying_nodes
-from multibot_rewrite.graph.snapshot import LISTENER
 from multibot_rewrite.graph.wording import SEVERAL, shorten
-from multibot_rewrite.system.conventions import EVERYBODYS
+from multibot_rewrite.system.conventions import EVERYBODYS, LISTENER
 from multibot_rewrite.system.records import SUBSCRIBES, TOPIC
 
 

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.graph.rules.ownership import NameOwnership
-from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.records import Edge
 
 
 class TfTree(NamedTuple):
@@ -20,20 +20,20 @@ class TfTree(NamedTuple):
     """
 
     topic: str
-    edges: tuple[GraphFrame, ...]
+    edges: tuple[Edge, ...]
     senders: Mapping[str, tuple[str, ...]]
     home: tuple[str, ...]
     robots: tuple[str, ...]
 
 
 def tf_trees(
-    frames: Iterable[GraphFrame], robots: Iterable[PlannedRobot], ownership: NameOwnership
+    frames: Iterable[Edge], robots: Iterable[PlannedRobot], ownership: NameOwnership
 ) -> tuple[TfTree, ...]:
     """One tree for each tf topic with transforms."""
     home: dict[str, list[str]] = defaultdict(list)
     for robot in robots:
         home[tree_topic(robot.tf)].append(robot.name)
-    edges: dict[str, list[GraphFrame]] = defaultdict(list)
+    edges: dict[str, list[Edge]] = defaultdict(list)
     # The same for all transforms on a topic.
     senders: dict[str, tuple[str, ...]] = {}
     for frame in frames:
@@ -55,7 +55,7 @@ def tf_trees(
 
 def _tree(
     topic: str,
-    edges: tuple[GraphFrame, ...],
+    edges: tuple[Edge, ...],
     senders: Mapping[str, tuple[str, ...]],
     home: tuple[str, ...],
 ) -> TfTree:

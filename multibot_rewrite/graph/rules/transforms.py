@@ -13,9 +13,8 @@ from multibot_rewrite.graph.rules.declaration import graph_rule
 from multibot_rewrite.graph.rules.tf_causes import why_disconnected
 from multibot_rewrite.graph.rules.tf_senders import planned_transforms, senders_there
 from multibot_rewrite.graph.rules.tf_trees import TfTree, tree_topic
-from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.graph.wording import shorten
-from multibot_rewrite.system.records import PUBLISHES
+from multibot_rewrite.system.records import PUBLISHES, Edge
 
 
 @graph_rule(
@@ -120,7 +119,7 @@ def _root(above: Mapping[str, str], frame: str) -> str:
     return "" if frame in above else frame
 
 
-def _robots_at_home(view: View, tree: TfTree, edge: GraphFrame) -> Set[str]:
+def _robots_at_home(view: View, tree: TfTree, edge: Edge) -> Set[str]:
     return {_robot_at_home(view, tree, frame) for frame in (edge.child, edge.parent)} - {""}
 
 
@@ -162,7 +161,7 @@ def wrong_tf_topic(view: View) -> Iterator[Finding]:
     """One finding for a robot and topic."""
     children = {tree.topic: {edge.child for edge in tree.edges} for tree in view.trees}
     for tree in view.trees:
-        misplaced: dict[str, list[GraphFrame]] = defaultdict(list)
+        misplaced: dict[str, list[Edge]] = defaultdict(list)
         for edge in tree.edges:
             robot = _sending_robot(view, tree, edge.child)
             if robot and tree_topic(view.robots[robot].tf) != tree.topic:
@@ -175,7 +174,7 @@ def wrong_tf_topic(view: View) -> Iterator[Finding]:
                 yield _wrong_topic(view, tree, view.robots[robot], edges)
 
 
-def _only_planned(view: View, tree: TfTree, robot: str, edges: Iterable[GraphFrame]) -> bool:
+def _only_planned(view: View, tree: TfTree, robot: str, edges: Iterable[Edge]) -> bool:
     """Do only those nodes of the robot send on a topic that should by the plan?"""
     topics = {edge.topic for edge in edges}
     planned = {
@@ -184,9 +183,7 @@ def _only_planned(view: View, tree: TfTree, robot: str, edges: Iterable[GraphFra
     return planned.issuperset(tree.senders.get(robot, ()))
 
 
-def _wrong_topic(
-    view: View, tree: TfTree, robot: PlannedRobot, edges: Sequence[GraphFrame]
-) -> Finding:
+def _wrong_topic(view: View, tree: TfTree, robot: PlannedRobot, edges: Sequence[Edge]) -> Finding:
     frames = tuple(dict.fromkeys(edge.child for edge in edges))
     message = f"frame {frames[0]} of {robot.name} is on {edges[0].topic}, expected on {robot.tf}"
     if len(frames) > 1:
@@ -204,9 +201,7 @@ def _sending_robot(view: View, tree: TfTree, frame: str) -> str:
     return only if frame in view.robots[only].frames else ""
 
 
-def _why_wrong_topic(
-    view: View, tree: TfTree, robot: PlannedRobot, edges: Iterable[GraphFrame]
-) -> Cause:
+def _why_wrong_topic(view: View, tree: TfTree, robot: PlannedRobot, edges: Iterable[Edge]) -> Cause:
     senders = tree.senders.get(robot.name) or tuple(_senders(tree))
     who = shorten(senders) or "its publisher"
     places = [place for _, place in (plugin_of(view, node) for node in senders) if place]
