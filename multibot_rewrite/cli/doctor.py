@@ -23,18 +23,18 @@ from multibot_rewrite.cli.watch import follow
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.graph.bags.read import BagsUnusable
 from multibot_rewrite.graph.bags.recording import is_recorded
-from multibot_rewrite.graph.check import doubts
-from multibot_rewrite.graph.doctor.diagnose import Diagnosis, diagnose, survey
-from multibot_rewrite.graph.doctor.seen_plan import seen_plan
-from multibot_rewrite.graph.doctor.suggestion import FILES, suggestion
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.live.request import RosUnusable
 from multibot_rewrite.graph.tool_nodes import is_tool
-from multibot_rewrite.graph.watching import Outcome, Verdict, final
 from multibot_rewrite.knowledge.stacks import built_in
+from multibot_rewrite.live.diagnose import Diagnosis, diagnose, survey
+from multibot_rewrite.live.seen_plan import seen_plan
+from multibot_rewrite.live.suggestion import FILES, suggestion
+from multibot_rewrite.live.watching import Outcome, Verdict, final
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
 from multibot_rewrite.releases import release_here
+from multibot_rewrite.rules.check import doubts
 from multibot_rewrite.system.records import System
 
 WORDS = {
@@ -117,7 +117,7 @@ def _write(
 
 
 def _report(options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Finding]) -> bool:
-    about = About(options.snapshot, by_themselves(seen.owners.robots))
+    about = About(options.snapshot, by_themselves(seen.whose.robots))
     return report_first(options, findings, about)
 
 

@@ -10,7 +10,6 @@ from multibot_rewrite.cli import live
 from multibot_rewrite.cli.output import deliver, goes_to_file, note, say, write_files
 from multibot_rewrite.cli.process import DONE, PROGRAM
 from multibot_rewrite.cli.walk import check_target
-from multibot_rewrite.graph.check import doubts
 from multibot_rewrite.graph.learning.choosing import choose_nodes, helpers_without_owner, left_out
 from multibot_rewrite.graph.learning.learn import LearnedNode, learn
 from multibot_rewrite.graph.learning.nodes_file import to_yaml
@@ -23,6 +22,7 @@ from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
 from multibot_rewrite.releases import facts_of_release, release_here
+from multibot_rewrite.rules.check import doubts
 from multibot_rewrite.system.records import System
 
 NODES, NODL = "nodes", "nodl"

@@ -12,13 +12,13 @@ from multibot_rewrite.cli.output import STANDARD, write_files
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.graph.expectation import Expectation
-from multibot_rewrite.graph.watching import Outcome
+from multibot_rewrite.live.watching import Outcome
 from multibot_rewrite.model import MultibotError, UsageError
 from multibot_rewrite.sources.read import read_file
 from multibot_rewrite.system.records import System
 
 if TYPE_CHECKING:
-    from multibot_rewrite.graph.pictures.page import Framed
+    from multibot_rewrite.pages.page import Framed
 
 NAMES = ("report", "mermaid", "dot")
 # What a command may have read.
@@ -45,10 +45,10 @@ def deliver(
     if not wanted:
         return
     from multibot_rewrite.catalogue import rules
-    from multibot_rewrite.graph.pictures.dot import to_dot  # few checks draw
-    from multibot_rewrite.graph.pictures.mermaid import to_mermaid
-    from multibot_rewrite.graph.pictures.page import to_html
-    from multibot_rewrite.graph.pictures.scene import Scene, make_scene
+    from multibot_rewrite.pages.dot import to_dot  # few checks draw
+    from multibot_rewrite.pages.mermaid import to_mermaid
+    from multibot_rewrite.pages.page import to_html
+    from multibot_rewrite.pages.scene import Scene, make_scene
 
     scene = make_scene(plan, graph, found, outcome)
     page = partial(

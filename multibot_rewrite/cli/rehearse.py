@@ -14,7 +14,6 @@ from multibot_rewrite.cli.output import note, say, write_files
 from multibot_rewrite.cli.process import PROGRAM
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.fleets.fleet import Fleet, expected
-from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.live.child import RUN_STUBS, observe, running
 from multibot_rewrite.graph.live.request import Request, RosUnusable, to_text
@@ -30,6 +29,7 @@ from multibot_rewrite.graph.transforms import Edges, with_odometry
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.plural import plural
 from multibot_rewrite.remap.ways import WAYS
+from multibot_rewrite.rules.check import check
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.records import System
 

@@ -17,10 +17,10 @@ from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.fleets.manifest import hash_of, inputs_of
 from multibot_rewrite.graph.bags.read import BagsUnusable, read_bag
 from multibot_rewrite.graph.bags.recording import as_snapshot
-from multibot_rewrite.graph.pictures.page import Framed
 from multibot_rewrite.graph.snapshot_file import read_snapshots
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.model import MultibotError, UsageError
+from multibot_rewrite.pages.page import Framed
 from multibot_rewrite.plural import plural
 from multibot_rewrite.sources.read import read_file
 from multibot_rewrite.system.records import System

@@ -11,7 +11,7 @@ from multibot_rewrite.cli.output import print_lines
 from multibot_rewrite.cli.tables import Grid, render
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.graph.expectation import Expectation
-from multibot_rewrite.graph.watching import WORDS, Verdict, WatchState, with_found
+from multibot_rewrite.live.watching import WORDS, Verdict, WatchState, with_found
 from multibot_rewrite.plural import plural
 from multibot_rewrite.system.records import CHANGING, System
 

@@ -1,4 +1,4 @@
-"""The JSON schema of a system's file, from its records: ``python -m multibot_rewrite.system.schema``."""
+"""The JSON schema of a file of a system: ``python -m multibot_rewrite.system.schema``."""
 
 from __future__ import annotations
 

@@ -8,8 +8,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import acos, degrees, dist
 
 from multibot_rewrite.checks.rotation import inverse, matrix_of_quaternion, product
-from multibot_rewrite.graph.rules.tf_trees import tree_topic
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.rules.index import tree_topic
 from multibot_rewrite.system.conventions import WORLD_FRAMES
 from multibot_rewrite.system.records import Edge
 from multibot_rewrite.view.models import Joint

@@ -21,11 +21,11 @@ from told_nodes import nodes_of, words_of
 from multibot_rewrite import launch, load_fleet
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.cli.rehearse import stage
-from multibot_rewrite.graph.check import check, doubts
 from multibot_rewrite.graph.live.child import RUN_STUBS, observe, running
 from multibot_rewrite.graph.live.request import Request, to_text
 from multibot_rewrite.graph.plan_file import read_plan
 from multibot_rewrite.graph.rehearsal import split_over_processes, to_order, with_substitutes
+from multibot_rewrite.rules.check import check, doubts
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
 TWO = "robots:\n  - {name: robot1, pose: {x: 1.0}}\n  - {name: robot2, pose: {x: 3.0}}\n"

@@ -18,9 +18,9 @@ from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.findings.finding import NOTE
 from multibot_rewrite.fleets.fleet import expected
 from multibot_rewrite.fleets.scripts import LoadedFleet
-from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.remap.bridged_topics import TF_TYPE
+from multibot_rewrite.rules.check import check
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Edge, End, System
 
 RVIZ = "Visualization Manager:\n  Displays: []\n  Global Options: {Fixed Frame: map}\n"

@@ -14,8 +14,8 @@ from multibot_rewrite.fleets.closed_plan import closed_plan
 from multibot_rewrite.fleets.fleet import expected
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
-from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.expectation import Expectation
+from multibot_rewrite.rules.check import check
 from multibot_rewrite.system.records import Node, System
 
 # A drive that is a ROS node, and a sensor whose topic a bridge has to carry.

@@ -29,13 +29,13 @@ from paths import ROOT
 
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.findings.finding import INCONCLUSIVE
-from multibot_rewrite.graph.check import check
-from multibot_rewrite.graph.doctor.diagnose import diagnose, survey
-from multibot_rewrite.graph.doctor.robots import guess_robots
-from multibot_rewrite.graph.doctor.seen_plan import seen_plan
 from multibot_rewrite.graph.live.voices import Voices
 from multibot_rewrite.graph.plan_file import from_yaml, to_yaml
 from multibot_rewrite.graph.questions import questions
+from multibot_rewrite.live.diagnose import diagnose, survey
+from multibot_rewrite.live.seen_plan import seen_plan
+from multibot_rewrite.rules.check import check
+from multibot_rewrite.rules.guess import guess_robots
 from multibot_rewrite.system.answers import with_answers
 from multibot_rewrite.system.json import from_json, to_json
 from multibot_rewrite.system.records import (
@@ -120,16 +120,16 @@ def test_names_to_which_nobody_listens_are_no_robot() -> None:
 def test_the_frames_of_robots_called_otherwise_than_their_namespace() -> None:
     graph = nav2_with_tools("L1")
     seen = diagnose(graph)
-    assert seen.owners.names["/robot1/scan"] == "robot1"
-    assert seen.owners.plain_names["/robot1/scan"] == "/scan"
-    assert seen.owners.names["/fleet_manager"] == ""
+    assert seen.whose.robot("/robot1/scan") == "robot1"
+    assert seen.whose.plain("/robot1/scan") == "/scan"
+    assert seen.whose.robot("/fleet_manager") == ""
 
 
 def test_a_name_within_a_word_is_no_robots() -> None:
     """``/robot11`` is not robot1's, nor is a topic that only contains the letters."""
     graph = with_node(nav2_with_tools(), "/robot11_scanner", (PUBLISHES, "/myrobot1/scan", SCAN))
-    owners = diagnose(graph).owners
-    assert (owners.names["/robot11_scanner"], owners.names["/myrobot1/scan"]) == ("", "")
+    robot = diagnose(graph).whose.robot
+    assert (robot("/robot11_scanner"), robot("/myrobot1/scan")) == ("", "")
 
 
 # ---------------------------------------------------------------- close to a fault, and none

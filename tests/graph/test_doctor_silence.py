@@ -21,9 +21,9 @@ from healthy_systems import (
     nav2_with_tools,
 )
 
-from multibot_rewrite.graph.doctor.diagnose import diagnose
-from multibot_rewrite.graph.doctor.robots import guess_robots
-from multibot_rewrite.graph.doctor.seen_plan import seen_plan
+from multibot_rewrite.live.diagnose import diagnose
+from multibot_rewrite.live.seen_plan import seen_plan
+from multibot_rewrite.rules.guess import guess_robots
 from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES, Edge, Node, System
 
 IMU = "sensor_msgs/msg/Imu"
@@ -164,7 +164,7 @@ def test_a_namespace_with_odometry_alone_is_no_robot() -> None:
 
 def test_what_is_called_after_a_robot_inside_another_namespace_is_not_its_own() -> None:
     graph = added("/fleet/monitor", (PUBLISHES, "/fleet/pose_robot1", ODOMETRY))(nav2_with_tools())
-    assert diagnose(graph).owners.names["/fleet/pose_robot1"] == ""
+    assert diagnose(graph).whose.robot("/fleet/pose_robot1") == ""
 
 
 def test_the_plan_of_what_is_seen_leaves_out_what_every_node_has() -> None:

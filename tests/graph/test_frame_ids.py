@@ -13,13 +13,15 @@ from node_answers import told
 
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.graph.check import check
-from multibot_rewrite.graph.dangers.find import find_dangers
-from multibot_rewrite.graph.doctor.diagnose import diagnose
 from multibot_rewrite.graph.live.headers import HeaderSamples, sensor_topics
 from multibot_rewrite.graph.merging import Look, merged
 from multibot_rewrite.graph.zenoh.cdr import read_header_frame
+from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.model import InputError
+from multibot_rewrite.rules.check import check
+from multibot_rewrite.rules.find import judge
+from multibot_rewrite.rules.index import index
+from multibot_rewrite.rules.ownership import Whose
 from multibot_rewrite.system.answers import with_answers
 from multibot_rewrite.system.json import from_json, to_json
 from multibot_rewrite.system.records import (
@@ -53,11 +55,17 @@ def serialized(frame: str, mark: bytes = b"\x00\x01", rest: bytes = b"\x00" * 9)
 
 
 def found(*lines: str) -> list[Finding]:
-    return find_dangers(*read_danger(TWO_ROBOTS + "".join(f"running: {it}\n" for it in lines)))
+    return judge(read_danger(TWO_ROBOTS + "".join(f"running: {it}\n" for it in lines)))
 
 
 def heard(graph: System, topic: str, frame: str) -> System:
     return graph._replace(heard=(Heard(topic, frame),))
+
+
+def codes(text: str, topic: str, frame: str) -> list[str]:
+    """Of an example in which a message on ``topic`` names ``frame``."""
+    seen = read_danger(text)
+    return [it.code for it in judge(index(heard(seen.system, topic, frame), Whose(*seen[1:6])))]
 
 
 def test_a_camera_has_several_topics_and_one_finding() -> None:
@@ -98,34 +106,32 @@ def test_healthy_headers(line: str) -> None:
 
 
 def test_an_empty_frame_and_no_tf_say_nothing() -> None:
-    graph, owners = read_danger(TWO_ROBOTS)
-    assert find_dangers(heard(graph, "/robot1/image", ""), owners) == []
-    assert find_dangers(heard(graph._replace(edges=()), "/robot1/image", "x"), owners) == []
+    assert codes(TWO_ROBOTS, "/robot1/image", "") == []
+    without_tf = "".join(it for it in TWO_ROBOTS.splitlines(True) if "transform" not in it)
+    assert codes(without_tf, "/robot1/image", "x") == []
 
 
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_systems_whose_headers_are_right(name: str) -> None:
     """Every sensor topic in a frame of its robot's tree: a leaf, where there is one."""
     graph = SYSTEMS[name]()
-    owners = diagnose(graph).owners
-    own = {owners.frames.get(it.child, ""): it.child for it in graph.edges}
+    seen = diagnose(graph).whose
+    own = {seen.frame_robot(it.child): it.child for it in graph.edges}
     topics = [it.name for it in sensor_topics(graph.ends)]
-    names = [Heard(it, own.get(owners.names.get(it, ""), "")) for it in topics]
+    names = [Heard(it, own.get(seen.robot(it), "")) for it in topics]
     findings = diagnose(graph._replace(heard=tuple(names))).findings
     assert [str(it) for it in findings] == []
 
 
 def test_a_robots_tf_topic_is_its_own_whoever_sends_there() -> None:
     """A relay of all robots sends robot1's tf, as rmw or a bridge does."""
-    graph, owners = read_danger(
+    text = (
         "running: /relay publishes /robot1/tf tf2_msgs/msg/TFMessage\n"
         "running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan\n"
         "running: transform base_link -> laser on /robot1/tf by /relay\n"
     )
-    assert find_dangers(heard(graph, "/robot1/scan", "laser"), owners) == []
-    assert [it.code for it in find_dangers(heard(graph, "/robot1/scan", "lidar"), owners)] == [
-        "MG412"
-    ]
+    assert codes(text, "/robot1/scan", "laser") == []
+    assert codes(text, "/robot1/scan", "lidar") == ["MG412"]
 
 
 def test_check_says_it_as_well() -> None:

@@ -6,7 +6,7 @@ import pytest
 from graph_cases import healthy, read_plan
 
 from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.graph.check import check
+from multibot_rewrite.rules.check import check
 from multibot_rewrite.system.records import Caveat, System
 
 LAYOUTS = ("frames-per-robot", "tf-per-robot", "both", "postfix")

@@ -26,14 +26,14 @@ from graph_cases import (
 from small_fleet import LINKS, NODES, ROBOTS, healthy, plan
 
 from multibot_rewrite.findings.finding import INCONCLUSIVE
-from multibot_rewrite.graph.check import ABSENCE, ALL_RULES, check
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, expect
-from multibot_rewrite.graph.rules.comparison import make_view
-from multibot_rewrite.graph.rules.in_enclaves import without_enclave
-from multibot_rewrite.graph.rules.ownership import name_ownership
 from multibot_rewrite.naming import make_naming, spelled
 from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.table import build_table
+from multibot_rewrite.rules.check import ABSENCE, ALL_RULES, check
+from multibot_rewrite.rules.ownership import name_ownership
+from multibot_rewrite.rules.pair.comparison import make_view
+from multibot_rewrite.rules.pair.in_enclaves import without_enclave
 from multibot_rewrite.system.records import (
     PUBLISHES,
     SERVES,

@@ -6,9 +6,9 @@ import pytest
 from graph_examples import read_example
 
 from multibot_rewrite import catalogue
-from multibot_rewrite.graph.bags.rules import RULES as OF_RECORDINGS
-from multibot_rewrite.graph.check import RULES, check
-from multibot_rewrite.graph.dangers.find import DANGERS
+from multibot_rewrite.rules.check import RULES, check
+from multibot_rewrite.rules.find import DANGERS
+from multibot_rewrite.rules.recording import RULES as OF_RECORDINGS
 from multibot_rewrite.system.records import ACTION, CALLS, SERVICE, Edge
 
 EXAMPLE = """\

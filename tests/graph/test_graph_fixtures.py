@@ -15,8 +15,8 @@ from paths import ROOT
 from pytest import CaptureFixture, MonkeyPatch
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.graph.check import RULES
 from multibot_rewrite.graph.plan_file import from_yaml
+from multibot_rewrite.rules.check import RULES
 from multibot_rewrite.system.json import from_json, to_json
 from multibot_rewrite.system.records import System
 

@@ -9,7 +9,6 @@ from graph_cases import as_planned, environment, qos, sent
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.expectation import (
     Expectation,
     PlannedEndpoint,
@@ -22,6 +21,7 @@ from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.naming import Naming, affix, make_naming, spelled
 from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.table import build_table
+from multibot_rewrite.rules.check import check
 from multibot_rewrite.system.json import from_json, to_json
 from multibot_rewrite.system.records import (
     CALLS,

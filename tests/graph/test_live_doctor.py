@@ -19,8 +19,8 @@ from graph_cases import sent
 from graph_faults import FAULTS, LIVE
 from healthy_systems import SYSTEMS
 
-from multibot_rewrite.graph.doctor.diagnose import diagnose
 from multibot_rewrite.graph.snapshot_file import read_snapshot
+from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.system.records import System, clocks
 
 pytestmark = pytest.mark.live

@@ -25,15 +25,16 @@ from paths import ROOT
 
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.findings.finding import INCONCLUSIVE
-from multibot_rewrite.graph.check import RULES
 from multibot_rewrite.graph.expectation import Expectation
-from multibot_rewrite.graph.pictures.dot import to_dot
-from multibot_rewrite.graph.pictures.layout import NODE_ROW, ROW, lay_out
-from multibot_rewrite.graph.pictures.mermaid import MOST_EDGES, MOST_LETTERS, to_mermaid
-from multibot_rewrite.graph.pictures.page import to_html
-from multibot_rewrite.graph.pictures.scene import DrawnGroup, Scene, make_scene
-from multibot_rewrite.graph.pictures.simplify import only_common, without_common
-from multibot_rewrite.graph.pictures.states import (
+from multibot_rewrite.graph.plan_file import to_yaml
+from multibot_rewrite.live.watching import Verdict
+from multibot_rewrite.pages.dot import to_dot
+from multibot_rewrite.pages.layout import NODE_ROW, ROW, lay_out
+from multibot_rewrite.pages.mermaid import MOST_EDGES, MOST_LETTERS, to_mermaid
+from multibot_rewrite.pages.page import to_html
+from multibot_rewrite.pages.scene import DrawnGroup, Scene, make_scene
+from multibot_rewrite.pages.simplify import only_common, without_common
+from multibot_rewrite.pages.states import (
     CLASH,
     CROSS_TALK,
     FAULTY,
@@ -42,9 +43,8 @@ from multibot_rewrite.graph.pictures.states import (
     OK,
     UNEXPECTED,
 )
-from multibot_rewrite.graph.pictures.text import clipped, columns, visible
-from multibot_rewrite.graph.plan_file import to_yaml
-from multibot_rewrite.graph.watching import Verdict
+from multibot_rewrite.pages.text import clipped, columns, visible
+from multibot_rewrite.rules.check import RULES
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.records import PUBLISHES, Caveat, Edge, Node, System
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 from graph_cases import environment, qos
 
-from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.expectation import PlannedEndpoint, PlannedTopic
 from multibot_rewrite.graph.plan_file import read_plan, to_json, to_yaml
 from multibot_rewrite.model import InputError
+from multibot_rewrite.rules.check import check
 from multibot_rewrite.system.records import End, Node, System
 
 PLAN = """\

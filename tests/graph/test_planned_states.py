@@ -15,7 +15,6 @@ from paths import ROBOTS
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.fleets.built_states import with_built
-from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.expectation import Expectation, PlannedParameter, PlannedState
 from multibot_rewrite.graph.live import ask
 from multibot_rewrite.graph.live.answers import AGAIN_SECONDS, Answers
@@ -23,6 +22,7 @@ from multibot_rewrite.graph.live.request import Request, from_text, to_text
 from multibot_rewrite.graph.plan_file import read_plan, to_json, to_yaml
 from multibot_rewrite.graph.questions import Question, questions
 from multibot_rewrite.model import InputError
+from multibot_rewrite.rules.check import check
 from multibot_rewrite.system.answers import Answer, with_answers
 from multibot_rewrite.system.json import to_json as graph_json
 from multibot_rewrite.system.records import (

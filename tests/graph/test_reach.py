@@ -12,10 +12,10 @@ from looks import ONE, TWO, end, look, node
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, Finding
-from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.plan_file import read_plan
 from multibot_rewrite.graph.reach import machines
-from multibot_rewrite.graph.watching import Verdict, judge
+from multibot_rewrite.live.watching import Verdict, judge
+from multibot_rewrite.rules.check import check
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.records import Caveat, End, System
 

@@ -19,13 +19,13 @@ from multibot_rewrite.catalogue import rules
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.cli.pictures import snippets
 from multibot_rewrite.findings.finding import ERROR, Finding
-from multibot_rewrite.graph.pictures.page import to_html
-from multibot_rewrite.graph.pictures.page_sections import ids_of, make_ids
-from multibot_rewrite.graph.pictures.scene import BRIDGE, Scene
-from multibot_rewrite.graph.pictures.states import CLASH, MISSING, OK, UNEXPECTED, robots_of
 from multibot_rewrite.graph.plan_file import to_yaml
 from multibot_rewrite.graph.rehearsal import with_substitutes
-from multibot_rewrite.graph.rules.comparison import make_view
+from multibot_rewrite.pages.page import to_html
+from multibot_rewrite.pages.page_sections import ids_of, make_ids
+from multibot_rewrite.pages.scene import BRIDGE, Scene
+from multibot_rewrite.pages.states import CLASH, MISSING, OK, UNEXPECTED, robots_of
+from multibot_rewrite.rules.pair.comparison import make_view
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.records import ACTION, SERVES, End, Node
 

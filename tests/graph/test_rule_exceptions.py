@@ -9,9 +9,9 @@ from graph_cases import CASES, Case, as_planned, environment, read_plan, sent, w
 from graph_cases import healthy as planned
 
 from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, WARNING
-from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
-from multibot_rewrite.graph.watching import Verdict, WatchState, with_found
+from multibot_rewrite.live.watching import Verdict, WatchState, with_found
+from multibot_rewrite.rules.check import check
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, Caveat, Edge, System
 
 TEXT, TF = "std_msgs/msg/String", "tf2_msgs/msg/TFMessage"

@@ -22,8 +22,8 @@ from graph_cases import (
 from graph_examples import read_example
 
 from multibot_rewrite.findings.finding import ERROR, Finding
-from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.expectation import Expectation, PlannedTopic
+from multibot_rewrite.rules.check import check
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Edge, System
 
 LAYOUTS = ("frames-per-robot", "tf-per-robot", "both", "postfix")

@@ -8,8 +8,8 @@ import pytest
 from graph_cases import environment, moved, without_node
 from small_fleet import healthy, plan
 
-from multibot_rewrite.graph.check import check
-from multibot_rewrite.graph.watching import Progress, Verdict, WatchState, final, with_found
+from multibot_rewrite.live.watching import Progress, Verdict, WatchState, final, with_found
+from multibot_rewrite.rules.check import check
 from multibot_rewrite.system.records import CHANGING, PUBLISHES, TOPIC, Caveat, End, Node, System
 
 ROBOT2 = ("/robot2/driver", "/robot2/robot_state_publisher")

@@ -34,8 +34,6 @@ from collections.abc import Iterable, Iterator
 from graph_cases import environment, qos
 from node_answers import told
 
-from multibot_rewrite.graph.dangers.seen import Owners
-from multibot_rewrite.graph.doctor.robots import GuessedRobot, owners_of, with_frames
 from multibot_rewrite.graph.expectation import (
     Expectation,
     PlannedEndpoint,
@@ -44,6 +42,8 @@ from multibot_rewrite.graph.expectation import (
     PlannedState,
     PlannedTopic,
 )
+from multibot_rewrite.rules.guess import GuessedRobot, whose_by_guess, with_frames
+from multibot_rewrite.rules.index import Index, index
 from multibot_rewrite.system.answers import Answer, with_answers
 from multibot_rewrite.system.conventions import SENT_BY_EVERY_NODE
 from multibot_rewrite.system.records import (
@@ -105,14 +105,14 @@ def read_example(text: str) -> tuple[Expectation, System]:
     return read_plan(planned), read_graph(running)
 
 
-def read_danger(text: str) -> tuple[System, Owners]:
-    """The graph of an example without a plan, and whose its names are."""
+def read_danger(text: str) -> Index:
+    """The graph of an example without a plan."""
     plan, graph = read_example(text)
     assert not plan.endpoints, "a danger needs no plan: begin its lines with running:"
     robots = sorted({*ROBOT.findall(text)})
     frames = [name for frame in graph.edges for name in (frame.child, frame.parent)]
     guessed = (with_frames(GuessedRobot(it, f"/{it}"), frames) for it in robots)
-    return graph, owners_of(graph, tuple(guessed))
+    return index(graph, whose_by_guess(guessed))
 
 
 def read_states(lines: list[str]) -> tuple[Answer, ...]:

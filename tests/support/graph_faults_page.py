@@ -12,10 +12,10 @@ from graph_faults import FAULTS, LIVE
 from healthy_systems import SYSTEMS, plan
 
 from multibot_rewrite.findings.finding import ERROR, Finding
-from multibot_rewrite.graph.check import check
-from multibot_rewrite.graph.doctor.diagnose import diagnose
 from multibot_rewrite.graph.expectation import Expectation
+from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.plural import plural
+from multibot_rewrite.rules.check import check
 from multibot_rewrite.system.records import System
 
 HEAD = """\

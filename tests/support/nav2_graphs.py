@@ -11,10 +11,10 @@ from graph_cases import bridge
 from paths import ROBOTS
 
 from multibot_rewrite.cli import multibot
-from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
-from multibot_rewrite.graph.pictures.scene import Scene, make_scene
 from multibot_rewrite.graph.plan_file import from_yaml
+from multibot_rewrite.pages.scene import Scene, make_scene
+from multibot_rewrite.rules.check import check
 from multibot_rewrite.system.records import (
     PUBLISHES,
     SERVES,

@@ -6,17 +6,17 @@ import nav2_graphs
 from nav2_graphs import TEXT
 
 from multibot_rewrite.findings.finding import WARNING, Finding
-from multibot_rewrite.graph.check import check
-from multibot_rewrite.graph.doctor.diagnose import diagnose
-from multibot_rewrite.graph.doctor.seen_plan import seen_plan
 from multibot_rewrite.graph.expectation import (
     Expectation,
     PlannedEndpoint,
     PlannedRobot,
     PlannedTopic,
 )
-from multibot_rewrite.graph.pictures.scene import Scene, make_scene
-from multibot_rewrite.graph.watching import Outcome, Verdict
+from multibot_rewrite.live.diagnose import diagnose
+from multibot_rewrite.live.seen_plan import seen_plan
+from multibot_rewrite.live.watching import Outcome, Verdict
+from multibot_rewrite.pages.scene import Scene, make_scene
+from multibot_rewrite.rules.check import check
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Caveat, System
 
 FIRST, SECOND = "/fleet_a/robot1", "/fleet_a/robot2"

@@ -15,10 +15,10 @@ from nav2_graphs import environment
 from vendor_systems import OTHER, ROBOT, Outcome, Started
 
 from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.remap.records import NodeRule, NodeTable
+from multibot_rewrite.rules.check import check
 from multibot_rewrite.system.records import End, Node, System
 
 TF = ("/tf", "/tf_static")

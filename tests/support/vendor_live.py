@@ -15,10 +15,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 from multibot_rewrite.findings.finding import NOTE, Finding
-from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.plan_file import from_yaml
 from multibot_rewrite.graph.rehearsal import substitute_type, with_substitutes
+from multibot_rewrite.rules.check import check
 from multibot_rewrite.system.json import from_json
 from multibot_rewrite.system.records import TOPIC, System
 

@@ -10,7 +10,6 @@ import pytest
 from declared_graph import endpoints, facts
 from nav2_graphs import environment
 
-from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.expectation import Expectation, expect
 from multibot_rewrite.knowledge.node_library import stack_of
 from multibot_rewrite.knowledge.records import NodeFacts
@@ -19,6 +18,7 @@ from multibot_rewrite.naming import make_naming
 from multibot_rewrite.releases import NEWEST_LTS, RELEASES
 from multibot_rewrite.remap.records import Table
 from multibot_rewrite.remap.table import build_table
+from multibot_rewrite.rules.check import check
 from multibot_rewrite.system.records import Node, System
 
 SYSTEMS = {
