@@ -104,7 +104,7 @@ def test_the_page_has_the_trees_and_the_transforms_of_links(tmp_path: Path) -> N
 def test_a_snapshot_without_places_has_no_trees(tmp_path: Path) -> None:
     graph = tmp_path / "graph.json"
     graph.write_bytes(to_json(healthy("postfix")))
-    assert "transform" not in json.loads(graph.read_bytes())["frames"][0]
+    assert "transform" not in json.loads(graph.read_bytes())["edges"][0]
     made = page(tmp_path, ROBOTS / "rover.urdf", "robot1", "--snapshot", graph)
     assert made["trees"] == []
     assert made["robots"][0]["heard"]["base_link/robot1"] == "heard"
