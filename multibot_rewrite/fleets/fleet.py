@@ -26,8 +26,6 @@ from multibot_rewrite.graph.expectation import (
     named_frames,
     vacuous,
 )
-from multibot_rewrite.graph.questions import SIM_TIME
-from multibot_rewrite.graph.states import parameter_text
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER, Edge, Edges, edges_of, frames_of
 from multibot_rewrite.knowledge.node_library import with_included
 from multibot_rewrite.knowledge.nodl.facts import KnownNodes, nodes_of
@@ -48,6 +46,8 @@ from multibot_rewrite.remap.table import build_table, joined
 from multibot_rewrite.remap.ways import merged
 from multibot_rewrite.sources.read import Source
 from multibot_rewrite.steps.collect import Inventory
+from multibot_rewrite.system.parameters import parameter_text
+from multibot_rewrite.system.records import SIM_TIME
 
 NOTHING: Mapping[str, str] = {}
 ALIKE: Mapping[str, Inventory] = {}
