@@ -22,5 +22,5 @@ def sources() -> dict[str, ast.Module]:
 
 
 def parsed(path: Path) -> ast.Module:
-    """The syntax tree of a file."""
+    """The tree of a file that the first Python can read."""
     return ast.parse(path.read_text(), str(path), feature_version=FIRST)
