@@ -17,6 +17,10 @@ from multibot_rewrite.producers.launch.records import order_of, to_json
 from multibot_rewrite.producers.launch.stand_in import standing_in
 
 UNREADABLE = 4
+NO_LAUNCH = (
+    "launch is not installed here, and its stand-in knows plain launch files in Python: source ROS 2 "
+    "(. /opt/ros/jazzy/setup.bash), or give a system_model.yaml of play_launch"
+)
 
 
 def main() -> int:
@@ -27,11 +31,12 @@ def main() -> int:
     os.dup2(2, 1)
     with tempfile.TemporaryDirectory(prefix="multibot_launch_") as folder:
         tempfile.tempdir = os.environ["ROS_LOG_DIR"] = folder
+        stands_in = not is_there()
         try:
-            with nullcontext() if is_there() else standing_in():
-                graph = read_graph(order, folder)
+            with standing_in() if stands_in else nullcontext():
+                graph = read_graph(order, folder)._replace(stood_in=stands_in)
         except UnreadableError as error:
-            print(error, file=sys.stderr)
+            print(f"{error}; {NO_LAUNCH}" if stands_in else error, file=sys.stderr)
             return UNREADABLE
     with os.fdopen(answer, "w", encoding="utf-8") as out:
         out.write(to_json(graph))

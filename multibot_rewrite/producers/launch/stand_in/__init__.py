@@ -22,7 +22,7 @@ _OF_LAUNCH: Mapping[str, tuple[str, ...]] = {
         *("SetEnvironmentVariable", "SetLaunchConfiguration", "Shutdown", "TimerAction"),
     ),
     "launch.conditions": ("IfCondition", "UnlessCondition"),
-    "launch.event_handlers": ("OnProcessExit", "OnProcessStart", "OnShutdown"),
+    "launch.event_handlers": ("OnProcessExit", "OnProcessIO", "OnProcessStart", "OnShutdown"),
     "launch.events": ("matches_action",),
     "launch.frontend": (),
     "launch.frontend.parse_substitution": ("parse_substitution",),

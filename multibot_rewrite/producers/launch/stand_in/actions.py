@@ -156,18 +156,16 @@ class AnyLaunchDescriptionSource:
 
 
 class EventHandler(Kept):
-    """What happens at an event: actions, or a function that makes some."""
+    """What happens at an event: actions, or a function that makes some; its last argument."""
 
-    names: tuple[str, ...] = ("target_action", "on_exit", "on_start", "on_shutdown", "entities")
-    others = ("start_state", "goal_state", "transition", "handle_once")
     target_action: Any = None
+    others: tuple[str, ...] = ("handle_once",)
 
     def __init__(self, **options: Any) -> None:
-        if options.get("target_action") and not hasattr(options["target_action"], "execute"):
-            raise TypeError("action_matcher must be an 'ExecuteLocal' instance or a callable")
         super().__init__(**options)
-        own = (vars(self)[it] for it in self.names[1:])
-        self.actions: Any = next((it for it in own if it is not None), [])
+        if not (self.target_action is None or hasattr(self.target_action, "execute")):
+            raise TypeError("action_matcher must be an 'ExecuteLocal' instance or a callable")
+        self.actions: Any = vars(self)[self.names[-1]] or []
 
     def describe(self) -> tuple[str, list[Any]]:
         """The actions that are known before the event."""
@@ -181,13 +179,25 @@ class EventHandler(Kept):
 class OnProcessExit(EventHandler):
     """The end of a process."""
 
+    names = ("target_action", "on_exit")
+
 
 class OnProcessStart(EventHandler):
     """The start of a process."""
 
+    names = ("target_action", "on_start")
+
+
+class OnProcessIO(EventHandler):
+    """Output of a process."""
+
+    names = ("target_action", "on_stdin", "on_stderr", "on_stdout")
+
 
 class OnShutdown(EventHandler):
     """The end of the launch."""
+
+    names = ("on_shutdown",)
 
 
 class RegisterEventHandler(Action):
@@ -218,24 +228,23 @@ class ExecuteProcess(Action):
     )
 
 
-class Passing(Action):
-    """Something that starts no node."""
-
-    names: tuple[str, ...] = ("msg", "reason", "value")
-
-
-class LogInfo(Passing):
+class LogInfo(Action):
     """A line of the log."""
 
+    names = ("msg",)
 
-class EmitEvent(Passing):
+
+class EmitEvent(Action):
     """An event."""
 
     names = ("event",)
 
 
-class Shutdown(Passing):
+class Shutdown(Action):
     """The end."""
+
+    names = ("reason",)
+    others = ("event", "condition")
 
 
 class SetEnvironmentVariable(Action):

@@ -7,6 +7,7 @@ descriptions/composable_node.py, utilities/evaluate_parameters.py, utilities/nam
 from __future__ import annotations
 
 import os
+import tempfile
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -23,7 +24,9 @@ from multibot_rewrite.producers.launch.stand_in.values import (
     LaunchContext,
     Substitution,
     Text,
+    parse_substitution,
     text_of,
+    truth_of,
 )
 
 _PLAIN = (bool, int, float, str, bytes)
@@ -51,10 +54,15 @@ class ParameterFile:
     """A parameter file."""
 
     def __init__(self, param_file: Text, *, allow_substs: Any = False) -> None:
-        self.__param_file = param_file
+        self.__param_file, self.allow_substs = param_file, allow_substs
 
     def evaluate(self, context: LaunchContext) -> Path:
-        return Path(text_of(context, self.__param_file))
+        path = Path(text_of(context, self.__param_file))
+        if not truth_of(context, str(self.allow_substs)):
+            return path
+        with tempfile.NamedTemporaryFile("w", prefix="launch_params_", delete=False) as out:
+            out.write(text_of(context, parse_substitution(path.read_text(encoding="utf-8"))))
+        return Path(out.name)
 
 
 class Node(Action):
@@ -173,6 +181,7 @@ class OnStateTransition(EventHandler):
     """A change of a life cycle."""
 
     names = ("target_lifecycle_node", "entities")
+    others = ("start_state", "goal_state", "transition", "handle_once")
 
 
 class ChangeState(Kept):
@@ -270,11 +279,13 @@ def _is_text(value: Any) -> bool:
 
 def _read(text: str, name: str) -> Any:
     """A text as YAML has it."""
-    wrapped = "try wrapping it in launch_ros.parameter_descriptions.ParameterValue"
+    wrapped = (
+        "if it is meant to be a string, try wrapping it in ParameterValue(value, value_type=str)"
+    )
     try:
         found = yaml.safe_load(text) if text else ""
     except yaml.YAMLError:
-        raise TypeError(f"{name} cannot be read as YAML: {wrapped}") from None
+        raise TypeError(f"Unable to parse {name} as yaml; {wrapped}") from None
     if not isinstance(found, (*_PLAIN, list)):
-        raise TypeError(f"{name} has a value of no type of parameters: {wrapped}")
+        raise TypeError(f"{name} has a value of no type of parameters; {wrapped}")
     return found

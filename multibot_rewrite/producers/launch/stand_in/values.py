@@ -37,6 +37,10 @@ class Substitution:
         raise NotImplementedError
 
 
+class SubstitutionFailure(Exception):
+    """A substitution has no value."""
+
+
 class LaunchContext:
     """What a launch knows while it runs."""
 
@@ -114,7 +118,7 @@ def _found(
     context: LaunchContext, known: Mapping[str, str], name: str, usual: Text, what: str
 ) -> str:
     if name not in known and usual is None:
-        raise LookupError(f"{what} '{name}' does not exist")
+        raise SubstitutionFailure(f"{what} '{name}' does not exist")
     return known[name] if name in known else text_of(context, usual)
 
 
