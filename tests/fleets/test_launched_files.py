@@ -7,7 +7,6 @@ from pathlib import Path
 import pytest
 from rule_examples import DESCRIPTION
 
-from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets import launched_robot
 from multibot_rewrite.fleets.build import make_outputs
@@ -19,6 +18,7 @@ from multibot_rewrite.producers.launch.records import (
     LaunchOrder,
     ParameterText,
 )
+from multibot_rewrite.system.records import Place
 
 FLEET = """\
 layout: frames-per-robot
