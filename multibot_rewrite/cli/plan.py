@@ -13,13 +13,13 @@ from multibot_rewrite.cli.usage import given_options
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.fleets.fleet import expected, possible
 from multibot_rewrite.graph.enclaves import to_policy
-from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.plan_file import to_json, to_yaml
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.live.seen_plan import seen_plan
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.releases import release_here
 from multibot_rewrite.rules.check import doubts
+from multibot_rewrite.system.records import System
 
 PLAN, POLICY = "plan", "sros2"
 # What a plan of a description has, and that of a launch file has not.
@@ -48,7 +48,7 @@ def run(options: argparse.Namespace) -> int:
     return STOPPED if failed else DONE
 
 
-def _write(options: argparse.Namespace, plan: Expectation) -> None:
+def _write(options: argparse.Namespace, plan: System) -> None:
     write = to_json if (options.output or "").endswith(".json") else to_yaml
     deliver(options, write(plan).encode())
 
