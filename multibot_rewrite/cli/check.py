@@ -1,4 +1,4 @@
-"""``multibot check``: is the running system what was planned?"""
+"""``multibot check PLAN``: is the running system what was planned?"""
 
 from __future__ import annotations
 
@@ -36,6 +36,10 @@ CODES = {Verdict.PLANNED: DONE, Verdict.WRONG: STOPPED, Verdict.INCONCLUSIVE: li
 
 def run(options: argparse.Namespace) -> int:
     """Compare, report, sum up; returns the exit code."""
+    if options.plan is None:
+        from multibot_rewrite.cli import unplanned
+
+        return unplanned.run(options)
     _check_use(options)
     plan = plan_of(options)
     try:
@@ -79,6 +83,8 @@ def _check_use(options: argparse.Namespace) -> None:
         raise UsageError("--watch shows every finding: leave out --select, --ignore and --format")
     if options.built:
         _check_built(options)
+    if options.suggest:
+        raise UsageError("--suggest begins a plan: leave out PLAN")
     check_report(options, printed=False)
     pictures.check(options)
     if options.output:
