@@ -12,16 +12,16 @@ from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.closing_bridges import bridge_findings
 from multibot_rewrite.fleets.closing_controllers import controller_findings
 from multibot_rewrite.fleets.closing_semantics import semantic_findings
-from multibot_rewrite.fleets.closing_topics import topic_findings
 from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.gap_findings import at_gap
+from multibot_rewrite.fleets.judged import contradicted, missing, whose_names
 from multibot_rewrite.fleets.output_values import OutputText
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_groups import group_robots
 from multibot_rewrite.fleets.robot_nodes import node_sources
 from multibot_rewrite.fleets.systems import system_after, system_before
-from multibot_rewrite.fleets.tf_conflicts import tf_conflicts
+from multibot_rewrite.fleets.written_system import written_system
 from multibot_rewrite.graph.transforms import edges_in
 from multibot_rewrite.producers.launch.spawners import active
 
@@ -108,13 +108,14 @@ def closing(plan: FleetPlan, fleet: Fleet, texts: Sequence[OutputText]) -> Itera
 
     ``fleet`` has all nodes that are started, ``texts`` are the files that were made.
     """
-    yield from tf_conflicts(plan, fleet, texts)
+    whole, whose = written_system(plan, fleet, texts), whose_names(fleet)
+    yield from contradicted(plan, whole, whose)
     known = load_known_nodes(plan.file.parameters, plan.file.distro)
     for group in group_robots(plan):
         robot = group.robots[0]
         evidence = plan.evidence[node_sources(robot.spec)]
         before, library = system_before(robot, evidence), evidence.known
-        after = system_after(robot, fleet, texts, known)
+        after = system_after(robot, fleet, texts, known, whole)
         yield from controller_findings(
             robot, before, after, library, texts, active(evidence.spawned)
         )
@@ -126,7 +127,7 @@ def closing(plan: FleetPlan, fleet: Fleet, texts: Sequence[OutputText]) -> Itera
         now = tree_gaps(robot.tree, after.senders)
         known_before = {it.key for it in old}
         yield from _trees(robot, (it for it in now if it.key not in known_before), ERROR)
-        yield from topic_findings(robot, before, after)
+        yield from missing(robot, before.system, after.system, whose)
         yield from semantic_findings(plan, robot, before, after)
         yield from bridge_findings(plan, robot, texts)
 

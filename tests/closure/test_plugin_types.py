@@ -49,8 +49,8 @@ SCOUT = """\
     ("output", "codes"),
     [
         ("<output_type>sensor_msgs/LaserScan</output_type>", set()),
-        ("<output_type>sensor_msgs/PointCloud2</output_type>", {"MF818"}),
-        ("", {"MF818"}),
+        ("<output_type>sensor_msgs/PointCloud2</output_type>", {"MG306"}),
+        ("", {"MG306"}),
     ],
 )
 def test_a_lidar_of_another_type(tmp_path: Path, layout: str, output: str, codes: set[str]) -> None:
