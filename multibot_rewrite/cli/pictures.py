@@ -12,10 +12,10 @@ from multibot_rewrite.cli.output import STANDARD, write_files
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.graph.expectation import Expectation
-from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.live.watching import Outcome
 from multibot_rewrite.model import MultibotError, UsageError
 from multibot_rewrite.sources.read import read_file
+from multibot_rewrite.system.records import System
 
 if TYPE_CHECKING:
     from multibot_rewrite.pages.page import Framed
@@ -36,7 +36,7 @@ def check(options: argparse.Namespace) -> None:
 def deliver(
     options: argparse.Namespace,
     plan: Expectation,
-    graph: Snapshot,
+    graph: System,
     found: Sequence[Finding],
     outcome: Outcome,
 ) -> None:
@@ -60,7 +60,7 @@ def deliver(
     write_files(options, [(target, drawn[name](scene)) for name, target in wanted])
 
 
-def _robots(options: argparse.Namespace, graph: Snapshot) -> Framed | None:
+def _robots(options: argparse.Namespace, graph: System) -> Framed | None:
     """Only a page of HTML has them."""
     if not options.report:
         return None

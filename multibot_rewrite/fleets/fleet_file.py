@@ -116,7 +116,6 @@ class FleetFile(NamedTuple):
     installed: str
     nodes: str
     nodl: tuple[str, ...]
-    parameters: str
     vocabulary: tuple[str, ...]
     robots: tuple[RobotSpec, ...]
     files: tuple[str, ...] = ()
@@ -157,7 +156,6 @@ def read_fleet(
         data.get("installed", ""),
         data.get("nodes", ""),
         tuple(listed(data.get("nodl", []))),
-        data.get("parameters", ""),
         tuple(listed(data.get("vocabulary", []))),
         robots,
         files,
@@ -180,7 +178,7 @@ def _files(read: FleetData) -> Iterator[str]:
     """The files of a fleet that are no robot's own."""
     data = read.data
     described = nodl_files(tuple(listed(data.get("nodl", []))), read.places)
-    given = (data.get("nodes", ""), *described, data.get("parameters", ""))
+    given = (data.get("nodes", ""), *described)
     yield from filter(None, (*read.files, *given, *listed(data.get("vocabulary", []))))
 
 

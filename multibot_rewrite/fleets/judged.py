@@ -1,4 +1,4 @@
-"""What the rules of any system find in a fleet: in its robots' sources, and in what is written for them."""
+"""What the rules of any system find in a fleet as it is written, and whether its sources have it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.fleets.fleet import Fleet, expected
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
-from multibot_rewrite.fleets.shim import System
 from multibot_rewrite.rules.find import absences, contradictions
 from multibot_rewrite.rules.index import Index, index
 from multibot_rewrite.rules.ownership import (
@@ -18,7 +17,7 @@ from multibot_rewrite.rules.ownership import (
     whose_by_plan,
 )
 from multibot_rewrite.rules.system.unsent import is_needed, no_longer_sent, open_ends
-from multibot_rewrite.system.records import RUNS, End
+from multibot_rewrite.system.records import RUNS, End, System
 
 # A robot alone has no name in what it is called.
 ALONE = Whose((), lambda _: "", lambda name: name, lambda _: "", lambda frame: frame)
@@ -32,10 +31,10 @@ def whose_names(fleet: Fleet) -> Whose:
 
 
 def contradicted(plan: FleetPlan, whole: System, whose: Whose) -> Iterator[Finding]:
-    """What nodes that surely run do to each other. In one robot it was so before its rewrite: a warning."""
+    """What nodes that surely run do to each other; in one robot they did so before its rewrite."""
     robots = {it.spec.namespace: it for it in plan.robots}
-    sure = tuple(it for it in whole.endpoints if it.sure == RUNS)
-    for it in contradictions(index(whole._replace(endpoints=sure), whose)):
+    sure = tuple(it for it in whole.ends if it.sure == RUNS)
+    for it in contradictions(index(whole._replace(ends=sure), whose)):
         level = WARNING if it.robot and it.level == ERROR else it.level
         yield in_file(it._replace(level=level), robots.get(it.robot) or plan.robots[-1])
 
@@ -46,7 +45,7 @@ def missing(
     """What a robot needs and nothing gives, as it is written: an error where its sources had it."""
     old, new = index(before, ALONE), index(after, whose)
     was_open, is_open = _keys(old, open_ends(old)), _keys(new, open_ends(new))
-    had = _keys(old, (it for it in before.endpoints if is_needed(it))).keys() - was_open.keys()
+    had = _keys(old, (it for it in before.ends if is_needed(it))).keys() - was_open.keys()
     opened = {(it.node, it.name): it for key, it in is_open.items() if key in had}
     for it in absences(new):
         end = opened.pop((it.node, next(iter(it.names), "")), None)

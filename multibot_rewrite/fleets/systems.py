@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.closure.frames import Sender
-from multibot_rewrite.companions.params.known_nodes import KnownNodes
 from multibot_rewrite.companions.params.sections import PARAMETERS
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.evidence.hardware import Exported, exported
@@ -19,15 +18,15 @@ from multibot_rewrite.fleets.output_file import yaml_of
 from multibot_rewrite.fleets.output_values import OutputText
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_nodes import RobotEvidence
-from multibot_rewrite.fleets.shim import System
 from multibot_rewrite.fleets.written_system import of_robot
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER, sent_by
+from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.ends import bridge_ends, either_way, node_ends, plugin_ends
 from multibot_rewrite.readback.reading import FRAME, Reading, read
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.steps.document import read_document
-from multibot_rewrite.system.records import SUBSCRIBES, Node
+from multibot_rewrite.system.records import SUBSCRIBES, Node, System
 
 FIXED, MOVEIT = "fixed", "moveit_simple_controller_manager"
 
@@ -83,7 +82,11 @@ def _nodes_of(nodes: Iterable[NodeFacts], reading: Reading) -> Iterator[Node]:
 
 
 def system_after(
-    robot: RewrittenRobot, fleet: Fleet, texts: Sequence[OutputText], known: KnownNodes, whole: System
+    robot: RewrittenRobot,
+    fleet: Fleet,
+    texts: Sequence[OutputText],
+    known: KnownNodes,
+    whole: System,
 ) -> RobotSystem:
     """The system of the files that were made for a robot, under its remap rules; ``whole`` is that of
     the fleet."""
@@ -160,4 +163,3 @@ def _runs(node: NodeFacts, moves: bool) -> NodeFacts:
     if moves or node.package != STATE_PUBLISHER:
         return node
     return node._replace(endpoints=tuple(it for it in node.endpoints if it.role != SUBSCRIBES))
-

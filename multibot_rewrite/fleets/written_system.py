@@ -12,7 +12,6 @@ from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.member import line_of
 from multibot_rewrite.fleets.output_values import OutputText, line_in_source
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
-from multibot_rewrite.fleets.shim import System
 from multibot_rewrite.fleets.robot_groups import group_robots
 from multibot_rewrite.fleets.robot_nodes import node_sources
 from multibot_rewrite.graph.expectation import tf_topic
@@ -37,6 +36,8 @@ from multibot_rewrite.system.records import (
     End,
     Node,
     Place,
+    Robot,
+    System,
 )
 
 # Of robots that differ in their names alone two show where they meet.
@@ -56,14 +57,13 @@ def written_system(plan: FleetPlan, fleet: Fleet, texts: Sequence[OutputText]) -
     given = {name: _sections(plan, it) for name, it in robots.items()}
     nodes = tuple(_nodes(fleet, may, given))
     # Rules of a plugin are for its whole process: topics of controllers that the table does not have.
-    by_process = (
-        end for it in shown for end in plugin_ends(it.member.reading) if end.sure == MAY
-    )
+    by_process = (end for it in shown for end in plugin_ends(it.member.reading) if end.sure == MAY)
     edges = (edge for it in shown for edge in _edges(plan, fleet, it))
     return System(
         nodes=(*nodes, *_bridges(shown, texts)),
         ends=(*_ends(fleet, nodes, given), *_bridged(shown, texts), *by_process),
         edges=tuple(edges),
+        robots=tuple(Robot(it.spec.namespace) for it in shown),
     )
 
 
@@ -90,9 +90,7 @@ def _nodes(
             yield Node(it.full_name, robot=it.robot, known=it.node, sure=sure, place=place)
 
 
-def _ends(
-    fleet: Fleet, nodes: Iterable[Node], given: Mapping[str, Sections]
-) -> Iterator[End]:
+def _ends(fleet: Fleet, nodes: Iterable[Node], given: Mapping[str, Sections]) -> Iterator[End]:
     known = {it.name: it for it in nodes}
     for it in fleet.table.names:
         end, node = it.endpoint, known.get(it.node)
@@ -134,11 +132,11 @@ def of_robot(whole: System, robot: str) -> System:
     other = {it.name for it in whole.nodes} - nodes.keys()
     ends = (
         it
-        for it in whole.endpoints
+        for it in whole.ends
         if it.node not in other and (nodes.get(it.node) == robot or it.role not in NEEDS)
     )
     kept = tuple(it for it in whole.nodes if it.name in nodes)
-    return System(nodes=kept, ends=tuple(ends), edges=())
+    return whole._replace(nodes=kept, ends=tuple(ends), edges=())
 
 
 def _edges(plan: FleetPlan, fleet: Fleet, robot: RewrittenRobot) -> Iterator[Edge]:

@@ -12,8 +12,8 @@ HEAD = """\
 # Nodes and stacks
 
 The topics, services and actions of known nodes, and the stacks of nodes that are started together.
-Generated from `nodes.yaml`, `controllers.yaml`, `arms.yaml` and `stacks.yaml` of
-`multibot_rewrite/knowledge/` by `python -m multibot_rewrite.knowledge.stacks > docs/stacks.md`.
+Generated from `nodes/*.yaml` and `stacks.yaml` of `multibot_rewrite/knowledge/` by
+`python -m multibot_rewrite.knowledge.stacks > docs/stacks.md`.
 
 Select a stack, or a single node, with `--stack`. Every robot runs robot_state_publisher besides;
 the stack `no_robot_state_publisher` leaves it out, for robots whose tf comes from something else.
@@ -105,10 +105,11 @@ def page(library: NodeLibrary) -> str:
     """The whole page as Markdown."""
     parts = [HEAD, PLACES, *(_controllers(it) for it in CONTROLLER_WAYS), "\n## Stacks\n"]
     parts += [_stack(name, stack) for name, stack in library.stacks.items()]
+    nodes = sorted(library.nodes.values(), key=lambda it: it.name.lower())
     parts.append(REACH)
-    parts += [row for node in library.nodes.values() for row in _reach(node)]
+    parts += [row for node in nodes for row in _reach(node)]
     parts.append("\n## Nodes\n")
-    parts += [_node(node, library) for node in library.nodes.values()]
+    parts += [_node(node, library) for node in nodes]
     parts.append("\n## Parts\n\nGroups of names that many nodes have.\n")
     parts += [f"\n### {name}\n{_table(found)}" for name, found in library.parts.items()]
     return "".join(parts)

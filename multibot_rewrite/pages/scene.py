@@ -9,7 +9,6 @@ from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.grouping import with_members
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, robot_words
 from multibot_rewrite.graph.patterns import fitted
-from multibot_rewrite.graph.snapshot import Environment, GraphEndpoint, Snapshot
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.live.watching import WORDS, Outcome, judge
 from multibot_rewrite.pages.states import (
@@ -29,7 +28,7 @@ from multibot_rewrite.pages.states import (
 from multibot_rewrite.pages.tf_tree_rows import FrameTree, make_frame_trees
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules.pair.comparison import EndpointKey, View, make_view
-from multibot_rewrite.system.records import ACTION, SERVICE, TOPIC
+from multibot_rewrite.system.records import ACTION, SERVICE, TOPIC, End, Environment, System
 
 # Packages with the types of endpoints that every node has: logging, parameters, life cycle; and
 # tf, which has its own picture.
@@ -146,7 +145,7 @@ class _RobotOf(NamedTuple):
 
 def make_scene(
     plan: Expectation,
-    graph: Snapshot,
+    graph: System,
     found: Sequence[Finding],
     outcome: Outcome | None = None,
 ) -> Scene:
@@ -186,10 +185,10 @@ def _rows(view: View, targets: Mapping[Finding, Targets]) -> Iterator[FindingRow
 
 def _edges(view: View, states: States) -> Iterator[DrawnEdge]:
     """The endpoints in the graph, and those that a finding reports as missing."""
-    common_names = _common_names((*view.graph.endpoints, *view.plan.endpoints))
+    common_names = _common_names((*view.graph.ends, *view.plan.endpoints))
     bridged = {(role, it.name): it.type for it in view.plan.topics for role in it.bridge}
     for key, type_ in dict.fromkeys(
-        ((e.node, e.kind, e.role, e.name), e.type) for e in view.graph.endpoints
+        ((e.node, e.kind, e.role, e.name), e.type) for e in view.graph.ends
     ):
         node, *_, name = key
         common = name in common_names
@@ -222,7 +221,7 @@ def _is_expected(view: View, key: EndpointKey, bridged: Container[tuple[str, str
     return is_tool(node) and bool(view.ownership.robot(node))
 
 
-def _common_names(ends: Iterable[GraphEndpoint | PlannedEndpoint]) -> set[str]:
+def _common_names(ends: Iterable[End | PlannedEndpoint]) -> set[str]:
     """The names that every node has; one endpoint with a known type is enough."""
     return {
         end.name

@@ -6,12 +6,12 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.graph.expectation import PlannedRobot
-from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.pages.states import CLASH, MISSING, OK, States
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules.check import ALL_RULES
 from multibot_rewrite.rules.index import tree_topic
 from multibot_rewrite.rules.pair.comparison import View
+from multibot_rewrite.system.records import Edge
 
 
 class FrameRow(NamedTuple):
@@ -73,9 +73,7 @@ class _Forest(NamedTuple):
     robots: Mapping[str, str]
 
 
-def _forest(
-    view: View, topic: str, edges: Sequence[GraphFrame], home: Sequence[PlannedRobot]
-) -> _Forest:
+def _forest(view: View, topic: str, edges: Sequence[Edge], home: Sequence[PlannedRobot]) -> _Forest:
     static = {(edge.parent, edge.child): edge.static for edge in edges}
     children: dict[str, list[str]] = defaultdict(list)
     for parent, child in sorted(static):

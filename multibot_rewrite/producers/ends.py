@@ -1,4 +1,4 @@
-"""The ends of topics, services and actions by a robot's own sources: stacks and parameters, plugins, bridges."""
+"""The ends that a robot's sources name: its stacks with their parameters, plugins, bridges."""
 
 from __future__ import annotations
 

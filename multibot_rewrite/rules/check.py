@@ -14,7 +14,6 @@ from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.graph.bags.recording import is_recorded
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.patterns import fitted
-from multibot_rewrite.graph.snapshot import Caveat, Snapshot, incomplete
 from multibot_rewrite.rules.find import DANGERS
 from multibot_rewrite.rules.pair import (
     demands,
@@ -31,6 +30,7 @@ from multibot_rewrite.rules.pair import (
 )
 from multibot_rewrite.rules.pair.beside_plan import dangers_beside
 from multibot_rewrite.rules.pair.comparison import View, make_view
+from multibot_rewrite.system.records import Caveat, System, incomplete
 
 _MODULES = (
     nodes,
@@ -57,7 +57,7 @@ ALL_RULES = {**RULES, **DANGERS}
 ABSENCE = frozenset(it.code for it in ALL_RULES.values() if it.options["absence"])
 
 
-def check(plan: Expectation, graph: Snapshot) -> list[Finding]:
+def check(plan: Expectation, graph: System) -> list[Finding]:
     """All findings in the order of the rules; empty for a fleet as planned."""
     with gc_paused():
         view = make_view(*fitted(plan, graph))
@@ -72,14 +72,14 @@ def _ask(rule: Rule, view: View) -> Iterator[Finding]:
     return cast(Callable[[View], Iterator[Finding]], rule.check)(view)
 
 
-def inconclusive_where_in_doubt(found: list[Finding], graph: Snapshot) -> list[Finding]:
+def inconclusive_where_in_doubt(found: list[Finding], graph: System) -> list[Finding]:
     """The findings; those about something missing are inconclusive in an incomplete view."""
     if not doubts(graph):
         return found
     return [_inconclusive(finding) if finding.code in ABSENCE else finding for finding in found]
 
 
-def doubts(graph: Snapshot) -> tuple[Caveat, ...]:
+def doubts(graph: System) -> tuple[Caveat, ...]:
     """The caveats that make a view incomplete.
 
     That an expected node did not come is not one of them: once the graph is quiet it is missing.

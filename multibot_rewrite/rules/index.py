@@ -6,12 +6,20 @@ from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cache, partial
 
-from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphFrame, Snapshot
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules import words
 from multibot_rewrite.rules.ownership import Whose
 from multibot_rewrite.system.conventions import EVERYBODYS, only_looks
-from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.records import (
+    CALLS,
+    PUBLISHES,
+    SERVES,
+    SUBSCRIBES,
+    TOPIC,
+    Edge,
+    End,
+    System,
+)
 
 # In the order of the fields of Ends.
 _PLACE = {role: at for at, role in enumerate((PUBLISHES, SUBSCRIBES, SERVES, CALLS))}
@@ -28,10 +36,10 @@ class Ends(NamedTuple):
     kind: str
     name: str
     type: str
-    publishers: tuple[GraphEndpoint, ...]
-    subscribers: tuple[GraphEndpoint, ...]
-    servers: tuple[GraphEndpoint, ...]
-    clients: tuple[GraphEndpoint, ...]
+    publishers: tuple[End, ...]
+    subscribers: tuple[End, ...]
+    servers: tuple[End, ...]
+    clients: tuple[End, ...]
 
 
 class Tree(NamedTuple):
@@ -42,7 +50,7 @@ class Tree(NamedTuple):
     """
 
     topic: str
-    edges: tuple[GraphFrame, ...]
+    edges: tuple[Edge, ...]
     senders: tuple[str, ...]
     listeners: tuple[str, ...]
 
@@ -57,7 +65,7 @@ class Index(NamedTuple):
     (robot, kind, name without the robot's).
     """
 
-    system: Snapshot
+    system: System
     robots: tuple[str, ...]
     robot: Callable[[str], str]
     plain: Callable[[str], str]
@@ -75,9 +83,9 @@ class Index(NamedTuple):
         return self.by_robot().get((robot, kind, plain))
 
 
-def index(system: Snapshot, whose: Whose) -> Index:
+def index(system: System, whose: Whose) -> Index:
     """The look-ups, made once."""
-    names = {(it.kind, it.name): it for it in _ends(system.endpoints)}
+    names = {(it.kind, it.name): it for it in _ends(system.ends)}
     topics = [it for it in names.values() if it.kind == TOPIC]
     return Index(
         system,
@@ -99,8 +107,8 @@ def _by_robot(
     }
 
 
-def _ends(endpoints: Iterable[GraphEndpoint]) -> Iterator[Ends]:
-    found: dict[tuple[str, str], tuple[list[GraphEndpoint], ...]] = {}
+def _ends(endpoints: Iterable[End]) -> Iterator[Ends]:
+    found: dict[tuple[str, str], tuple[list[End], ...]] = {}
     for end in endpoints:
         key = (end.kind, end.name)
         if "/_" in end.name:
@@ -114,13 +122,13 @@ def _ends(endpoints: Iterable[GraphEndpoint]) -> Iterator[Ends]:
         yield Ends(kind, name, first.type, *map(tuple, sides))
 
 
-def _trees(system: Snapshot, names: Iterable[Ends]) -> Iterator[Tree]:
+def _trees(system: System, names: Iterable[Ends]) -> Iterator[Tree]:
     topics: dict[str, list[Ends]] = defaultdict(list)
-    edges: dict[str, list[GraphFrame]] = defaultdict(list)
+    edges: dict[str, list[Edge]] = defaultdict(list)
     for ends in names:
         if ends.type == TF:
             topics[tree_topic(ends.name)].append(ends)
-    for frame in system.frames:
+    for frame in system.edges:
         edges[tree_topic(frame.topic)].append(frame)
     for topic in dict.fromkeys((*edges, *topics)):
         own = topics.get(topic, ())
@@ -135,7 +143,7 @@ def unique(names: Iterable[str]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(names))
 
 
-def nodes_of(ends: Iterable[GraphEndpoint]) -> tuple[str, ...]:
+def nodes_of(ends: Iterable[End]) -> tuple[str, ...]:
     """The nodes of some endpoints, each once, in the order of their names."""
     return tuple(sorted({end.node for end in ends}))
 
@@ -155,7 +163,7 @@ def is_spawner(node: str) -> bool:
     return last_word(node).startswith("spawner_")
 
 
-def at_work(ends: Iterable[GraphEndpoint]) -> list[GraphEndpoint]:
+def at_work(ends: Iterable[End]) -> list[End]:
     """The endpoints of nodes that do more than look."""
     return [end for end in ends if not is_viewer(end.node)]
 

@@ -26,17 +26,14 @@ from paths import ROOT
 
 from multibot_rewrite import catalogue
 from multibot_rewrite.companions.context import make_context
-from multibot_rewrite.companions.params.known_nodes import (
-    KINDS,
-    built_in_nodes,
-    load_known_nodes,
-)
 from multibot_rewrite.companions.params.page import page
 from multibot_rewrite.companions.params.rewrite import nodes_without_section, rewrite_params
 from multibot_rewrite.companions.params.sections import raw_sections
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, fill_template
 from multibot_rewrite.companions.yaml_text import quoted, read_yaml
 from multibot_rewrite.knowledge.node_library import extend, stack_of
+from multibot_rewrite.knowledge.parameter_entries import KINDS
+from multibot_rewrite.knowledge.parameters import built_in_nodes, load_known_nodes
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.naming import make_naming

@@ -27,7 +27,6 @@ from multibot_rewrite.cli import multibot
 from multibot_rewrite.findings.finding import INCONCLUSIVE
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.plan_file import to_yaml
-from multibot_rewrite.graph.snapshot import Caveat, GraphFrame, GraphNode, Snapshot, to_json
 from multibot_rewrite.live.watching import Verdict
 from multibot_rewrite.pages.dot import to_dot
 from multibot_rewrite.pages.layout import NODE_ROW, ROW, lay_out
@@ -46,7 +45,8 @@ from multibot_rewrite.pages.states import (
 )
 from multibot_rewrite.pages.text import clipped, columns, visible
 from multibot_rewrite.rules.check import RULES
-from multibot_rewrite.system.records import PUBLISHES
+from multibot_rewrite.system.json import to_json
+from multibot_rewrite.system.records import PUBLISHES, Caveat, Edge, Node, System
 
 LEAKY = ("/robot1/cmd_vel", "/cmd_vel", "collision_monitor")
 CROSSED = ("/robot2/scan", "/robot1/scan", "amcl")
@@ -197,9 +197,9 @@ def test_a_tool_with_nothing_of_its_own_is_put_away_and_an_unknown_node_is_not()
     plan = nav2_graphs.nav2()
     graph = nav2_graphs.healthy(plan)
     for node in ("/rqt_gui", "/robot1/gripper"):
-        log = next(it for it in graph.endpoints if it.name == "/rosout")._replace(node=node)
-        seen = (*graph.nodes, GraphNode(node, ""))
-        graph = graph._replace(nodes=seen, endpoints=(*graph.endpoints, log))
+        log = next(it for it in graph.ends if it.name == "/rosout")._replace(node=node)
+        seen = (*graph.nodes, Node(node, ""))
+        graph = graph._replace(nodes=seen, ends=(*graph.ends, log))
     scene = nav2_graphs.scene(plan, graph)
     light = {n.name for one in scene.groups for n in without_common(one).nodes}
     more = {n.name for one in scene.groups for n in only_common(one).nodes}
@@ -209,9 +209,9 @@ def test_a_tool_with_nothing_of_its_own_is_put_away_and_an_unknown_node_is_not()
 def test_a_clash_of_types_marks_all_ends() -> None:
     plan = nav2_graphs.nav2()
     graph = nav2_graphs.healthy(plan)
-    end = next(e for e in graph.endpoints if e.name == "/robot1/odom" and e.role == PUBLISHES)
+    end = next(e for e in graph.ends if e.name == "/robot1/odom" and e.role == PUBLISHES)
     other = end._replace(type="std_msgs/msg/String", node="/robot1/amcl")
-    scene = nav2_graphs.scene(plan, graph._replace(endpoints=(*graph.endpoints, other)))
+    scene = nav2_graphs.scene(plan, graph._replace(ends=(*graph.ends, other)))
     assert states(scene, "robot1")["/robot1/odom"] == {CLASH}
     (name,) = (n for n in group(scene, "robot1").names if n.name == "/robot1/odom")
     assert len(name.types) == 2
@@ -220,7 +220,7 @@ def test_a_clash_of_types_marks_all_ends() -> None:
 def test_two_nodes_of_one_name_clash() -> None:
     plan = nav2_graphs.nav2()
     graph = nav2_graphs.healthy(plan)
-    twin = graph._replace(nodes=(*graph.nodes, GraphNode("/robot1/amcl", "other")))
+    twin = graph._replace(nodes=(*graph.nodes, Node("/robot1/amcl", "other")))
     assert node_states(nav2_graphs.scene(plan, twin))["/robot1/amcl"] == CLASH
 
 
@@ -229,9 +229,7 @@ def test_a_node_started_without_its_namespace_is_a_leak() -> None:
     graph = nav2_graphs.healthy(plan)
     lost = graph._replace(
         nodes=tuple(n._replace(name=n.name.replace("/robot1/d", "/d")) for n in graph.nodes),
-        endpoints=tuple(
-            e._replace(node=e.node.replace("/robot1/d", "/d")) for e in graph.endpoints
-        ),
+        ends=tuple(e._replace(node=e.node.replace("/robot1/d", "/d")) for e in graph.ends),
     )
     found = node_states(nav2_graphs.scene(plan, lost))
     assert (found["/driver"], found["/robot1/driver"]) == (LEAK, MISSING)
@@ -353,13 +351,13 @@ def test_a_tf_topic_a_robot_is_a_tree_a_robot() -> None:
     assert [row.static for row in trees[0].rows[:3]] == [False, False, True]
 
 
-def with_frames(plan: Expectation, *more: GraphFrame) -> Scene:
+def with_frames(plan: Expectation, *more: Edge) -> Scene:
     graph = nav2_graphs.healthy(plan)
-    return nav2_graphs.scene(plan, graph._replace(frames=(*graph.frames, *more)))
+    return nav2_graphs.scene(plan, graph._replace(edges=(*graph.edges, *more)))
 
 
 def test_a_frame_with_two_parents_is_red_below_both() -> None:
-    scene = with_frames(nav2_graphs.nav2(), GraphFrame("imu_link/robot1", "map", "/tf", False, ()))
+    scene = with_frames(nav2_graphs.nav2(), Edge("imu_link/robot1", "map", "/tf", False, ()))
     (first, second) = (
         row for tree in scene.trees for row in tree.rows if row.frame == "imu_link/robot1"
     )
@@ -370,9 +368,7 @@ def test_a_frame_with_two_parents_is_red_below_both() -> None:
 
 
 def test_bare_frames_are_red_on_one_robots_topic_only() -> None:
-    scene = with_frames(
-        nav2_graphs.nav2("L1"), GraphFrame("imu_link", "map", "/robot1/tf", False, ())
-    )
+    scene = with_frames(nav2_graphs.nav2("L1"), Edge("imu_link", "map", "/robot1/tf", False, ()))
     red = {t.topic for t in scene.trees for row in t.rows if row.state == CLASH}
     assert red == {"/robot1/tf"}
 
@@ -381,7 +377,7 @@ def test_a_declared_frame_that_was_not_heard() -> None:
     plan = nav2_graphs.nav2()
     graph = nav2_graphs.healthy(plan)
     last = plan.robots[1].frames[-1]
-    silent = graph._replace(frames=tuple(f for f in graph.frames if f.child != last))
+    silent = graph._replace(edges=tuple(f for f in graph.edges if f.child != last))
     unheard = nav2_graphs.scene(plan, silent).trees[-1]
     assert (unheard.received, unheard.robot) == (False, "robot2")
     assert [(row.frame, row.state) for row in unheard.rows] == [(last, MISSING)]
@@ -389,14 +385,14 @@ def test_a_declared_frame_that_was_not_heard() -> None:
 
 def test_without_any_tf_no_frame_is_called_missing() -> None:
     plan = nav2_graphs.nav2()
-    scene = nav2_graphs.scene(plan, nav2_graphs.healthy(plan)._replace(frames=()))
+    scene = nav2_graphs.scene(plan, nav2_graphs.healthy(plan)._replace(edges=()))
     assert scene.trees == ()
     assert "No tf messages were received" in section(page(scene), "tf").text_content()
 
 
 def test_a_ring_and_a_chain_deeper_than_pythons_stack_end() -> None:
-    ring = [GraphFrame(f"r{(at + 1) % 3}", f"r{at}", "/tf", False, ()) for at in range(3)]
-    chain = [GraphFrame(f"c{at + 1}", f"c{at}", "/tf", False, ()) for at in range(3000)]
+    ring = [Edge(f"r{(at + 1) % 3}", f"r{at}", "/tf", False, ()) for at in range(3)]
+    chain = [Edge(f"c{at + 1}", f"c{at}", "/tf", False, ()) for at in range(3000)]
     scene = with_frames(nav2_graphs.nav2(), *ring, *chain)
     rows = {row.frame: row for tree in scene.trees for row in tree.rows}
     assert rows["c3000"].depth == 3000
@@ -550,7 +546,7 @@ def test_a_hundred_robots_are_a_small_page() -> None:
 
 def test_a_plan_without_robots_is_drawn() -> None:
     empty = Expectation("L2", (), (), (), (), ())
-    scene = nav2_graphs.scene(empty, Snapshot((), (), (), nav2_graphs.environment()))
+    scene = nav2_graphs.scene(empty, System((), (), (), nav2_graphs.environment()))
     assert pick(page(scene), "header") and not pick(page(scene), "svg", "overview")
     assert to_mermaid(scene).startswith(b"flowchart LR\n")
 
@@ -579,8 +575,8 @@ def test_the_order_of_a_snapshot_does_not_show() -> None:
     mixed = random.Random(7)
     shuffled = graph._replace(
         nodes=tuple(mixed.sample(graph.nodes, len(graph.nodes))),
-        endpoints=tuple(mixed.sample(graph.endpoints, len(graph.endpoints))),
-        frames=tuple(mixed.sample(graph.frames, len(graph.frames))),
+        ends=tuple(mixed.sample(graph.ends, len(graph.ends))),
+        edges=tuple(mixed.sample(graph.edges, len(graph.edges))),
     )
     assert all_pictures(make_scene(plan, shuffled, found)) == all_pictures(
         make_scene(plan, graph, found)
@@ -636,9 +632,9 @@ def test_any_text_may_be_a_name(words: list[str]) -> None:
     plan = nav2_graphs.fleet(2, 1)
     first = plan.robots[0]._replace(name=robot or "r")
     graph = nav2_graphs.with_end(nav2_graphs.healthy(plan), f"/{node}", f"/{topic}")
-    ends = tuple(e._replace(type=type_) if e.name == f"/{topic}" else e for e in graph.endpoints)
-    frame = GraphFrame(child, parent, f"/{topic}", True, (node,))
-    odd = graph._replace(endpoints=ends, frames=(*graph.frames, frame))
+    ends = tuple(e._replace(type=type_) if e.name == f"/{topic}" else e for e in graph.ends)
+    frame = Edge(child, parent, f"/{topic}", True, (node,))
+    odd = graph._replace(ends=ends, edges=(*graph.edges, frame))
     assert_harmless(nav2_graphs.scene(plan._replace(robots=(first, *plan.robots[1:])), odd))
 
 
@@ -723,9 +719,9 @@ def test_mermaid_shows_as_much_as_it_bears(robots: int, leaks: int, note: str) -
     leaked = {f"/robot{r}/topic{t}" for r in range(1, leaks + 1) for t in range(last)}
     ends = (
         e._replace(name=f"/{e.name.rpartition('/')[2]}") if e.name in leaked else e
-        for e in graph.endpoints
+        for e in graph.ends
     )
-    text = to_mermaid(nav2_graphs.scene(plan, graph._replace(endpoints=tuple(ends)))).decode()
+    text = to_mermaid(nav2_graphs.scene(plan, graph._replace(ends=tuple(ends)))).decode()
     assert_mermaid(text)
     assert text.splitlines()[1] == f"  %% {note}"
     assert ("leak" in re.findall(r":::([a-z]+)", text)) == (leaks > 0)

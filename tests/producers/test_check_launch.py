@@ -15,8 +15,7 @@ from launched_nodes import AT
 
 from multibot_rewrite.cli import check_launch
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.companions.params.known_nodes import load_known_nodes
-from multibot_rewrite.graph.snapshot import Snapshot
+from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.producers.launch.records import (
@@ -27,11 +26,12 @@ from multibot_rewrite.producers.launch.records import (
 )
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import would_run
+from multibot_rewrite.system.records import System, clocks
 
 TF = (("/tf", "tf"), ("/tf_static", "tf_static"))
 URDF = '<robot name="r"><link name="base_link"/><link name="laser"/><joint name="j" type="fixed">\
 <parent link="base_link"/><child link="laser"/></joint></robot>'
-Graph = Callable[..., Snapshot]
+Graph = Callable[..., System]
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +41,7 @@ def known() -> Knowledge:
 
 @pytest.fixture
 def run(known: Knowledge) -> Graph:
-    def made(*nodes: LaunchedNode, notes: Sequence[LaunchNote] = ()) -> Snapshot:
+    def made(*nodes: LaunchedNode, notes: Sequence[LaunchNote] = ()) -> System:
         return would_run(LaunchGraph(nodes, tuple(notes)), known)
 
     return made
@@ -64,12 +64,12 @@ def publisher(space: str, rules: object = (), **more: object) -> LaunchedNode:
     return node("robot_state_publisher/robot_state_publisher", "rsp", space, rules, **more)
 
 
-def codes(made: Snapshot) -> set[str]:
+def codes(made: System) -> set[str]:
     return {it.code for it in diagnose(made).findings}
 
 
-def names(made: Snapshot, of: str) -> set[tuple[str, str]]:
-    return {(it.role, it.name) for it in made.endpoints if it.node == of}
+def names(made: System, of: str) -> set[tuple[str, str]]:
+    return {(it.role, it.name) for it in made.ends if it.node == of}
 
 
 def test_names_are_those_that_rcl_makes_of_the_rules(run: Graph) -> None:
@@ -81,13 +81,13 @@ def test_names_are_those_that_rcl_makes_of_the_rules(run: Graph) -> None:
         ("subscribes", "/robot1/joint_states"),
         ("subscribes", "/clock"),
     }
-    (edge,) = made.frames
+    (edge,) = made.edges
     assert (edge.parent, edge.child, edge.topic) == ("base_link", "laser", "/robot1/tf_static")
     assert made.environment.caveats == ()
 
 
 def test_a_prefix_of_frames_counts(run: Graph) -> None:
-    (edge,) = run(publisher("/robot1", frame_prefix="robot1/")).frames
+    (edge,) = run(publisher("/robot1", frame_prefix="robot1/")).edges
     assert (edge.parent, edge.child) == ("robot1/base_link", "robot1/laser")
     assert (edge.topic, edge.publishers) == ("/tf_static", ("/robot1/rsp",))
 
@@ -131,7 +131,7 @@ def test_a_static_transform_is_that_of_the_arguments(run: Graph) -> None:
     words = ("1", "0", "0", "0", "0", "0", "map", "robot2/odom")
     program = "tf2_ros/static_transform_publisher"
     made = run(node(program, "a", "/", arguments=flags), node(program, "b", "/", arguments=words))
-    assert [(it.parent, it.child) for it in made.frames] == [
+    assert [(it.parent, it.child) for it in made.edges] == [
         ("map", "robot1/odom"),
         ("map", "robot2/odom"),
     ]
@@ -149,14 +149,14 @@ def test_two_clock_bridges_are_two_clocks(run: Graph) -> None:
 
 def test_an_ekf_with_a_prefix_has_frames_of_its_own(run: Graph) -> None:
     made = run(node("robot_localization/ekf_node", "ekf", "/robot1", tf_prefix="robot1"))
-    assert [(it.parent, it.child) for it in made.frames] == [("robot1/odom", "robot1/base_link")]
+    assert [(it.parent, it.child) for it in made.edges] == [("robot1/odom", "robot1/base_link")]
 
 
 @pytest.mark.parametrize(("stamped", "type_"), [(True, "TwistStamped"), (False, "Twist")])
 def test_a_parameter_chooses_the_type(run: Graph, stamped: bool, type_: str) -> None:
     ekf = node("robot_localization/ekf_node", "ekf", use_control=True, stamped_control=stamped)
     made = run(ekf)
-    (found,) = {it.type for it in made.endpoints if it.name == "/robot1/cmd_vel"}
+    (found,) = {it.type for it in made.ends if it.name == "/robot1/cmd_vel"}
     assert found == f"geometry_msgs/msg/{type_}"
 
 
@@ -170,7 +170,7 @@ def test_the_type_that_a_release_has_by_default(release: str, wanted: str) -> No
             monitor if not given else node("nav2_collision_monitor/collision_monitor", "c", **given)
         )
         made = would_run(LaunchGraph((one,)), facts)
-        (found,) = {it.type for it in made.endpoints if it.name == "/robot1/cmd_vel"}
+        (found,) = {it.type for it in made.ends if it.name == "/robot1/cmd_vel"}
         assert found == f"geometry_msgs/msg/{type_}"
 
 
@@ -198,7 +198,7 @@ def test_a_controller_runs_beside_its_manager_with_the_rules_of_both(run: Graph)
     own = names(made, "/robot1/drive")
     assert {("publishes", "/robot1/odom"), ("publishes", "/robot1/tf")} <= own
     assert not made.environment.caveats
-    (edge,) = made.frames
+    (edge,) = made.edges
     assert (edge.parent, edge.child) == ("robot1/odom", "robot1/base_link")
     # A simulator's plugin makes the manager: its rules are not those of the launch.
     (caveat,) = run(spawner).environment.caveats
@@ -286,7 +286,7 @@ GazeboSimROS2ControlPlugin">{home}<parameters>/made/c.yaml</parameters></plugin>
     return URDF.replace("</robot>", f"<gazebo>{plugin}</gazebo></robot>")
 
 
-def controlled(known: Knowledge, space: str, asked: str) -> Snapshot:
+def controlled(known: Knowledge, space: str, asked: str) -> System:
     """One robot in gz, and a spawner that asks for a manager."""
     sections = {
         "controller_manager": {"drive": {"type": "diff_drive_controller/DiffDriveController"}},
@@ -313,11 +313,11 @@ def test_controllers_of_a_simulators_plugin_are_those_of_its_description(known: 
     assert [it.name for it in made.nodes].count("/robot1/drive") == 1
     ends = names(made, "/robot1/drive")
     assert {("publishes", "/robot1/tf"), ("publishes", "/robot1/odom")} <= ends
-    edges = {(it.parent, it.child, it.topic) for it in made.frames}
+    edges = {(it.parent, it.child, it.topic) for it in made.edges}
     assert ("robot1/odom", "robot1/base_link", "/robot1/tf") in edges
-    clocks = {it.node: it.sim_time for it in made.states}
-    assert clocks["/robot1/drive"] is clocks["/robot1/controller_manager"] is True
-    assert clocks["/robot1/rsp"] is False
+    timed = clocks(made)
+    assert timed["/robot1/drive"] is timed["/robot1/controller_manager"] is True
+    assert timed["/robot1/rsp"] is False
     (said,) = (it.message for it in made.environment.caveats)
     assert "/robot1/controller_manager gets drive from 2 spawners" in said
 

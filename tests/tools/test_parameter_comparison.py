@@ -12,6 +12,7 @@ from functools import cache
 import pytest
 from paths import FIXTURES, ROOT
 
+from multibot_rewrite.knowledge.stacks import every_release
 from multibot_rewrite.releases import RELEASES
 from multibot_rewrite.rules.files.parameter_files import DECLARED, YAML
 from multibot_rewrite.rules.files.parameter_owners import Owners, owners
@@ -52,8 +53,7 @@ def facts(release: str) -> tuple[ParameterFact, ...]:
 
 @cache
 def found(release: str) -> tuple[Difference, ...]:
-    table = ROOT / "multibot_rewrite" / "companions" / "params" / "params.yaml"
-    ours = our_parameters(table.read_text(), owners())
+    ours = our_parameters(every_release().parameters.values(), owners())
     return tuple(differences(ours, facts(release), release, owners()))
 
 

@@ -13,7 +13,7 @@ from paths import ROBOTS
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.graph.plan_file import read_plan
-from multibot_rewrite.graph.snapshot import to_json
+from multibot_rewrite.system.json import to_json
 from multibot_rewrite.view import models, scene
 
 

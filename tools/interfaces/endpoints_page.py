@@ -20,7 +20,7 @@ Made by `python -m tools.interfaces.endpoints_page fixtures`. `python -m
 tools.interfaces FOLDER...` reads checkouts, C++ and Python, and prints what known nodes
 declare: topics, services, actions, tf, whose node has them (its own, tf2's helper, a private one),
 the parameter that sets the name and the condition. A *difference* is an endpoint that only the sources
-or only `knowledge/nodes.yaml` have, another node that has it, or one that exists with a plugin or mode
+or only `knowledge/nodes/` have, another node that has it, or one that exists with a plugin or mode
 only. *Corrected* are those of the table before it was compared (`endpoints_corrected.tsv`), *excepted*
 those with a reason in `fixtures/interfaces_exceptions.tsv`.
 

@@ -10,7 +10,7 @@ import sys
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
-from multibot_rewrite.companions.params.known_nodes import built_in_nodes
+from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.releases import NEWEST_LTS, RELEASES
 from multibot_rewrite.rules.files.parameter_owners import owners
 from tools.interfaces.parameter_facts import ParameterFact, read_parameters

@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 
-from multibot_rewrite.bounded import load_yaml
+from multibot_rewrite.knowledge.records import NodeParameters
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import has_release
 from multibot_rewrite.rules.files.parameter_files import EMPTY, NO_DEFAULT, YAML
@@ -33,7 +33,7 @@ _SEGMENTS = {"*": r".+", "<>": r"(?:<\w+>|\w+)", "<index>": r"(?:<id>|\d+)"}
 
 
 class OurParameter(NamedTuple):
-    """A row of params.yaml; ``packages`` are those whose sources may have it."""
+    """A parameter of a known node; ``packages`` are those whose sources may have it."""
 
     node: str
     packages: tuple[str, ...]
@@ -58,18 +58,20 @@ class Difference(NamedTuple):
         return self.kind, self.subject, self.path
 
 
-def our_parameters(text: str, known: Owners) -> tuple[OurParameter, ...]:
-    """The rows of params.yaml; a parameter with several forms has a row for each."""
-    rows = []
-    for node, entry in load_yaml(text)["nodes"].items():
-        packages = (entry.get("package", ""), *known.also.get(node, ()))
-        for path, given in (entry.get("params") or {}).items():
-            for form in given if isinstance(given, list) else [given]:
-                row = form if isinstance(form, dict) else {"kind": form}
-                words = row.get("releases") or entry.get("releases") or ""
-                default = str(row.get("default", ""))
-                rows.append(OurParameter(node, packages, path, row["kind"], default, words))
-    return tuple(rows)
+def our_parameters(nodes: Iterable[NodeParameters], known: Owners) -> tuple[OurParameter, ...]:
+    """The known parameters; one with several forms has a row for each."""
+    return tuple(
+        OurParameter(
+            node.name,
+            (node.package, *known.also.get(node.name, ())),
+            it.path,
+            it.kind,
+            it.default,
+            it.releases or node.releases,
+        )
+        for node in nodes
+        for it in node.params
+    )
 
 
 def differences(

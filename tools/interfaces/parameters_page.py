@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from importlib.resources import files
 from pathlib import Path
 
+from multibot_rewrite.knowledge.stacks import every_release
 from multibot_rewrite.releases import RELEASES
 from multibot_rewrite.rules.files.parameter_owners import owners
 from tools.interfaces.launch_comparison import (
@@ -56,8 +57,8 @@ def page(tables: Path) -> str:
 
 def _row(tables: Path, release: str, facts: tuple[ParameterFact, ...]) -> str:
     known = owners()
-    table = files("multibot_rewrite.companions.params").joinpath("params.yaml").read_text("utf-8")
-    left = len({it.key for it in differences(our_parameters(table, known), facts, release, known)})
+    ours = our_parameters(every_release().parameters.values(), known)
+    left = len({it.key for it in differences(ours, facts, release, known)})
     corrected = _corrected(tables / "parameters_corrected.tsv", release)
     counts = (
         len({(it.package, it.owner, it.path) for it in facts}),

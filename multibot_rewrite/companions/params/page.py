@@ -5,14 +5,9 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 
-from multibot_rewrite.companions.params.known_nodes import (
-    PREFIX_KINDS,
-    KnownNode,
-    KnownNodes,
-    Param,
-    built_in_nodes,
-    has_default,
-)
+from multibot_rewrite.knowledge.parameter_entries import PREFIX_KINDS, has_default
+from multibot_rewrite.knowledge.parameters import KnownNode, KnownNodes, built_in_nodes
+from multibot_rewrite.knowledge.records import Param
 from multibot_rewrite.releases import NEWEST_LTS
 
 START = "<!-- from here on: python -m multibot_rewrite.companions.params.page -->\n"
@@ -35,7 +30,11 @@ def _rows(known: KnownNodes) -> Iterator[str]:
 
 
 def _title(node: KnownNode) -> str:
-    also = f"<br>also {', '.join(f'`{it}`' for it in node.aliases)}" if node.aliases else ""
+    also = (
+        f"<br>also {', '.join(f'`{it}`' for it in node.facts.aliases)}"
+        if node.facts.aliases
+        else ""
+    )
     return f"`{node.name}` ({node.package}){also}"
 
 

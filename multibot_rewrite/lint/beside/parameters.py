@@ -7,7 +7,6 @@ from collections.abc import Iterator, Sequence
 
 import yaml
 
-from multibot_rewrite.companions.params.known_nodes import KnownNode, built_in_nodes
 from multibot_rewrite.companions.params.name_sites import params_at
 from multibot_rewrite.companions.params.rcl_parameters import Value, value_of
 from multibot_rewrite.companions.params.sections import (
@@ -17,6 +16,7 @@ from multibot_rewrite.companions.params.sections import (
     raw_sections,
 )
 from multibot_rewrite.companions.yaml_text import YamlText, pairs
+from multibot_rewrite.knowledge.parameters import KnownNode, built_in_nodes
 from multibot_rewrite.lint.beside.records import Beside, Remark
 from multibot_rewrite.lint.facts.typos import meant_name
 from multibot_rewrite.model import InputError
@@ -107,10 +107,10 @@ def _of_plugins(title: str, given: Sequence[Given]) -> tuple[list[Section], tupl
 
 def _is_surely(node: KnownNode, name: str, type_: str, given: Sequence[Given]) -> bool:
     """Is it this controller, not another one that is often called the same?"""
-    if not node.types or type_ in node.types:
+    if not node.facts.types or type_ in node.facts.types:
         return True
     words = {it.name.partition(".")[0] for it in given}
-    by_words = bool(node.known_by) and words.issuperset(node.known_by)
+    by_words = bool(node.facts.known_by) and words.issuperset(node.facts.known_by)
     return "/" not in type_ and (name == node.name or by_words)
 
 

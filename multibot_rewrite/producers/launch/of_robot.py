@@ -14,7 +14,6 @@ from importlib.resources import files
 from typing import Any
 
 from multibot_rewrite.bounded import load_yaml
-from multibot_rewrite.companions.params.known_nodes import KnownNodes
 from multibot_rewrite.companions.params.sections import raw_sections
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.controller_ways import controller_way
@@ -23,6 +22,7 @@ from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import GivenNode, Place
 from multibot_rewrite.evidence.remapped import remapped
 from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.model import InputError
 from multibot_rewrite.producers.launch.bridge_rows import bridge_rows

@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.companions.params.known_nodes import KnownNodes
 from multibot_rewrite.controller_ways import controller_way
 from multibot_rewrite.evidence.filling import filled
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import Given, GivenNode, Place
+from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
 from multibot_rewrite.producers.launch.of_robot import document_of, has_sections, known_node, passes
 from multibot_rewrite.producers.launch.of_robot import programs as known_programs

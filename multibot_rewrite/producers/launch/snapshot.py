@@ -11,17 +11,8 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from lxml import etree
 
-from multibot_rewrite.graph.snapshot import (
-    EXPECTED,
-    Caveat,
-    Environment,
-    GraphEndpoint,
-    GraphFrame,
-    GraphNode,
-    Snapshot,
-)
-from multibot_rewrite.graph.states import NodeState
-from multibot_rewrite.graph.transforms import STATE_PUBLISHER, Edge, edges_in, sent_by
+from multibot_rewrite.graph.transforms import STATE_PUBLISHER, edges_in, sent_by
+from multibot_rewrite.graph.transforms import Edge as SentEdge
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.model import UsageError
@@ -48,13 +39,27 @@ from multibot_rewrite.rosnames import (
     resolve_bound,
 )
 from multibot_rewrite.system.conventions import CLOCK
-from multibot_rewrite.system.records import ACTION, PUBLISHES, SERVICE, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.parameters import parameter_text
+from multibot_rewrite.system.records import (
+    ACTION,
+    PUBLISHES,
+    SERVICE,
+    SIM_TIME,
+    SUBSCRIBES,
+    TOPIC,
+    Caveat,
+    Edge,
+    End,
+    Environment,
+    Node,
+    Parameter,
+    System,
+)
 
 CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
 TF, TF_STATIC, TF_TYPE = "/tf", "/tf_static", "tf2_msgs/msg/TFMessage"
 _CLASSIC = ("gazebo_ros", "spawn_entity.py")
 _PREFIX_SWITCH = "tf_frame_prefix_enable"
-_SIM_TIME = "use_sim_time"
 NOT_WHOLE, NOT_KNOWN, NO_TREE, REFUSED = (
     "launch-not-whole",
     "node-not-known",
@@ -67,11 +72,11 @@ class _Part(NamedTuple):
     """What one node adds to the graph: its endpoints, and its transforms by topic."""
 
     name: str
-    endpoints: tuple[GraphEndpoint, ...]
-    edges: tuple[tuple[str, Edge], ...]
+    endpoints: tuple[End, ...]
+    edges: tuple[tuple[str, SentEdge], ...]
 
 
-def would_run(graph: LaunchGraph, known: Knowledge) -> Snapshot:
+def would_run(graph: LaunchGraph, known: Knowledge) -> System:
     """The graph of all that the launch starts; what is not known makes the view incomplete."""
     nodes, notes = running_nodes(graph, known)
     refused: list[str] = []
@@ -83,12 +88,12 @@ def would_run(graph: LaunchGraph, known: Knowledge) -> Snapshot:
             refused.append(f"{it.full_name} ({it.place}: {error})")
             parts.append(_Part(it.full_name, (), ()))
     caveats = (*_refused(refused), *_caveats((*graph.notes, *notes), nodes), *_in_classic(graph))
-    return Snapshot(
-        tuple(GraphNode(part.name, it.process) for it, part in zip(nodes, parts, strict=True)),
+    return System(
+        tuple(Node(part.name, it.process) for it, part in zip(nodes, parts, strict=True)),
         tuple(end for part in parts for end in part.endpoints),
         tuple(_frames(parts)),
-        Environment(0, "", (), "", "", False, 0, EXPECTED, 0.0, caveats),
-        states=tuple(_states(nodes)),
+        Environment(caveats=caveats),
+        parameters=tuple(_clocks(nodes)),
     )
 
 
@@ -135,8 +140,8 @@ def _part(it: RunningNode, release: str) -> _Part:
     helper = _bound(it.name, it.process_namespace, it.process_rules)
     own = _endpoints(it, name, bound, helper, release)
     ends = [*own, *_bridged(it, name, bound)]
-    if _value(it, _SIM_TIME) is True and all(end.name != CLOCK for end in ends):
-        ends.append(GraphEndpoint(TOPIC, SUBSCRIBES, CLOCK, CLOCK_TYPE, "", name, None, it.process))
+    if _value(it, SIM_TIME) is True and all(end.name != CLOCK for end in ends):
+        ends.append(End(TOPIC, SUBSCRIBES, CLOCK, CLOCK_TYPE, "", name, None, it.process))
     return _Part(name, tuple(dict.fromkeys(ends)), tuple(_edges(it, bound)))
 
 
@@ -153,13 +158,13 @@ def _rule(text: str) -> RemapRule:
 
 def _endpoints(
     it: RunningNode, name: str, bound: BoundNode, helper: BoundNode, release: str
-) -> Iterator[GraphEndpoint]:
+) -> Iterator[End]:
     for end in it.facts.endpoints if it.facts and not is_bridge(it) else ():
         if not end.when and end.name and "<" not in end.name:
             own = end._replace(name=_below_namespace_above(it, end))
             full = _resolved(own, helper if end.helper else bound)
             type_ = _type(it, end, release)
-            yield GraphEndpoint(end.kind, end.role, full, type_, "", name, None, it.process)
+            yield End(end.kind, end.role, full, type_, "", name, None, it.process)
 
 
 def _type(it: RunningNode, end: Endpoint, release: str) -> str:
@@ -192,13 +197,13 @@ def _resolved(end: Endpoint, bound: BoundNode) -> str:
     return resolve_bound(end.name, end.kind, bound)
 
 
-def _bridged(it: RunningNode, name: str, bound: BoundNode) -> Iterator[GraphEndpoint]:
+def _bridged(it: RunningNode, name: str, bound: BoundNode) -> Iterator[End]:
     for role, topic, type_ in bridged_by(it) if is_bridge(it) else ():
         full = resolve_bound(topic, TOPIC, bound)
-        yield GraphEndpoint(TOPIC, role, full, type_, "", name, None, it.process)
+        yield End(TOPIC, role, full, type_, "", name, None, it.process)
 
 
-def _edges(it: RunningNode, bound: BoundNode) -> Iterator[tuple[str, Edge]]:
+def _edges(it: RunningNode, bound: BoundNode) -> Iterator[tuple[str, SentEdge]]:
     """The transforms of a node, each with its topic."""
     if it.facts is None:
         return
@@ -211,14 +216,14 @@ def _edges(it: RunningNode, bound: BoundNode) -> Iterator[tuple[str, Edge]]:
             yield resolve_bound(named, TOPIC, bound), edge
 
 
-def _own_edges(it: RunningNode) -> Iterable[Edge]:
+def _own_edges(it: RunningNode) -> Iterable[SentEdge]:
     if it.facts is None:
         return ()
     if _publishes_a_tree(it):
         return _tree(it) or ()
     prefix = _prefix(it)
     edges = sent_by(it.facts, "")
-    return [Edge(prefix + e.parent, prefix + e.child, e.static) for e in edges]
+    return [SentEdge(prefix + e.parent, prefix + e.child, e.static) for e in edges]
 
 
 def _prefix(it: RunningNode) -> str:
@@ -237,7 +242,7 @@ def _publishes_a_tree(it: RunningNode) -> bool:
     return it.facts is not None and it.facts.package == STATE_PUBLISHER
 
 
-def _tree(it: RunningNode) -> list[Edge] | None:
+def _tree(it: RunningNode) -> list[SentEdge] | None:
     """The transforms of a description under ``frame_prefix``; None where that is not known."""
     prefix = str(_value(it, "frame_prefix") or "")
     text = _value(it, DESCRIPTION)
@@ -247,7 +252,7 @@ def _tree(it: RunningNode) -> list[Edge] | None:
         root = etree.fromstring(text.encode(), etree.XMLParser(resolve_entities=False))
     except etree.XMLSyntaxError:
         return None
-    return [Edge(prefix + e.parent, prefix + e.child, e.static) for e in edges_in(root)]
+    return [SentEdge(prefix + e.parent, prefix + e.child, e.static) for e in edges_in(root)]
 
 
 def _value(it: RunningNode, name: str) -> object:
@@ -255,10 +260,10 @@ def _value(it: RunningNode, name: str) -> object:
     return given.value if given else None
 
 
-def _frames(parts: Sequence[_Part]) -> Iterator[GraphFrame]:
+def _frames(parts: Sequence[_Part]) -> Iterator[Edge]:
     """Each transform once, with all who send on its topic."""
     senders: dict[str, list[str]] = defaultdict(list)
-    times: dict[tuple[str, Edge], int] = defaultdict(int)
+    times: dict[tuple[str, SentEdge], int] = defaultdict(int)
     for part in parts:
         for end in part.endpoints:
             if (end.role, end.type) == (PUBLISHES, TF_TYPE):
@@ -267,12 +272,13 @@ def _frames(parts: Sequence[_Part]) -> Iterator[GraphFrame]:
             times[topic, edge] += 1
     for (topic, edge), count in times.items():
         who = tuple(dict.fromkeys(senders[topic]))
-        yield GraphFrame(edge.child, edge.parent, topic, edge.static, who, count > 1)
+        yield Edge(edge.child, edge.parent, topic, edge.static, who, count > 1)
 
 
-def _states(nodes: Iterable[RunningNode]) -> Iterator[NodeState]:
+def _clocks(nodes: Iterable[RunningNode]) -> Iterator[Parameter]:
     """Simulated time by parameter; the default is false (rclcpp time_source.cpp). What sends transforms
     that hold for ever needs no time."""
     for it in nodes:
         if it.facts is not None and it.facts.known != STATIC:
-            yield NodeState(it.full_name, sim_time=_value(it, _SIM_TIME) is True)
+            text = parameter_text(_value(it, SIM_TIME) is True)
+            yield Parameter(it.full_name, SIM_TIME, text)

@@ -12,8 +12,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from importlib.resources import files
 
-from multibot_rewrite.companions.params.known_nodes import KnownNode
 from multibot_rewrite.knowledge.nodl.lookup import Identity, file_of, find_interfaces, load
+from multibot_rewrite.knowledge.parameters import KnownNode
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.outside import outside
 from multibot_rewrite.record import NamedTuple

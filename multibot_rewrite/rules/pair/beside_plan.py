@@ -6,16 +6,12 @@ from collections.abc import Iterator, Sequence
 from fnmatch import fnmatchcase
 
 from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.graph.expectation import PlannedState
-from multibot_rewrite.graph.questions import SIM_TIME
-from multibot_rewrite.graph.snapshot import GraphEndpoint, Snapshot
-from multibot_rewrite.graph.states import NodeState
 from multibot_rewrite.rules.find import DANGERS, judge
 from multibot_rewrite.rules.index import index
 from multibot_rewrite.rules.ownership import whose_by_plan
 from multibot_rewrite.rules.pair.comparison import View
 from multibot_rewrite.rules.pair.planned_states import clock_not_planned, planned_clocks
-from multibot_rewrite.system.records import CALLS, PUBLISHES
+from multibot_rewrite.system.records import CALLS, PUBLISHES, SIM_TIME, End, System
 
 # Who sends, and who calls: what a danger is about.
 _ACTING = (PUBLISHES, CALLS)
@@ -41,20 +37,17 @@ def dangers_beside(view: View, found: Sequence[Finding]) -> Iterator[Finding]:
             yield danger
 
 
-def _without_planned(view: View) -> Snapshot:
+def _without_planned(view: View) -> System:
     """The graph without the states that the plan has: they are compared with it."""
-    planned = {it.node: it for it in view.plan.states}
-    states = (_not_planned(it, planned.get(it.node)) for it in view.graph.states)
-    return view.graph._replace(states=tuple(states))
-
-
-def _not_planned(seen: NodeState, planned: PlannedState | None) -> NodeState:
-    if planned is None:
-        return seen
-    timed = any(it.name == SIM_TIME for it in planned.parameters)
-    return seen._replace(
-        lifecycle="" if planned.lifecycle else seen.lifecycle,
-        sim_time=None if timed else seen.sim_time,
+    states = {it.node for it in view.plan.states if it.lifecycle}
+    timed = dict(planned_clocks(view.plan.states))
+    return view.graph._replace(
+        nodes=tuple(
+            it._replace(lifecycle="") if it.name in states else it for it in view.graph.nodes
+        ),
+        parameters=tuple(
+            it for it in view.graph.parameters if it.name != SIM_TIME or it.node not in timed
+        ),
     )
 
 
@@ -76,7 +69,7 @@ def _is_used_as_planned(view: View, name: str) -> bool:
     return bool(ends) and all(_is_planned(view, it) for it in ends)
 
 
-def _is_planned(view: View, end: GraphEndpoint) -> bool:
+def _is_planned(view: View, end: End) -> bool:
     if (end.node, end.kind, end.role, end.name) in view.planned:
         return True
     senders = (it.senders for it in view.plan.topics if it.name == end.name)

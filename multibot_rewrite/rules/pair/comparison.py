@@ -6,14 +6,13 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping, Set
 
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
-from multibot_rewrite.graph.snapshot import GraphEndpoint, Snapshot
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules.ownership import NameOwnership, frame_ownership, name_ownership
 from multibot_rewrite.rules.pair.similar_names import probable_matches
 from multibot_rewrite.rules.pair.tf_copies import without_bridged
 from multibot_rewrite.rules.pair.tf_trees import TfTree, tf_trees
-from multibot_rewrite.system.records import PUBLISHES, TOPIC
+from multibot_rewrite.system.records import PUBLISHES, TOPIC, End, System
 
 # Node, kind, role and name of an endpoint.
 EndpointKey = tuple[str, str, str, str]
@@ -33,16 +32,16 @@ class View(NamedTuple):
     """
 
     plan: Expectation
-    graph: Snapshot
-    by_node: dict[str, list[GraphEndpoint]]
-    by_name: dict[str, list[GraphEndpoint]]
+    graph: System
+    by_node: dict[str, list[End]]
+    by_name: dict[str, list[End]]
     robot_of: dict[str, str]
     ownership: NameOwnership
     frame_ownership: NameOwnership
     types: Mapping[EndpointKey, str]
     planned: Mapping[EndpointKey, PlannedEndpoint]
     missing: Mapping[EndpointKey, PlannedEndpoint]
-    unplanned_endpoints: Mapping[str, list[GraphEndpoint]]
+    unplanned_endpoints: Mapping[str, list[End]]
     published_topics: Set[str]
     seen: Mapping[str, int]
     unplanned: tuple[str, ...]
@@ -54,12 +53,12 @@ class View(NamedTuple):
     may_miss: frozenset[str]
 
 
-def make_view(plan: Expectation, graph: Snapshot) -> View:
+def make_view(plan: Expectation, graph: System) -> View:
     """Build the look-ups once for all rules."""
-    graph = graph._replace(frames=without_bridged(plan, graph.frames))
+    graph = graph._replace(edges=without_bridged(plan, graph.edges))
     # Their first four fields are the key.
     planned = {end[:4]: end for end in plan.endpoints}
-    index = _index_endpoints(graph.endpoints, planned)
+    index = _index_endpoints(graph.ends, planned)
     robot_of = {node: robot.name for robot in plan.robots for node in robot.nodes}
     seen = Counter(node.name for node in graph.nodes)
     in_plan = {*robot_of, *plan.shared_nodes}
@@ -84,7 +83,7 @@ def make_view(plan: Expectation, graph: Snapshot) -> View:
         unplanned=unplanned,
         probable_matches=probable_matches(missing, others, unplanned, ownership),
         places=dict(plan.sources),
-        trees=tf_trees(graph.frames, plan.robots, ownership),
+        trees=tf_trees(graph.edges, plan.robots, ownership),
         robots={robot.name: robot for robot in plan.robots},
         frames_of={r.name: frozenset((*r.frames, *r.other_frames)) for r in plan.robots},
         may_miss=frozenset(
@@ -96,23 +95,23 @@ def make_view(plan: Expectation, graph: Snapshot) -> View:
 
 
 class _EndpointIndex(NamedTuple):
-    by_node: dict[str, list[GraphEndpoint]]
-    by_name: dict[str, list[GraphEndpoint]]
-    unplanned: dict[str, list[GraphEndpoint]]
+    by_node: dict[str, list[End]]
+    by_name: dict[str, list[End]]
+    unplanned: dict[str, list[End]]
     types: dict[EndpointKey, str]
     published: set[str]
     missing: dict[EndpointKey, PlannedEndpoint]
 
 
 def _index_endpoints(
-    endpoints: Iterable[GraphEndpoint], planned: Mapping[EndpointKey, PlannedEndpoint]
+    endpoints: Iterable[End], planned: Mapping[EndpointKey, PlannedEndpoint]
 ) -> _EndpointIndex:
     index = _EndpointIndex(
         defaultdict(list), defaultdict(list), defaultdict(list), {}, set(), dict(planned)
     )
     by_node, by_name, unplanned, types, published, missing = index
     for endpoint in endpoints:
-        kind, role, name, type_, _, node, _, _ = endpoint
+        kind, role, name, type_, _, node = endpoint[:6]
         key = (node, kind, role, name)
         by_node[node].append(endpoint)
         by_name[name].append(endpoint)

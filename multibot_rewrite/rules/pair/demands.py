@@ -8,12 +8,11 @@ from fnmatch import fnmatchcase
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.expectation import PlannedTopic
-from multibot_rewrite.graph.snapshot import GraphEndpoint
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import graph_rule
 from multibot_rewrite.rules.pair.causes import DOES
 from multibot_rewrite.rules.pair.comparison import View
-from multibot_rewrite.system.records import PUBLISHES, TOPIC
+from multibot_rewrite.system.records import PUBLISHES, TOPIC, End
 
 # How the nodes of ros_gz_bridge are called.
 _BRIDGES = ("bridge", "parameter_bridge")
@@ -58,7 +57,7 @@ def _may_send(topic: PlannedTopic, node: str) -> bool:
     return any(fnmatchcase(node, pattern) for pattern in topic.senders)
 
 
-def _publishers(view: View, topic: PlannedTopic) -> Iterator[GraphEndpoint]:
+def _publishers(view: View, topic: PlannedTopic) -> Iterator[End]:
     ends = view.by_name.get(topic.name, ())
     return (it for it in ends if (it.kind, it.role) == (TOPIC, PUBLISHES))
 
@@ -133,7 +132,7 @@ def other_qos_offered(view: View) -> Iterator[Finding]:
                 yield other_qos_offered.finding(message, hint, **_about(view, topic, end.node))
 
 
-def _different(topic: PlannedTopic, end: GraphEndpoint) -> Iterator[str]:
+def _different(topic: PlannedTopic, end: End) -> Iterator[str]:
     """Each policy that is not as planned; one whose word is not known is none."""
     for policy, word in topic.qos if end.qos else ():
         offered = getattr(end.qos, policy)

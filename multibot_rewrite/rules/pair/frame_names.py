@@ -7,7 +7,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.expectation import PlannedRobot
-from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.rules.declaration import graph_rule
 from multibot_rewrite.rules.ownership import SEPARATORS, without_tag_once
@@ -17,6 +16,7 @@ from multibot_rewrite.rules.pair.frame_prefixes import added_prefixes, robot_beh
 from multibot_rewrite.rules.pair.similar_names import similar
 from multibot_rewrite.rules.pair.tf_senders import sent_by_robot, state_publisher, where_set
 from multibot_rewrite.rules.pair.tf_trees import TfTree, frames_in
+from multibot_rewrite.system.records import Edge
 
 
 @graph_rule(
@@ -190,7 +190,7 @@ def _undeclared(view: View, robot: PlannedRobot, names: Sequence[str]) -> Findin
     return undeclared_frame.finding(message, cause, robot=robot.name, names=tuple(names))
 
 
-def _of_a_sensor(view: View, robot: str, name: str, children: Mapping[str, GraphFrame]) -> bool:
+def _of_a_sensor(view: View, robot: str, name: str, children: Mapping[str, Edge]) -> bool:
     """Whether a frame is one that a driver adds below its sensor's link.
 
     Its name begins like the link's: camera_depth_frame is below camera_link.
@@ -258,7 +258,7 @@ def _behind_prefixes(view: View, tree: TfTree) -> Iterator[tuple[str, str]]:
 
 
 def _not_in_a_description(
-    view: View, tree: TfTree, children: Mapping[str, GraphFrame]
+    view: View, tree: TfTree, children: Mapping[str, Edge]
 ) -> dict[str, list[str]]:
     """By robot: the frames of a tree that are its own and not in its description."""
     found: dict[str, list[str]] = defaultdict(list)
@@ -308,9 +308,7 @@ def _has_name_twice(view: View, robot: PlannedRobot, name: str) -> bool:
     return twice != once and not ambiguous and twice in _by_plain_name(view, robot)
 
 
-def _robot_without_frame(
-    view: View, tree: TfTree, name: str, children: Mapping[str, GraphFrame]
-) -> str:
+def _robot_without_frame(view: View, tree: TfTree, name: str, children: Mapping[str, Edge]) -> str:
     """The robot of a frame by name or topic, if the frame is not in the robot's description."""
     if name in view.plan.shared_frames or view.frame_ownership.exact.get(name):
         return ""

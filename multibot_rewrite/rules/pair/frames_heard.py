@@ -48,7 +48,7 @@ running: transform base_link/robot1 -> wheel/robot1 on /tf
 def frame_not_received(view: View) -> Iterator[Finding]:
     """One finding for a robot whose senders all run. Where no transform was received at all, tf may
     not have been looked at."""
-    senders = _senders(view) if view.graph.frames else {}
+    senders = _senders(view) if view.graph.edges else {}
     trees, strays = _trees_of(view), _strays(view)
     for robot in view.plan.robots:
         needed = senders.get(robot.name, set()) - view.may_miss

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.enclaves import enclave_of
-from multibot_rewrite.graph.snapshot import GraphNode
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.rules.declaration import graph_rule
 from multibot_rewrite.rules.pair.comparison import View
+from multibot_rewrite.system.records import Node
 
 
 @graph_rule(
@@ -71,14 +71,14 @@ def without_enclave(view: View) -> Iterator[Finding]:
     planned = [it for it in view.graph.nodes if it.name in view.robot_of]
     if not any(it.enclave for it in planned):
         return
-    bare: dict[str, list[GraphNode]] = {robot: [] for robot in view.robots}
+    bare: dict[str, list[Node]] = {robot: [] for robot in view.robots}
     for it in planned:
         if not it.enclave:
             bare[view.robot_of[it.name]].append(it)
     yield from (_bare(robot, nodes) for robot, nodes in bare.items() if nodes)
 
 
-def _bare(robot: str, nodes: list[GraphNode]) -> Finding:
+def _bare(robot: str, nodes: list[Node]) -> Finding:
     names = [it.name for it in nodes]
     return without_enclave.finding(
         f"{shorten(names)}: in no enclave", _start(robot), robot=robot, node=names[0]

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 
 from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.graph.expectation import PlannedEndpoint
-from multibot_rewrite.graph.snapshot import LISTENER
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import graph_rule
 from multibot_rewrite.rules.pair.causes import (
@@ -21,7 +20,7 @@ from multibot_rewrite.rules.pair.causes import (
 )
 from multibot_rewrite.rules.pair.comparison import View
 from multibot_rewrite.rules.pair.tf_copies import copying_nodes
-from multibot_rewrite.system.conventions import EVERYBODYS
+from multibot_rewrite.system.conventions import EVERYBODYS, LISTENER
 from multibot_rewrite.system.records import SUBSCRIBES, TOPIC
 
 

@@ -7,14 +7,13 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.expectation import PlannedParameter, PlannedState
-from multibot_rewrite.graph.questions import SIM_TIME
 from multibot_rewrite.graph.reach import machines
-from multibot_rewrite.graph.states import NodeState, parameter_text, parameter_value
 from multibot_rewrite.graph.wording import FEW, SEVERAL, shorten
 from multibot_rewrite.rules.declaration import graph_rule
 from multibot_rewrite.rules.pair.comparison import View
 from multibot_rewrite.system.conventions import CLOCK
-from multibot_rewrite.system.records import SUBSCRIBES
+from multibot_rewrite.system.parameters import parameter_text, parameter_value
+from multibot_rewrite.system.records import SIM_TIME, SUBSCRIBES, clocks
 
 # A planned parameter, and its value there.
 Difference = tuple[PlannedParameter, str]
@@ -43,19 +42,16 @@ running: /robot1/amcl is active
 )
 def state_not_planned(view: View) -> Iterator[Finding]:
     """A node that did not answer is not known."""
-    for planned, seen in _asked(view):
-        if planned.lifecycle and seen.lifecycle and seen.lifecycle != planned.lifecycle:
+    states = {it.name: it.lifecycle for it in view.graph.nodes if it.lifecycle}
+    for planned in view.plan.states:
+        seen = states.get(planned.node, planned.lifecycle)
+        if planned.lifecycle and seen != planned.lifecycle:
             yield state_not_planned.finding(
-                f"is {seen.lifecycle}, planned is {planned.lifecycle}",
-                f"ros2 lifecycle get {seen.node}; see the log of its lifecycle manager",
-                robot=view.robot_of.get(seen.node, ""),
-                node=seen.node,
+                f"is {seen}, planned is {planned.lifecycle}",
+                f"ros2 lifecycle get {planned.node}; see the log of its lifecycle manager",
+                robot=view.robot_of.get(planned.node, ""),
+                node=planned.node,
             )
-
-
-def _asked(view: View) -> Iterator[tuple[PlannedState, NodeState]]:
-    seen = {it.node: it for it in view.graph.states}
-    return ((it, seen[it.node]) for it in view.plan.states if it.node in seen)
 
 
 @graph_rule(
@@ -83,20 +79,20 @@ running: /robot1/amcl has base_frame_id robot1/base_link
 )
 def parameter_not_planned(view: View) -> Iterator[Finding]:
     """One finding a node; a parameter that it does not have is not known."""
-    for planned, seen in _asked(view):
-        found = [*_differences(planned, seen)]
+    values = {(it.node, it.name): it.value for it in view.graph.parameters}
+    for planned in view.plan.states:
+        found = [*_differences(planned, values)]
         # What makes it an error comes first.
         found.sort(key=lambda it: not _is_serious(view, planned.node, it[0]))
         if found:
             yield _differs(view, planned.node, found)
 
 
-def _differences(planned: PlannedState, seen: NodeState) -> Iterator[Difference]:
-    values = {it.name: it.value for it in seen.parameters}
-    if seen.sim_time is not None:
-        values[SIM_TIME] = parameter_text(seen.sim_time)
+def _differences(
+    planned: PlannedState, values: Mapping[tuple[str, str], str]
+) -> Iterator[Difference]:
     for it in planned.parameters:
-        value = values.get(it.name)
+        value = values.get((planned.node, it.name))
         if value is not None and not _is_same(it.value, value):
             yield it, value
 
@@ -180,7 +176,7 @@ running: /bridge publishes /clock rosgraph_msgs/msg/Clock
 def clock_not_planned(view: View) -> Iterator[Finding]:
     """One finding for the nodes of a robot that differ alike."""
     timed = {it.node for it in view.by_name.get(CLOCK, ()) if it.role == SUBSCRIBES}
-    asked = {it.node for it in view.graph.states if it.sim_time is not None}
+    asked = clocks(view.graph)
     differing: dict[tuple[str, str], list[str]] = defaultdict(list)
     for node, wanted in planned_clocks(view.plan.states):
         if node in view.seen and node not in asked and wanted != parameter_text(node in timed):

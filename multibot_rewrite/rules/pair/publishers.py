@@ -6,18 +6,17 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.graph.snapshot import GraphEndpoint
 from multibot_rewrite.rules.declaration import graph_rule
 from multibot_rewrite.rules.pair.causes import in_namespaces_above, use_absolute
 from multibot_rewrite.rules.pair.comparison import View
 from multibot_rewrite.rules.pair.similar_names import similar
 from multibot_rewrite.system.conventions import EVERYBODYS
-from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, End
 
 # In the names of Nav2's costmap nodes.
 COSTMAP = "costmap"
 # Publishers by their topic without the robot's name.
-Publishers = dict[str, list[GraphEndpoint]]
+Publishers = dict[str, list[End]]
 
 
 @graph_rule(
@@ -75,7 +74,7 @@ def _nodes_with_own_namespace(view: View) -> Iterator[tuple[str, str]]:
             yield node, robot
 
 
-def _without_publisher(view: View, node: str) -> Iterator[GraphEndpoint]:
+def _without_publisher(view: View, node: str) -> Iterator[End]:
     """A node's subscriptions without a publisher, each topic once. A costmap reads its robot's sensors;
     for other nodes the plan is right."""
     costmap = COSTMAP in node.rpartition("/")[2]
@@ -132,7 +131,7 @@ def no_publisher(view: View) -> Iterator[Finding]:
             yield _published_as(robot, node, name, other)
 
 
-def _published_as(robot: str, node: str, name: str, other: GraphEndpoint) -> Finding:
+def _published_as(robot: str, node: str, name: str, other: End) -> Finding:
     published = f"{other.node} publishes {other.name}"
     message = f"subscribes to {name}, which has no publisher; {published}"
     cause = f"if that is meant for {robot}, pass the rule {other.name}:={name} to {other.node}"
@@ -162,7 +161,7 @@ def _unplanned_publishers(view: View) -> Mapping[str, Publishers]:
 
 def _similar_publisher(
     plain: str, own: Publishers, unowned: Publishers, planned: bool
-) -> GraphEndpoint | None:
+) -> End | None:
     """The publisher that is probably meant.
 
     It publishes the topic without a robot's name or, where the plan has a publisher, a similar one.

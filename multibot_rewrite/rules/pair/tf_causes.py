@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence, Set
 
 from multibot_rewrite.graph.expectation import PlannedRobot
-from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.rules.index import tree_topic
 from multibot_rewrite.rules.pair.causes import Cause, caused
@@ -20,7 +19,7 @@ from multibot_rewrite.rules.pair.tf_senders import (
     where_set,
 )
 from multibot_rewrite.rules.pair.tf_trees import TfTree
-from multibot_rewrite.system.records import PUBLISHES
+from multibot_rewrite.system.records import PUBLISHES, Edge
 
 JOINT_STATES, TF = "sensor_msgs/msg/JointState", "tf2_msgs/msg/TFMessage"
 
@@ -43,12 +42,12 @@ def _trees(view: View, robot: PlannedRobot) -> Iterator[TfTree]:
     return (tree for tree in view.trees if tree.topic == tree_topic(robot.tf))
 
 
-def _is_sent(planned: Sent, edges: Sequence[GraphFrame]) -> bool:
+def _is_sent(planned: Sent, edges: Sequence[Edge]) -> bool:
     return any((it.parent, it.child) == planned[1:] for it in edges)
 
 
 def _two_names(
-    view: View, robot: PlannedRobot, roots: Sequence[str], edges: Sequence[GraphFrame]
+    view: View, robot: PlannedRobot, roots: Sequence[str], edges: Sequence[Edge]
 ) -> Cause | None:
     """A root that is in the tree under another name, with the robot's or without."""
     children = {edge.child for edge in edges}

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from multibot_rewrite.graph.expectation import Expectation, PlannedRobot
-from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules.index import tree_topic
 from multibot_rewrite.rules.pair.comparison import View
 from multibot_rewrite.rules.pair.tf_trees import TfTree
+from multibot_rewrite.system.records import Edge
 
 
 class Sent(NamedTuple):
@@ -39,7 +39,7 @@ def sent_by_robot(view: View, robot: PlannedRobot) -> list[Sent]:
     return list(own)
 
 
-def foreign(view: View, robot: PlannedRobot) -> Iterator[tuple[str, GraphFrame]]:
+def foreign(view: View, robot: PlannedRobot) -> Iterator[tuple[str, Edge]]:
     """Transforms of other robots, each with its robot, that a node of this one may send: all on a tf
     topic of its own, else what several nodes send."""
     for tree in view.trees:

@@ -6,10 +6,10 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.graph.expectation import PlannedRobot
-from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules.index import tree_topic
 from multibot_rewrite.rules.ownership import NameOwnership
+from multibot_rewrite.system.records import Edge
 
 
 class TfTree(NamedTuple):
@@ -21,20 +21,20 @@ class TfTree(NamedTuple):
     """
 
     topic: str
-    edges: tuple[GraphFrame, ...]
+    edges: tuple[Edge, ...]
     senders: Mapping[str, tuple[str, ...]]
     home: tuple[str, ...]
     robots: tuple[str, ...]
 
 
 def tf_trees(
-    frames: Iterable[GraphFrame], robots: Iterable[PlannedRobot], ownership: NameOwnership
+    frames: Iterable[Edge], robots: Iterable[PlannedRobot], ownership: NameOwnership
 ) -> tuple[TfTree, ...]:
     """One tree for each tf topic with transforms."""
     home: dict[str, list[str]] = defaultdict(list)
     for robot in robots:
         home[tree_topic(robot.tf)].append(robot.name)
-    edges: dict[str, list[GraphFrame]] = defaultdict(list)
+    edges: dict[str, list[Edge]] = defaultdict(list)
     # The same for all transforms on a topic.
     senders: dict[str, tuple[str, ...]] = {}
     for frame in frames:
@@ -56,7 +56,7 @@ def tf_trees(
 
 def _tree(
     topic: str,
-    edges: tuple[GraphFrame, ...],
+    edges: tuple[Edge, ...],
     senders: Mapping[str, tuple[str, ...]],
     home: tuple[str, ...],
 ) -> TfTree:

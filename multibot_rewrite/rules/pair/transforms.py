@@ -7,7 +7,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 
 from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.graph.expectation import PlannedRobot
-from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.rules.declaration import graph_rule
 from multibot_rewrite.rules.index import tree_topic
@@ -16,7 +15,7 @@ from multibot_rewrite.rules.pair.comparison import View
 from multibot_rewrite.rules.pair.tf_causes import why_disconnected
 from multibot_rewrite.rules.pair.tf_senders import planned_transforms, senders_there
 from multibot_rewrite.rules.pair.tf_trees import TfTree
-from multibot_rewrite.system.records import PUBLISHES
+from multibot_rewrite.system.records import PUBLISHES, Edge
 
 
 @graph_rule(
@@ -121,7 +120,7 @@ def _root(above: Mapping[str, str], frame: str) -> str:
     return "" if frame in above else frame
 
 
-def _robots_at_home(view: View, tree: TfTree, edge: GraphFrame) -> Set[str]:
+def _robots_at_home(view: View, tree: TfTree, edge: Edge) -> Set[str]:
     return {_robot_at_home(view, tree, frame) for frame in (edge.child, edge.parent)} - {""}
 
 
@@ -163,7 +162,7 @@ def wrong_tf_topic(view: View) -> Iterator[Finding]:
     """One finding for a robot and topic."""
     children = {tree.topic: {edge.child for edge in tree.edges} for tree in view.trees}
     for tree in view.trees:
-        misplaced: dict[str, list[GraphFrame]] = defaultdict(list)
+        misplaced: dict[str, list[Edge]] = defaultdict(list)
         for edge in tree.edges:
             robot = _sending_robot(view, tree, edge.child)
             if robot and tree_topic(view.robots[robot].tf) != tree.topic:
@@ -176,7 +175,7 @@ def wrong_tf_topic(view: View) -> Iterator[Finding]:
                 yield _wrong_topic(view, tree, view.robots[robot], edges)
 
 
-def _only_planned(view: View, tree: TfTree, robot: str, edges: Iterable[GraphFrame]) -> bool:
+def _only_planned(view: View, tree: TfTree, robot: str, edges: Iterable[Edge]) -> bool:
     """Do only those nodes of the robot send on a topic that should by the plan?"""
     topics = {edge.topic for edge in edges}
     planned = {
@@ -185,9 +184,7 @@ def _only_planned(view: View, tree: TfTree, robot: str, edges: Iterable[GraphFra
     return planned.issuperset(tree.senders.get(robot, ()))
 
 
-def _wrong_topic(
-    view: View, tree: TfTree, robot: PlannedRobot, edges: Sequence[GraphFrame]
-) -> Finding:
+def _wrong_topic(view: View, tree: TfTree, robot: PlannedRobot, edges: Sequence[Edge]) -> Finding:
     frames = tuple(dict.fromkeys(edge.child for edge in edges))
     message = f"frame {frames[0]} of {robot.name} is on {edges[0].topic}, expected on {robot.tf}"
     if len(frames) > 1:
@@ -205,9 +202,7 @@ def _sending_robot(view: View, tree: TfTree, frame: str) -> str:
     return only if frame in view.robots[only].frames else ""
 
 
-def _why_wrong_topic(
-    view: View, tree: TfTree, robot: PlannedRobot, edges: Iterable[GraphFrame]
-) -> Cause:
+def _why_wrong_topic(view: View, tree: TfTree, robot: PlannedRobot, edges: Iterable[Edge]) -> Cause:
     senders = tree.senders.get(robot.name) or tuple(_senders(tree))
     who = shorten(senders) or "its publisher"
     places = [place for _, place in (plugin_of(view, node) for node in senders) if place]

@@ -9,12 +9,11 @@ from math import inf
 
 from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.graph.expectation import PlannedEndpoint
-from multibot_rewrite.graph.snapshot import ZENOH, GraphEndpoint, Qos
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.rules.declaration import graph_rule
 from multibot_rewrite.rules.pair.causes import DOES, caused, plugin_of
 from multibot_rewrite.rules.pair.comparison import View
-from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, ZENOH, End, Qos
 
 # The words of each policy, the weakest first; any other word does not say what is in force.
 RELIABILITY = ("BEST_EFFORT", "RELIABLE")
@@ -61,23 +60,23 @@ def type_mismatch(view: View) -> Iterator[Finding]:
         yield _not_as_planned(view, planned, seen)
 
 
-def _same_type(ends: Sequence[GraphEndpoint]) -> bool:
+def _same_type(ends: Sequence[End]) -> bool:
     """The usual case, checked first because it is fast."""
     first = (ends[0].type, ends[0].type_hash, ends[0].kind)
     return all((end.type, end.type_hash, end.kind) == first for end in ends)
 
 
-def _by_kind(ends: Sequence[GraphEndpoint]) -> Iterable[Sequence[GraphEndpoint]]:
+def _by_kind(ends: Sequence[End]) -> Iterable[Sequence[End]]:
     """A topic and a service may have the same name."""
     if len({end.kind for end in ends}) == 1:
         return (ends,)
-    kinds: dict[str, list[GraphEndpoint]] = defaultdict(list)
+    kinds: dict[str, list[End]] = defaultdict(list)
     for end in ends:
         kinds[end.kind].append(end)
     return kinds.values()
 
 
-def _several_types(view: View, name: str, ends: Sequence[GraphEndpoint]) -> Finding | None:
+def _several_types(view: View, name: str, ends: Sequence[End]) -> Finding | None:
     types = Counter(end.type for end in ends if end.type)
     if len(types) < 2:
         return None
@@ -93,14 +92,14 @@ def _several_types(view: View, name: str, ends: Sequence[GraphEndpoint]) -> Find
     return _finding(view, by_type[order[0]][0], message, cause)
 
 
-def _planned_types(view: View, end: GraphEndpoint) -> tuple[str, ...]:
+def _planned_types(view: View, end: End) -> tuple[str, ...]:
     planned = view.planned.get((end.node, end.kind, end.role, end.name))
     return (planned.type, *planned.also) if planned else ()
 
 
-def _several_versions(view: View, name: str, ends: Sequence[GraphEndpoint]) -> Finding | None:
+def _several_versions(view: View, name: str, ends: Sequence[End]) -> Finding | None:
     """One type in two versions: the names match, the messages do not."""
-    by_hash: dict[str, list[GraphEndpoint]] = defaultdict(list)
+    by_hash: dict[str, list[End]] = defaultdict(list)
     for end in ends:
         if end.type_hash.startswith(HASH):
             by_hash[end.type_hash].append(end)
@@ -117,13 +116,13 @@ def _several_versions(view: View, name: str, ends: Sequence[GraphEndpoint]) -> F
     return _finding(view, rarest[0], message, cause)
 
 
-def _who(ends: Sequence[GraphEndpoint]) -> str:
+def _who(ends: Sequence[End]) -> str:
     more = len({end.node for end in ends}) - 1
     others = f" (and {more} more)" if more else ""
     return f"{ends[0].node}{others} {DOES[ends[0].role]}"
 
 
-def _finding(view: View, end: GraphEndpoint, message: str, cause: str) -> Finding:
+def _finding(view: View, end: End, message: str, cause: str) -> Finding:
     robot = view.robot_of.get(end.node) or view.ownership.robot(end.name)
     return type_mismatch.finding(message, cause, robot=robot, node=end.node, names=(end.name,))
 
@@ -177,7 +176,7 @@ def qos_mismatch(view: View) -> Iterator[Finding]:
                     yield _qos_finding(view, name, senders, node, conflicts)
 
 
-def _by_qos(ends: Iterable[GraphEndpoint], role: str) -> dict[Qos, list[str]]:
+def _by_qos(ends: Iterable[End], role: str) -> dict[Qos, list[str]]:
     """The nodes on one side of a topic by their QoS, where it is known."""
     found: dict[Qos, dict[str, None]] = {}
     for end in ends:

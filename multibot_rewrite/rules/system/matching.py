@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.graph.snapshot import ZENOH, GraphEndpoint
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.rules.declaration import danger_rule
-from multibot_rewrite.rules.places import see, where
 from multibot_rewrite.rules.index import Ends, Index, is_viewer, nodes_of
 from multibot_rewrite.rules.pair.type_and_qos import STAMPED, qos_conflicts
+from multibot_rewrite.rules.places import see, where
 from multibot_rewrite.system.conventions import EVERYBODYS
-from multibot_rewrite.system.records import TOPIC
+from multibot_rewrite.system.records import TOPIC, ZENOH, End
 
 
 @danger_rule(
@@ -121,7 +120,7 @@ def qos_never_meets(seen: Index) -> Iterator[Finding]:
                 yield _never_meets(seen, end, ends.publishers, conflicts)
 
 
-def _with_all(end: GraphEndpoint, ends: Ends) -> tuple[tuple[str, str], ...]:
+def _with_all(end: End, ends: Ends) -> tuple[tuple[str, str], ...]:
     """Where a subscriber's QoS conflicts, if it does with every publisher; else nothing."""
     found = [qos_conflicts(it.qos, end.qos) if it.qos and end.qos else () for it in ends.publishers]
     return found[0] if all(found) else ()
@@ -129,8 +128,8 @@ def _with_all(end: GraphEndpoint, ends: Ends) -> tuple[tuple[str, str], ...]:
 
 def _never_meets(
     seen: Index,
-    end: GraphEndpoint,
-    publishers: Iterable[GraphEndpoint],
+    end: End,
+    publishers: Iterable[End],
     conflicts: tuple[tuple[str, str], ...],
 ) -> Finding:
     offered = " and ".join(offer for offer, _ in conflicts)

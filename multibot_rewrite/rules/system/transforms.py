@@ -8,7 +8,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import danger_rule
-from multibot_rewrite.rules.places import see, where
 from multibot_rewrite.rules.index import (
     Index,
     Tree,
@@ -18,7 +17,9 @@ from multibot_rewrite.rules.index import (
     robots_of,
     unique,
 )
+from multibot_rewrite.rules.places import see, where
 from multibot_rewrite.system.conventions import WORLD_FRAMES
+from multibot_rewrite.system.records import Edge
 
 _STATIC = "static_transform_publisher"
 

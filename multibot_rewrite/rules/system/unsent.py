@@ -56,7 +56,7 @@ def no_longer_sent(end: End) -> Finding:
 
 
 def open_ends(seen: Index) -> list[End]:
-    """What nodes surely need by their code, and nothing gives; what people or planners send is no gap."""
+    """What nodes surely need by their code, and nothing gives."""
     return [
         end
         for (kind, name), ends in seen.names.items()

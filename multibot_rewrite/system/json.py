@@ -1,6 +1,6 @@
-"""What a ROS graph looks like: frozen records, and how they are read and written as JSON.
+"""A system as JSON: written, one record on each line, and read with checks. Pure.
 
-Pure, needs no ROS. Field names follow ``rosgraph_msgs`` (rcl_interfaces) where it has them.
+``system.schema.json`` says the same of a file as a JSON schema.
 """
 
 from __future__ import annotations
@@ -15,7 +15,8 @@ from typing import Any, cast, get_args, get_origin, get_type_hints
 
 from multibot_rewrite.bounded import load_json
 from multibot_rewrite.gc_pause import gc_paused
-from multibot_rewrite.graph.json_values import (
+from multibot_rewrite.model import InputError
+from multibot_rewrite.system.json_values import (
     Reader,
     WrongValue,
     read_full_name,
@@ -27,165 +28,60 @@ from multibot_rewrite.graph.json_values import (
     shown,
     unexpected,
 )
-from multibot_rewrite.graph.states import NodeState
-from multibot_rewrite.model import InputError
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.system.records import KINDS, ROLES
+from multibot_rewrite.system.records import (
+    CHANGING,
+    EXPECTED,
+    KINDS,
+    MAY,
+    QUIET,
+    ROLES,
+    RUNS,
+    TIMEOUT,
+    UNKNOWN,
+    Controller,
+    Edge,
+    End,
+    Environment,
+    Heard,
+    Node,
+    Parameter,
+    Qos,
+    Sure,
+    System,
+)
+from multibot_rewrite.system.schema_1 import OldSnapshot, OldState, system_of
 
-SCHEMA = 1
-# Why the observation ended: all expected nodes are there, the graph no longer changes, the timeout
-# is over. CHANGING: it has not ended, the graph is being watched.
-EXPECTED, QUIET, TIMEOUT, CHANGING = "expected", "quiet", "timeout", "changing"
-# The node name in rmw of an endpoint whose participant has not announced its nodes yet.
-UNKNOWN_NODE = "_NODE_NAME_UNKNOWN_"
-# The RMW of a view from a Zenoh router.
-ZENOH = "rmw_zenoh_cpp"
-# How the names of tf2's listener nodes start; the rest is an address.
-LISTENER = "transform_listener_impl_"
+SCHEMA = 2
 
-
-class Qos(NamedTuple):
-    """The quality of service an endpoint offers or requests; words as in ``rosgraph_msgs``.
-
-    Times are seconds, ``inf`` (null in JSON) is no limit. Fast DDS does not announce history and
-    depth to other processes: they are ``UNKNOWN`` and 0 then.
-    """
-
-    history: str
-    depth: int
-    reliability: str
-    durability: str
-    deadline: float
-    lifespan: float
-    liveliness: str
-    liveliness_lease_duration: float
-
-
-class GraphNode(NamedTuple):
-    """One node. Two nodes with one name are two records.
-
-    ``name`` is fully qualified. ``process`` identifies the DDS participant of the node, empty
-    where it is not known. ``enclave`` is that of its process (SROS2), empty for none.
-    """
-
-    name: str
-    process: str
-    enclave: str = ""
-
-
-class GraphEndpoint(NamedTuple):
-    """A node's end of a topic, service or action.
-
-    ``kind`` and ``role`` are the words of ``remap.records``. ``name`` and ``node`` are fully
-    qualified. ``type_hash``, ``qos`` and the endpoint's own ``process`` are known only where the
-    topic was queried; otherwise they are empty, None and the process of the node.
-    """
-
-    kind: str
-    role: str
-    name: str
-    type: str
-    type_hash: str
-    node: str
-    qos: Qos | None
-    process: str
-
-
-class GraphFrame(NamedTuple):
-    """A transform received on ``topic``; ``publishers`` are all nodes that publish there.
-
-    tf messages do not say which node sent them; ``several`` is whether more than one did.
-    ``transform`` is the last one: x, y, z in metres and a quaternion x, y, z, w; empty if not known.
-    """
-
-    child: str
-    parent: str
-    topic: str
-    static: bool
-    publishers: tuple[str, ...]
-    several: bool = False
-    transform: tuple[float, ...] = ()
-
-
-class HeardFrame(NamedTuple):
-    """The ``header.frame_id`` of a message that was received on ``topic``, as it is written there."""
-
-    topic: str
-    frame: str
-
-
-class Caveat(NamedTuple):
-    """What to know about a view; with ``incomplete`` something may be missing in it."""
-
-    code: str
-    incomplete: bool
-    message: str
-
-
-class Environment(NamedTuple):
-    """How the graph was observed, and how complete the view is.
-
-    ``participants`` counts the DDS participants without the observer's own. ``settled`` is
-    ``EXPECTED``, ``QUIET``, ``TIMEOUT`` or ``CHANGING``, reached after ``seconds``.
-    """
-
-    domain: int
-    range: str
-    static_peers: tuple[str, ...]
-    rmw: str
-    discovery_server: str
-    super_client: bool
-    participants: int
-    settled: str
-    seconds: float
-    caveats: tuple[Caveat, ...]
-
-
-class Snapshot(NamedTuple):
-    """The graph at one moment.
-
-    ``heard`` are frames that messages name, one message a topic; ``states`` what nodes answered. Both
-    are empty where nobody listened or asked.
-    """
-
-    nodes: tuple[GraphNode, ...]
-    endpoints: tuple[GraphEndpoint, ...]
-    frames: tuple[GraphFrame, ...]
-    environment: Environment
-    heard: tuple[HeardFrame, ...] = ()
-    states: tuple[NodeState, ...] = ()
-
-
-_ALLOWED_WORDS: Mapping[tuple[type, str], tuple[str, ...]] = {
-    (GraphEndpoint, "kind"): KINDS,
-    (GraphEndpoint, "role"): ROLES,
+ALLOWED_WORDS: Mapping[tuple[type, str], tuple[str, ...]] = {
+    (End, "kind"): KINDS,
+    (End, "role"): ROLES,
+    (Sure, "word"): tuple(it.word for it in (RUNS, MAY, UNKNOWN)),
     (Environment, "settled"): (EXPECTED, QUIET, TIMEOUT, CHANGING),
 }
-_FULL_NAMES = {
-    (GraphNode, "name"),
-    (GraphEndpoint, "name"),
-    (GraphEndpoint, "node"),
-    (GraphFrame, "topic"),
-    (HeardFrame, "topic"),
-    (NodeState, "node"),
+FULL_NAMES = {
+    (Node, "name"),
+    (End, "name"),
+    (End, "node"),
+    (Edge, "topic"),
+    (Heard, "topic"),
+    (OldState, "node"),
+    (Parameter, "node"),
+    (Controller, "manager"),
 }
-_TRANSFORM = (GraphFrame, "transform")
+_TRANSFORM = (Edge, "transform")
 
 
-def incomplete(snapshot: Snapshot) -> tuple[Caveat, ...]:
-    """Why something may be missing in the view; empty for a complete one."""
-    return tuple(caveat for caveat in snapshot.environment.caveats if caveat.incomplete)
-
-
-def to_json(snapshot: Snapshot) -> bytes:
-    """The snapshot as JSON, one record on each line, in the order of the records."""
+def to_json(system: System) -> bytes:
+    """The system as JSON, one record on each line, in the order of the records."""
     parts = [f'"schema": {SCHEMA}']
-    for name in ("nodes", "endpoints", "frames", "heard", "states"):
-        lines = ",\n  ".join(_line(record) for record in getattr(snapshot, name))
-        if lines or name not in Snapshot._field_defaults:
-            parts.append(f'"{name}": [\n  {lines}\n ]' if lines else f'"{name}": []')
-    environment = json.dumps(plain_value(snapshot.environment), indent=1, ensure_ascii=False)
-    parts.append('"environment": ' + environment.replace("\n", "\n "))
+    for name, records in zip(System._fields, system, strict=True):
+        if name == "environment" and records != Environment():
+            text = json.dumps(plain_value(records), indent=1, ensure_ascii=False)
+            parts.append('"environment": ' + text.replace("\n", "\n "))
+        elif records and name != "environment":
+            lines = ",\n  ".join(map(_line, records))
+            parts.append(f'"{name}": [\n  {lines}\n ]')
     return ("{\n " + ",\n ".join(parts) + "\n}\n").encode("utf-8", "backslashreplace")
 
 
@@ -207,7 +103,7 @@ def plain_value(value: object) -> object:
     return value
 
 
-def from_json(data: bytes, file: str) -> Snapshot:
+def from_json(data: bytes, file: str) -> System:
     """Read what ``to_json`` wrote; raises InputError with file, key, what is wrong, what to do."""
     return from_value(json_value(data, file), file)
 
@@ -239,20 +135,21 @@ def _record_or_object(value: dict[str, object]) -> object:
         return value
 
 
-def _node(*fields: Any) -> GraphNode:
-    record = GraphNode(*map(intern, fields))
+def _node(*fields: Any) -> Node:
+    name, process, enclave = map(intern, (*fields, "", "")[:3])
+    record = Node(name, process, enclave)
     if not record.name.startswith("/"):
         raise TypeError
     return record
 
 
-def _endpoint(*fields: Any) -> GraphEndpoint:
+def _end(*fields: Any) -> End:
     *texts, qos, process = fields
     kind, role, name, type_, hash_, node = map(intern, texts)
     known = kind in KINDS and role in ROLES and type(qos) in (Qos, NoneType)
     if not (known and name.startswith("/") and node.startswith("/")):
         raise TypeError
-    return GraphEndpoint(kind, role, name, type_, hash_, node, qos, intern(process))
+    return End(kind, role, name, type_, hash_, node, qos, intern(process))
 
 
 def _qos(*fields: Any) -> Qos:
@@ -261,9 +158,8 @@ def _qos(*fields: Any) -> Qos:
 
 # By their keys.
 _FREQUENT: Mapping[tuple[str, ...], Callable[..., object]] = {
-    ("name", "process"): _node,
-    GraphNode._fields: _node,
-    GraphEndpoint._fields: _endpoint,
+    **{Node._fields[:count]: _node for count in (1, 2, 3)},
+    End._fields[:8]: _end,
     Qos._fields: _qos,
 }
 
@@ -274,15 +170,17 @@ def _one_of_equal(record: Qos) -> Qos:
     return record
 
 
-def from_value(value: object, file: str) -> Snapshot:
-    """The snapshot that a JSON value holds; raises InputError with file, key and what is wrong."""
+def from_value(value: object, file: str) -> System:
+    """The system that a JSON value holds; raises InputError with file, key and what is wrong."""
     if not isinstance(value, dict):
         raise InputError(f"{file}: not a snapshot, but {shown(value)}")
     schema = value.pop("schema", None)
-    if schema != SCHEMA or isinstance(schema, bool):
+    if schema == 1 and not isinstance(schema, bool):
+        return system_of(cast(OldSnapshot, record_from(OldSnapshot, value, file)))
+    if schema != SCHEMA:
         hint = "take the snapshot again with this version"
         raise InputError(f"{file}: schema: expected {SCHEMA}, not {shown(schema)}; {hint}")
-    return cast(Snapshot, record_from(Snapshot, value, file))
+    return cast(System, record_from(System, value, file))
 
 
 def record_from(kind: type, value: object, file: str) -> object:
@@ -312,18 +210,18 @@ def _reader(expected: Any) -> Reader:
 
 
 def _field_reader(kind: type, name: str, hint: Any) -> Reader:
-    words = _ALLOWED_WORDS.get((kind, name))
+    words = ALLOWED_WORDS.get((kind, name))
     if words:
         return partial(read_word, words)
     if (kind, name) == _TRANSFORM:
         return read_transform
-    return read_full_name if (kind, name) in _FULL_NAMES else _reader(hint)
+    return read_full_name if (kind, name) in FULL_NAMES else _reader(hint)
 
 
 def _read_record(kind: Any, readers: Mapping[str, Reader], value: object) -> object:
     if type(value) is kind:
         return value
-    if type(value) in (GraphNode, GraphEndpoint, Qos):
+    if type(value) in (Node, End, Qos):
         value = cast(Any, value)._asdict()
     if not isinstance(value, dict):
         raise unexpected("an object", value)
