@@ -106,7 +106,7 @@ HOMES: tuple[Home, ...] = (
     Home(
         "MF6",
         "what was built",
-        ("fleets.consistency", "fleets.value_checks", "fleets.tf_conflicts"),
+        ("fleets.consistency", "fleets.value_checks"),
         BUILT_INTRO,
     ),
     Home(
@@ -143,7 +143,6 @@ HOMES: tuple[Home, ...] = (
             "fleets.apart",
             "fleets.cell_outputs",
             "fleets.moveit_frames",
-            "fleets.closing_topics",
         ),
     ),
     Home(
@@ -176,6 +175,7 @@ HOMES: tuple[Home, ...] = (
             "rules.system.commands",
             "rules.system.relays",
             "rules.system.sharing",
+            "rules.system.unsent",
         ),
         DANGERS_INTRO,
     ),

@@ -8,19 +8,19 @@ from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.fleets.fleet import Fleet, expected
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
+from multibot_rewrite.producers.ends import NEEDS
 from multibot_rewrite.rules.find import absences, contradictions
-from multibot_rewrite.rules.index import Index, index
+from multibot_rewrite.rules.index import index
 from multibot_rewrite.rules.ownership import (
+    ALONE,
     Whose,
     frame_ownership,
     name_ownership,
     whose_by_plan,
 )
-from multibot_rewrite.rules.system.unsent import is_needed, no_longer_sent, open_ends
-from multibot_rewrite.system.records import RUNS, End, System
+from multibot_rewrite.rules.system.unsent import no_longer_sent, open_ends
+from multibot_rewrite.system.records import NOWHERE, RUNS, End, System
 
-# A robot alone has no name in what it is called.
-ALONE = Whose((), lambda _: "", lambda name: name, lambda _: "", lambda frame: frame)
 Key = tuple[str, ...]
 
 
@@ -31,10 +31,15 @@ def whose_names(fleet: Fleet) -> Whose:
 
 
 def contradicted(plan: FleetPlan, whole: System, whose: Whose) -> Iterator[Finding]:
-    """What nodes that surely run do to each other; in one robot they did so before its rewrite."""
+    """What nodes that surely run do to each other; in one robot they did so before its rewrite.
+
+    What all robots are told to share is meant.
+    """
+    shared = {f"/{it}" for it in plan.fleet.naming.shared_topics}
     robots = {it.spec.namespace: it for it in plan.robots}
     sure = tuple(it for it in whole.ends if it.sure == RUNS)
-    for it in contradictions(index(whole._replace(ends=sure), whose)):
+    found = contradictions(index(whole._replace(ends=sure), whose))
+    for it in (it for it in found if not it.names or not shared.issuperset(it.names)):
         level = WARNING if it.robot and it.level == ERROR else it.level
         yield in_file(it._replace(level=level), robots.get(it.robot) or plan.robots[-1])
 
@@ -42,22 +47,52 @@ def contradicted(plan: FleetPlan, whole: System, whose: Whose) -> Iterator[Findi
 def missing(
     robot: RewrittenRobot, before: System, after: System, whose: Whose
 ) -> Iterator[Finding]:
-    """What a robot needs and nothing gives, as it is written: an error where its sources had it."""
-    old, new = index(before, ALONE), index(after, whose)
-    was_open, is_open = _keys(old, open_ends(old)), _keys(new, open_ends(new))
-    had = _keys(old, (it for it in before.ends if is_needed(it))).keys() - was_open.keys()
-    opened = {(it.node, it.name): it for key, it in is_open.items() if key in had}
+    """What a robot needs and nothing gives, as it is written: an error where its sources had it.
+
+    What the sources need is asked for; what the build adds, such as rows of a bridge, may give it.
+    """
+    old, new = index(before, ALONE), index(_asked(before, after), whose)
+    was_open = _by_key(before, open_ends(old))
+    lost = {
+        (it.node, it.name): it
+        for key, it in _by_key(after, open_ends(new)).items()
+        if key not in was_open
+    }
+    in_sources = {_about(it, before): it for it in absences(old) if it.node}
     for it in absences(new):
-        end = opened.pop((it.node, next(iter(it.names), "")), None)
-        level = WARNING if it.level == ERROR and not end else it.level
-        yield in_file(it._replace(level=level), robot)
-    yield from (in_file(no_longer_sent(it), robot) for it in opened.values())
+        if it.node and (it.node, it.names[0]) in lost:
+            del lost[it.node, it.names[0]]
+            yield in_file(it, robot)
+            continue
+        # Names as the sources have them, where these have both.
+        source = in_sources.get(_about(it, after)) if it.node else None
+        said = source if source and _is_placed(before, source.names[-1]) else it
+        yield in_file(said._replace(level=WARNING if said.level == ERROR else said.level), robot)
+    yield from (in_file(no_longer_sent(it), robot) for it in lost.values())
 
 
-def _keys(seen: Index, ends: Iterable[End]) -> Mapping[Key, End]:
+def _asked(before: System, after: System) -> System:
+    """The system as it is written, with the needs that its sources have."""
+    needed = _by_key(before, (it for it in before.ends if it.role in NEEDS))
+    keys = {id(it): key for key, it in _by_key(after, after.ends).items()}
+    ends = (it for it in after.ends if it.role not in NEEDS or keys.get(id(it)) in needed)
+    return after._replace(ends=tuple(ends))
+
+
+def _by_key(system: System, ends: Iterable[End]) -> Mapping[Key, End]:
     """Ends by what is the same before and after a rewrite: the node, and the name in its code."""
-    known = {it.name: it.known for it in seen.system.nodes}
+    known = {it.name: it.known for it in system.nodes}
     return {(it.kind, it.role, known.get(it.node, it.node), it.code_name): it for it in ends}
+
+
+def _about(finding: Finding, system: System) -> Key | None:
+    """The key of the end that a finding is about."""
+    ends = (it for it in system.ends if (it.node, it.name) == (finding.node, finding.names[0]))
+    return next(iter(_by_key(system, ends)), None)
+
+
+def _is_placed(system: System, name: str) -> bool:
+    return any(it.name == name and it.place != NOWHERE for it in system.ends)
 
 
 def in_file(finding: Finding, robot: RewrittenRobot) -> Finding:

@@ -86,6 +86,8 @@ def _nodes(
             # A person starts a tool, or nobody does.
             doubtful = it.node in may.get(it.robot, ()) or is_tool_word(it.code_name)
             place = _section(it.node, given.get(it.robot, NO_SECTIONS))
+            file, _, line = fleet.sources.get(it.full_name, "").rpartition(":")
+            place = Place(file, int(line)) if file else place
             sure = MAY if doubtful else RUNS
             yield Node(it.full_name, robot=it.robot, known=it.node, sure=sure, place=place)
 
