@@ -106,8 +106,8 @@ def _nothing_seen(graph: System) -> Iterator[str]:
 def _write(
     options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Finding], outcome: Outcome
 ) -> None:
-    """The pictures and the files that the options ask for."""
-    if any(vars(options)[name] for name in pictures.NAMES):
+    """The report and the files that the options ask for."""
+    if options.report:
         pictures.deliver(options, seen_plan(seen), seen.graph, findings, outcome)
     if options.suggest:
         files = suggestion(seen, built_in(release_here(None)))

@@ -253,6 +253,16 @@ def merge(fleets: Sequence[Fleet]) -> Fleet:
 
 def expected(fleet: Fleet) -> Expectation:
     """The graph that the fleet should have; UsageError where any graph would be as planned."""
+    plan = planned(fleet)
+    nothing = vacuous(plan)
+    if nothing:
+        hint = f"name a stack of its nodes, or leave out {NO_STATE_PUBLISHER}"
+        raise UsageError(f"{nothing}, so every graph would be as planned; {hint}")
+    return plan
+
+
+def planned(fleet: Fleet) -> Expectation:
+    """The graph that the fleet should have, be it one that any graph is like."""
     sent: dict[str, list[Edge]] = {robot: [] for robot in fleet.inventories}
     for (robot, _), edges in fleet.edges.items():
         sent[robot] += edges
@@ -266,10 +276,6 @@ def expected(fleet: Fleet) -> Expectation:
         fleet.table, fleet.naming, frames, fleet.facts, named, places, tags, fleet.maybe_real
     )
     plan = plan._replace(origins=tuple(fleet.origins.items()), sends=tuple(_sends(fleet)))
-    nothing = vacuous(plan)
-    if nothing:
-        hint = f"name a stack of its nodes, or leave out {NO_STATE_PUBLISHER}"
-        raise UsageError(f"{nothing}, so every graph would be as planned; {hint}")
     plan = plan._replace(release=fleet.table.release, gaps=fleet.gaps, topics=fleet.bridged)
     return plan._replace(states=(*plan.states, *_states(fleet)))
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.fleets.fleet import Fleet, expected
+from multibot_rewrite.fleets.fleet import Fleet, planned
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.producers.ends import NEEDS
@@ -26,7 +26,7 @@ Key = tuple[str, ...]
 
 def whose_names(fleet: Fleet) -> Whose:
     """Whose the names of a fleet are, by its plan."""
-    plan = expected(fleet)
+    plan = planned(fleet)
     return whose_by_plan(plan, name_ownership(plan), frame_ownership(plan))
 
 

@@ -17,8 +17,10 @@ FIRST = (3, 10)
 def sources() -> dict[str, ast.Module]:
     """Every module of the package by its path below it."""
     return {
-        path.relative_to(PACKAGE).as_posix(): ast.parse(
-            path.read_text(), str(path), feature_version=FIRST
-        )
-        for path in sorted(PACKAGE.rglob("*.py"))
+        path.relative_to(PACKAGE).as_posix(): parsed(path) for path in sorted(PACKAGE.rglob("*.py"))
     }
+
+
+def parsed(path: Path) -> ast.Module:
+    """The tree of a file that the first Python can read."""
+    return ast.parse(path.read_text(), str(path), feature_version=FIRST)
