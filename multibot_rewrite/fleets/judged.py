@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import cast
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.fleets.fleet import Fleet, planned
@@ -10,7 +11,7 @@ from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.producers.ends import NEEDS
 from multibot_rewrite.rules.find import absences, contradictions
-from multibot_rewrite.rules.index import index
+from multibot_rewrite.rules.index import Index, index
 from multibot_rewrite.rules.ownership import (
     ALONE,
     Whose,
@@ -18,6 +19,7 @@ from multibot_rewrite.rules.ownership import (
     name_ownership,
     whose_by_plan,
 )
+from multibot_rewrite.rules.system.tf_topics import tf_tree_in_pieces
 from multibot_rewrite.rules.system.unsent import no_longer_sent, open_ends
 from multibot_rewrite.system.records import NOWHERE, RUNS, End, System
 
@@ -59,7 +61,7 @@ def missing(
         if key not in was_open
     }
     in_sources = {_about(it, before): it for it in absences(old) if it.node}
-    for it in absences(new):
+    for it in (it for it in absences(new) if it.code != tf_tree_in_pieces.code):
         if it.node and (it.node, it.names[0]) in lost:
             del lost[it.node, it.names[0]]
             yield in_file(it, robot)
@@ -69,6 +71,18 @@ def missing(
         said = source if source and _is_placed(before, source.names[-1]) else it
         yield in_file(said._replace(level=WARNING if said.level == ERROR else said.level), robot)
     yield from (in_file(no_longer_sent(it), robot) for it in lost.values())
+
+
+def apart(robot: RewrittenRobot, before: System, after: System, whose: Whose) -> Iterator[Finding]:
+    """Where the robot's frames are in pieces by its sources, and where only its rewrite cuts them."""
+    check = cast(Callable[[Index], Iterator[Finding]], tf_tree_in_pieces.check)
+    found = [*check(index(before, ALONE))]
+    known = {it.name: it.known for it in after.nodes}
+    told = {it.node.lstrip("/") for it in found}
+    yield from (in_file(it, robot) for it in found)
+    for it in check(index(after, whose)):
+        if known.get(it.node, it.node) not in told:
+            yield in_file(it._replace(level=ERROR), robot)
 
 
 def _asked(before: System, after: System) -> System:

@@ -2,45 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.closure.frames import Sender
 from multibot_rewrite.companions.params.sections import PARAMETERS
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.evidence.hardware import Exported, exported
 from multibot_rewrite.evidence.nodes import children_of
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import GivenNode
-from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.fleets.fleet_file import REAL
-from multibot_rewrite.fleets.member import without_simulator
+from multibot_rewrite.fleets.member import line_of, without_simulator
 from multibot_rewrite.fleets.output_file import yaml_of
 from multibot_rewrite.fleets.output_values import OutputText
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_nodes import RobotEvidence
-from multibot_rewrite.fleets.written_system import of_robot
-from multibot_rewrite.graph.transforms import STATE_PUBLISHER, sent_by
+from multibot_rewrite.fleets.written_system import DRIVERS, of_robot
+from multibot_rewrite.graph.transforms import STATE_PUBLISHER, edges_in
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.ends import bridge_ends, either_way, node_ends, plugin_ends
+from multibot_rewrite.producers.transforms import edges_off, joint_edges, node_edges
 from multibot_rewrite.readback.reading import FRAME, Reading, read
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.steps.document import read_document
-from multibot_rewrite.system.records import SUBSCRIBES, Node, System
+from multibot_rewrite.system.records import SUBSCRIBES, Edge, Node, Place, System
 
 FIXED, MOVEIT = "fixed", "moveit_simple_controller_manager"
 
 
 class RobotSystem(NamedTuple):
     """What runs on a robot: what its files set for nodes, the interfaces of its hardware, the frames
-    that anything sends, its MoveIt files, the nodes that send transforms; ``system`` has its nodes and
-    ends."""
+    that anything sends, its MoveIt files; ``system`` has its nodes, their ends and transforms."""
 
     given: tuple[GivenNode, ...]
     exports: tuple[Exported, ...]
     sent: frozenset[str]
     moveit: tuple[YamlText, ...]
-    senders: tuple[Sender, ...]
     system: System
 
 
@@ -71,8 +68,12 @@ def system_before(robot: RewrittenRobot, evidence: RobotEvidence) -> RobotSystem
         tuple(_plain(robot, it) for it in exported(source.root, source.file)),
         frozenset(sent),
         tuple(_documents(robot, "moveit")),
-        tuple(_sender(it, given, _root(robot)) for it in nodes if it.sends),
-        System(nodes=tuple(_nodes_of(nodes, reading)), ends=tuple(ends)),
+        System(
+            nodes=tuple(_nodes_of(nodes, reading)),
+            ends=tuple(ends),
+            edges=tuple(_edges_of(robot, nodes, evidence, sent)),
+            environment=DRIVERS,
+        ),
     )
 
 
@@ -81,9 +82,22 @@ def _nodes_of(nodes: Iterable[NodeFacts], reading: Reading) -> Iterator[Node]:
     yield from (Node(it.full_name, known=it.name) for it in reading.nodes)
 
 
+def _edges_of(
+    robot: RewrittenRobot, nodes: Sequence[NodeFacts], evidence: RobotEvidence, sent: Container[str]
+) -> Iterator[Edge]:
+    source = robot.member.source
+    tree = (
+        (it, Place(robot.spec.description, line_of(source, "joint", at)))
+        for at, it in enumerate(edges_in(source.root))
+    )
+    yield from joint_edges(tree)
+    yield from node_edges(nodes, evidence.given, _root(robot))
+    off = edges_off(evidence.given, evidence.known)
+    yield from (it for it in off if it.child not in sent)
+
+
 def system_after(
     robot: RewrittenRobot,
-    fleet: Fleet,
     texts: Sequence[OutputText],
     known: KnownNodes,
     whole: System,
@@ -98,15 +112,8 @@ def system_after(
         tuple(exported(written.root, robot.member.source.file)),
         frozenset(it.child for it in robot.tree),
         tuple(_read(it) for it in own if MOVEIT in it.text),
-        tuple(_senders(fleet, robot)),
         of_robot(whole, robot.spec.namespace),
     )
-
-
-def _senders(fleet: Fleet, robot: RewrittenRobot) -> Iterator[Sender]:
-    for (owner, node), edges in fleet.edges.items():
-        if owner == robot.spec.namespace and node != STATE_PUBLISHER:
-            yield Sender(f"/{node}", tuple(edges), None)
 
 
 def _own(robot: RewrittenRobot) -> Mapping[str, str]:
@@ -135,11 +142,6 @@ def _plainly(robot: RewrittenRobot, given: GivenNode) -> GivenNode:
         for key, it in given.values.items()
     }
     return given._replace(values=values)
-
-
-def _sender(node: NodeFacts, given: Iterable[GivenNode], root: str) -> Sender:
-    place = next((it.place for it in given if it.name == node.name), None)
-    return Sender(f"/{node.name}", tuple(sent_by(node, root)), place)
 
 
 def _root(robot: RewrittenRobot) -> str:

@@ -16,6 +16,7 @@ from multibot_rewrite.fleets.robot_groups import group_robots
 from multibot_rewrite.fleets.robot_nodes import node_sources
 from multibot_rewrite.graph.expectation import tf_topic
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER
+from multibot_rewrite.graph.transforms import Edge as Pair
 from multibot_rewrite.producers.ends import (
     BRIDGE_FILE,
     BRIDGE_NODE,
@@ -24,6 +25,7 @@ from multibot_rewrite.producers.ends import (
     either_way,
     plugin_ends,
 )
+from multibot_rewrite.producers.transforms import edge
 from multibot_rewrite.remap.ways import merged
 from multibot_rewrite.rewriters.own_defaults import frame_sites
 from multibot_rewrite.rewriters.text import text_at
@@ -32,8 +34,11 @@ from multibot_rewrite.system.records import (
     MAY,
     NOWHERE,
     RUNS,
+    UNKNOWN_NODES,
+    Caveat,
     Edge,
     End,
+    Environment,
     Node,
     Place,
     Robot,
@@ -42,16 +47,36 @@ from multibot_rewrite.system.records import (
 
 # Of robots that differ in their names alone two show where they meet.
 SHOWN = 2
+_MAY_RUN = "a driver that no file names may run"
+DRIVERS = Environment(caveats=(Caveat(UNKNOWN_NODES, True, _MAY_RUN),))
 Sections = Mapping[str, GivenNode]
 NO_SECTIONS: Sections = {}
 
 
-def written_system(plan: FleetPlan, fleet: Fleet, texts: Sequence[OutputText]) -> System:
-    """What runs on the robots of a fleet by the files that were made, with the places in the sources.
+def of_each_kind(plan: FleetPlan) -> list[RewrittenRobot]:
+    """Some robots of each kind: the others are the same but for their names."""
+    return [it for group in group_robots(plan) for it in islice(group.robots, SHOWN)]
 
-    Of each kind of robot there are two.
-    """
-    shown = [it for group in group_robots(plan) for it in islice(group.robots, SHOWN)]
+
+def with_robots(fleet: Fleet, robots: Iterable[RewrittenRobot]) -> Fleet:
+    """What a fleet has of some robots and for all."""
+    kept = {"", *(it.spec.namespace for it in robots)}
+    table = fleet.table._replace(
+        nodes=tuple(it for it in fleet.table.nodes if it.robot in kept),
+        names=tuple(it for it in fleet.table.names if it.robot in kept),
+    )
+    return fleet._replace(
+        table=table,
+        inventories={name: it for name, it in fleet.inventories.items() if name in kept},
+        described={name: it for name, it in fleet.described.items() if name in kept},
+        edges={key: it for key, it in fleet.edges.items() if key[0] in kept},
+    )
+
+
+def written_system(
+    plan: FleetPlan, fleet: Fleet, shown: Sequence[RewrittenRobot], texts: Sequence[OutputText]
+) -> System:
+    """What runs on these robots by the files that were made, with the places in the sources."""
     robots = {it.spec.namespace: it for it in shown}
     may = {name: _conditional(plan, it) for name, it in robots.items()}
     given = {name: _sections(plan, it) for name, it in robots.items()}
@@ -64,6 +89,7 @@ def written_system(plan: FleetPlan, fleet: Fleet, texts: Sequence[OutputText]) -
         ends=(*_ends(fleet, nodes, given), *_bridged(shown, texts), *by_process),
         edges=tuple(edges),
         robots=tuple(Robot(it.spec.namespace) for it in shown),
+        environment=DRIVERS,
     )
 
 
@@ -138,46 +164,45 @@ def of_robot(whole: System, robot: str) -> System:
         if it.node not in other and (nodes.get(it.node) == robot or it.role not in NEEDS)
     )
     kept = tuple(it for it in whole.nodes if it.name in nodes)
-    return whole._replace(nodes=kept, ends=tuple(ends), edges=())
+    own = (it for it in whole.edges for node in it.publishers if _is_of(node, robot, nodes))
+    return whole._replace(nodes=kept, ends=tuple(ends), edges=tuple(own))
+
+
+def _is_of(node: str, robot: str, nodes: Mapping[str, str]) -> bool:
+    return nodes.get(node, "") == robot or node.startswith(f"/{robot}/")
 
 
 def _edges(plan: FleetPlan, fleet: Fleet, robot: RewrittenRobot) -> Iterator[Edge]:
     name, given = robot.spec.namespace, _sections(plan, robot)
     topic = tf_topic(name, fleet.naming)
     full = {it.node: it.full_name for it in fleet.table.nodes if it.robot == name}
-    root = full.get(STATE_PUBLISHER, f"/{STATE_PUBLISHER}")
+    root = full.get(STATE_PUBLISHER, f"/{name}/{STATE_PUBLISHER}")
     children: set[str] = set()
     for number, it in enumerate(robot.tree):
         place = Place(robot.spec.description, line_of(robot.member.source, "joint", number))
         # Two joints have one child in a closed loop of an SDF, which is no tree.
         if it.child not in children or robot.member.source.root.tag == "robot":
             children.add(it.child)
-            yield _edge(it, topic, root, place)
-    for parent, child in _simulated(robot):
-        yield _edge((parent, child, False), topic, f"/{name}/{BRIDGE_NODE}", NOWHERE)
+            yield edge(it, root, place, topic)
+    for it in _simulated(robot):
+        yield edge(it, f"/{name}/{BRIDGE_NODE}", topic=topic)
     for (owner, node), sent in fleet.edges.items():
         if owner == name:
             place = _section(node, given)
             yield from (
-                _edge(it, topic, full.get(node, f"/{node}"), place)
+                edge(it, full.get(node, f"/{name}/{node}"), place, topic)
                 for it in sent
                 if it not in robot.tree
             )
 
 
-def _simulated(robot: RewrittenRobot) -> Iterator[tuple[str, str]]:
+def _simulated(robot: RewrittenRobot) -> Iterator[Pair]:
     """The transforms of gz-sim's drive and odometry systems, which the bridge brings to tf."""
     for host, section in robot.member.inventory.served:
         sites = frame_sites(host, section, robot.names.naming)
         given = [text_at(host, it.path) for it in sites]
         if len(given) == 2 and all(given):
-            yield given[0], given[1]
-
-
-def _edge(edge: tuple[str, str, bool], topic: str, node: str, place: Place) -> Edge:
-    parent, child, static = edge
-    on = "/".join("tf_static" if it == "tf" and static else it for it in topic.split("/"))
-    return Edge(child, parent, on, static, (node,), place=place)
+            yield Pair(given[0], given[1], False)
 
 
 def _section(node: str, given: Sections) -> Place:

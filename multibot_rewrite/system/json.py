@@ -33,6 +33,7 @@ from multibot_rewrite.system.records import (
     EXPECTED,
     KINDS,
     MAY,
+    OFF,
     QUIET,
     ROLES,
     RUNS,
@@ -56,7 +57,7 @@ SCHEMA = 2
 ALLOWED_WORDS: Mapping[tuple[type, str], tuple[str, ...]] = {
     (End, "kind"): KINDS,
     (End, "role"): ROLES,
-    (Sure, "word"): tuple(it.word for it in (RUNS, MAY, UNKNOWN)),
+    (Sure, "word"): tuple(it.word for it in (RUNS, MAY, UNKNOWN, OFF)),
     (Environment, "settled"): (EXPECTED, QUIET, TIMEOUT, CHANGING),
 }
 FULL_NAMES = {

@@ -41,7 +41,8 @@ NOWHERE = Place("")
 
 
 class Sure(NamedTuple):
-    """Whether something is there: ``runs`` always, ``may`` on a condition, or it is ``unknown``.
+    """Whether something is there: ``runs`` always, ``may`` on a condition, is told not to and
+    ``off``, or it is ``unknown``.
 
     ``why`` is the condition, or why it is not known, for people. Of the nodes ``instead`` exactly one
     runs.
@@ -52,7 +53,9 @@ class Sure(NamedTuple):
     instead: tuple[str, ...] = ()
 
 
-RUNS, MAY, UNKNOWN = Sure("runs"), Sure("may"), Sure("unknown")
+RUNS, MAY, UNKNOWN, OFF = Sure("runs"), Sure("may"), Sure("unknown"), Sure("off")
+# The code of a caveat: nodes that no source names may run, such as the driver of a robot.
+UNKNOWN_NODES = "unknown-nodes"
 
 
 class Qos(NamedTuple):

@@ -33,9 +33,9 @@ BREAKS = [
     ("rover.urdf", '      <command_interface name="velocity"/>\n', "", "MF811", 9, ""),
     ("rover.urdf", 'state_interface name="position"', 'state_interface name="pos"', "MF811", 9, ""),
     # The filter's odometry is not that of the controller's parameters: nothing joins the two.
-    ("ekf.yaml", "base_link_frame: base_link", "base_link_frame: base_lnk", "MF813", 15, ""),
+    ("ekf.yaml", "base_link_frame: base_link", "base_link_frame: base_lnk", "MG406", 15, ""),
     # Nobody sends odom -> base_link.
-    ("ekf.yaml", "publish_tf: true", "publish_tf: false", "MF813", 15, ""),
+    ("ekf.yaml", "publish_tf: true", "publish_tf: false", "MG406", 15, ""),
     # Both send it.
     ("controllers.yaml", "enable_odom_tf: false", "enable_odom_tf: true", "MG408", 1, ""),
     ("controllers.yaml", "    enable_odom_tf: false\n", "", "MG408", 1, ""),
@@ -111,8 +111,8 @@ BREAKS = [
         "",
     ),
     # Two trees of frames, with both lines.
-    ("nav2.yaml", "odom_frame: odom,", "odom_frame: odom_slam,", "MF817", 1, "nav2.yaml:1"),
-    ("ekf.yaml", "frame: odom", "frame: odom_combined", "MF817", 1, "nav2.yaml:1"),
+    ("nav2.yaml", "odom_frame: odom,", "odom_frame: odom_slam,", "MG406", 1, "nav2.yaml:1"),
+    ("ekf.yaml", "frame: odom", "frame: odom_combined", "MG406", 1, "nav2.yaml:1"),
     # Frames that nothing sends.
     ("nav2.yaml", "base_frame: base_link,", "base_frame: base_lnk,", "MF112", 2, "base_link"),
     ("nav2.yaml", "global_frame: odom", "global_frame: odomm", "MF112", 6, ""),
@@ -172,7 +172,7 @@ BREAKS = [
         "rover.urdf:19",
     ),
     # The filter of the map sends map -> odom, and nothing odom -> base_link.
-    ("ekf.yaml", "world_frame: odom\n", "world_frame: map\n", "MF813", 15, ""),
+    ("ekf.yaml", "world_frame: odom\n", "world_frame: map\n", "MG406", 15, ""),
     # The costmap's source and its plugin are called otherwise than their parameters.
     ("nav2.yaml", "sources: scan\n", "sources: scn\n", "MF819", 11, "nav2.yaml:12"),
     (

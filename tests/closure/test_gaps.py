@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from lxml import etree
 
-from multibot_rewrite.closure.frames import frame_gaps
 from multibot_rewrite.closure.gap import Gap
 from multibot_rewrite.closure.interfaces import interface_gaps
 from multibot_rewrite.closure.moveit import moveit_gaps
@@ -84,35 +83,6 @@ def test_interfaces_of_another_controller_are_there() -> None:
 def test_without_hardware_or_without_a_manager_nothing_is_said() -> None:
     assert lacking(controller("whel"), text='<robot name="r"/>') == []
     assert lacking(controller("whel", manager="")) == []
-
-
-def ekf(**values: object) -> GivenNode:
-    given = {it: Given(value, Place("ekf.yaml", 5)) for it, value in values.items()}  # type: ignore[arg-type]
-    return GivenNode("ekf", "ekf_filter_node", "", given, FILE)
-
-
-OFF = ekf(publish_tf=False, odom_frame="odom", base_link_frame="base", world_frame="odom")
-
-
-def test_a_transform_that_is_switched_off_and_that_nobody_sends() -> None:
-    both = [OFF, OFF._replace(name="second")]
-    (gap,) = frame_gaps(both, load_nodes(NEWEST_LTS), ["imu_link"])
-    place = Place("ekf.yaml", 5)
-    assert (gap.kind, gap.name, gap.node, gap.place) == ("frame", "base", "ekf", place)
-
-
-def test_a_transform_that_another_one_sends_is_no_gap() -> None:
-    assert list(frame_gaps([OFF], load_nodes(NEWEST_LTS), ["base"])) == []
-
-
-def test_a_filter_of_the_map_would_send_another_one() -> None:
-    of_map = OFF._replace(values={**OFF.values, "world_frame": Given("map", FILE)})
-    assert [it.name for it in frame_gaps([of_map], load_nodes(NEWEST_LTS), [])] == ["odom"]
-
-
-def test_a_filter_that_sends_has_no_gap() -> None:
-    on = OFF._replace(values={**OFF.values, "publish_tf": Given(True, FILE)})
-    assert list(frame_gaps([on], load_nodes(NEWEST_LTS), [])) == []
 
 
 MOVEIT = """\
