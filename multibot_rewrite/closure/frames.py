@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.closure.gap import Gap
-from multibot_rewrite.evidence.records import GivenNode, Place
+from multibot_rewrite.evidence.records import GivenNode
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.system.conventions import USUAL_FRAMES
-from multibot_rewrite.system.records import NOWHERE, OFF, Edge
+from multibot_rewrite.system.records import NOWHERE, OFF, Edge, Place
 
 READ = "read frame"
 
@@ -31,8 +31,8 @@ def unsent_gaps(
             if frame in USUAL_FRAMES and frame not in there and first:
                 there.add(frame)
                 near = f"{first.publishers[0]} sends {first.parent} -> {first.child}"
-                where = Place(first.place.file, first.place.line)
-                yield Gap(READ, frame, node.name, (READ, node.known, parameter), place, near, where)
+                key = (READ, node.known, parameter)
+                yield Gap(READ, frame, node.name, key, place, near, first.place)
 
 
 def _read_frames(given: GivenNode, node: NodeFacts | None) -> Iterator[tuple[str, str, Place]]:

@@ -14,7 +14,6 @@ from multibot_rewrite.fleets.output_values import OutputText, line_in_source
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_groups import group_robots
 from multibot_rewrite.fleets.robot_nodes import node_sources
-from multibot_rewrite.graph.expectation import tf_topic
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER
 from multibot_rewrite.graph.transforms import Edge as Pair
 from multibot_rewrite.producers.ends import (
@@ -29,6 +28,7 @@ from multibot_rewrite.producers.transforms import edge
 from multibot_rewrite.remap.ways import merged
 from multibot_rewrite.rewriters.own_defaults import frame_sites
 from multibot_rewrite.rewriters.text import text_at
+from multibot_rewrite.spelling.plan import tf_topic
 from multibot_rewrite.system.conventions import OF_EVERY_NODE, is_tool_word
 from multibot_rewrite.system.records import (
     MAY,
@@ -43,6 +43,7 @@ from multibot_rewrite.system.records import (
     Place,
     Robot,
     System,
+    place_of,
 )
 
 # Of robots that differ in their names alone two show where they meet.
@@ -112,8 +113,8 @@ def _nodes(
             # A person starts a tool, or nobody does.
             doubtful = it.node in may.get(it.robot, ()) or is_tool_word(it.code_name)
             place = _section(it.node, given.get(it.robot, NO_SECTIONS))
-            file, _, line = fleet.sources.get(it.full_name, "").rpartition(":")
-            place = Place(file, int(line)) if file else place
+            plugin = place_of(fleet.sources.get(it.full_name, ""))
+            place = plugin if plugin != NOWHERE else place
             sure = MAY if doubtful else RUNS
             yield Node(it.full_name, robot=it.robot, known=it.node, sure=sure, place=place)
 
@@ -129,7 +130,7 @@ def _ends(fleet: Fleet, nodes: Iterable[Node], given: Mapping[str, Sections]) ->
         # A node with parameters is meant to run: what it needs has to be there.
         needs = end.role in NEEDS and node.place != NOWHERE
         sure = MAY if end.when else RUNS if needs else node.sure
-        told = (end.name, end.also, end.parameter, sure, place if place != NOWHERE else node.place)
+        told = (end.name, end.also, sure, place if place != NOWHERE else node.place)
         yield from either_way(
             End(end.kind, end.role, it.name, end.type, "", it.node, None, "", *told)
         )
@@ -208,11 +209,11 @@ def _simulated(robot: RewrittenRobot) -> Iterator[Pair]:
 def _section(node: str, given: Sections) -> Place:
     """Where a file has parameters for the node."""
     found = given.get(node) or given.get(node.rpartition("/")[2])
-    return Place(*found.place) if found else NOWHERE
+    return found.place if found else NOWHERE
 
 
 def _parameter(node: str, name: str, given: Sections) -> Place:
     """Where a file sets a parameter of the node."""
     found = given.get(node) or given.get(node.rpartition("/")[2])
     value = found.values.get(name) if found else None
-    return Place(*value.place) if value else NOWHERE
+    return value.place if value else NOWHERE

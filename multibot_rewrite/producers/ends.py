@@ -40,16 +40,16 @@ def node_ends(node: NodeFacts, section: GivenNode | None) -> Iterator[End]:
     ``section`` is what a file sets for it. A node for all robots needs nothing of this one."""
     above, _, name = f"/{node.name}".rpartition("/")
     values = section.values if section else {}
-    at = Place(*section.place) if section else NOWHERE
+    at = section.place if section else NOWHERE
     for it in (it for it in node.endpoints if "<" not in it.name):
         if node.shared and it.role in NEEDS:
             continue
         full = expand(it.remapped or it.name, above or "/", name)
-        place = Place(*values[it.parameter].place) if it.parameter in values else at
+        place = values[it.parameter].place if it.parameter in values else at
         # A node with parameters is meant to run.
         sure = RUNS if not it.when and (section or not node.when) else MAY
         own = (it.kind, it.role, full, it.type, "", f"/{node.name}", None, "")
-        yield from either_way(End(*own, it.name, it.also, it.parameter, sure, place))
+        yield from either_way(End(*own, it.name, it.also, sure, place))
 
 
 def plugin_ends(reading: Reading) -> Iterator[End]:

@@ -30,7 +30,7 @@ def joint_edges(tree: Iterable[tuple[Pair, Place]]) -> Iterator[Edge]:
 
 def node_edges(nodes: Iterable[NodeFacts], given: Iterable[GivenNode], root: str) -> Iterator[Edge]:
     """What nodes send; ``root`` is the robot's first link."""
-    places = {it.name: Place(*it.place) for it in given}
+    places = {it.name: it.place for it in given}
     for node in nodes:
         for pair in sent_by(node, root):
             yield edge(pair, f"/{node.name}", places.get(node.name, NOWHERE))
@@ -57,4 +57,4 @@ def _switch(condition: str, runs: NodeFacts, given: GivenNode) -> Place | None:
     off = [it for it in condition.split(AND) if not holds(it, value_of)]
     parts = parse_condition(off[0]) if len(off) == 1 else ()
     found = (given.values[it.parameter] for it in parts if it.parameter in given.values)
-    return next((Place(*it.place) for it in found), None)
+    return next((it.place for it in found), None)

@@ -9,10 +9,11 @@ from multibot_rewrite.closure.interfaces import interface_gaps
 from multibot_rewrite.closure.moveit import moveit_gaps
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.evidence.hardware import Exported, exported
-from multibot_rewrite.evidence.records import Given, GivenNode, Place
+from multibot_rewrite.evidence.records import Given, GivenNode
 from multibot_rewrite.knowledge.records import Claim
 from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.releases import NEWEST_LTS
+from multibot_rewrite.system.records import Place
 
 SYSTEM = """<robot name="r">
   <ros2_control name="a" type="system">
