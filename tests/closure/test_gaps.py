@@ -31,10 +31,10 @@ SYSTEM = """<robot name="r">
 def test_what_a_system_exports_by_kind_and_line() -> None:
     found = [tuple(it) for it in exported(etree.fromstring(SYSTEM), "r.urdf")]
     assert found == [
-        ("command", "wheel/velocity", ("r.urdf", 4)),
-        ("state", "wheel/position", ("r.urdf", 5)),
-        ("state", "imu/orientation.x", ("r.urdf", 7)),
-        ("command", "io/led", ("r.urdf", 8)),
+        ("command", "wheel/velocity", Place("r.urdf", 4)),
+        ("state", "wheel/position", Place("r.urdf", 5)),
+        ("state", "imu/orientation.x", Place("r.urdf", 7)),
+        ("command", "io/led", Place("r.urdf", 8)),
     ]
 
 
