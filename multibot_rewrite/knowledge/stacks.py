@@ -1,12 +1,8 @@
-"""Known nodes and stacks of nodes, from ``nodes/*.yaml``, ``stacks.yaml`` and files of users.
-
-``python -m multibot_rewrite.knowledge.stacks`` prints their reference page.
-"""
+"""Known nodes and stacks of nodes, from ``nodes/*.yaml``, ``stacks.yaml`` and files of users."""
 
 from __future__ import annotations
 
 import os
-import sys
 from functools import lru_cache
 
 from multibot_rewrite.bounded import read_text
@@ -94,9 +90,3 @@ def _files() -> list[str]:
     folder = os.path.join(HERE, "nodes")
     names = sorted(os.listdir(folder), key=lambda it: (it != PARTS, it))
     return [*(os.path.join(folder, it) for it in names), os.path.join(HERE, STACKS)]
-
-
-if __name__ == "__main__":
-    from multibot_rewrite.knowledge.stacks_page import page
-
-    sys.stdout.write(page(every_release()))

@@ -237,6 +237,6 @@ def test_the_parsers_are_called_in_one_place() -> None:
     # What these read is written by the tool: its schema, and messages between its processes.
     own = {"fleets/fleet_data.py", "cli/rehearse.py", "graph/live/request.py"}
     own |= {"producers/launch/records.py", "graph/live/ask.py", "graph/live/child.py"}
-    own |= {"graph/states.py"}
+    own |= {"system/parameters.py"}
     own |= {"sources/child/asking.py", "sources/child/serve.py"}
     assert found == {"bounded.py", "graph/live/stub_nodes.py", *own}

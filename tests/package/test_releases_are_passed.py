@@ -10,11 +10,8 @@ from parsed import sources
 WORDS = ("release", "distro", "environment")
 # The public calls, which ask ROS_DISTRO.
 PUBLIC = ("library.py", "fleets/scripts.py", "releases.py")
-# `python -m` prints what the newest LTS has; a lint without a command has no other.
-NEWEST = {
-    *("releases.py", "cli/declared/shared.py"),
-    *("companions/params/page.py", "lint/config/settings.py"),
-}
+# A lint without a command has no other.
+NEWEST = {"releases.py", "cli/declared/shared.py", "lint/config/settings.py"}
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 

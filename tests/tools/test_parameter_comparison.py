@@ -10,7 +10,7 @@ from __future__ import annotations
 from functools import cache
 
 import pytest
-from paths import FIXTURES, ROOT
+from paths import FIXTURES
 
 from multibot_rewrite.knowledge.stacks import every_release
 from multibot_rewrite.releases import RELEASES
@@ -27,7 +27,6 @@ from tools.interfaces.parameter_comparison import (
     same,
 )
 from tools.interfaces.parameter_facts import ParameterFact, parameter_lines, read_parameters
-from tools.interfaces.parameters_page import START, page
 from tools.interfaces.records import Place
 
 TABLES = FIXTURES / "interfaces"
@@ -173,9 +172,3 @@ def test_a_package_that_is_not_read_is_not_compared() -> None:
 )
 def test_paths_are_compared_by_segments(own: str, source: str, equal: bool) -> None:
     assert same(own, source) == equal
-
-
-def test_the_page_is_current() -> None:
-    text = (ROOT / "docs" / "interfaces.md").read_text()
-    assert page(TABLES) in text
-    assert text.count(START) == 1

@@ -1,11 +1,7 @@
-"""The section of docs/interfaces.md about parameters and launch files.
-
-``python -m tools.interfaces.parameters_page fixtures/interfaces`` prints it.
-"""
+"""The section of the page of interfaces about parameters and launch files."""
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
 from importlib.resources import files
 from pathlib import Path
@@ -24,13 +20,12 @@ from tools.interfaces.parameter_tables import read_launches
 
 START = "## Parameters and launch files\n"
 _TEXT = """
-Made by `python -m tools.interfaces.parameters_page fixtures/interfaces`. Parameters come
-from the YAML files of generate_parameter_library and from what C++ and Python code declares or asks
-for, launched nodes from launch files in Python, XML and YAML. `python -m
-tools.interfaces.parameter_tables` reads both from checkouts; each fact has its repository,
-tag or commit, file and line. A *difference* is a parameter of ours that a release lacks, another
-default, or a text of the sources that looks like a name and is not in our table. *Corrected* are those
-that our table no longer has, *excepted* those with a reason in `parameters_exceptions.tsv`.
+Parameters come from the YAML files of generate_parameter_library and from what C++ and Python code
+declares or asks for, launched nodes from launch files in Python, XML and YAML. `python -m
+tools.interfaces.parameter_tables` reads both from checkouts; each fact has its repository, tag or
+commit, file and line. A *difference* is a parameter of ours that a release lacks, another default,
+or a text of the sources that looks like a name and is not in our table. *Corrected* are those that
+our table no longer has, *excepted* those with a reason in `parameters_exceptions.tsv`.
 
 | release | parameters | texts | bounded | differences | corrected | excepted |
 |---|--:|--:|--:|--:|--:|--:|
@@ -47,7 +42,7 @@ _SOURCES = """
 """
 
 
-def page(tables: Path) -> str:
+def section(tables: Path) -> str:
     """The section, from the tables of a folder."""
     facts = {it: read_parameters(_text(tables / f"parameters_{it}.tsv")) for it in RELEASES}
     rows = "".join(_row(tables, release, facts[release]) for release in RELEASES)
@@ -104,7 +99,3 @@ def _versions(facts: dict[str, tuple[ParameterFact, ...]]) -> Iterator[str]:
 
 def _text(path: Path) -> str:
     return path.read_text(encoding="utf-8")
-
-
-if __name__ == "__main__":
-    sys.stdout.write(page(Path(sys.argv[1])))

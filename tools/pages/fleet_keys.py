@@ -1,18 +1,18 @@
-"""``python -m multibot_rewrite.fleets``: the page of the keys of a fleet file, from its schema."""
+"""The page of the keys of a fleet file, from its schema."""
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator, Mapping
 from typing import Any
 
 from multibot_rewrite.fleets.fleet_data import schema
+from tools.pages.markdown import ESCAPED
 
 HEAD = """\
 # Keys of the fleet file
 
-Made by `python -m multibot_rewrite.fleets > docs/fleet-keys.md` from the schema that editors read,
-`multibot_rewrite/fleets/fleet.schema.json`. How they work together: [the fleet file](fleet-file.md).
+Made from the schema that editors read, `multibot_rewrite/fleets/fleet.schema.json`. How they work
+together: [the fleet file](fleet-file.md).
 """
 TITLES = {
     "The fleet": (),
@@ -20,11 +20,9 @@ TITLES = {
     "Companions": ("$defs", "companions"),
     "A cell": ("properties", "cell"),
 }
-# In a cell of a table they would end it, or be read as HTML.
-ESCAPED = str.maketrans({"|": "\\|", "<": "&lt;", "*": "\\*", "_": "\\_"})
 
 
-def keys_page() -> str:
+def page() -> str:
     """The page, Markdown."""
     return "\n".join((HEAD, *(line for it in TITLES.items() for line in _table(*it))))
 
@@ -46,7 +44,3 @@ def _row(key: str, value: Mapping[str, Any], required: bool) -> str:
     choices = ", ".join(f"`{it}`" for it in value.get("enum", ()))
     meaning = f"{about.translate(ESCAPED)}{': ' * bool(choices)}{choices}{more}"
     return f"| `{key}` | {meaning} | {'required' if required else default.translate(ESCAPED)} |"
-
-
-if __name__ == "__main__":
-    sys.stdout.write(keys_page())

@@ -1,18 +1,15 @@
-"""Errors of public descriptions, each with its fix, as a page for their maintainers.
-
-python tests/support/upstream_page.py > docs/upstream.md
-"""
+"""Errors of public descriptions, each with its fix, as a page for their maintainers."""
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
 from itertools import groupby
-from typing import NamedTuple
+from pathlib import Path
 
-from paths import FIXTURES
+from multibot_rewrite.record import NamedTuple
+from tools.pages.markdown import plain
 
-DATA = FIXTURES / "upstream.tsv"
+DATA = Path(__file__).parents[2] / "fixtures" / "upstream.tsv"
 _INERTIA = (
     "libsdformat (`src/Link.cc`, `has invalid inertia`) refuses the model, so Gazebo does "
     "not spawn the robot. `ign sdf -k` 12.3 says so of this link alone, and `Valid.` with "
@@ -58,7 +55,7 @@ WHY = {
 _HEAD = """\
 # Errors in public descriptions
 
-Made by `python tests/support/upstream_page.py > docs/upstream.md` from `fixtures/upstream.tsv`.
+Made from `fixtures/upstream.tsv`.
 
 {count} errors that `urdf-lint` finds in {repositories} public repositories, for their
 maintainers: where, what breaks, and a patch. Each was read by hand against the source of the
@@ -128,9 +125,5 @@ def _part(repository: str, revision: str, its: list[Error]) -> Iterator[str]:
         for it in its:
             if it.rule == rule:
                 more = f" ({it.more})" if it.more else ""
-                yield f"\n`{it.file}`, line {it.line}: {it.finding}{more}\n"
+                yield f"\n`{it.file}`, line {it.line}: {plain(it.finding)}{more}\n"
                 yield f"\n```diff\n--- a/{it.file}\n+++ b/{it.file}\n{it.patch}\n```\n"
-
-
-if __name__ == "__main__":
-    sys.stdout.write(page())

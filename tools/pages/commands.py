@@ -1,24 +1,21 @@
-"""``python -m multibot_rewrite.cli``: the page of the commands."""
+"""The page of the commands."""
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
 
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
 from multibot_rewrite.cli.options import Command, Option
+from tools.pages.markdown import ESCAPED
 
 HEAD = """\
 # Commands
 
-Made by `python share/make.py`: what `--help` of each command says. Where
-ROS is sourced, `ros2 multibot` is `multibot`.
+What `--help` of each command says. Where ROS is sourced, `ros2 multibot` is `multibot`.
 """
-# In a cell of a table they would end it, or be read as HTML.
-ESCAPED = str.maketrans({"|": "\\|", "<": "&lt;", "*": "\\*", "_": "\\_"})
 
 
-def commands_page() -> str:
+def page() -> str:
     """The page, Markdown."""
     named = [
         *((it.name, it) for it in PROGRAMS),
@@ -59,7 +56,3 @@ def _row(option: Option) -> str:
     named = option.names[0].startswith("-")
     words = f"{', '.join(option.names)} {metavar}".strip() if named else metavar
     return f"| `{words}` | {' '.join(option.help.translate(ESCAPED).split())} |"
-
-
-if __name__ == "__main__":
-    sys.stdout.write(commands_page())

@@ -1,11 +1,7 @@
-"""The section of docs/interfaces.md about endpoints.
-
-``python -m tools.interfaces.endpoints_page fixtures`` prints it.
-"""
+"""The section of the page of interfaces about endpoints."""
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 from multibot_rewrite.knowledge.stacks import built_in
@@ -16,8 +12,7 @@ from tools.interfaces.table import from_table
 TEXT = """\
 ## Endpoints
 
-Made by `python -m tools.interfaces.endpoints_page fixtures`. `python -m
-tools.interfaces FOLDER...` reads checkouts, C++ and Python, and prints what known nodes
+`python -m tools.interfaces FOLDER...` reads checkouts, C++ and Python, and prints what known nodes
 declare: topics, services, actions, tf, whose node has them (its own, tf2's helper, a private one),
 the parameter that sets the name and the condition. A *difference* is an endpoint that only the sources
 or only `knowledge/nodes/` have, another node that has it, or one that exists with a plugin or mode
@@ -29,7 +24,7 @@ those with a reason in `fixtures/interfaces_exceptions.tsv`.
 """
 
 
-def page(fixtures: Path) -> str:
+def section(fixtures: Path) -> str:
     """The section, from the tables of a folder."""
     return TEXT + "".join(_row(fixtures, release) for release in RELEASES)
 
@@ -45,7 +40,3 @@ def _row(fixtures: Path, release: str) -> str:
     nodes = len({it.node for it in facts})
     counts = (nodes, len(facts), len(found) + corrected, corrected, left)
     return f"| {release} | {' | '.join(map(str, counts))} |\n"
-
-
-if __name__ == "__main__":
-    sys.stdout.write(page(Path(sys.argv[1])))

@@ -1,8 +1,7 @@
-"""The table of known parameters: ``python -m multibot_rewrite.companions.params.page`` prints it."""
+"""The page of known parameters."""
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
 
 from multibot_rewrite.knowledge.parameter_entries import PREFIX_KINDS, has_default
@@ -10,16 +9,20 @@ from multibot_rewrite.knowledge.parameters import KnownNode, KnownNodes, built_i
 from multibot_rewrite.knowledge.records import Param
 from multibot_rewrite.releases import NEWEST_LTS
 
-START = "<!-- from here on: python -m multibot_rewrite.companions.params.page -->\n"
-HEAD = """
+HEAD = """\
+# Known parameters
+
+What nodes of public packages have in their parameter files that holds a name. How files are
+rewritten, and how a node of your own is described: [parameter files](params.md).
+
 | node | parameters that hold names | inserted where absent |
 |---|---|---|
 """
 
 
-def page(known: KnownNodes) -> str:
-    """The table as Markdown, a row for each node that has names in its parameters."""
-    return START + HEAD + "".join(_rows(known))
+def page() -> str:
+    """The page, a row for each node that has names in its parameters."""
+    return HEAD + "".join(_rows(built_in_nodes(NEWEST_LTS)))
 
 
 def _rows(known: KnownNodes) -> Iterator[str]:
@@ -51,7 +54,3 @@ def _inserted(node: KnownNode) -> str:
     kinds = ("frame", "link", "stem", "off", "interface", *PREFIX_KINDS)
     found = (it for it in node.params.values() if it.kind in kinds and has_default(it))
     return ", ".join(f"`{it.path}`{it.releases and f' (in {it.releases})'}" for it in found)
-
-
-if __name__ == "__main__":
-    sys.stdout.write(page(built_in_nodes(NEWEST_LTS)))
