@@ -23,7 +23,6 @@ from multibot_rewrite.cli.watch import follow
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.graph.bags.read import BagsUnusable
 from multibot_rewrite.graph.bags.recording import is_recorded
-from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.live.request import RosUnusable
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.knowledge.stacks import built_in
@@ -106,8 +105,8 @@ def _nothing_seen(graph: System) -> Iterator[str]:
 def _write(
     options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Finding], outcome: Outcome
 ) -> None:
-    """The pictures and the files that the options ask for."""
-    if any(vars(options)[name] for name in pictures.NAMES):
+    """The report and the files that the options ask for."""
+    if options.report:
         pictures.deliver(options, seen_plan(seen), seen.graph, findings, outcome)
     if options.suggest:
         files = suggestion(seen, built_in(release_here(None)))
@@ -138,6 +137,6 @@ def _watch(options: argparse.Namespace) -> int:
     return _sum_up(options, len(last.findings), final(last))
 
 
-def _look(graph: System) -> tuple[Expectation, Sequence[Finding]]:
+def _look(graph: System) -> tuple[System, Sequence[Finding]]:
     seen = diagnose(graph)
     return seen_plan(seen), seen.findings

@@ -19,7 +19,7 @@ from multibot_rewrite.producers.launch.records import launch_order
 from multibot_rewrite.releases import release_here
 
 # Options that name files to write.
-WRITTEN = ("output", "sros2", "save_snapshot", "report", "dot", "mermaid")
+WRITTEN = ("output", "sros2", "save_snapshot", "report")
 FLEET_FILES = (".yaml", ".yml")
 # What a fleet file says itself, and how the option is written.
 OF_FLEET_FILE = {

@@ -44,7 +44,7 @@ def check_source(options: argparse.Namespace) -> None:
 
 def _check_bag(options: argparse.Namespace) -> None:
     given = vars(options)
-    for name in ("snapshot", "zenoh", "watch", "state", "suggest", "report", "mermaid", "dot"):
+    for name in ("snapshot", "zenoh", "watch", "state", "suggest", "report"):
         if given.get(name):
             raise UsageError(f"--bag is a recording, which has no nodes: leave out --{name}")
 

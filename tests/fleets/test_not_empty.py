@@ -9,6 +9,7 @@ import yaml
 from fleet_folder import ROVER, fleet_folder
 from graph_cases import as_planned
 from paths import FIXTURES
+from plans import own
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleets.fleet import NO_STATE_PUBLISHER, expected, facts_of, make_fleet
@@ -84,7 +85,7 @@ def test_the_frames_of_another_robot_are_not_missed_but_its_node_is(
 
 
 def nodes_of(plan: str) -> set[str]:
-    return {node for it in from_yaml(plan.encode(), "plan").robots for node in it.nodes}
+    return {it.name for it in from_yaml(plan.encode(), "plan").nodes if it.robot}
 
 
 @pytest.mark.parametrize("poses", ["", "one", "both"])
@@ -253,7 +254,7 @@ def test_no_public_description_makes_an_empty_plan(corpus: dict[str, Path]) -> N
         plan = expected(fleet)
         made += 1
         assert [it.name for it in plan.robots] == ["robot1", "robot2"]
-        assert all(any(PUBLISHER in node for node in it.nodes) for it in plan.robots)
+        assert all(any(PUBLISHER in node for node in own(plan, it.name)) for it in plan.robots)
         found = {it.code for it in check(plan, graph) if it.level == "error"}
         assert found, path
         frames = plan.robots[0].frames
