@@ -42,7 +42,7 @@ NO_ROBOT = _rule(
     *("MG602", "recorded-without-robot", ERROR),
     "A topic that each robot has was recorded under a name of no robot of the plan.",
     "All robots use it, or none does: one command moves both, or nobody hears it.",
-    "Start the node in its robot's namespace, with the rules of `multibot remap`.",
+    "Start the node in its robot's namespace, with the rules of `multibot plan`.",
     "planned: /robot1/scan, recorded: /scan\n",
     "planned: /robot1/scan, recorded: /robot1/scan\n",
 )

@@ -70,7 +70,8 @@ def fleet(layout: str) -> tuple[System, dict[str, Patterns], str]:
     folder = Path(os.environ["PYTEST_FOLDER"])
     plan, policy = folder / f"{layout}.yaml", folder / f"{layout}.xml"
     words = [ROVER, "robot1", "robot2", "--stack", "nav2", "--layout", layout]
-    assert main(["plan", *words, "-o", str(plan), "--sros2", str(policy)]) == 0
+    assert main(["plan", *words, "-o", str(plan)]) == 0
+    assert main(["plan", *words, "--form", "sros2", "-o", str(policy)]) == 0
     text = policy.read_text()
     return read_plan(plan.read_bytes(), "plan"), dds_topics(text), text
 
@@ -141,7 +142,8 @@ def test_an_endpoint_by_parameter_is_allowed_although_it_is_not_planned(tmp_path
         "stacks:\n  own: {about: x, nodes: [{node: driver}]}\n"
     )
     words = [ROVER, "robot1", "--nodes", str(nodes), "--stack", "own", "--layout", "both"]
-    assert main(["plan", *words, "-o", str(plan), "--sros2", str(policy)]) == 0
+    assert main(["plan", *words, "-o", str(plan)]) == 0
+    assert main(["plan", *words, "--form", "sros2", "-o", str(policy)]) == 0
     planned = {end.name for end in read_plan(plan.read_bytes(), "plan").ends}
     assert "/robot1/odom" in planned and "/robot1/debug" not in planned
     assert {"rt/robot1/odom", "rt/robot1/debug"} <= dds_topics(policy.read_text())["/robot1"][0]
@@ -186,16 +188,6 @@ def _without_import(schema: str) -> str:
     before, _, rest = schema.partition("<xs:import")
     kept = before + rest.partition("/>")[2]
     return kept.replace('<xs:attribute ref="xml:base" />', "")
-
-
-def test_a_policy_does_not_go_over_the_plan(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    plan = str(tmp_path / "plan.yaml")
-    words = [ROVER, "robot1", "--stack", "nav2", "-o", plan, "--sros2", plan]
-    assert main(["plan", *words]) == 2
-    assert capsys.readouterr().err.count("\n") == 1
-    assert not Path(plan).exists()
 
 
 def test_without_enclaves_nothing_is_said() -> None:
