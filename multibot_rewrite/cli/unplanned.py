@@ -7,7 +7,6 @@ import os
 from collections.abc import Iterator, Sequence
 
 from multibot_rewrite.cli import live, pictures
-from multibot_rewrite.cli.check import CODES
 from multibot_rewrite.cli.output import note, say, write_files
 from multibot_rewrite.cli.process import PROGRAM
 from multibot_rewrite.cli.report import (
@@ -124,7 +123,7 @@ def _report(options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Fin
 
 def _sum_up(options: argparse.Namespace, findings: int, verdict: Verdict) -> int:
     note(options, f"{plural(findings, 'finding')}: {WORDS[verdict]}")
-    return CODES[verdict]
+    return live.CODES[verdict]
 
 
 def _watch(options: argparse.Namespace) -> int:
