@@ -25,7 +25,6 @@ from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchNote
 from multibot_rewrite.producers.launch.running import (
     CLOCK_TYPE,
     DESCRIPTION,
-    SIMULATED,
     Knowledge,
     RunningNode,
     bound_of,
@@ -93,12 +92,20 @@ def would_run(graph: LaunchGraph, known: Knowledge) -> System:
     more = (*_caveats((*graph.notes, *notes), nodes), *_of_bridges(nodes, inside))
     caveats = (*_stood_in(graph), *_refused(refused), *more, *_of_models(models))
     return System(
-        tuple(Node(part.name, it.process) for it, part in zip(nodes, parts, strict=True)),
+        tuple(_nodes(nodes, parts)),
         tuple(end for part in parts for end in part.endpoints),
         tuple(_frames(parts)),
         Environment(caveats=caveats),
         parameters=tuple(_clocks(nodes)),
     )
+
+
+def _nodes(running: Iterable[RunningNode], parts: Iterable[_Part]) -> Iterator[Node]:
+    """The nodes, each with those that its code makes beside it (``Endpoint.by``)."""
+    for it, part in zip(running, parts, strict=True):
+        yield Node(part.name, it.process)
+        own = dict.fromkeys(end.node for end in part.endpoints if end.node != part.name)
+        yield from (Node(name, it.process) for name in own)
 
 
 def _stood_in(graph: LaunchGraph) -> Iterator[Caveat]:
@@ -174,7 +181,7 @@ def _endpoints(
             own = end._replace(name=_below_namespace_above(it, end))
             full = _resolved(own, helper if end.helper else bound)
             type_ = _type(it, end, release)
-            yield End(end.kind, end.role, full, type_, "", name, None, it.process)
+            yield End(end.kind, end.role, full, type_, "", f"{name}{end.by}", None, it.process)
 
 
 def _type(it: RunningNode, end: Endpoint, release: str) -> str:
@@ -297,6 +304,6 @@ def _clocks(nodes: Iterable[RunningNode]) -> Iterator[Parameter]:
     """Simulated time by parameter; the default is false (rclcpp time_source.cpp). What sends transforms
     that hold for ever needs no time."""
     for it in nodes:
-        if it.facts is not None and it.facts.known != STATIC and it.process != SIMULATED:
+        if it.facts is not None and it.facts.known not in ("", STATIC):
             text = parameter_text(_value(it, SIM_TIME) is True)
             yield Parameter(it.full_name, SIM_TIME, text)
