@@ -11,7 +11,6 @@ import os
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import pairwise
 
-from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.graph.transforms import Edge
 from multibot_rewrite.model import InputError
 from multibot_rewrite.producers.launch.programs import programs
@@ -24,7 +23,7 @@ from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.vocabulary import load_vocabulary
 from multibot_rewrite.rosnames import expand
 from multibot_rewrite.sources.read import read_file
-from multibot_rewrite.system.records import TOPIC
+from multibot_rewrite.system.records import TOPIC, Place
 
 _NAMED = "controller_manager_name"
 _PROGRAM = ("controller_manager", "ros2_control_node")

@@ -13,7 +13,7 @@ from contextlib import suppress
 from multibot_rewrite.controller_ways import controller_way
 from multibot_rewrite.evidence.filling import filled
 from multibot_rewrite.evidence.parameter_files import given_nodes
-from multibot_rewrite.evidence.records import Given, GivenNode, Place
+from multibot_rewrite.evidence.records import Given, GivenNode
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
 from multibot_rewrite.model import UsageError
@@ -43,7 +43,7 @@ from multibot_rewrite.rosnames import (
     resolve_bound,
 )
 from multibot_rewrite.system.conventions import CLOCK
-from multibot_rewrite.system.records import PUBLISHES, TOPIC
+from multibot_rewrite.system.records import PUBLISHES, TOPIC, Place
 
 Rules = tuple[tuple[str, str], ...]
 DESCRIPTION = "robot_description"
