@@ -8,7 +8,7 @@ from collections import defaultdict
 from collections.abc import Sequence
 
 from multibot_rewrite.bounded import MAX_FLEET_BYTES
-from multibot_rewrite.cli import live, pictures, unplanned
+from multibot_rewrite.cli import live, pictures
 from multibot_rewrite.cli.output import note, print_lines, say
 from multibot_rewrite.cli.process import PROGRAM, STOPPED
 from multibot_rewrite.cli.report import TEXT, About, check_report, chosen, report_first
@@ -35,6 +35,8 @@ from multibot_rewrite.system.records import System, answering
 def run(options: argparse.Namespace) -> int:
     """Compare, report, sum up; returns the exit code."""
     if options.plan is None:
+        from multibot_rewrite.cli import unplanned  # a check with a plan needs none of it
+
         return unplanned.run(options)
     _check_use(options)
     plan = plan_of(options)
