@@ -72,8 +72,11 @@ def _frame(frame: FrameParameter, values: Mapping[str, Given]) -> FrameParameter
 def _endpoint(node: NodeFacts, raw: Endpoint, values: Mapping[str, Given]) -> Iterator[Endpoint]:
     """The endpoint once for each binding of its ids, with the names that are set."""
     ids = dict(node.ids)
-    texts = (raw.name, raw.parameter, raw.condition, raw.when)
-    wanted = [it for it in dict.fromkeys(_ID.findall(" ".join(texts))) if it in ids]
+    wanted = _wanted(ids, raw.name, raw.parameter, raw.condition)
+    asked = _wanted(ids, raw.when)
+    # What its name has decides how it is called; what only its condition asks may be unknown.
+    if _are_listed([ids[it] for it in asked], values):
+        wanted = [*dict.fromkeys((*wanted, *asked))]
     is_there = verdict(raw.when, lookup(node, values)) if raw.when and not wanted else None
     if is_there is False:
         return
@@ -126,12 +129,22 @@ def _is_decided(
     of_stack: Iterable[Endpoint],
 ) -> bool:
     """Do the parameters say whether it exists, or how it is called?"""
-    needed = [_pattern(it) for it in lists]
+    needed = list(lists)
     if needed:
-        return all(any(it.fullmatch(name) for name in values) for it in needed)
+        return _are_listed(needed, values)
     if raw.condition or any(_set_names(raw.parameter, values)):
         return True
     return "<" in raw.name and all("<" in it.name for it in of_stack)
+
+
+def _wanted(ids: Mapping[str, str], *texts: str) -> list[str]:
+    """The ids that texts have, each once."""
+    return [it for it in dict.fromkeys(_ID.findall(" ".join(texts))) if it in ids]
+
+
+def _are_listed(lists: Iterable[str], values: Mapping[str, Given]) -> bool:
+    """Is each of these lists given?"""
+    return all(any(_pattern(it).fullmatch(name) for name in values) for it in lists)
 
 
 def _bindings(
