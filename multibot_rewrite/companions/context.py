@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from multibot_rewrite.companions.names.rename_map import NO_OWN, CompanionNames
+from multibot_rewrite.companions.sites import NamedFile
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT, FileTemplate
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.naming import Naming
@@ -27,10 +28,11 @@ class Context(NamedTuple):
 
 
 class Companion(NamedTuple):
-    """A companion file as a template for any robot, and the findings about it."""
+    """A companion file as a template for any robot, the findings about that, and what was read."""
 
     template: FileTemplate
     findings: tuple[Finding, ...]
+    file: NamedFile
 
 
 def make_context(

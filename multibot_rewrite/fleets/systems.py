@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.closure.frames import Sender
 from multibot_rewrite.closure.topics import End
+from multibot_rewrite.companions.bridge import below
 from multibot_rewrite.companions.bridge_entry import BOTH, ROS
 from multibot_rewrite.companions.params.known_nodes import KnownNodes
 from multibot_rewrite.companions.params.sections import PARAMETERS
@@ -14,7 +15,6 @@ from multibot_rewrite.evidence.hardware import Exported, exported
 from multibot_rewrite.evidence.nodes import children_of
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import GivenNode, Place
-from multibot_rewrite.fleets.bridge_file import below
 from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.fleets.fleet_file import REAL
 from multibot_rewrite.fleets.member import without_simulator

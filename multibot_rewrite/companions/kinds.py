@@ -1,4 +1,4 @@
-"""Which files beside a description can be judged, by their names and texts."""
+"""The kinds of files beside a description, and how they are told by their texts."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from multibot_rewrite.bounded import MAX_BYTES
 from multibot_rewrite.lazy import lazy_compile
 
 SUFFIXES = (".yaml", ".yml", ".rviz")
-PARAMS, RVIZ, BRIDGE, MOVEIT = "params file", "rviz file", "bridge file", "moveit file"
-KINDS = (PARAMS, RVIZ, BRIDGE, MOVEIT)
+PARAMS, RVIZ, BRIDGE, MOVEIT, TREE, LUA = "params", "rviz", "bridge", "moveit", "tree", "lua"
+EVERY = (PARAMS, RVIZ, MOVEIT, BRIDGE, TREE, LUA)
 # What only files of one kind have at the start of a line or an item. A file of one node's sections may
 # be MoveIt's as well: that is a parameter file for its reader.
 _MARKS = (
