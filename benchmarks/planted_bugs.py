@@ -31,11 +31,21 @@ ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "planted-bugs.md"
 HARMLESS = ROOT / "fixtures" / "harmless_bugs.tsv"
 PACKAGE = "multibot_rewrite"
-COPIED = (PACKAGE, "tests", "fixtures", "docs", "examples", "share", "benchmarks", "resource")
+COPIED = (
+    PACKAGE,
+    "tools",
+    "tests",
+    "fixtures",
+    "docs",
+    "examples",
+    "share",
+    "benchmarks",
+    "resource",
+)
 # "." are the modules that are in no room.
 ROOMS = (
-    "rewriters", "steps", "checks", "readback", "findings", "reports", "remap", "graph", "lint",
-    "companions", "evidence", "closure", "fleets", "launch", "sources", "cli", "rosnames", "interfaces",
+    "rewriters", "steps", "checks", "readback", "findings", "reports", "knowledge", "remap", "graph",
+    "lint", "companions", "evidence", "closure", "fleets", "launch", "sources", "cli", "rosnames",
     "naming.py", ".",
 )  # fmt: skip
 # A bug in one of these could reach beyond the copy: they kill processes or delete folders.

@@ -13,7 +13,7 @@ from multibot_rewrite.checks.problem import to_findings
 from multibot_rewrite.checks.verdict import not_proved
 from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.model import Change, UsageError
-from multibot_rewrite.naming import DEFAULT_LAYOUT, SHARED_FRAMES, SHARED_TOPICS, make_naming
+from multibot_rewrite.naming import DEFAULT_LAYOUT, make_naming
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import release_here
 from multibot_rewrite.reports.changes import list_changes
@@ -23,6 +23,7 @@ from multibot_rewrite.sources.read import Source
 from multibot_rewrite.steps.collect import NOTHING, collect
 from multibot_rewrite.steps.document import read_document
 from multibot_rewrite.steps.template import Template
+from multibot_rewrite.system.conventions import SHARED_TOPICS, WORLD_FRAMES
 
 if TYPE_CHECKING:
     from multibot_rewrite.reports.explain import Explanation
@@ -106,7 +107,7 @@ def rewrite(
     affix: str | None = None,
     topics: str | None = None,
     separators: Mapping[str, str] | None = None,
-    shared_frames: Iterable[str] = SHARED_FRAMES,
+    shared_frames: Iterable[str] = WORLD_FRAMES,
     shared_topics: Iterable[str] = SHARED_TOPICS,
     groups: str = "keep",
     urdf: Source | None = None,
@@ -145,7 +146,7 @@ def rewrite_all(
     affix: str | None = None,
     topics: str | None = None,
     separators: Mapping[str, str] | None = None,
-    shared_frames: Iterable[str] = SHARED_FRAMES,
+    shared_frames: Iterable[str] = WORLD_FRAMES,
     shared_topics: Iterable[str] = SHARED_TOPICS,
     groups: str = "keep",
     urdf: Source | None = None,
@@ -222,7 +223,7 @@ def explain(
     affix: str | None = None,
     topics: str | None = None,
     separators: Mapping[str, str] | None = None,
-    shared_frames: Iterable[str] = SHARED_FRAMES,
+    shared_frames: Iterable[str] = WORLD_FRAMES,
     shared_topics: Iterable[str] = SHARED_TOPICS,
     groups: str = "keep",
     urdf: Source | None = None,
@@ -261,7 +262,7 @@ def strip(
     affix: str | None = None,
     topics: str | None = None,
     separators: Mapping[str, str] | None = None,
-    shared_frames: Iterable[str] = SHARED_FRAMES,
+    shared_frames: Iterable[str] = WORLD_FRAMES,
     shared_topics: Iterable[str] = SHARED_TOPICS,
     groups: str = "keep",
     urdf: Source | None = None,

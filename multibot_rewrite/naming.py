@@ -11,10 +11,9 @@ from collections.abc import Iterable, Iterator, Mapping
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.nearest import did_you_mean_one_of
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.conventions import SHARED_TOPICS, WORLD_FRAMES
 
 PREFIX, POSTFIX, NAMESPACE = "prefix", "postfix", "namespace"
-SHARED_FRAMES = ("world", "map")
-SHARED_TOPICS = ("/clock", "/rosout", "/parameter_events", "/diagnostics")
 TF_TOPICS = ("tf", "tf_static")
 # Order and grouping as shown in reports; the value is the default separator.
 SEPARATORS = {
@@ -126,7 +125,7 @@ def make_naming(
     affix: str | None = None,
     topics: str | None = None,
     separators: Mapping[str, str] | None = None,
-    shared_frames: Iterable[str] = SHARED_FRAMES,
+    shared_frames: Iterable[str] = WORLD_FRAMES,
     shared_topics: Iterable[str] = SHARED_TOPICS,
     groups: str = "keep",
 ) -> Naming:

@@ -17,6 +17,8 @@ from multibot_rewrite.naming import (
     Naming,
 )
 from multibot_rewrite.rewriters.forms import IN_FRONT
+from multibot_rewrite.rewriters.text import text_of
+from multibot_rewrite.rewriters.tree import library_key
 from multibot_rewrite.rewriters.vocabulary import VocabularySection
 from multibot_rewrite.rosnames import split_remap
 from multibot_rewrite.steps.collect import SRDF, Host, Inventory
@@ -24,11 +26,29 @@ from multibot_rewrite.steps.collect import SRDF, Host, Inventory
 if TYPE_CHECKING:
     from multibot_rewrite.steps.renames import RenameMap
 
+# gz systems that serve every entity of the world, whoever loads them (gz-sim src/systems).
+WORLD_SYSTEMS = {
+    "gz-sim-sensors-system": "Gazebo crashes when rendering is set up twice",
+    "gz-sim-imu-system": "every IMU of the world is published again for each copy",
+    "gz-sim-physics-system": "two physics engines move the same links",
+    "gz-sim-contact-system": "every contact sensor is published again for each copy",
+    "gz-sim-forcetorque-system": "every force sensor is published again for each copy",
+    "gz-sim-navsat-system": "every GPS of the world is published again for each copy",
+    "gz-sim-magnetometer-system": "every magnetometer is published again for each copy",
+    "gz-sim-altimeter-system": "every altimeter is published again for each copy",
+    "gz-sim-air-pressure-system": "every barometer is published again for each copy",
+    "gz-sim-scene-broadcaster-system": "every state of the world is sent again for each copy",
+}
+# What a plugin reads the description from: names that no other robot's plugin may read.
+DESCRIPTION_NODE = "robot_param_node"
+DESCRIPTIONS = ("robot_param", "robotParam", DESCRIPTION_NODE)
+
 
 def hazards(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
     """All of them; they do not depend on the robots' names."""
-    for of_naming in (prefix_only, leading_slashes, moved_tf, process_wide):
+    for of_naming in (prefix_only, leading_slashes, moved_tf, process_wide, one_description):
         yield from of_naming(inventory, renames.naming)
+    yield from world_systems(inventory)
     for of_names in (hardwired, outside_frames, reordered):
         yield from of_names(inventory, renames)
 
@@ -105,6 +125,29 @@ def process_wide(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
             message = f"{claim.value!r} applies to the whole process, also to nodes of other robots"
             hint = "use a relative target, which ends up in each robot's own namespace"
             yield about(claim, "MB426", message, hint)
+
+
+def one_description(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
+    """Absolute names of descriptions and of the nodes that hold them, where these keep their names."""
+    plugins = (it.element for it in inventory.hosts if it.element.tag == "plugin")
+    for it in (child for plugin in plugins for child in plugin.iterchildren(*DESCRIPTIONS)):
+        name = text_of(it)
+        renamed = it.tag == DESCRIPTION_NODE and naming.topics != NAMESPACE
+        if name.startswith("/") and not renamed:
+            message = f"<{it.tag}> {name!r} is the same for all robots"
+            yield Problem(it, message, "", "use the part after the last slash", (), "MB410")
+
+
+def world_systems(inventory: Inventory) -> Iterator[Problem]:
+    """Systems of the whole world that each robot loads again; in a world they are where they belong."""
+    for host in inventory.hosts:
+        above = host.element.getparent()
+        key = library_key(host.element.get("filename", ""))
+        if host.element.tag != "plugin" or key not in WORLD_SYSTEMS:
+            continue
+        if above is None or above.tag != "world":
+            message = f"{key} is loaded again with every robot: {WORLD_SYSTEMS[key]}"
+            yield Problem(host.element, message, "filename", "load it in the world", (), "MB416")
 
 
 def hardwired(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:

@@ -21,6 +21,8 @@ REASONS = {
     "MB435": ("plugin", "whose controllers take rules of their spawner alone"),
     "MB432": ("frame", SHARED),
     "MB425": ("name", "looked up in the whole world"),
+    "MB410": ("description name", SHARED),
+    "MB416": ("world system", "in every robot"),
     "MB436": ("remap rule", "that matches no name any more"),
     "MB426": ("remap rule", "of the whole process"),
     "MB143": ("frame", "that an argument of the xacro misses"),

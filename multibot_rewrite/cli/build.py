@@ -17,7 +17,7 @@ from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.build import make_outputs
 from multibot_rewrite.fleets.fleet_file import input_files, read_fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
-from multibot_rewrite.fleets.launch_file import PYTHON as LAUNCH
+from multibot_rewrite.fleets.launch_file import LAUNCH
 from multibot_rewrite.fleets.manifest import (
     MANIFEST,
     NOTE,

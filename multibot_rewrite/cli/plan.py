@@ -10,13 +10,13 @@ from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.usage import given_options
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.fleets.fleet import expected, possible
-from multibot_rewrite.graph.check import doubts
-from multibot_rewrite.graph.doctor.diagnose import diagnose
-from multibot_rewrite.graph.doctor.seen_plan import seen_plan
 from multibot_rewrite.graph.enclaves import to_policy
 from multibot_rewrite.graph.plan_file import to_json, to_yaml
+from multibot_rewrite.live.diagnose import diagnose
+from multibot_rewrite.live.seen_plan import seen_plan
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.releases import release_here
+from multibot_rewrite.rules.check import doubts
 
 # What a plan of a description has, and that of a launch file has not.
 NOT_OF_LAUNCH = {

@@ -6,18 +6,17 @@ activated) and its chaining: a controller's own interfaces are called ``CONTROLL
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.closure.gap import Gap
 from multibot_rewrite.evidence.claims import Claimed, claimed_twice, claims_of
 from multibot_rewrite.evidence.hardware import COMMAND, Exported
 from multibot_rewrite.evidence.records import GivenNode, Place
+from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.nearest import Guesses
-from multibot_rewrite.remap.records import NodeFacts
+from multibot_rewrite.system.conventions import PLACEHOLDER
 
 INTERFACE, TWICE, CONTESTED = "interface", "claimed twice", "contested"
-PLACEHOLDER = re.compile(r"<|\$\(|\{")
 
 
 def interface_gaps(

@@ -13,8 +13,9 @@ import yaml
 from multibot_rewrite.closure.gap import Gap
 from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, pairs
 from multibot_rewrite.evidence.records import Given, GivenNode, Place
+from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.nearest import nearest
-from multibot_rewrite.remap.records import ACTION, SERVES, NodeFacts
+from multibot_rewrite.system.records import ACTION, SERVES
 
 CONTROLLER, JOINT = "controller", "joint"
 NOTHING: Mapping[str, NodeFacts] = {}

@@ -8,16 +8,9 @@ from multibot_rewrite.closure.gap import Gap
 from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.nearest import nearest
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.records import ACTION, CALLS, PUBLISHES, SERVES, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.conventions import is_from_outside
+from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SERVES, SUBSCRIBES, TOPIC
 
-# What people, planners of missions, scenes and tools send, by the last word of the name.
-OUTSIDE = frozenset(
-    """cmd_vel cmd_vel_unstamped cmd_vel_teleop initialpose goal_pose goal_update clicked_point set_pose
-    joy speed_limit reference commands joint_trajectory trajectory preempt_teleop clock diagnostics
-    parameter_events robot_description external_wrench manual_control speed_scaling_input footprint
-    feedback set_feedback planning_scene planning_scene_world collision_object attached_collision_object
-    trajectory_execution_event enable_freedrive_mode equilibrium_pose script_command""".split()  # noqa: SIM905
-)
 TYPE, STATUS = "type", "/_action/status"
 GIVES, NEEDS = (PUBLISHES, SERVES), (SUBSCRIBES, CALLS)
 
@@ -95,7 +88,7 @@ def _needed(ends: Sequence[End], more: Iterable[End], sent: bool) -> Iterator[En
 
 
 def _is_from_outside(end: End) -> bool:
-    return any(name.rpartition("/")[2] in OUTSIDE for name in (end.name, end.code_name))
+    return is_from_outside(end.name) or is_from_outside(end.code_name)
 
 
 def _near(end: End, given: Iterable[End]) -> End | None:

@@ -12,8 +12,8 @@ from multibot_rewrite.closure.gap import Gap
 from multibot_rewrite.evidence.claims import TYPE
 from multibot_rewrite.evidence.nodes import MANAGER
 from multibot_rewrite.evidence.records import GivenNode
+from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.nearest import nearest
-from multibot_rewrite.remap.records import NodeFacts
 
 SECTION = "section"
 

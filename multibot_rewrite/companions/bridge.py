@@ -19,7 +19,6 @@ from multibot_rewrite.companions.bridge_entry import (
     KEYS,
     MODEL_SLOT,
     PART,
-    PLACEHOLDER,
     ROS,
     SERVICE,
     BridgeEntry,
@@ -27,7 +26,8 @@ from multibot_rewrite.companions.bridge_entry import (
     row_of,
     text_in,
 )
-from multibot_rewrite.companions.context import Companion, Context
+from multibot_rewrite.companions.companion import Companion
+from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.kinds import BRIDGE
 from multibot_rewrite.companions.names.placeholders import without_robot
 from multibot_rewrite.companions.names.rename_map import is_declared, spell
@@ -50,6 +50,7 @@ from multibot_rewrite.companions.yaml_text import (
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import POSTFIX
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.conventions import PLACEHOLDER
 
 # gz topics of the whole simulation, like those below /world.
 WORLD = frozenset({"clock", "stats"})

@@ -10,7 +10,6 @@ from multibot_rewrite.companions.bridge_entry import (
     BOTH,
     GZ,
     GZ_MODEL,
-    PLACEHOLDER,
     SERVICE,
     BridgeEntry,
 )
@@ -18,6 +17,7 @@ from multibot_rewrite.companions.rviz.read_config import text_of
 from multibot_rewrite.companions.yaml_text import YamlText, found_at, items
 from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.system.conventions import PLACEHOLDER
 
 SECOND_MODEL = declare(
     "MF505",

@@ -36,7 +36,6 @@ KEYS += ("publish_optical_frame", FRAME, "qos_profile", "gz_req_type_name", "gz_
 GZ_MODEL = re.compile(r"(?P<above>/?(?:world/[^/]+/)?model/)(?P<model>[^/]+)(?P<rest>/.*)?")
 # A link, joint or sensor in a gz topic.
 PART = re.compile(r"(?<=/)(link|joint|sensor)/([^/]+)")
-PLACEHOLDER = re.compile(r"[<>{}$%]")
 
 
 class BridgeEntry(NamedTuple):

@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from multibot_rewrite.companions.names.rename_map import NO_OWN, CompanionNames
-from multibot_rewrite.companions.sites import NamedFile
-from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT, FileTemplate
-from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT
+from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.records import NodeFacts
 from multibot_rewrite.remap.targets import placed
 from multibot_rewrite.rewriters.forms import Declared
 
@@ -25,14 +23,6 @@ class Context(NamedTuple):
     topics: CompanionNames
     nodes: Mapping[str, str]
     distro: str
-
-
-class Companion(NamedTuple):
-    """A companion file as a template for any robot, the findings about that, and what was read."""
-
-    template: FileTemplate
-    findings: tuple[Finding, ...]
-    file: NamedFile
 
 
 def make_context(

@@ -9,7 +9,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Sequence
 
-from multibot_rewrite.companions.context import Companion, Context
+from multibot_rewrite.companions.companion import Companion
+from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.kinds import LUA
 from multibot_rewrite.companions.names.by_kind import frames_differ
 from multibot_rewrite.companions.names.rename_map import spell

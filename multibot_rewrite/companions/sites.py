@@ -11,10 +11,10 @@ from multibot_rewrite.record import NamedTuple
 
 if TYPE_CHECKING:
     from multibot_rewrite.companions.context import Context
-    from multibot_rewrite.companions.params.known_nodes import KnownNodes
     from multibot_rewrite.companions.params.name_sites import Page
     from multibot_rewrite.companions.rviz.read_config import RvizItem
     from multibot_rewrite.companions.yaml_text import YamlText
+    from multibot_rewrite.knowledge.parameters import KnownNodes
 
 # The name of a section of parameters, which is that of a node.
 SECTION = "section"

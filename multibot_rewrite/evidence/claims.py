@@ -13,9 +13,9 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.evidence.records import Given, GivenNode, Place
+from multibot_rewrite.knowledge.conditions import Values, holds
+from multibot_rewrite.knowledge.records import Claim
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.conditions import Values, holds
-from multibot_rewrite.remap.records import Claim
 
 TYPE, COMMAND = "type", "command"
 _PART = re.compile(

@@ -9,9 +9,9 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.evidence.records import Given, GivenNode
+from multibot_rewrite.knowledge.conditions import Values, holds
+from multibot_rewrite.knowledge.records import Endpoint, FrameParameter, NodeFacts, SentTransform
 from multibot_rewrite.model import InputError
-from multibot_rewrite.remap.conditions import Values, holds
-from multibot_rewrite.remap.records import Endpoint, FrameParameter, NodeFacts, SentTransform
 from multibot_rewrite.rosnames import check_topic_name
 
 _ID = re.compile(r"<([a-z_ ]+)>")

@@ -13,8 +13,8 @@ from multibot_rewrite.evidence.filling import filled
 from multibot_rewrite.evidence.records import GivenNode
 from multibot_rewrite.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.records import NodeFacts
 
 MANAGER = "controller_manager"
 # So many names in one line.

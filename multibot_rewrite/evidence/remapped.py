@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from multibot_rewrite.controller_ways import controller_way
-from multibot_rewrite.remap.records import NodeFacts
+from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.rosnames import RemapRule, expand
 
 _TF = ("/tf", "/tf_static")

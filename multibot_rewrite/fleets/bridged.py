@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from multibot_rewrite.graph.expectation import PlannedTopic
 from multibot_rewrite.remap.bridged_topics import BridgedTopic
-from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
 
 # With nothing said, a row goes both ways.
 BOTH = (PUBLISHES, SUBSCRIBES)

@@ -12,8 +12,9 @@ from typing import Any
 from multibot_rewrite.fleets.fleet_data import FleetData
 from multibot_rewrite.fleets.fleet_paths import listed
 from multibot_rewrite.model import InputError
-from multibot_rewrite.naming import SHARED_TOPICS, Naming
+from multibot_rewrite.naming import Naming
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.conventions import SHARED_TOPICS
 
 CELL, MOVE_GROUP, JOINT_STATES = "cell", "move_group", "/joint_states"
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from multibot_rewrite.companions.behavior_tree.rewrite import rewrite_behavior_tree
-from multibot_rewrite.companions.context import Companion
+from multibot_rewrite.companions.companion import Companion
 from multibot_rewrite.companions.lua import rewrite_lua
 from multibot_rewrite.companions.moveit.rewrite import rewrite_moveit
-from multibot_rewrite.companions.params.known_nodes import load_known_nodes
 from multibot_rewrite.companions.params.rewrite import nodes_without_section, rewrite_params
 from multibot_rewrite.companions.sites import NamedFile
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT, fill_template
@@ -26,6 +25,7 @@ from multibot_rewrite.fleets.prefix_parameters import at_run_time
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_groups import RobotGroup, group_robots
 from multibot_rewrite.fleets.robot_nodes import node_sources
+from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.model import InputError
 from multibot_rewrite.rules.files.judge import judged_once
 from multibot_rewrite.sources.read import read_file
@@ -49,7 +49,7 @@ def companion_files(plan: FleetPlan) -> FilesAndFindings:
 
 def of_fleet(plan: FleetPlan, file: NamedFile) -> NamedFile:
     """A file with what a fleet knows: the words for its robots, and frames that its nodes send."""
-    known = load_known_nodes(plan.file.parameters, plan.file.distro)
+    known = load_known_nodes(plan.file.nodes, plan.file.distro)
     words = {name for it in plan.robots for name in (it.spec.namespace, it.spec.tag)}
     return file._replace(robots=frozenset(words), sent=file.sent | known.sent)
 
@@ -66,7 +66,7 @@ def _params(plan: FleetPlan, group: RobotGroup, path: str) -> Companion:
     """A ROS parameter file; what the robot's other parameter files set is not inserted in it."""
     read = params_of(group.robots[0].spec)
     others = [document for it, document in read.items() if it != path]
-    known = load_known_nodes(plan.file.parameters, plan.file.distro)
+    known = load_known_nodes(plan.file.nodes, plan.file.distro)
     evidence = plan.evidence[node_sources(group.robots[0].spec)]
     nodes = evidence.nodes
     bare = at_run_time(plan.fleet.naming, evidence.given, known)

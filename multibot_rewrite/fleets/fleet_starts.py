@@ -1,4 +1,4 @@
-"""What a fleet's launch file starts, whichever form it is written in."""
+"""What a fleet's launch file starts."""
 
 from __future__ import annotations
 

@@ -1,5 +1,4 @@
-"""A planned fleet -> what its launch file starts, robot by robot; ``launch_python`` and ``launch_xml``
-write it down.
+"""A planned fleet -> what its launch file starts, robot by robot; ``launch_python`` writes it down.
 
 What only runs under a condition that no file answers, and nodes whose program is not known, are left
 to the reader: they are named in the file.
@@ -24,17 +23,19 @@ from multibot_rewrite.fleets.relays import Relay, relays
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_nodes import node_sources
 from multibot_rewrite.fleets.rviz_outputs import RvizOutput, window_path
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.programs import (
+from multibot_rewrite.knowledge.programs import (
     LIFECYCLE_MANAGER,
     PROGRAMS,
     Program,
     activates_itself,
     program_of,
 )
-from multibot_rewrite.remap.records import PUBLISHES, EndpointName, NodeFacts
+from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.remap.records import EndpointName
 from multibot_rewrite.remap.started import SPAWN, Started, spawner_arguments
 from multibot_rewrite.remap.ways import COMPONENT, SPAWNER
+from multibot_rewrite.system.records import PUBLISHES
 
 STATE, JOINT_STATES, BRIDGE = "robot_state_publisher", "joint_state_publisher", "bridge.yaml"
 # Started by hand, or once for all robots.

@@ -1,37 +1,35 @@
-"""``fleet.launch.py`` and ``fleet.launch.xml``: one command that starts the fleet that was built."""
+"""``fleet.launch.py``: one command that starts the fleet that was built."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Sequence
 
 from multibot_rewrite.fleets import launch_actions, teleop, world_file
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.fleet_starts import GZ, File, FleetStarts, RobotStarts, Start
 from multibot_rewrite.fleets.launch_python import to_python
-from multibot_rewrite.fleets.launch_xml import to_xml
 from multibot_rewrite.fleets.output_file import OutputFile
 from multibot_rewrite.fleets.rviz_outputs import RvizOutput
 from multibot_rewrite.plural import plural
 from multibot_rewrite.releases import facts_of_release
 
-PYTHON, XML = "fleet.launch.py", "fleet.launch.xml"
+LAUNCH = "fleet.launch.py"
 
 
-def launch_files(
+def launch_file(
     plan: FleetPlan,
     each: Sequence[FleetPlan],
     configs: Sequence[RvizOutput],
     files: Sequence[OutputFile],
     bridged: Collection[str],
-) -> Iterator[OutputFile]:
-    """The launch files; ``each`` is every robot as a fleet of its own, ``configs`` are the windows of
+) -> OutputFile:
+    """The launch file; ``each`` is every robot as a fleet of its own, ``configs`` are the windows of
     RViz, ``files`` what else is built, ``bridged`` the topics that bridges bring."""
     paths = frozenset(it.path for it in files)
     robots = [launch_actions.of_robot(one, paths, bridged) for one in each]
     starts = _starts(plan, each, configs, paths, robots)
-    yield OutputFile(PYTHON, to_python(starts).encode())
-    yield OutputFile(XML, to_xml(starts).encode())
+    return OutputFile(LAUNCH, to_python(starts).encode())
 
 
 def _starts(

@@ -28,12 +28,12 @@ from multibot_rewrite.fleets.output_file import OutputFile
 from multibot_rewrite.fleets.relays import Relay, relays
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_nodes import stack_nodes
+from multibot_rewrite.knowledge.stacks import is_apart
+from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS
-from multibot_rewrite.remap.records import TOPIC
-from multibot_rewrite.remap.stacks import is_apart
 from multibot_rewrite.remap.targets import placed, target_of
-from multibot_rewrite.remap.yaml_with_lines import unknown
+from multibot_rewrite.system.records import TOPIC
 
 
 class OfFleet(Protocol):

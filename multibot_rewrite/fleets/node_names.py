@@ -6,12 +6,13 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from multibot_rewrite.arguments import checked
+from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.records import CALLS, EndpointName, NodeTable, Table
+from multibot_rewrite.remap.records import EndpointName, NodeTable, Table
 from multibot_rewrite.remap.started import Started, launch_arguments, started
 from multibot_rewrite.remap.ways import COMPONENT, SPAWNER
-from multibot_rewrite.remap.yaml_with_lines import unknown
+from multibot_rewrite.system.records import CALLS
 
 # What a lifecycle manager calls of each node that it manages (nav2_util lifecycle_service_client.cpp).
 CHANGE_STATE = "change_state"

@@ -21,10 +21,10 @@ from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, pa
 from multibot_rewrite.fleets.robot_nodes import stack_nodes
 from multibot_rewrite.fleets.shape_outputs import taken_as_they_are
 from multibot_rewrite.fleets.start_poses import start_poses
+from multibot_rewrite.knowledge.stacks import load_stack
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS, make_naming
 from multibot_rewrite.remap.records import EndpointName
-from multibot_rewrite.remap.stacks import load_stack
 
 # The stacks that are nav2_bringup's launch files.
 _STACKS = ("nav2_composed", "nav2_slam")

@@ -16,19 +16,14 @@ from collections.abc import Iterable, Iterator, Mapping
 from multibot_rewrite.companions.rviz.rewrite import world_frame
 from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.fleets.fleet_file import FleetFile
+from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS, Naming
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.bridged_topics import TF_TYPE
-from multibot_rewrite.remap.records import (
-    PUBLISHES,
-    SUBSCRIBES,
-    TOPIC,
-    Endpoint,
-    EndpointName,
-    NodeTable,
-)
+from multibot_rewrite.remap.records import EndpointName, NodeTable
 from multibot_rewrite.remap.targets import placed, target_of
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
 
 BRIDGE, _WORLD = "tf_namespace_bridge", "bridged_world"
 _RELAY, _STATIC = ("topic_tools", "relay"), ("tf2_ros", "static_transform_publisher")

@@ -10,8 +10,8 @@ from multibot_rewrite.findings.grouping import grouped
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_nodes import companion_nodes, node_sources, stack_nodes
+from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.records import NodeFacts
 
 
 class RobotGroup(NamedTuple):

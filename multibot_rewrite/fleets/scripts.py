@@ -31,8 +31,8 @@ from multibot_rewrite.fleets.output_file import OutputFile
 from multibot_rewrite.fleets.rewritten_robots import Jobs
 from multibot_rewrite.fleets.robot_choice import Choice
 from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
+from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.model import UsageError
-from multibot_rewrite.remap.yaml_with_lines import unknown
 from multibot_rewrite.sources.read import read_file
 
 

@@ -7,9 +7,9 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from multibot_rewrite.findings.finding import NOTE, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.fleet_file import FleetFile
+from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.model import InputError
 from multibot_rewrite.nearest import did_you_mean_one_of
-from multibot_rewrite.remap.records import NodeFacts
 
 MANAGERS = "nav2_lifecycle_manager"
 NOT_MANAGED = declare(

@@ -28,10 +28,10 @@ from multibot_rewrite.graph.transforms import Edge
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.bridged_topics import TF_TYPE, bridge_data
-from multibot_rewrite.remap.records import TOPIC
 from multibot_rewrite.remap.targets import placed, target_of
 from multibot_rewrite.rewriters.text import text_at
 from multibot_rewrite.steps.collect import Inventory
+from multibot_rewrite.system.records import TOPIC
 
 NODE = "start_pose"
 AMCL = "amcl"

@@ -8,7 +8,6 @@ from multibot_rewrite.closure.frames import Sender
 from multibot_rewrite.closure.topics import End
 from multibot_rewrite.companions.bridge import below
 from multibot_rewrite.companions.bridge_entry import BOTH, ROS
-from multibot_rewrite.companions.params.known_nodes import KnownNodes
 from multibot_rewrite.companions.params.sections import PARAMETERS
 from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, pairs, read_yaml
 from multibot_rewrite.evidence.hardware import Exported, exported
@@ -23,12 +22,15 @@ from multibot_rewrite.fleets.output_values import OutputText
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_nodes import RobotEvidence
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER, sent_by
+from multibot_rewrite.knowledge.parameters import KnownNodes
+from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.readback.nodes import ReadNode
 from multibot_rewrite.readback.reading import FRAME, read
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, TOPIC, EndpointName, NodeFacts
+from multibot_rewrite.remap.records import EndpointName
 from multibot_rewrite.rosnames import expand
 from multibot_rewrite.steps.document import read_document
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
 
 FIXED, MOVEIT = "fixed", "moveit_simple_controller_manager"
 BRIDGE_FILE, BRIDGE_NODE = "bridge.yaml", "ros_gz_bridge"

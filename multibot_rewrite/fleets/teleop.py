@@ -18,7 +18,7 @@ from multibot_rewrite.fleets.output_file import yaml_of
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.bridged_topics import DIRECTIONS, bridged_topics
-from multibot_rewrite.remap.records import PUBLISHES, TOPIC
+from multibot_rewrite.system.records import PUBLISHES, TOPIC
 
 PLAIN, STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
 COMMAND = "cmd_vel"

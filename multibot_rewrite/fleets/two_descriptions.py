@@ -9,8 +9,8 @@ from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot, at_robot
-from multibot_rewrite.graph.expectation import USUAL_FRAMES
 from multibot_rewrite.steps.collect import Inventory
+from multibot_rewrite.system.conventions import USUAL_FRAMES
 
 SHOWN = 3
 _URDF = """\

@@ -12,9 +12,9 @@ from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.doubled_names import doubled
 from multibot_rewrite.fleets.output_values import OutputValue
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
-from multibot_rewrite.graph.expectation import USUAL_FRAMES
 from multibot_rewrite.naming import TF_TOPICS, Naming
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.conventions import USUAL_FRAMES
 
 TF = tuple(f"/{it}" for it in TF_TOPICS)
 # Parameters and properties that make nodes put a prefix before frames.

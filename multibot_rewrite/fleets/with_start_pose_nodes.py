@@ -10,16 +10,11 @@ from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.robot_groups import said_once
 from multibot_rewrite.fleets.start_poses import NODE, start_poses
 from multibot_rewrite.graph.transforms import Edge
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.remap.bridged_topics import TF_TYPE
-from multibot_rewrite.remap.records import (
-    PUBLISHES,
-    TOPIC,
-    Endpoint,
-    EndpointName,
-    NodeFacts,
-    NodeTable,
-)
+from multibot_rewrite.remap.records import EndpointName, NodeTable
 from multibot_rewrite.remap.table import joined, names_of, node_table
+from multibot_rewrite.system.records import PUBLISHES, TOPIC
 
 STATIC = "/tf_static"
 POSE_NODE = NodeFacts(NODE, "tf2_ros", (Endpoint(TOPIC, PUBLISHES, STATIC, TF_TYPE),))

@@ -11,9 +11,13 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint
-from multibot_rewrite.graph.tool_nodes import TOOL_NODES
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.records import (
+from multibot_rewrite.system.conventions import (
+    READ_BY_EVERY_NODE,
+    SENT_BY_EVERY_NODE,
+    tool_patterns,
+)
+from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
     PUBLISHES,
@@ -40,8 +44,8 @@ _PARAMETERS = (
     *("set_parameters", "set_parameters_atomically"),
 )
 _OF_EVERY_NODE = (
-    *((TOPIC, PUBLISHES, name) for name in ("/rosout", "/parameter_events")),
-    *((TOPIC, SUBSCRIBES, name) for name in ("/clock", "/parameter_events")),
+    *((TOPIC, PUBLISHES, name) for name in SENT_BY_EVERY_NODE),
+    *((TOPIC, SUBSCRIBES, name) for name in READ_BY_EVERY_NODE),
     *((SERVICE, SERVES, f"~/{name}") for name in (*_PARAMETERS, "get_type_description")),
     *((SERVICE, CALLS, f"~/{name}") for name in _PARAMETERS),
 )
@@ -107,7 +111,7 @@ def _tools(ends: Iterable[PlannedEndpoint]) -> Iterator[Profile]:
     open_ = sorted(sides[SUBSCRIBES] - sides[PUBLISHES])
     every = ((TOPIC, SUBSCRIBES, "/*"), (SERVICE, CALLS, "/*"), (ACTION, CALLS, "/*"))
     yield Profile("/tools", (*every, *((TOPIC, PUBLISHES, name) for name in open_)))
-    yield from (_profile(f"/{pattern}", ()) for pattern in TOOL_NODES)
+    yield from (_profile(f"/{pattern}", ()) for pattern in tool_patterns())
 
 
 def _enclave(path: str, found: Iterable[Profile]) -> Iterator[str]:

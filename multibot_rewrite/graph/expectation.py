@@ -6,20 +6,16 @@ from collections.abc import Container, Iterable, Iterator, Mapping, Sequence, Se
 from typing import TYPE_CHECKING
 
 from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS, Naming, spelled
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.records import EndpointName, NodeFacts, Table
+from multibot_rewrite.remap.records import EndpointName, Table
 from multibot_rewrite.remap.ways import HOST, PLUGIN, PROCESS, deliveries
+from multibot_rewrite.system.conventions import SENT_BY_EVERY_NODE, USUAL_FRAMES
 
 if TYPE_CHECKING:
     from multibot_rewrite.steps.collect import Inventory
 
-# Topics of every node, which the plan leaves out.
-ALWAYS = ("/rosout", "/parameter_events")
-# With use_sim_time every node subscribes to the clock, even if /clock is not a shared topic.
-EVERYWHERE = (*ALWAYS, "/clock")
-# Frames that nearly every robot has, whether or not a description or stack names them (REP 105).
-USUAL_FRAMES = ("map", "odom", "base_footprint", "base_link")
 NOTHING: Mapping[str, Sequence[str]] = {}
 NOWHERE: Mapping[str, str] = {}
 
@@ -299,7 +295,7 @@ def _planned(names: Iterable[EndpointName]) -> Iterator[PlannedEndpoint]:
         end = name.endpoint
         if end.when or (end.helper and not end.by):
             continue
-        if end.role and name.name not in ALWAYS:
+        if end.role and name.name not in SENT_BY_EVERY_NODE:
             own = (f"{name.node}{end.by}", end.kind, end.role, name.name)
             yield PlannedEndpoint(*own, end.type, end.name, end.also)
 

@@ -16,10 +16,10 @@ from multibot_rewrite.graph.expectation import (
 )
 from multibot_rewrite.graph.plan_gaps import gap_value, read_gaps
 from multibot_rewrite.graph.plan_states import read_states, state_value
+from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.model import InputError
 from multibot_rewrite.releases import RELEASES
-from multibot_rewrite.remap.records import KINDS, PUBLISHES, ROLES, SUBSCRIBES
-from multibot_rewrite.remap.yaml_with_lines import unknown
+from multibot_rewrite.system.records import KINDS, PUBLISHES, ROLES, SUBSCRIBES
 
 KEYS = ("layout", "shared_nodes", "shared_topics", "shared_frames", "robots")
 ROBOT_KEYS = ("tf", "frames", "nodes")

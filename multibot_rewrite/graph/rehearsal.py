@@ -20,7 +20,12 @@ from multibot_rewrite.remap.applied_rules import (
     is_stand_in,
     running_nodes,
 )
-from multibot_rewrite.remap.records import (
+from multibot_rewrite.remap.records import EndpointName, NodeTable, Table
+from multibot_rewrite.remap.started import ros_arguments
+from multibot_rewrite.remap.targets import ACTION_PARTS
+from multibot_rewrite.remap.ways import Pair
+from multibot_rewrite.rosnames import resolve_bound
+from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
     PUBLISHES,
@@ -28,14 +33,7 @@ from multibot_rewrite.remap.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
-    EndpointName,
-    NodeTable,
-    Table,
 )
-from multibot_rewrite.remap.started import ros_arguments
-from multibot_rewrite.remap.targets import ACTION_PARTS
-from multibot_rewrite.remap.ways import Pair
-from multibot_rewrite.rosnames import resolve_bound
 
 TF = "tf2_msgs/msg/TFMessage"
 # The types used in place of one that is not installed.

@@ -6,30 +6,22 @@ import re
 from fnmatch import translate
 from functools import lru_cache
 
-from multibot_rewrite.graph.snapshot import LISTENER
-
-# No plan names them and ``learn`` leaves them out. Without a slash: in any namespace.
-TOOL_NODES = (
-    # Of ROS itself: hidden ones, ros2 CLI, launch, tf listeners, spawners, containers.
-    "_*", "launch_ros_*", f"{LISTENER}*", "spawner_*", "spawn_entity*", "*_container",
-    "static_transform_publisher_*", "*_rclcpp_node", "*_service_client",
-    # To look, to drive and to record with.
-    "rqt_*", "rviz*", "foxglove_*", "rosbridge*", "rosapi*", "rosbag2_*", "tf2_*", "view_frames",
-    "teleop_*", "*_teleop", "joy*",
-    # The world of all robots.
-    "gazebo*", "gz_*", "ign_*", "ros_gz_*", "*_bridge",
-)  # fmt: skip
+from multibot_rewrite.system.conventions import is_tool_word
 
 
 def is_tool(node: str, more: tuple[str, ...] = ()) -> bool:
-    """Is the node with this full name a tool? ``more`` are patterns beside ``TOOL_NODES``."""
+    """Is the node with this full name a tool? ``more`` are patterns beside the usual ones; without a
+    slash they are of any namespace."""
+    word = node.rpartition("/")[2]
+    if is_tool_word(word):
+        return True
     full, last = _patterns(more)
-    return bool(last.fullmatch(node.rpartition("/")[2]) or full.fullmatch(node))
+    return bool(more) and bool(last.fullmatch(word) or full.fullmatch(node))
 
 
 @lru_cache(maxsize=8)
 def _patterns(more: tuple[str, ...]) -> tuple[re.Pattern[str], re.Pattern[str]]:
-    every = (*TOOL_NODES, *more)
-    sides = ([p for p in every if "/" in p], [p for p in every if "/" not in p])
-    full, last = (re.compile("|".join(map(translate, side))) for side in sides)
+    """Of full names, and of last words."""
+    sides = ([p for p in more if "/" in p], [p for p in more if "/" not in p])
+    full, last = (re.compile("|".join(map(translate, side)) or "(?!)") for side in sides)
     return full, last

@@ -6,10 +6,11 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
+from multibot_rewrite.knowledge.conditions import holds
+from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.naming import Naming, spelled
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.conditions import holds
-from multibot_rewrite.remap.records import PUBLISHES, NodeFacts
+from multibot_rewrite.system.records import PUBLISHES
 
 if TYPE_CHECKING:
     from lxml.etree import _Element

@@ -10,6 +10,7 @@ from multibot_rewrite.companions.params.rcl_parameters import parameters_text
 from multibot_rewrite.fleets import spawn as spawning
 from multibot_rewrite.fleets.loaded_robot import LoadedRobot
 from multibot_rewrite.fleets.scripts import LoadedFleet
+from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.launch import later
 from multibot_rewrite.launch.context import (
     FLEET,
@@ -30,11 +31,10 @@ from multibot_rewrite.launch.context import (
     sim_time,
     written,
 )
-from multibot_rewrite.launch.door import of_launch, of_launch_ros
 from multibot_rewrite.launch.node_options import check_options, node_options
 from multibot_rewrite.launch.node_options import listed as option_list
 from multibot_rewrite.model import UsageError
-from multibot_rewrite.remap.yaml_with_lines import unknown
+from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 
 Make = Callable[[LoadedRobot], Iterable[Action]]
 SPAWNERS = MappingProxyType({"gz": spawning.GZ, "classic": spawning.CLASSIC})

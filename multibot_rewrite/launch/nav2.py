@@ -19,6 +19,7 @@ from multibot_rewrite.fleets.node_names import NodeNames
 from multibot_rewrite.fleets.relays import BRIDGE, Relay, not_bridged
 from multibot_rewrite.fleets.rviz_outputs import robot_windows
 from multibot_rewrite.fleets.scripts import LoadedFleet
+from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.launch import nav2_programs as programs
 from multibot_rewrite.launch.actions import (
     composable_node,
@@ -30,10 +31,9 @@ from multibot_rewrite.launch.actions import (
     place,
 )
 from multibot_rewrite.launch.context import Action, Context, fleet_of, sim_time, written
-from multibot_rewrite.launch.door import is_installed, of_launch, of_launch_ros
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.producers.launch.door import is_installed, of_launch, of_launch_ros
 from multibot_rewrite.releases import has_release
-from multibot_rewrite.remap.yaml_with_lines import unknown
 
 NONE, ONE, EACH = "none", "one", "each"
 # Launch arguments: name, default (None if it has to be given), what it is.

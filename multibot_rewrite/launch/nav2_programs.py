@@ -1,6 +1,6 @@
 """The nodes of Nav2 that its launch file starts, and the programs of them.
 
-Source: as ``remap.programs``; lifecycle_msgs msg/Transition.msg.
+Source: as ``knowledge.programs``; lifecycle_msgs msg/Transition.msg.
 """
 
 from __future__ import annotations
@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 
-from multibot_rewrite.remap.programs import LIFECYCLE_MANAGER as MANAGER
-from multibot_rewrite.remap.programs import PROGRAMS, SLAM, Program, container_of
+from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER as MANAGER
+from multibot_rewrite.knowledge.programs import PROGRAMS, SLAM, Program, container_of
 
 __all__ = ["MANAGER", "SLAM", "Program", "container_of", "program", "with_program"]
 

@@ -7,8 +7,8 @@ from types import MappingProxyType
 
 from multibot_rewrite.fleets.fleet_file import Pose
 from multibot_rewrite.fleets.loaded_robot import LoadedRobot
+from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.model import UsageError
-from multibot_rewrite.remap.yaml_with_lines import unknown
 
 # Words whose values are numbers.
 NUMBERS = frozenset({"pose"})

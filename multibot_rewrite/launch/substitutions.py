@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from functools import cache
 from typing import Any
 
+from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.launch.context import (
     Context,
     RobotRef,
@@ -16,10 +17,9 @@ from multibot_rewrite.launch.context import (
     reference,
     robot_of,
 )
-from multibot_rewrite.launch.door import of_launch, of_launch_ros
 from multibot_rewrite.launch.robot_words import NUMBERS, WORDS
 from multibot_rewrite.model import UsageError
-from multibot_rewrite.remap.yaml_with_lines import unknown
+from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 
 FILE = "file"
 

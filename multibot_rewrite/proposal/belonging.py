@@ -10,6 +10,7 @@ from multibot_rewrite.bounded import read_bytes
 from multibot_rewrite.proposal.looking import Looked
 from multibot_rewrite.proposal.searching import MOST_BYTES, Found, home_of
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.conventions import SENT_FRAMES
 
 # Descriptions whose names are looked at.
 MOST = 60
@@ -17,7 +18,6 @@ _NAMED = re.compile(rb"""<(?:link|joint)\b[^>]*?\bname\s*=\s*["']([^"']+)["']"""
 _FILLED_IN = re.compile(r"\$[({][^)}]*[)}]")
 _KEY = re.compile(rb"^[ \t-]*[\w./-]+:", re.MULTILINE)
 _WORD = re.compile(r"[\w.-]+")
-_FRAMES_OF_ALL = frozenset({"map", "odom", "world", "earth"})
 # How many names of a file another description has to have for each that is the robot's own: the files
 # of a robot name more than a variant of it has.
 _MORE = 2
@@ -97,7 +97,7 @@ def _names_in(path: str) -> frozenset[str]:
     """The links and joints of a description as they are written, without what a xacro fills in."""
     written = (it.decode("utf-8", "replace") for it in _NAMED.findall(_data(path)))
     names = (_FILLED_IN.sub("", it).strip("_/ ") for it in written)
-    return frozenset(it for it in names if it) - _FRAMES_OF_ALL
+    return frozenset(it for it in names if it) - {*SENT_FRAMES}
 
 
 def _words(path: str) -> _Words:

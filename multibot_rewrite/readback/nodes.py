@@ -143,12 +143,14 @@ def _rules(home: _Element) -> Iterator[ReadRule]:
 
 
 def _remap_arguments(home: _Element) -> Iterator[_Element]:
-    """What follows -r or --remap, as rcl reads it: between --ros-args and --."""
+    """What follows -r or --remap between --ros-args and --, and rules outside, which rcl takes as well
+    (rcl arguments.c: "This syntax is deprecated")."""
     ros, flag = False, ""
     for element in home.iterfind("argument"):
         text = text_of(element)
-        if ros and flag in REMAP_FLAGS:
+        if not ros or flag in REMAP_FLAGS:
             yield element
+        if ros and flag in REMAP_FLAGS:
             text = ""
         ros = text == "--ros-args" or (ros and text != "--")
         flag = text

@@ -8,8 +8,9 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping
 
 from multibot_rewrite.controller_ways import ControllerWay, controller_way
+from multibot_rewrite.knowledge.records import MANAGER, Endpoint
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.records import MANAGER, PUBLISHES, Endpoint, NodeTable, Table
+from multibot_rewrite.remap.records import NodeTable, Table
 from multibot_rewrite.remap.ways import (
     COMPONENT,
     PLUGIN,
@@ -21,6 +22,7 @@ from multibot_rewrite.remap.ways import (
     rules_by_taker,
 )
 from multibot_rewrite.rosnames import BoundNode, bind, parse_remap
+from multibot_rewrite.system.records import PUBLISHES
 
 
 class RunningNode(NamedTuple):

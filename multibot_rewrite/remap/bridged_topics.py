@@ -52,7 +52,7 @@ def bridge_data() -> Mapping[str, Any]:
     """The data of ``bridge.yaml``."""
     from importlib.resources import files  # slow to load, and the lint asks only for libraries
 
-    text = files("multibot_rewrite.remap").joinpath("bridge.yaml").read_text()
+    text = files("multibot_rewrite.knowledge").joinpath("bridge.yaml").read_text()
     data: Mapping[str, Any] = load_yaml(text)
     return data
 

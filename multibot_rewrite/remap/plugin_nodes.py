@@ -4,17 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from multibot_rewrite.knowledge.records import Endpoint, FrameParameter, NodeFacts, SentTransform
 from multibot_rewrite.readback.nodes import ReadNode
 from multibot_rewrite.readback.reading import Reading
-from multibot_rewrite.remap.records import (
-    Endpoint,
-    FrameParameter,
-    Home,
-    NodeFacts,
-    NodeRule,
-    NodeTable,
-    SentTransform,
-)
+from multibot_rewrite.remap.records import Home, NodeRule, NodeTable
 
 
 def plugin_nodes(reading: Reading, robot: str) -> Iterator[tuple[NodeFacts, NodeTable]]:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Any
 
+from multibot_rewrite.knowledge.records import MANAGER
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.records import MANAGER, NodeTable, Table
+from multibot_rewrite.remap.records import NodeTable, Table
 from multibot_rewrite.remap.ways import (
     COMPONENT,
     PROCESS,

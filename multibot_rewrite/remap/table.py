@@ -11,21 +11,11 @@ from typing import TypeAlias
 
 from multibot_rewrite.controller_ways import controller_way
 from multibot_rewrite.gc_pause import gc_paused
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.naming import NAMESPACE, Naming
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.applied_rules import is_stand_in
-from multibot_rewrite.remap.records import (
-    ACTION,
-    TOPIC,
-    Endpoint,
-    EndpointName,
-    Home,
-    NodeFacts,
-    NodeRule,
-    NodeTable,
-    Pairs,
-    Table,
-)
+from multibot_rewrite.remap.records import EndpointName, Home, NodeRule, NodeTable, Pairs, Table
 from multibot_rewrite.remap.table_checks import (
     PROBE,
     SHARED_NODE,
@@ -38,6 +28,7 @@ from multibot_rewrite.remap.table_checks import (
 from multibot_rewrite.remap.targets import expanded, placed, target_of
 from multibot_rewrite.remap.way_checks import NOT_TAKEN, not_taken
 from multibot_rewrite.rosnames import RemapRule, bind, expand, parse_remap, resolve_bound
+from multibot_rewrite.system.records import ACTION, TOPIC
 
 SAME = "all robots would share this name otherwise"
 TOGETHER = "all robots share this name; each would have its own otherwise"

@@ -8,23 +8,15 @@ from functools import cache
 from multibot_rewrite.controller_ways import controller_way
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
+from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.naming import NAMESPACE, Naming
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import RELEASES
-from multibot_rewrite.remap.records import (
-    MANAGER,
-    SERVICE,
-    TOPIC,
-    Endpoint,
-    EndpointName,
-    NodeFacts,
-    NodeRule,
-    NodeTable,
-    Pairs,
-)
-from multibot_rewrite.remap.stacks import load_nodes
+from multibot_rewrite.remap.records import EndpointName, NodeRule, NodeTable, Pairs
 from multibot_rewrite.remap.targets import expanded, target_of
 from multibot_rewrite.rosnames import BoundNode, bind, resolve_bound
+from multibot_rewrite.system.records import SERVICE, TOPIC
 
 # A stand-in for a second robot: names of a single robot cannot collide.
 PROBE = "multibot_probe"

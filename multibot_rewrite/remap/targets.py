@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from multibot_rewrite.knowledge.records import TRANSPORTS, Endpoint
 from multibot_rewrite.naming import NAMESPACE, Naming, spelled
-from multibot_rewrite.remap.records import ACTION, SERVICE, TOPIC, Endpoint
+from multibot_rewrite.system.records import ACTION, SERVICE, TOPIC
 
 # What an action is made of (rcl_action names.c): three services and two topics.
 ACTION_PARTS = (
@@ -15,8 +16,6 @@ ACTION_PARTS = (
     ("_action/feedback", TOPIC),
     ("_action/status", TOPIC),
 )
-# Topics that image_transport's plugins derive from a base name.
-TRANSPORTS = ("compressed", "compressedDepth", "theora", "zstd")
 
 
 def placed(robot: str, node: str, naming: Naming, apart: bool = False) -> tuple[str, str]:

@@ -10,9 +10,10 @@ from multibot_rewrite.controller_ways import controller_way
 from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.remap.applied_rules import RunningNode, bound_to, is_stand_in, running_nodes
-from multibot_rewrite.remap.records import ACTION, PUBLISHES, TOPIC, EndpointName, Table
+from multibot_rewrite.remap.records import EndpointName, Table
 from multibot_rewrite.remap.ways import PLUGIN
 from multibot_rewrite.rosnames import resolve_bound
+from multibot_rewrite.system.records import ACTION, PUBLISHES, TOPIC
 
 # A second robot shows what rules for all of a process do.
 ENOUGH = 2

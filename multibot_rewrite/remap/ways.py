@@ -15,12 +15,7 @@ from typing import TypeAlias
 from multibot_rewrite.controller_ways import controller_way
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import has_release
-from multibot_rewrite.remap.records import (
-    EndpointName,
-    NodeRule,
-    NodeTable,
-    Table,
-)
+from multibot_rewrite.remap.records import EndpointName, NodeRule, NodeTable, Table
 from multibot_rewrite.remap.targets import expanded
 
 PROCESS, HOST, COMPONENT = "process", "host", "component"

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from lxml import etree
 
 from multibot_rewrite.model import Claim, UsageError
-from multibot_rewrite.naming import SHARED_TOPICS, TF_TOPICS, TOPIC_KINDS
+from multibot_rewrite.naming import TF_TOPICS, TOPIC_KINDS
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.forms import NamePart, remap
 from multibot_rewrite.rewriters.own_defaults import filled
@@ -21,6 +21,7 @@ from multibot_rewrite.rewriters.spelling import Rules
 from multibot_rewrite.rewriters.text import text_at, text_of
 from multibot_rewrite.rewriters.vocabulary import VocabularySection
 from multibot_rewrite.rosnames import RemapRule, expand, remapped_node, split_remap
+from multibot_rewrite.system.conventions import SHARED_TOPICS
 
 FORMS = ("remap", "argument")
 # Of a parameter whose value is a topic, or what topics are below.
@@ -93,7 +94,7 @@ def rules_in(home: etree._Element | None) -> list[RemapRule]:
     """The remap rules in a plugin's ROS settings that rcl applies, in its order."""
     if home is None:
         return []
-    arguments = (it for it in home.iterchildren("argument") if _flag(it) in _REMAPS)
+    arguments = (it for it in home.iterchildren("argument") if _flag(it) in ("", *_REMAPS))
     rules = (split_remap(text_of(it)) for it in (*arguments, *home.iterchildren("remapping")))
     return [it for it in rules if it is not None]
 

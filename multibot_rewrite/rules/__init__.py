@@ -1,1 +1,1 @@
-"""Rules that several commands ask."""
+"""Rules that several commands ask: one a fault, whoever asks."""

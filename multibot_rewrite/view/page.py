@@ -9,7 +9,7 @@ from html import escape
 from importlib.resources import files
 from typing import Any
 
-from multibot_rewrite.graph.pictures.page import Framed, source_hash
+from multibot_rewrite.pages.page import Framed, source_hash
 from multibot_rewrite.plural import plural
 from multibot_rewrite.printable import one_line
 from multibot_rewrite.view.heard import DEGREES, METRES

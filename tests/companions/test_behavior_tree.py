@@ -12,11 +12,11 @@ from multibot_rewrite.companions.behavior_tree.rewrite import rewrite_behavior_t
 from multibot_rewrite.companions.context import Context, make_context
 from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.knowledge.node_library import stack_of
+from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.remap.node_library import stack_of
-from multibot_rewrite.remap.stacks import built_in
 from multibot_rewrite.remap.table import build_table
 
 LAYOUTS = ("L1", "L2", "L3", "L4")

@@ -18,10 +18,10 @@ from multibot_rewrite.companions.rviz.read_config import rviz_data
 from multibot_rewrite.companions.rviz.rewrite import RvizText, rewrite_rviz, start_command
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.remap.stacks import built_in
 from multibot_rewrite.remap.table import build_table
 from multibot_rewrite.rules.files.judge import judged_once
 

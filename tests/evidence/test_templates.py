@@ -6,7 +6,7 @@ import pytest
 
 from multibot_rewrite.evidence.claims import claimed
 from multibot_rewrite.evidence.records import Given, Place
-from multibot_rewrite.remap.records import Claim
+from multibot_rewrite.knowledge.records import Claim
 
 JOINTS, KINDS = Place("c.yaml", 3), Place("c.yaml", 4)
 VALUES = {

@@ -1,13 +1,10 @@
-"""``fleet.launch.py`` and ``fleet.launch.xml``: what they start, without launch and in the real one."""
+"""``fleet.launch.py``: what it starts, without launch and in the real one."""
 
 from __future__ import annotations
 
 import json
-import os
 import re
-import shlex
 import shutil
-import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import ExitStack
@@ -24,11 +21,11 @@ from told_nodes import nodes_of, words_of
 from multibot_rewrite import launch, load_fleet
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.cli.rehearse import stage
-from multibot_rewrite.graph.check import check, doubts
 from multibot_rewrite.graph.live.child import RUN_STUBS, observe, running
 from multibot_rewrite.graph.live.request import Request, to_text
 from multibot_rewrite.graph.plan_file import read_plan
 from multibot_rewrite.graph.rehearsal import split_over_processes, to_order, with_substitutes
+from multibot_rewrite.rules.check import check, doubts
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
 TWO = "robots:\n  - {name: robot1, pose: {x: 1.0}}\n  - {name: robot2, pose: {x: 3.0}}\n"
@@ -65,25 +62,9 @@ def built(folder: Path, kind: str, layout: str) -> Path:
     return folder / "out"
 
 
-def of_xml(out: Path) -> list[tuple[Any, ...]]:
-    """The processes of the XML file: program, namespace, name, rules, number of own words."""
-    root = ElementTree.parse(out / "fleet.launch.xml").getroot()
-    return sorted(
-        (
-            it.get("pkg"),
-            it.get("exec"),
-            it.get("namespace") or "",
-            it.get("name") or "",
-            tuple((one.get("from"), one.get("to")) for one in it.iter("remap")),
-            sum(1 for one in it.iter("param") if one.get("from")),
-            len(shlex.split((it.get("args") or "").replace("$(var folder)", "."))),
-        )
-        for it in root.iter("node")
-    )
-
-
 def of_python(out: Path, monkeypatch: pytest.MonkeyPatch) -> list[tuple[Any, ...]]:
-    """The same of the Python file, with classes that note what they are given."""
+    """The processes: program, namespace, name, rules, number of files and of own words; the classes of
+    launch_ros only note what they are given."""
     noted: list[dict[str, Any]] = []
 
     class Noting:
@@ -121,11 +102,13 @@ def of_python(out: Path, monkeypatch: pytest.MonkeyPatch) -> list[tuple[Any, ...
     )
 
 
-def test_what_two_robots_of_gazebo_classic_are_started_with(tmp_path: Path) -> None:
+def test_what_two_robots_of_gazebo_classic_are_started_with(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     out = built(tmp_path, "classic", "tf-per-robot")
     tf = (("/tf", "tf"), ("/tf_static", "tf_static"))
     state = "robot_state_publisher"
-    assert of_xml(out) == [
+    assert of_python(out, monkeypatch) == [
         ("gazebo_ros", "spawn_entity.py", "", "", (), 0, 16),
         ("gazebo_ros", "spawn_entity.py", "", "", (), 0, 16),
         (state, state, "/robot1", state, tf, 0, 0),
@@ -139,33 +122,21 @@ def test_what_two_robots_of_gazebo_classic_are_started_with(tmp_path: Path) -> N
     assert "ros2 run teleop_twist_keyboard" in text
 
 
-@pytest.mark.parametrize("kind", FLEETS)
-@pytest.mark.parametrize("layout", ["tf-per-robot", "postfix"])
-def test_both_files_start_the_same(
-    kind: str, layout: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    out = built(tmp_path, kind, layout)
-    in_python = of_python(out, monkeypatch)
-    assert len(in_python) > 3
-    assert of_xml(out) == in_python
-
-
-def test_the_nodes_of_nav2_with_their_lifecycle_and_windows(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_nodes_of_nav2_with_their_lifecycle(tmp_path: Path) -> None:
     shutil.copytree(ROOT / "examples" / "namespace_and_prefix", tmp_path / "example")
     fleet, out = tmp_path / "example" / "nav2.yaml", tmp_path / "out"
     assert main(["build", str(fleet), "-o", str(out), "-q"]) == 0
     text = (out / "fleet.launch.py").read_text()
     assert '"node_names": ["map_server", "amcl"]' in text
-    assert of_xml(out) == of_python(out, monkeypatch)
 
 
 @pytest.mark.parametrize("layout", ["frames-per-robot", "postfix"])
-def test_a_plugin_of_the_simulator_is_not_started_again(layout: str, tmp_path: Path) -> None:
+def test_a_plugin_of_the_simulator_is_not_started_again(
+    layout: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """gz_ros2_control makes the controller manager; controllers that files declare are spawned."""
     out = built(tmp_path, "gz", layout)
-    found = [it[1] for it in of_xml(out)]
+    found = [it[1] for it in of_python(out, monkeypatch)]
     assert "ros2_control_node" not in found
     assert "spawner" in found
     if layout == "postfix":
@@ -221,8 +192,8 @@ def test_a_real_robot_needs_no_simulator(tmp_path: Path) -> None:
     assert 'executable="joint_state_publisher"' in text, "nothing else sends its joint states"
 
 
-def of_nav2(folder: Path, distro: str = "jazzy", **keys: str) -> tuple[str, str]:
-    """Both files for two robots with Nav2's parameters and these keys."""
+def of_nav2(folder: Path, distro: str = "jazzy", **keys: str) -> str:
+    """The file for two robots with Nav2's parameters and these keys."""
     for name in ("hexbase.urdf.xacro", "nav2_params.yaml"):
         shutil.copy(ROOT / "examples" / "namespace_and_prefix" / name, folder)
     more = "".join(f"{key}: {value}\n" for key, value in keys.items())
@@ -232,65 +203,35 @@ def of_nav2(folder: Path, distro: str = "jazzy", **keys: str) -> tuple[str, str]
     )
     out = folder / "out"
     assert main(["build", str(folder / "fleet.yaml"), "-o", str(out), "-q"]) == 0
-    return (out / "fleet.launch.py").read_text(), (out / "fleet.launch.xml").read_text()
+    return (out / "fleet.launch.py").read_text()
 
 
 def test_slam_toolbox_is_brought_up(tmp_path: Path) -> None:
     """It has a life cycle from Jazzy on, and no manager of Nav2 knows it."""
-    python, xml = of_nav2(tmp_path, layout="tf-per-robot", stack="nav2_slam")
+    python = of_nav2(tmp_path, layout="tf-per-robot", stack="nav2_slam")
     before = python.partition('executable="sync_slam_toolbox_node"')[0].split()
     assert before[-3:] == ["*brought_up(", "LifecycleNode(", 'package="slam_toolbox",']
     assert python.count("*brought_up(") == 2, "one a robot, and nothing else"
-    assert xml.count("ros2 lifecycle set /robot2/slam_toolbox activate") == 1
 
 
 def test_in_humble_slam_toolbox_has_no_life_cycle(tmp_path: Path) -> None:
-    python, xml = of_nav2(tmp_path, layout="postfix", stack="nav2_slam", distro="humble")
+    python = of_nav2(tmp_path, layout="postfix", stack="nav2_slam", distro="humble")
     assert 'executable="sync_slam_toolbox_node"' in python
-    assert "brought_up" not in python and "lifecycle set" not in xml
-
-
-RELUCTANT = """\
-#!/bin/sh
-# Stands for ros2: the node is there at the fifth call, and refuses to be activated at the first.
-cd "$(dirname "$0")"
-echo "$2 $4" >> asked
-case "$(wc -l < asked) $(cat state) $2 $4" in
-  [1-4]\\ *) echo "Node not found" >&2; exit 1;;
-  6\\ *) echo "Transitioning failed" >&2;;
-  *" set configure") echo inactive > state;;
-  *" inactive set activate") echo active > state;;
-  *" get ") cat state;;
-esac
-"""
-
-
-def test_the_line_of_the_xml_file_ends_when_the_node_is_active(tmp_path: Path) -> None:
-    """A transition that is refused ends with 0 (ros2lifecycle verb/set.py of humble to rolling)."""
-    _, xml = of_nav2(tmp_path, layout="tf-per-robot", stack="nav2_slam")
-    (command, _) = (it.get("cmd") or "" for it in ElementTree.fromstring(xml).iter("executable"))
-    (tmp_path / "ros2").write_text(RELUCTANT)
-    (tmp_path / "ros2").chmod(0o755)
-    (tmp_path / "state").write_text("unconfigured\n")
-    environ = {"PATH": f"{tmp_path}:{os.environ['PATH']}"}
-    subprocess.run(shlex.split(command), env=environ, check=True, timeout=60)
-    asked = (tmp_path / "asked").read_text().split("\n")
-    assert asked[-5:-1] == ["get ", "set configure", "set activate", "get "]
-    assert (tmp_path / "state").read_text() == "active\n"
+    assert "brought_up" not in python
 
 
 def test_a_container_has_its_components(tmp_path: Path) -> None:
-    python, xml = of_nav2(tmp_path, layout="both", stack="nav2_composed")
+    python = of_nav2(tmp_path, layout="both", stack="nav2_composed")
     assert 'plugin="nav2_controller::ControllerServer"' in python
     assert 'executable="component_container_isolated"' in python
-    root = ElementTree.fromstring(xml)
-    found = [len(it.findall("composable_node")) for it in root.iter("node_container")]
+    starts = python.split("\ndef start_")[1:]
+    found = [it.partition("\nROBOTS")[0].count(" ComposableNode(") for it in starts]
     assert len(found) == 2 and min(found) > 10
 
 
 def test_a_shared_map_server_has_a_manager(tmp_path: Path) -> None:
     topics = "[/map, /clock, /rosout, /parameter_events, /diagnostics]"
-    python, _ = of_nav2(
+    python = of_nav2(
         tmp_path, layout="both", stack="nav2", shared_nodes="[map_server]", shared_topics=topics
     )
     assert '{"autostart": True, "node_names": ["map_server"]}' in python
@@ -298,7 +239,7 @@ def test_a_shared_map_server_has_a_manager(tmp_path: Path) -> None:
 
 
 def test_relays_of_tf_are_started(tmp_path: Path) -> None:
-    python, _ = of_nav2(tmp_path, layout="both", affix="prefix", stack="nav2", relayed="true")
+    python = of_nav2(tmp_path, layout="both", affix="prefix", stack="nav2", relayed="true")
     told = '{"input_topic": "/robot1/tf", "output_topic": "/tf"}'
     assert told in python
     assert python.count('package="topic_tools"') == 4
@@ -306,7 +247,7 @@ def test_relays_of_tf_are_started(tmp_path: Path) -> None:
 
 def test_nodes_of_bringup_are_left_to_it(tmp_path: Path) -> None:
     """Its parameter files have no namespaces, so a node in one would get nothing of them."""
-    python, _ = of_nav2(tmp_path, layout="tf-per-robot", stack="nav2", params_style="bringup")
+    python = of_nav2(tmp_path, layout="tf-per-robot", stack="nav2", params_style="bringup")
     assert "# Not started: amcl (parameter files are in the form of nav2_bringup" in python
     assert 'package="nav2_amcl"' not in python
     assert 'package="robot_state_publisher"' in python
@@ -331,13 +272,9 @@ def programs(out: Path) -> dict[str, str]:
 )
 def test_arguments_choose_robots_and_windows(words: str, robot: str, tmp_path: Path) -> None:
     out = built(tmp_path, "classic", "both")
-    for form in ("py", "xml"):
-        (tmp_path / form).mkdir()
-        told, _ = launched(
-            out / f"fleet.launch.{form}", tmp_path / form, words, programs=programs(out)
-        )
-        spaces = [word for it in told for word in words_of(it)[2] if word.startswith("__ns")]
-        assert set(spaces) == {f"__ns:=/{robot}"}
+    told, _ = launched(out / "fleet.launch.py", tmp_path, words, programs=programs(out))
+    spaces = [word for it in told for word in words_of(it)[2] if word.startswith("__ns")]
+    assert set(spaces) == {f"__ns:=/{robot}"}
 
 
 @REAL
@@ -350,45 +287,20 @@ def test_a_window_of_one_robot_opens_with_that_robot(
 ) -> None:
     example, out = ROOT / "examples" / "two_robots_postfix", tmp_path / "out"
     assert main(["build", str(example / "fleet.yaml"), "-o", str(out), "-q"]) == 0
-    for form in ("py", "xml"):
-        (tmp_path / form).mkdir()
-        given = [words] if words else []
-        file = out / f"fleet.launch.{form}"
-        told, _ = launched(file, tmp_path / form, *given, programs=programs(out))
-        opened = [it["words"] for it in told if it["words"][0].endswith("/rviz2")]
-        assert sorted(Path(it[2]).parent.name for it in opened) == shown
-
-
-@REAL
-@pytest.mark.parametrize(("words", "robots"), [("robots:=3", 0), ("robots:=robot9", 0), ("", 2)])
-def test_the_xml_file_starts_nothing_for_robots_that_were_not_built(
-    words: str, robots: int, tmp_path: Path
-) -> None:
-    out = built(tmp_path, "classic", "both")
     given = [words] if words else []
-    told, said = launched(out / "fleet.launch.xml", tmp_path, *given, programs=programs(out))
-    spaces = [word for it in told for word in words_of(it)[2] if word.startswith("__ns")]
-    assert len(set(spaces)) == robots
-    refused = f"{words}: this fleet has robot1, robot2; for more: multibot build FLEET -o {out}"
-    assert (refused in said) == (not robots)
+    told, _ = launched(out / "fleet.launch.py", tmp_path, *given, programs=programs(out))
+    opened = [it["words"] for it in told if it["words"][0].endswith("/rviz2")]
+    assert sorted(Path(it[2]).parent.name for it in opened) == shown
 
 
 @REAL
-@pytest.mark.parametrize("form", ["py", "xml"])
 @pytest.mark.parametrize("installed", [True, False])
-def test_tf_is_bridged_where_the_bridge_is_installed(
-    form: str, installed: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """``ros2 pkg prefix`` ends with 1 for a package that is not there (ros2pkg verb/prefix.py)."""
-    (tmp_path / "bin").mkdir()
-    (tmp_path / "bin" / "ros2").write_text(f"#!/bin/sh\nexit {int(not installed)}\n")
-    (tmp_path / "bin" / "ros2").chmod(0o755)
-    monkeypatch.setenv("PATH", f"{tmp_path / 'bin'}:{os.environ['PATH']}")
+def test_tf_is_bridged_where_the_bridge_is_installed(installed: bool, tmp_path: Path) -> None:
     out = built(tmp_path, "real", "tf-per-robot\nrelayed: true")
     known = {
         name: package for name, package in programs(out).items() if installed or "tf_n" not in name
     }
-    told, said = launched(out / f"fleet.launch.{form}", tmp_path, programs=known)
+    told, said = launched(out / "fleet.launch.py", tmp_path, programs=known)
     bridges = [it["words"][1:] for it in told if it["words"][0].endswith("/tf_namespace_bridge")]
     assert sorted(word for words in bridges for word in words if word.startswith("__ns")) == (
         ["__ns:=/robot1", "__ns:=/robot2"] if installed else []
@@ -476,10 +388,7 @@ def test_what_is_started_is_as_planned(kind: str, layout: str, tmp_path: Path) -
     pytest.importorskip("rclpy", reason="no rclpy: pip install '.[ros]'")
     out = built(tmp_path, kind, layout)
     fleet = load_fleet(tmp_path / "fleet.yaml")
-    form = "xml" if layout == "both" else "py"
-    told, _ = launched(
-        out / f"fleet.launch.{form}", tmp_path, "rviz:=false", programs=programs(out)
-    )
+    told, _ = launched(out / "fleet.launch.py", tmp_path, "rviz:=false", programs=programs(out))
     plan = read_plan((out / "plan.yaml").read_bytes(), "plan.yaml")
     environ, replaced = stage(None), {}
     with ExitStack() as stack:

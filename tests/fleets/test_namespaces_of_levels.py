@@ -10,10 +10,10 @@ from nav2_graphs import ROVER, healthy, moved, with_end, without_node
 from multibot_rewrite.fleets.fleet import expected
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import plan_fleet
-from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.plan_file import from_yaml, to_yaml
 from multibot_rewrite.model import InputError
+from multibot_rewrite.rules.check import check
 
 NAMESPACED = ("tf-per-robot", "frames-per-robot", "both")
 # Two fleets with robots of one name, and a robot beside them.

@@ -16,10 +16,10 @@ from multibot_rewrite.fleets.closed_plan import closed_plan
 from multibot_rewrite.fleets.fleet import expected
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import plan_fleet
-from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.config.settings import Settings
+from multibot_rewrite.rules.check import check
 
 # Rules about names: one node under another topic, of another robot, or not there. In random files two
 # nodes of other types may have one topic, which is told, and is right.

@@ -11,7 +11,7 @@ from multibot_rewrite.fleets.build import make_outputs
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.fleets.robot_nodes import companion_nodes
-from multibot_rewrite.remap.records import NodeFacts
+from multibot_rewrite.knowledge.records import NodeFacts
 
 SENSOR = """\
 <robot name="r">

@@ -15,9 +15,9 @@ from made_bags import ROBOTS, SCAN, TEXT, TF, TWIST, Made, healthy, plan, write
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.graph.bags.read import read_bag
 from multibot_rewrite.graph.bags.recording import RecordedTopic, Recording, as_snapshot
-from multibot_rewrite.graph.bags.rules import compare
-from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.plan_file import to_yaml
+from multibot_rewrite.rules.check import check
+from multibot_rewrite.rules.recording import compare
 
 Topics = dict[str, Made]
 

@@ -21,17 +21,16 @@ from healthy_systems import (
     nav2_with_tools,
 )
 
-from multibot_rewrite.graph.doctor.diagnose import diagnose
-from multibot_rewrite.graph.doctor.robots import guess_robots
-from multibot_rewrite.graph.doctor.seen_plan import seen_plan
-from multibot_rewrite.graph.snapshot import GraphFrame, GraphNode, Snapshot
-from multibot_rewrite.remap.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
+from multibot_rewrite.live.diagnose import diagnose
+from multibot_rewrite.live.seen_plan import seen_plan
+from multibot_rewrite.rules.guess import guess_robots
+from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES, Edge, Node, System
 
 IMU = "sensor_msgs/msg/Imu"
-EMPTY = Snapshot((), (), (), environment())
+EMPTY = System((), (), (), environment())
 
 
-def hears_one_of_two(graph: Snapshot) -> Snapshot:
+def hears_one_of_two(graph: System) -> System:
     """A second lidar with another QoS: the reader gets the scans of the first."""
     graph = added("/robot1/rear_lidar", (PUBLISHES, "/robot1/scan", SCAN))(graph)
     weak, strong = qos(reliability="BEST_EFFORT"), qos(reliability="RELIABLE")
@@ -39,16 +38,16 @@ def hears_one_of_two(graph: Snapshot) -> Snapshot:
         it._replace(qos=weak if it.node == "/robot1/rear_lidar" else strong)
         if it.name == "/robot1/scan"
         else it
-        for it in graph.endpoints
+        for it in graph.ends
     )
-    return graph._replace(endpoints=tuple(reversed(tuple(ends))))
+    return graph._replace(ends=tuple(reversed(tuple(ends))))
 
 
-def two_windows(graph: Snapshot) -> Snapshot:
-    return graph._replace(nodes=(*graph.nodes, *(GraphNode("/robot1/rviz2", it) for it in "ab")))
+def two_windows(graph: System) -> System:
+    return graph._replace(nodes=(*graph.nodes, *(Node("/robot1/rviz2", it) for it in "ab")))
 
 
-SILENT: dict[str, Callable[[Snapshot], Snapshot]] = {
+SILENT: dict[str, Callable[[System], System]] = {
     "the ground truth of a simulator is no tree of the robot": added(
         "/robot1/gz_bridge", (PUBLISHES, "/tf_ground_truth", TF)
     ),
@@ -121,9 +120,8 @@ SILENT: dict[str, Callable[[Snapshot], Snapshot]] = {
         added("/fleet_manager", (CALLS, "/carrier/navigate_to_pose", NAVIGATE)),
     ),
     "a side whose version of the message is not known": lambda graph: graph._replace(
-        endpoints=tuple(
-            it._replace(type_hash="RIHS01_a") if it.role == PUBLISHES else it
-            for it in graph.endpoints
+        ends=tuple(
+            it._replace(type_hash="RIHS01_a") if it.role == PUBLISHES else it for it in graph.ends
         )
     ),
 }
@@ -153,8 +151,8 @@ def test_both_robots_may_send_the_world_above_them() -> None:
         odometry = (PUBLISHES, f"/{robot}/odom", ODOMETRY)
         velocity = (SUBSCRIBES, f"/{robot}/cmd_vel", TWIST)
         graph = added(f"/{robot}/localizer", ends, odometry, velocity)(graph)
-    world = GraphFrame("map", "world", "/tf_static", True, ())
-    graph = sent(graph._replace(frames=(world,)))
+    world = Edge("map", "world", "/tf_static", True, ())
+    graph = sent(graph._replace(edges=(world,)))
     assert [it.name for it in guess_robots(graph)] == ["robot1", "robot2"]
     assert diagnose(graph).findings == ()
 
@@ -166,7 +164,7 @@ def test_a_namespace_with_odometry_alone_is_no_robot() -> None:
 
 def test_what_is_called_after_a_robot_inside_another_namespace_is_not_its_own() -> None:
     graph = added("/fleet/monitor", (PUBLISHES, "/fleet/pose_robot1", ODOMETRY))(nav2_with_tools())
-    assert diagnose(graph).owners.names["/fleet/pose_robot1"] == ""
+    assert diagnose(graph).whose.robot("/fleet/pose_robot1") == ""
 
 
 def test_the_plan_of_what_is_seen_leaves_out_what_every_node_has() -> None:

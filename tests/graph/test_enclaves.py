@@ -13,10 +13,10 @@ from lxml import etree
 from paths import FIXTURES
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.enclaves import to_policy
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.plan_file import read_plan
+from multibot_rewrite.rules.check import check
 
 ROVER = str(FIXTURES / "robots" / "rover.urdf")
 # Role -> beginning and end of the DDS topics, by sros2's permissions.xsl: written, read.

@@ -24,10 +24,10 @@ from multibot_rewrite.graph.plan_file import from_yaml
 from multibot_rewrite.graph.transforms import edges_in
 from multibot_rewrite.library import rewrite
 from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.remap.records import PUBLISHES, SERVES, SUBSCRIBES
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.steps.collect import collect
 from multibot_rewrite.steps.document import read_document
+from multibot_rewrite.system.records import PUBLISHES, SERVES, SUBSCRIBES
 
 pytestmark = pytest.mark.live
 

@@ -13,8 +13,8 @@ import nav2_graphs
 import pytest
 import report_pages
 
-from multibot_rewrite.graph.pictures.page import to_html
-from multibot_rewrite.graph.pictures.scene import Scene
+from multibot_rewrite.pages.page import to_html
+from multibot_rewrite.pages.scene import Scene
 
 pytest.importorskip("selenium", reason="no selenium: pip install '.[test]'")
 from selenium import webdriver

@@ -11,7 +11,7 @@ from paths import ROBOTS
 from multibot_rewrite.fleets.fleet import expected, make_fleet
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint
 from multibot_rewrite.graph.plan_file import from_yaml, to_yaml
-from multibot_rewrite.graph.rules.causes import how_to_remap, why_other_name
+from multibot_rewrite.rules.pair.causes import how_to_remap, why_other_name
 
 GZ = str(ROBOTS / "rover_gz.urdf")
 

@@ -15,13 +15,12 @@ from multibot_rewrite.findings.selection import is_on, level_of
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.config.configured import (
     Configured,
-    check_codes,
     configured,
     is_excluded,
     with_options,
 )
 from multibot_rewrite.lint.config.settings import ArgumentSet, Settings, is_silent, matches
-from multibot_rewrite.lint.config.values import READERS
+from multibot_rewrite.lint.config.values import READERS, check_codes
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.naming import make_naming
 

@@ -23,7 +23,15 @@ WORKFLOWS = ROOT / ".github" / "workflows"
 TOOL: dict[str, Any] = runpy.run_path(str(ROOT / ".ci" / "release.py"))
 # What is of a package's build and not of the package.
 MADE = ("__pycache__", ".egg-info", ".pyc")
-SOURCES = ("multibot_rewrite", "share", "resource", "fixtures/robots", "tests/support", ".ci")
+SOURCES = (
+    "multibot_rewrite",
+    "tools",
+    "share",
+    "resource",
+    "fixtures/robots",
+    "tests/support",
+    ".ci",
+)
 # Both ends of PEP 517 in one process: a wheel of what the source archive holds.
 BUILD = """
 import os, sys, tarfile
@@ -108,7 +116,9 @@ def test_the_source_archive_can_be_built_by_pip_and_by_colcon(archives: Path) ->
         files = [it.name.partition("/")[2] for it in archive if it.isfile()]
     needed = {"pyproject.toml", "setup.py", "setup.cfg", "package.xml", "CHANGELOG.rst", "LICENSE"}
     assert needed | ours(Path("resource")) | ours(Path("multibot_rewrite")) <= set(files)
-    assert [it for it in files if it.startswith(("tests", "fixtures", "docs", ".ci"))] == []
+    assert [
+        it for it in files if it.startswith(("tools", "tests", "fixtures", "docs", ".ci"))
+    ] == []
     assert path.stat().st_size < 3_000_000 > wheel_of(archives).stat().st_size
 
 

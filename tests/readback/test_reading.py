@@ -200,17 +200,19 @@ def test_a_particle_emitter_has_a_topic() -> None:
     assert names("<gazebo reference='base'/>") == []
 
 
-# rcl arguments.c: rules follow -r or --remap between --ros-args and --; node.cpp puts <argument> first.
+# rcl arguments.c: rules follow -r or --remap between --ros-args and --, and are taken in their old form
+# outside of these; node.cpp puts <argument> first.
 @pytest.mark.parametrize(
     ("arguments", "topic"),
     [
         (("--ros-args", "-r", "cmd_vel:=b"), "/b"),
         (("--ros-args", "--remap", "cmd_vel:=b"), "/b"),
         (("--ros-args", "--", "--ros-args", "-r", "cmd_vel:=b"), "/b"),
-        (("cmd_vel:=b",), "/cmd_vel"),
-        (("-r", "cmd_vel:=b"), "/cmd_vel"),
+        (("cmd_vel:=b",), "/b"),
+        (("-r", "cmd_vel:=b"), "/b"),
+        (("cmd_vel:=b", "--ros-args", "-r", "cmd_vel:=c"), "/b"),
         (("--ros-args", "cmd_vel:=b"), "/cmd_vel"),
-        (("--ros-args", "--", "-r", "cmd_vel:=b"), "/cmd_vel"),
+        (("--ros-args", "--", "-r", "cmd_vel:=b"), "/b"),
     ],
 )
 def test_rules_in_arguments(arguments: tuple[str, ...], topic: str) -> None:

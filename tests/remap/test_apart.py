@@ -10,11 +10,12 @@ from __future__ import annotations
 import pytest
 
 from multibot_rewrite.graph.rehearsal import stub_nodes
+from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.knowledge.stacks import load_stack
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.releases import RELEASES
 from multibot_rewrite.remap.applied_rules import running_nodes
-from multibot_rewrite.remap.records import NodeFacts, NodeTable, Table
-from multibot_rewrite.remap.stacks import load_stack
+from multibot_rewrite.remap.records import NodeTable, Table
 from multibot_rewrite.remap.started import arguments, started
 from multibot_rewrite.remap.table import build_table
 from multibot_rewrite.rosnames import bind, parse_remap, resolve_bound

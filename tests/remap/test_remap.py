@@ -13,12 +13,17 @@ from lxml import etree
 from paths import FIXTURES
 
 from multibot_rewrite.findings.finding import ERROR
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.readback.reading import Reading, read
 from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.plugin_nodes import plugin_nodes
-from multibot_rewrite.remap.records import (
+from multibot_rewrite.remap.records import NodeRule, NodeTable, Table
+from multibot_rewrite.remap.table import build_table
+from multibot_rewrite.remap.table_formats import FORMS, as_data
+from multibot_rewrite.rewriters.builtin import builtin_tree
+from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
     PUBLISHES,
@@ -26,15 +31,7 @@ from multibot_rewrite.remap.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
-    Endpoint,
-    NodeFacts,
-    NodeRule,
-    NodeTable,
-    Table,
 )
-from multibot_rewrite.remap.table import build_table
-from multibot_rewrite.remap.table_formats import FORMS, as_data
-from multibot_rewrite.rewriters.builtin import builtin_tree
 
 ROBOTS = ("robot1", "robot2")
 LAYOUTS = ("L1", "L2", "L3", "L4")

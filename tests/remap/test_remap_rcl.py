@@ -9,12 +9,13 @@ import shlex
 import pytest
 from rcl_names import INSTALL, ask
 
+from multibot_rewrite.knowledge.stacks import load_stack
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.remap.records import ACTION, SERVICE, TOPIC, NodeTable, Table
-from multibot_rewrite.remap.stacks import load_stack
+from multibot_rewrite.remap.records import NodeTable, Table
 from multibot_rewrite.remap.table import build_table
 from multibot_rewrite.remap.table_formats import ros_args
+from multibot_rewrite.system.records import ACTION, SERVICE, TOPIC
 
 pytestmark = [
     pytest.mark.live,

@@ -6,9 +6,12 @@ from collections.abc import Sequence
 
 import pytest
 
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.remap.records import (
+from multibot_rewrite.remap.records import NodeTable, Table
+from multibot_rewrite.remap.table import build_table
+from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
     PUBLISHES,
@@ -16,12 +19,7 @@ from multibot_rewrite.remap.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
-    Endpoint,
-    NodeFacts,
-    NodeTable,
-    Table,
 )
-from multibot_rewrite.remap.table import build_table
 
 ROBOTS = ("robot1", "robot2")
 # The packages of image_transport_plugins; raw is the topic itself.

@@ -10,24 +10,14 @@ from __future__ import annotations
 import pytest
 
 from multibot_rewrite.controller_ways import CONTROLLER_WAYS
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.releases import RELEASES, has_release
 from multibot_rewrite.remap.applied_rules import RunningNode, running_nodes
-from multibot_rewrite.remap.records import (
-    ACTION,
-    CALLS,
-    PUBLISHES,
-    SUBSCRIBES,
-    TOPIC,
-    Endpoint,
-    Home,
-    NodeFacts,
-    NodeRule,
-    NodeTable,
-    Table,
-)
+from multibot_rewrite.remap.records import Home, NodeRule, NodeTable, Table
 from multibot_rewrite.remap.table import build_table
 from multibot_rewrite.remap.ways import deliveries, rules_by_taker
+from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SUBSCRIBES, TOPIC
 
 TF = Endpoint(TOPIC, PUBLISHES, "/tf")
 HEARD = Endpoint(TOPIC, SUBSCRIBES, "/tf", helper=True)

@@ -168,11 +168,18 @@ def test_an_argument_that_is_a_parameter_is_no_rule() -> None:
     assert rule_texts(made.text) == [*flags[:4], "gazebo_ros_force:=push/robot1"]
 
 
-def test_an_argument_that_rcl_does_not_read_keeps_no_rule_from_a_topic() -> None:
+def test_an_argument_in_the_old_form_is_a_rule() -> None:
+    """rcl arguments.c takes a:=b outside of --ros-args, and says that this form is deprecated."""
     source = plugin("force", "<argument>gazebo_ros_force:=push</argument>")
     made = rewrite(source, "robot1", layout="postfix")
-    assert "<remapping>gazebo_ros_force:=gazebo_ros_force/robot1<" in made.text
+    assert rule_texts(made.text) == ["gazebo_ros_force:=push/robot1"]
     assert made.not_proved == ()
+
+
+def test_an_argument_that_rcl_refuses_proves_nothing() -> None:
+    flags = ("--ros-args", "gazebo_ros_force:=push")
+    source = plugin("force", "".join(f"<argument>{it}</argument>" for it in flags))
+    assert rewrite(source, "robot1", layout="postfix").not_proved
 
 
 def test_a_rule_for_the_controller_manager_is_none_for_its_controllers() -> None:

@@ -10,8 +10,9 @@ import pytest
 from counted_steps import growth
 
 from multibot_rewrite import InputError, RewriteRefused, rewrite
+from multibot_rewrite.bounded import MAX_BYTES
 from multibot_rewrite.findings.place import locate
-from multibot_rewrite.steps.document import MAX_BYTES, attribute_slot, read_document, text_slot
+from multibot_rewrite.steps.document import attribute_slot, read_document, text_slot
 
 ROBOT = b'<robot name="r"/>'
 DECLARED = b'<?xml version="1.0"?>'

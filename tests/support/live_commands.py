@@ -11,7 +11,7 @@ from typing import Any
 
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
 from multibot_rewrite.graph.plan_file import to_yaml
-from multibot_rewrite.remap.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
 
 COMMAND = [sys.executable, "-m", "multibot_rewrite.cli.multibot"]
 TEXT, TRIGGER = "std_msgs/msg/String", "std_srvs/srv/Trigger"

@@ -33,7 +33,7 @@ from healthy_systems import (
 )
 
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
-from multibot_rewrite.remap.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
+from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
 
 
 def tf_rows() -> tuple[Fault, ...]:

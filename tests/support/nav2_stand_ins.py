@@ -23,7 +23,7 @@ from multibot_rewrite.graph.live import stub_nodes
 from multibot_rewrite.graph.live.worker import Send, run_worker
 from multibot_rewrite.graph.rehearsal import TF, StubEndpoint, substitute_type
 from multibot_rewrite.graph.transforms import Edge
-from multibot_rewrite.remap.records import TOPIC
+from multibot_rewrite.system.records import TOPIC
 
 SECONDS = 0.1
 # What code adds to the name that a parameter gives, for a second topic (costmap_subscriber.cpp,

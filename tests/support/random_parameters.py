@@ -10,8 +10,8 @@ from rule_examples import DESCRIPTION
 from multibot_rewrite.fleets.build import make_outputs
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
-from multibot_rewrite.remap.records import Endpoint, NodeFacts
-from multibot_rewrite.remap.stacks import built_in
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
+from multibot_rewrite.knowledge.stacks import built_in
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
 TOPICS = ("scan", "/scan", "front/scan", "/front/points", "odom", "/odom", "data")

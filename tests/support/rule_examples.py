@@ -18,12 +18,12 @@ from multibot_rewrite.fleets.build import make_outputs
 from multibot_rewrite.fleets.fleet import make_fleet
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import plan_fleet
-from multibot_rewrite.graph.check import check
-from multibot_rewrite.graph.dangers.find import find_dangers
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.policy import Policy
 from multibot_rewrite.releases import NEWEST_LTS
+from multibot_rewrite.rules.check import check
+from multibot_rewrite.rules.find import judge
 
 # What every companion file of an example stands beside, unless ``beside`` has another robot.urdf.
 DESCRIPTION = """\
@@ -182,7 +182,7 @@ def graph_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
 
 def danger_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
     """A graph in the same lines, without a plan."""
-    return find_dangers(*read_danger(example))
+    return judge(read_danger(example))
 
 
 RUNNERS: dict[str, Callable[[Rule, str, Path], list[Finding]]] = {

@@ -10,7 +10,7 @@ import yaml
 
 from multibot_rewrite.companions.names.rename_map import CompanionNames
 from multibot_rewrite.companions.rviz.read_config import rviz_data
-from multibot_rewrite.companions.rviz.rewrite import RvizRobot
+from multibot_rewrite.companions.rviz.values import RvizRobot
 from multibot_rewrite.companions.yaml_text import YamlText, pairs
 from multibot_rewrite.naming import make_naming
 

@@ -7,20 +7,20 @@ from graph_cases import (
     sent,
 )
 
-from multibot_rewrite.graph.expectation import Expectation, expect, spelled
-from multibot_rewrite.graph.snapshot import GraphFrame, Snapshot
-from multibot_rewrite.naming import make_naming
+from multibot_rewrite.graph.expectation import Expectation, expect
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
+from multibot_rewrite.naming import make_naming, spelled
 from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.remap.records import (
+from multibot_rewrite.remap.table import build_table
+from multibot_rewrite.system.records import (
     PUBLISHES,
     SERVES,
     SERVICE,
     SUBSCRIBES,
     TOPIC,
-    Endpoint,
-    NodeFacts,
+    Edge,
+    System,
 )
-from multibot_rewrite.remap.table import build_table
 
 ROBOTS = ("robot1", "robot2")
 NODES = (
@@ -57,14 +57,12 @@ def frames(layout: str) -> dict[str, list[str]]:
     return {robot: [spelled(naming, robot, "frame", link) for link in LINKS] for robot in ROBOTS}
 
 
-def healthy(layout: str = "L2") -> Snapshot:
+def healthy(layout: str = "L2") -> System:
     """The graph exactly as planned, on odometry."""
     graph = as_planned(plan(layout))
     naming = make_naming(layout)
     odometry = tuple(
-        GraphFrame(
-            robot.frames[0], spelled(naming, robot.name, "frame", "odom"), robot.tf, False, ()
-        )
+        Edge(robot.frames[0], spelled(naming, robot.name, "frame", "odom"), robot.tf, False, ())
         for robot in plan(layout).robots
     )
-    return sent(graph._replace(frames=(*graph.frames, *odometry)))
+    return sent(graph._replace(edges=(*graph.edges, *odometry)))

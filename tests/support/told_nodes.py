@@ -18,7 +18,7 @@ from multibot_rewrite.fleets.scripts import LoadedFleet
 from multibot_rewrite.graph.rehearsal import StubEndpoint, StubNode, stub_nodes
 from multibot_rewrite.graph.transforms import Edge, with_odometry
 from multibot_rewrite.remap.applied_rules import running_nodes
-from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
 
 Told = Mapping[str, Any]
 ROS_ARGS = "--ros-args"

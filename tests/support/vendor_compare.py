@@ -23,7 +23,7 @@ from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.build import Outputs
 from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.graph.expectation import Expectation
-from multibot_rewrite.remap.records import Endpoint
+from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.remap.table import parsed
 from multibot_rewrite.rosnames import BoundNode, bind, check_topic_name, resolve_bound
 from multibot_rewrite.rosnames.rules import RemapRule, parse_remap

@@ -15,14 +15,9 @@ from multibot_rewrite.cli.options import (
 )
 from multibot_rewrite.findings.finding import LEVELS
 from multibot_rewrite.findings.formats import FORMATS
-from multibot_rewrite.naming import (
-    DEFAULT_LAYOUT,
-    LAYOUTS,
-    SEPARATORS,
-    SHARED_FRAMES,
-    SHARED_TOPICS,
-)
+from multibot_rewrite.naming import DEFAULT_LAYOUT, LAYOUTS, SEPARATORS
 from multibot_rewrite.releases import NEWEST_LTS, RELEASES, VARIABLE
+from multibot_rewrite.system.conventions import SHARED_TOPICS, WORLD_FRAMES
 
 # argparse's word for an option that leaves what is there alone.
 SUPPRESS = "==SUPPRESS=="
@@ -56,7 +51,7 @@ NAMING = OptionGroup(
         several(
             "--shared-frames",
             "A,B",
-            f"frames that all robots share; default: {','.join(SHARED_FRAMES)}",
+            f"frames that all robots share; default: {','.join(WORLD_FRAMES)}",
         ),
         several(
             "--shared-topics",
@@ -199,17 +194,12 @@ LIVE_CODES = (
     " missing or does not start"
 )
 PICTURES = OptionGroup(
-    "pictures",
+    "report",
     (
         value(
             "--report", metavar="FILE", about="write a page to look at, one HTML file",
             type=values.path,
         ),
-        value(
-            "--mermaid", metavar="FILE", about="write a flowchart for a page of Markdown",
-            type=values.path,
-        ),
-        value("--dot", metavar="FILE", about="write a graph for Graphviz", type=values.path),
         value(
             "--view", metavar="FLEET", type=values.path,
             about="with --report: show the robots of this fleet file in 3D; default: that of the input",

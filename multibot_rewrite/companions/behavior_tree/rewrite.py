@@ -19,7 +19,8 @@ from multibot_rewrite.companions.behavior_tree.ports import (
     ports_of,
 )
 from multibot_rewrite.companions.behavior_tree.read import named_ports, read_tree
-from multibot_rewrite.companions.context import Companion, Context
+from multibot_rewrite.companions.companion import Companion
+from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.names.by_kind import SPELLERS, is_plain
 from multibot_rewrite.companions.names.node_topics import FROM_NODE, spell_topic
 from multibot_rewrite.companions.names.placeholders import without_robot

@@ -11,7 +11,8 @@ from collections.abc import Iterable, Iterator
 
 import yaml
 
-from multibot_rewrite.companions.context import Companion, Context
+from multibot_rewrite.companions.companion import Companion
+from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.moveit.checks import GRAPH_WORDS, file_findings
 from multibot_rewrite.companions.moveit.controller_manager import inserted_namespace
 from multibot_rewrite.companions.moveit.file_kind import find_kind
@@ -28,10 +29,10 @@ from multibot_rewrite.companions.names.node_topics import (
 from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.companions.template import TAG_SLOT, check_no_slots, make_template
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, line_of, quoted
+from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import NAMESPACE
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.records import NodeFacts
 
 # The nodes that read these files, as the stacks call them.
 MOVE_GROUP, SERVO = "move_group", "servo_node"

@@ -8,8 +8,9 @@ from collections.abc import Callable, Mapping
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.names.rename_map import is_declared, spell
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT
+from multibot_rewrite.knowledge.stacks import is_apart
 from multibot_rewrite.naming import FRAME_KINDS, NAMESPACE, NOT_PLAIN, PREFIX, spelled
-from multibot_rewrite.remap.stacks import is_apart
+from multibot_rewrite.system.conventions import PLACEHOLDER
 
 Speller = Callable[[Context, str], str]
 _WORD = re.compile(r"[\w./-]+")
@@ -23,7 +24,6 @@ PREFIXED = {
     "gpio_prefix": "gpio",
     "joint_stem": "joint",
 }
-_PLACEHOLDERS = frozenset("<${}")
 
 
 def is_plain(value: str) -> bool:
@@ -33,7 +33,7 @@ def is_plain(value: str) -> bool:
 
 def is_filled(value: str) -> bool:
     """Is it a text without placeholders, though perhaps no name?"""
-    return bool(value) and _PLACEHOLDERS.isdisjoint(value)
+    return bool(value) and not PLACEHOLDER.search(value)
 
 
 def joint(context: Context, value: str) -> str:

@@ -13,10 +13,10 @@ from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.names.by_kind import is_plain
 from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.companions.template import NAMESPACE_SLOT
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
+from multibot_rewrite.knowledge.stacks import built_in, is_apart
 from multibot_rewrite.naming import NAMESPACE
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.records import Endpoint, NodeFacts
-from multibot_rewrite.remap.stacks import built_in, is_apart
 from multibot_rewrite.remap.table import node_table, parsed
 from multibot_rewrite.remap.targets import placed, target_of
 from multibot_rewrite.rosnames import bind, check_topic_name, expand, resolve_bound

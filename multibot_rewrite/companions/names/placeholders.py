@@ -2,10 +2,6 @@
 
 At the start of a name it is taken out, since the name gets the robot's as any other does; alone it is
 the robot's namespace. Any other placeholder stays.
-
-Sources: nav2_common ReplaceString (``<robot_namespace>``), launch files of husarion_ugv_ros
-(``<namespace>/``), launch_ros ParameterFile (``$(var namespace)``), turtlebot3_description
-(``${namespace}``).
 """
 
 from __future__ import annotations
@@ -13,10 +9,11 @@ from __future__ import annotations
 import re
 
 from multibot_rewrite.naming import NOT_PLAIN
+from multibot_rewrite.system.conventions import PREFIX_WORDS, ROBOT_WORDS
 
-_ROBOT = r"(?:robot_namespace|robot_name|robot_ns|namespace|ns|robot|tf_prefix|frame_prefix|prefix)"
+_ROBOT = f"(?:{'|'.join(ROBOT_WORDS)})"
 _STANDS = rf"(?:<{_ROBOT}>|\$\((?:var|arg)\s+{_ROBOT}\)|\$\{{{_ROBOT}\}})"
-_PREFIX = r"(?:tf_prefix|frame_prefix|prefix)"
+_PREFIX = f"(?:{'|'.join(PREFIX_WORDS)})"
 _PREFIX_ALONE = re.compile(rf"<{_PREFIX}>|\$\((?:var|arg)\s+{_PREFIX}\)|\$\{{{_PREFIX}\}}")
 _ALONE = re.compile(rf"/?{_STANDS}/?")
 _FIRST = re.compile(rf"/?{_STANDS}(?P<between>[/_]?)(?P<name>[^/].*)")

@@ -16,7 +16,6 @@ from multibot_rewrite.companions.params.sections import (
     ANY,
     MANAGER,
     PARAMETERS,
-    PLACEHOLDER,
     RawSection,
     controller_types,
     flattened,
@@ -31,6 +30,7 @@ from multibot_rewrite.companions.params.values import ParamsJob
 from multibot_rewrite.companions.template import NAMESPACE_SLOT
 from multibot_rewrite.companions.yaml_text import Splice, YamlText
 from multibot_rewrite.naming import spelled
+from multibot_rewrite.system.conventions import PLACEHOLDER
 
 
 def controller_sections(

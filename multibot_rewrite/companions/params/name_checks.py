@@ -14,12 +14,12 @@ from multibot_rewrite.companions.names.by_kind import (
 )
 from multibot_rewrite.companions.names.placeholders import is_robot
 from multibot_rewrite.companions.names.rename_map import is_declared
-from multibot_rewrite.companions.params.known_nodes import PREFIX_KINDS, RUN_TIME
 from multibot_rewrite.companions.params.name_sites import NameSite
 from multibot_rewrite.companions.params.values import ParamsJob
 from multibot_rewrite.companions.yaml_text import YamlText, found_at
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.knowledge.parameter_entries import PREFIX_KINDS, RUN_TIME
 
 # Patterns that match everything or nothing hold no robot's name.
 _OPEN_PATTERNS = frozenset({".*", "*", "[*]", "(?!)", "^$"})

@@ -7,7 +7,6 @@ from collections.abc import Collection, Iterable, Iterator
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.kinds import PARAMS
 from multibot_rewrite.companions.names.placeholders import without_robot
-from multibot_rewrite.companions.params.known_nodes import KnownNodes
 from multibot_rewrite.companions.params.name_sites import (
     NO_NAMES,
     NameSite,
@@ -23,6 +22,7 @@ from multibot_rewrite.companions.params.sections import (
 )
 from multibot_rewrite.companions.sites import SECTION, NamedFile, Site, site_at
 from multibot_rewrite.companions.yaml_text import YamlText
+from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.releases import has_release
 
 
@@ -77,7 +77,7 @@ def _without(key: str, own: Collection[str]) -> str:
 
 
 def _site(section: ParamSection, it: NameSite, release: str) -> Site:
-    strips = section.node.strips if section.node and it.kind == "frame" else ""
+    strips = section.node.facts.strips if section.node and it.kind == "frame" else ""
     site = site_at(it.scalar, it.kind, it.value, str(it.key.value), it.at >= 0)
     return site._replace(
         is_sure=it.param is not None,

@@ -10,14 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 
-from multibot_rewrite.companions.context import Companion, Context
+from multibot_rewrite.companions.companion import Companion
+from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.names.node_topics import facts_by_name
 from multibot_rewrite.companions.params.calibrations import shared_calibrations
 from multibot_rewrite.companions.params.controller_sections import (
     controller_sections,
     takes_sections,
 )
-from multibot_rewrite.companions.params.known_nodes import KnownNodes, built_in_nodes
 from multibot_rewrite.companions.params.name_checks import name_findings
 from multibot_rewrite.companions.params.name_sites import Page, SectionNames
 from multibot_rewrite.companions.params.read import read_params
@@ -50,7 +50,8 @@ from multibot_rewrite.companions.template import (
 from multibot_rewrite.companions.yaml_text import Splice, YamlText
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.gc_pause import gc_paused
-from multibot_rewrite.remap.records import NodeFacts
+from multibot_rewrite.knowledge.parameters import KnownNodes, built_in_nodes
+from multibot_rewrite.knowledge.records import NodeFacts
 
 
 def rewrite_params(

@@ -18,7 +18,7 @@ UNKNOWN_NODE = declare(
     what="A node is not known, so the parameters that hold names are guessed from their own names.",
     why="A wrong guess adds the robot's name to something else, and what is not guessed keeps the name "
     "of one robot: then two robots use the same topic or frame.",
-    fix="Describe the node's parameters in a file, and name that file under parameters: in the fleet "
+    fix="Describe the node's parameters in a file, and name that file under nodes: in the fleet "
     "file.",
     bad="""\
 mast_driver:
@@ -45,7 +45,7 @@ def guessed_names(job: ParamsJob, section: ParamSection, names: SectionNames) ->
         message = (
             f"node {section.path} is not known; parameters that hold names are guessed: {words}"
         )
-        hint = "describe the node in a file under parameters:"
+        hint = "describe the node in a file under nodes:"
         yield found_at(job.document, guessed[0], UNKNOWN_NODE, message, hint)
 
 

@@ -38,8 +38,9 @@ from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.model import ProofError, UsageError
 from multibot_rewrite.naming import TF_TOPICS, Naming
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.records import TOPIC
 from multibot_rewrite.remap.targets import target_of
+from multibot_rewrite.system.conventions import WORLD_FRAMES
+from multibot_rewrite.system.records import TOPIC
 
 __all__ = ["RvizRobot", "RvizText", "rewrite_rviz", "start_command", "world_frame"]
 
@@ -94,9 +95,9 @@ def rewrite_rviz(
 
 
 def world_frame(naming: Naming) -> str:
-    """The frame that all robots share: map, else world, else any other shared frame."""
+    """The frame that all robots share: map, else another of the world, else any other."""
     shared = sorted(naming.shared_frames)
-    return next((frame for frame in ("map", "world", *shared) if frame in shared), "")
+    return next((frame for frame in (*WORLD_FRAMES, *shared) if frame in shared), "")
 
 
 def start_command(made: RvizText, file: str) -> list[str]:

@@ -5,20 +5,12 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
 
+from multibot_rewrite.knowledge.records import TRANSPORTS, Endpoint
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.records import (
-    ACTION,
-    CALLS,
-    PUBLISHES,
-    SERVES,
-    SERVICE,
-    TOPIC,
-    Endpoint,
-)
-from multibot_rewrite.remap.targets import TRANSPORTS
+from multibot_rewrite.system.conventions import CLOCK
+from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SERVES, SERVICE, TOPIC
 
 IMAGE = "sensor_msgs/msg/Image"
-CLOCK = "/clock"
 _HIDDEN = "/_action/"
 _SEND_GOAL = "_SendGoal"
 

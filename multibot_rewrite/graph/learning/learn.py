@@ -17,20 +17,21 @@ from multibot_rewrite.graph.learning.choosing import (
     namespace_prefix,
 )
 from multibot_rewrite.graph.learning.folding import (
-    CLOCK,
     EndpointId,
     Seen,
     fold_actions,
     fold_images,
     fold_parts,
 )
-from multibot_rewrite.graph.snapshot import GraphEndpoint, Snapshot
+from multibot_rewrite.knowledge.node_library import NodeLibrary
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import TF_TOPICS
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.bridged_topics import TF_TYPE
-from multibot_rewrite.remap.node_library import NodeLibrary
-from multibot_rewrite.remap.records import (
+from multibot_rewrite.rosnames import expand
+from multibot_rewrite.system.conventions import CLOCK
+from multibot_rewrite.system.records import (
     ACTION,
     PUBLISHES,
     ROLES,
@@ -38,10 +39,9 @@ from multibot_rewrite.remap.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
-    Endpoint,
-    NodeFacts,
+    End,
+    System,
 )
-from multibot_rewrite.rosnames import expand
 
 FROM_HELPER = "asked for by transform_listener_impl_<address>"
 SHARED_PROCESS = "its process has several nodes, each gets the endpoints of the helper nodes there"
@@ -84,7 +84,7 @@ class _SeenPlace(NamedTuple):
 
 
 def learn(
-    graph: Snapshot, names: Sequence[str], namespace: str, library: NodeLibrary
+    graph: System, names: Sequence[str], namespace: str, library: NodeLibrary
 ) -> tuple[LearnedNode, ...]:
     """Facts of the nodes ``names`` below ``namespace``, the robot's namespace.
 
@@ -92,8 +92,8 @@ def learn(
     for an endpoint that no node can have.
     """
     base = namespace_prefix(namespace)
-    ends: dict[str, list[GraphEndpoint]] = defaultdict(list)
-    for end in graph.endpoints:
+    ends: dict[str, list[End]] = defaultdict(list)
+    for end in graph.ends:
         ends[end.node].append(end)
     helpers = helpers_of(graph, names)
     return tuple(
@@ -104,7 +104,7 @@ def learn(
 def _learn_node(
     name: str,
     base: str,
-    ends: Mapping[str, Sequence[GraphEndpoint]],
+    ends: Mapping[str, Sequence[End]],
     helpers: Helpers,
     library: NodeLibrary,
 ) -> LearnedNode:
@@ -159,7 +159,7 @@ def _relative_names(known: NodeFacts) -> Iterator[str]:
     return (f"/{name}" for name in names)
 
 
-def _endpoints(ends: Iterable[GraphEndpoint], place: _SeenPlace) -> dict[_Slot, Endpoint]:
+def _endpoints(ends: Iterable[End], place: _SeenPlace) -> dict[_Slot, Endpoint]:
     """A node's endpoints, by role and the name that its code may have."""
     seen, images = fold_images(fold_actions(_types_by_endpoint(ends)))
     found: dict[_Slot, Endpoint] = {}
@@ -179,7 +179,7 @@ def _endpoints(ends: Iterable[GraphEndpoint], place: _SeenPlace) -> dict[_Slot, 
     return found
 
 
-def _types_by_endpoint(ends: Iterable[GraphEndpoint]) -> Seen:
+def _types_by_endpoint(ends: Iterable[End]) -> Seen:
     types: dict[EndpointId, set[str]] = defaultdict(set)
     for end in ends:
         check_seen_name(end.kind, end.name)
@@ -193,7 +193,7 @@ def _types_by_endpoint(ends: Iterable[GraphEndpoint]) -> Seen:
     return {key: tuple(sorted(found)) for key, found in types.items()}
 
 
-def _is_valid_type(end: GraphEndpoint) -> bool:
+def _is_valid_type(end: End) -> bool:
     """Whether the type is valid for its kind; another type counts as not known."""
     found = _TYPE.fullmatch(end.type)
     return found is not None and found[1] in _WORDS[end.kind]
@@ -234,7 +234,7 @@ def _merge(first: Endpoint, second: Endpoint, key: EndpointId) -> Endpoint:
 
 
 def _with_helpers(
-    name: str, ends: Mapping[str, Sequence[GraphEndpoint]], helpers: Helpers, place: _SeenPlace
+    name: str, ends: Mapping[str, Sequence[End]], helpers: Helpers, place: _SeenPlace
 ) -> dict[_Slot, Endpoint]:
     """A node's endpoints, with those of its helper nodes."""
     found = _endpoints(ends.get(name, ()), place)

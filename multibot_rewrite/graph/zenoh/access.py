@@ -10,16 +10,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from multibot_rewrite.graph.expectation import (
-    ALWAYS,
-    EVERYWHERE,
-    Expectation,
-    PlannedEndpoint,
-    PlannedRobot,
-)
+from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
 from multibot_rewrite.graph.zenoh.tokens import SPACE
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.records import ACTION, PUBLISHES, SERVES
+from multibot_rewrite.system.conventions import OF_EVERY_NODE, SENT_BY_ANY_NODE
+from multibot_rewrite.system.records import ACTION, PUBLISHES, SERVES
 
 Rule = dict[str, object]
 IN, OUT = "ingress", "egress"
@@ -33,8 +28,6 @@ _FLOWS = {
 _SENDS = ["put", "delete", "reply", "declare_queryable"]
 _ASKS = ["declare_subscriber", "query"]
 _LIVELINESS = ["liveliness_token", "liveliness_query", "declare_liveliness_subscriber", "reply"]
-# What any node may send besides its own; of the clock there is one.
-_ANYBODY_SENDS = (*ALWAYS, "/diagnostics")
 
 
 class Rights(NamedTuple):
@@ -106,8 +99,8 @@ def _rights(
             (sends if end.role in (PUBLISHES, SERVES) else hears).add(_key(domain, end))
     static = "/".join("tf_static" if word == "tf" else word for word in robot.tf.split("/"))
     tf = () if space and robot.tf.startswith(space) else (robot.tf, static)
-    sends |= {f"{domain}{name}/*/*" for name in (*_ANYBODY_SENDS, *tf)}
-    hears |= {f"{domain}{name}/*/*" for name in (*EVERYWHERE, *shared, *tf)}
+    sends |= {f"{domain}{name}/*/*" for name in (*SENT_BY_ANY_NODE, *tf)}
+    hears |= {f"{domain}{name}/*/*" for name in (*OF_EVERY_NODE, *shared, *tf)}
     return Rights(robot.name, _latched(own), _latched(sorted(sends)), _latched(sorted(hears)))
 
 

@@ -9,16 +9,16 @@ import yaml
 
 from multibot_rewrite.closure.moveit import moveit_gaps
 from multibot_rewrite.companions.kinds import PARAMS, is_beside, kind_of
-from multibot_rewrite.companions.params.known_nodes import built_in_nodes
-from multibot_rewrite.companions.params.sections import PLACEHOLDER
 from multibot_rewrite.companions.sites import NamedFile
 from multibot_rewrite.companions.yaml_text import YamlText, line_of, read_yaml
 from multibot_rewrite.evidence.parameter_files import given_nodes
+from multibot_rewrite.knowledge.parameters import built_in_nodes
+from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.model import InputError
-from multibot_rewrite.remap.stacks import load_nodes
 from multibot_rewrite.rules.files.records import Remark, remark_at
 from multibot_rewrite.sources.packages import entries
 from multibot_rewrite.sources.read import read_file
+from multibot_rewrite.system.conventions import PLACEHOLDER
 
 
 def unknown_controllers(file: NamedFile) -> Iterator[Remark]:

@@ -1,7 +1,7 @@
 """Rows of ``sdf.schema``, ``plugins.schema`` and ``units.schema``: read when the first description
 needs them, by section.
 
-The first two are made from sources by ``multibot_rewrite.interfaces``; the first lines of each have its
+The first two are made from sources by ``tools.interfaces``; the first lines of each have its
 grammar.
 """
 

@@ -7,17 +7,16 @@ from collections.abc import Iterator, Sequence
 
 import yaml
 
-from multibot_rewrite.companions.params.known_nodes import KnownNode
 from multibot_rewrite.companions.params.name_sites import params_at
 from multibot_rewrite.companions.params.rcl_parameters import Value, value_of
 from multibot_rewrite.companions.params.sections import (
     ANY,
-    PLACEHOLDER,
     RawSection,
     controller_types,
 )
 from multibot_rewrite.companions.sites import NamedFile
 from multibot_rewrite.companions.yaml_text import YamlText, pairs
+from multibot_rewrite.knowledge.parameters import KnownNode
 from multibot_rewrite.model import InputError
 from multibot_rewrite.nearest import MISTYPED, Guesses, meant_name
 from multibot_rewrite.record import NamedTuple
@@ -25,6 +24,7 @@ from multibot_rewrite.rules.files.bounds import beyond
 from multibot_rewrite.rules.files.parameter_facts import Fact, facts_of_node, of_release
 from multibot_rewrite.rules.files.plugins import RENAMED, plugins_in
 from multibot_rewrite.rules.files.records import Remark, remark_at
+from multibot_rewrite.system.conventions import PLACEHOLDER
 
 # What every node has, or every controller and plugin; prefixes end in a dot.
 _EVERYWHERE = re.compile(
@@ -101,10 +101,10 @@ def _of_plugins(title: str, given: Sequence[Given]) -> tuple[list[Section], tupl
 
 def _is_surely(node: KnownNode, name: str, type_: str, given: Sequence[Given]) -> bool:
     """Is it this controller, not another one that is often called the same?"""
-    if not node.types or type_ in node.types:
+    if not node.facts.types or type_ in node.facts.types:
         return True
     words = {it.name.partition(".")[0] for it in given}
-    by_words = bool(node.known_by) and words.issuperset(node.known_by)
+    by_words = bool(node.facts.known_by) and words.issuperset(node.facts.known_by)
     return "/" not in type_ and (name == node.name or by_words)
 
 

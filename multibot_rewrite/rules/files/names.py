@@ -8,10 +8,10 @@ from multibot_rewrite.checks.mentions import mentioned
 from multibot_rewrite.companions.kinds import BRIDGE, EVERY, LUA, MOVEIT, PARAMS, RVIZ, TREE
 from multibot_rewrite.companions.names.by_kind import is_component, is_plain, is_shared_frame
 from multibot_rewrite.companions.names.rename_map import KINDS, is_declared, spell
-from multibot_rewrite.companions.params.known_nodes import built_in_nodes
 from multibot_rewrite.companions.sites import NamedFile, Site
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.findings.rule import rule
+from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.nearest import HINTED, MISTYPED, did_you_mean, meant_name
 from multibot_rewrite.rosnames import check_topic_name
 from multibot_rewrite.rules.files.declared import unknown_parameters
@@ -209,7 +209,7 @@ def _foreign(file: NamedFile) -> tuple[list[tuple[str, str]], int, Site | None]:
     "is not known to hold names. It is a note where it is not sure which robot the file is for.",
     why="It stays as it is when the file is written for several robots. If it is a name, a node looks "
     "for a frame or joint that no longer has that name, or two robots use the same topic.",
-    fix="If it is a name, describe the parameter in a file under `parameters:` of the fleet file; in "
+    fix="If it is a name, describe the parameter in a file under `nodes:` of the fleet file; in "
     "other files rename it by hand for each robot.",
     bad=a_section("mast_driver", "mounted_on: lidar_link"),
     good=a_section("mast_driver", "frame_id: lidar_link"),

@@ -1,7 +1,7 @@
 """The parameters that nodes declare: by the sources of their packages where those are there, else by
 installed NoDL documents and by what is known.
 
-``parameters.tsv`` is made by ``python -m multibot_rewrite.rules.files.parameter_table``.
+``parameters.tsv`` is made by ``python -m tools.interfaces.known_parameter_table``.
 """
 
 from __future__ import annotations
@@ -12,15 +12,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from importlib.resources import files
 
-from multibot_rewrite.companions.params.known_nodes import KnownNode
-from multibot_rewrite.interfaces.parameter_comparison import owners
-from multibot_rewrite.interfaces.parameter_facts import READ, YAML
-from multibot_rewrite.interfaces.parameter_files import file_parameters
+from multibot_rewrite.knowledge.nodl.lookup import Identity, file_of, find_interfaces, load
+from multibot_rewrite.knowledge.parameters import KnownNode
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.outside import outside
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import has_release
-from multibot_rewrite.remap.nodl.lookup import Identity, file_of, find_interfaces, load
+from multibot_rewrite.rules.files.parameter_files import READ, YAML, file_parameters
+from multibot_rewrite.rules.files.parameter_owners import owners
 from multibot_rewrite.sources.packages import entries, package_folder
 from multibot_rewrite.sources.read import read_file
 

@@ -1,6 +1,6 @@
 """Nav2's plugins in a section of a parameter file, and the parameters that each has below its name.
 
-``plugins.tsv`` is made by ``python -m multibot_rewrite.rules.files.plugin_table``. Sources: pluginlib
+``plugins.tsv`` is made by ``python -m tools.interfaces.plugin_table``. Sources: pluginlib
 loads the class that ``NAME.plugin`` says; dwb_local_planner.cpp (resolveCriticClassName) and
 critic_manager.cpp of nav2_mppi_controller make the classes of critics of their names;
 nav2_rotation_shim_controller.cpp gives its controller its own name, from Lyrical on

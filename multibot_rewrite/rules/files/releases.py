@@ -7,13 +7,14 @@ from collections.abc import Iterator, Sequence
 import yaml
 
 from multibot_rewrite.companions.kinds import PARAMS
-from multibot_rewrite.companions.params.known_nodes import KnownNode, KnownNodes, Param
 from multibot_rewrite.companions.params.name_sites import params_at
 from multibot_rewrite.companions.params.sections import ParamSection, flattened
 from multibot_rewrite.companions.sites import NamedFile
 from multibot_rewrite.companions.yaml_text import items, pairs
 from multibot_rewrite.findings.finding import NOTE, WARNING
 from multibot_rewrite.findings.rule import rule
+from multibot_rewrite.knowledge.parameters import KnownNodes
+from multibot_rewrite.knowledge.records import NodeParameters, Param
 from multibot_rewrite.releases import has_release, releases_with
 from multibot_rewrite.rules.files.records import Remark, remark_at
 
@@ -134,8 +135,8 @@ def _of_another_release(section: ParamSection, release: str) -> Iterator[Remark]
     node = section.node
     if node is None or section.wild:
         return
-    if not has_release(node.releases, release):
-        yield _elsewhere(section.keys[-1], f"node {node.name}", node, release)
+    if not has_release(node.facts.releases, release):
+        yield _elsewhere(section.keys[-1], f"node {node.name}", node.facts, release)
         return
     for name, key in flattened(section.body):
         found = params_at(node, name, key)
@@ -149,7 +150,9 @@ def _source(places: Sequence[str]) -> str:
     return f"; source: {places[0]}" if places else ""
 
 
-def _elsewhere(key: yaml.ScalarNode, what: str, known: KnownNode | Param, release: str) -> Remark:
+def _elsewhere(
+    key: yaml.ScalarNode, what: str, known: NodeParameters | Param, release: str
+) -> Remark:
     others = ", ".join(releases_with(known.releases))
     message = f"{what} is not in {release}, only in {others}"
     hint = (
@@ -162,7 +165,7 @@ def _deprecated_types(body: yaml.Node, known: KnownNodes | None, release: str) -
     types = {
         type_: it
         for node in (known.nodes.values() if known else ())
-        for type_, it in node.deprecated_types.items()
+        for type_, it in node.facts.deprecated_types.items()
     }
     for key, value in _scalars(body):
         words = types.get(value.value, "") if key.value.rpartition(".")[2] == "type" else ""

@@ -11,7 +11,8 @@ from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.memo import memoized
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.multirobot.shared import APART, AS_WRITTEN, TWO
-from multibot_rewrite.naming import SHARED_TOPICS, make_naming
+from multibot_rewrite.naming import make_naming
+from multibot_rewrite.system.conventions import SHARED_TOPICS
 
 ODOMETRY_APART = make_naming("tf-per-robot", shared_topics=[*SHARED_TOPICS, "tf_static"])
 

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from lxml.etree import _Element
-
+from multibot_rewrite.checks import hazards
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import NOTE
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.source_values import claim_is_fixed, is_fixed, starts_of
 from multibot_rewrite.lint.records import Subject
-from multibot_rewrite.lint.rules.multirobot.shared import APART, claims_of, is_plain
+from multibot_rewrite.lint.rules.multirobot.shared import APART, AS_WRITTEN, claims_of, is_plain
 from multibot_rewrite.model import Claim
 from multibot_rewrite.rewriters.insert import lacks_namespace
-
-DESCRIPTIONS = ("robot_param", "robotParam", "robot_param_node")
 
 
 @rule(
@@ -107,14 +104,6 @@ def no_namespace(subject: Subject) -> Iterator[Problem]:
 )
 def one_robot_description(subject: Subject) -> Iterator[Problem]:
     """Absolute names of descriptions and of the nodes that hold them."""
-    found = [it for it in _children(subject, DESCRIPTIONS) if (it.text or "").strip()[:1] == "/"]
-    starts = starts_of(subject, found)
-    for element in found:
-        if is_fixed(subject, starts[element], ""):
-            message = f"<{element.tag}> {(element.text or '').strip()!r} is the same for all robots"
-            yield Problem(element, message, "", "use the part after the last slash")
-
-
-def _children(subject: Subject, tags: tuple[str, ...]) -> list[_Element]:
-    plugins = [it.element for it in subject.inventory.hosts if it.element.tag == "plugin"]
-    return [child for plugin in plugins for child in plugin.iterchildren(*tags)]
+    found = [*hazards.one_description(subject.inventory, AS_WRITTEN)]
+    starts = starts_of(subject, [it.element for it in found])
+    yield from (it for it in found if is_fixed(subject, starts[it.element], ""))

@@ -22,7 +22,7 @@ from multibot_rewrite.lint.rules.multirobot.xacro_scopes import (
     without_substitutions,
     words_of,
 )
-from multibot_rewrite.naming import SHARED_FRAMES
+from multibot_rewrite.system.conventions import WORLD_FRAMES
 
 # The elements of xacro itself: all others call a macro.
 _BUILTIN = frozenset(
@@ -111,7 +111,7 @@ def prefix_unused(subject: Subject) -> Iterator[Problem]:
 
 def _forgotten(scope: Scope, declared: list[WrittenName]) -> Iterator[Problem]:
     """Literal names, where most links (joints) have the prefix."""
-    bare = [it for it in declared if not it.words and it.text.strip("/") not in SHARED_FRAMES]
+    bare = [it for it in declared if not it.words and it.text.strip("/") not in WORLD_FRAMES]
     prefixed = sum(1 for it in declared if it.words & scope.prefix_names)
     for it in bare if prefixed >= len(bare) else ():
         message = (

@@ -12,21 +12,7 @@ from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.facts.source_values import claim_is_fixed, is_fixed, starts_of
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.multirobot.shared import AS_WRITTEN, process_wide_plugins
-from multibot_rewrite.rewriters.tree import library_key
 
-# gz systems that serve every entity of the world, whoever loads them (gz-sim src/systems).
-WORLD_SYSTEMS = {
-    "gz-sim-sensors-system": "Gazebo crashes when rendering is set up twice",
-    "gz-sim-imu-system": "every IMU of the world is published again for each copy",
-    "gz-sim-physics-system": "two physics engines move the same links",
-    "gz-sim-contact-system": "every contact sensor is published again for each copy",
-    "gz-sim-forcetorque-system": "every force sensor is published again for each copy",
-    "gz-sim-navsat-system": "every GPS of the world is published again for each copy",
-    "gz-sim-magnetometer-system": "every magnetometer is published again for each copy",
-    "gz-sim-altimeter-system": "every altimeter is published again for each copy",
-    "gz-sim-air-pressure-system": "every barometer is published again for each copy",
-    "gz-sim-scene-broadcaster-system": "every state of the world is sent again for each copy",
-}
 DEVICE = lazy_compile(
     r"/dev/\S+|v?can\d+|COM\d+|(?!127\.|0\.0\.0\.0|255\.)\d{1,3}\.\d{1,3}\.\d{1,3}\.\d{1,3}(:\d+)?"
 )
@@ -144,12 +130,4 @@ def _has_fixed_sensor(subject: Subject) -> bool:
 )
 def world_system_in_robot(subject: Subject) -> Iterator[Problem]:
     """Plugins whose library is one of the world's systems."""
-    for host in subject.inventory.hosts:
-        above = host.element.getparent()
-        # In a world it is where it belongs.
-        if host.element.tag != "plugin" or (above is not None and above.tag == "world"):
-            continue
-        key = library_key(host.element.get("filename", ""))
-        if key in WORLD_SYSTEMS:
-            message = f"{key} is loaded again with every robot: {WORLD_SYSTEMS[key]}"
-            yield Problem(host.element, message, "filename", "load it in the world")
+    yield from hazards.world_systems(subject.inventory)

@@ -16,9 +16,7 @@ from multibot_rewrite.model import Claim
 from multibot_rewrite.naming import FRAME_KINDS
 from multibot_rewrite.nearest import HINTED, meant_name
 from multibot_rewrite.rewriters.spelling import must_be_declared, names_in
-
-# Frames that exist at run time though nothing in the file declares them.
-AT_RUN_TIME = ("odom", "map", "world")
+from multibot_rewrite.system.conventions import SENT_FRAMES
 
 
 @rule(
@@ -64,7 +62,7 @@ def misspelled_frame(subject: Subject) -> Iterator[Problem]:
 def frame_not_a_link(subject: Subject) -> Iterator[Problem]:
     """Frames that the robot does not have, and that no localisation publishes."""
     for claim, name, near in _frames(subject):
-        if not near and not claim.site.default and not name.endswith(AT_RUN_TIME):
+        if not near and not claim.site.default and not name.endswith(SENT_FRAMES):
             message = f"{where(claim)} names the frame {name!r}, which is not a link"
             yield Problem(claim.element, message, claim.attribute, "another node must publish it")
 
@@ -84,7 +82,7 @@ def _frames(subject: Subject) -> Iterator[tuple[Claim, str, str]]:
             # A frame_prefix or namespace may come before the link's name at run time.
             own = name.rpartition("/")[2]
             known = (it in declared[kind] for it in (own, name) for kind in ("link", *site.kinds))
-            if own in AT_RUN_TIME or f"/{own}" in links or any(known):
+            if own in SENT_FRAMES or f"/{own}" in links or any(known):
                 continue
             if name not in meant:
                 meant[name] = meant_name(own, links) if len(meant) < HINTED else ""

@@ -1,0 +1,260 @@
+"""Files of nodes and stacks -> records; errors name file and line."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+
+from multibot_rewrite.knowledge.endpoint_entries import checked_endpoint, endpoints_of
+from multibot_rewrite.knowledge.fact_words import releases_of
+from multibot_rewrite.knowledge.node_entries import (
+    GRAPH_KEYS,
+    NODE_KEYS,
+    check_name,
+    read_node,
+    taken_over,
+)
+from multibot_rewrite.knowledge.parameter_entries import (
+    PARAMETER_KEYS,
+    read_guesses,
+    read_parameters,
+)
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts, NodeParameters
+from multibot_rewrite.knowledge.yaml_with_lines import (
+    YamlItem,
+    entries,
+    entries_of,
+    flag_of,
+    known_word,
+    read_yaml_with_lines,
+    table,
+    table_of,
+    unknown,
+    word,
+    word_of,
+    words_of,
+    wrong,
+)
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.releases import share_release
+from multibot_rewrite.system.records import ROLES
+
+STACK_KEYS = ("about", "include", "container", "nodes", "releases")
+ENTRY_KEYS = ("node", "as", "plugin", "shared", "when", "with", "names", "remaps", "releases")
+ENTRY_OF_NODE = tuple(dict.fromkeys((*NODE_KEYS, *PARAMETER_KEYS)))
+FILE_KEYS = ("parts", "nodes", "stacks", "guesses", "sent")
+NOTHING: Mapping[str, str] = {}
+NO_PARAMETERS: Mapping[str, NodeParameters] = {}
+NO_GUESSES: Mapping[str, tuple[str, ...]] = {}
+
+
+class Stack(NamedTuple):
+    """Nodes that are started together; ``include`` are stacks that it contains, ``releases`` the
+    words for the releases that have it.
+
+    ``container`` is the node among them that all others are loaded into as components, if any.
+    """
+
+    about: str
+    include: tuple[str, ...]
+    nodes: tuple[NodeFacts, ...]
+    releases: str = ""
+    container: str = ""
+
+
+class NodeLibrary(NamedTuple):
+    """Known parts (endpoints that many nodes have), nodes and stacks.
+
+    It is of one release, or of all of them, with ``release`` empty. ``elsewhere`` says of nodes and
+    stacks that this release lacks which releases have them. ``parameters`` are those of nodes, by the
+    last name of each, in all releases; ``guesses`` the last words of other parameters by the kind that
+    they suggest, ``sent`` frames that nodes send.
+    """
+
+    parts: Mapping[str, tuple[Endpoint, ...]]
+    nodes: Mapping[str, NodeFacts]
+    stacks: Mapping[str, Stack]
+    release: str = ""
+    elsewhere: Mapping[str, str] = NOTHING
+    parameters: Mapping[str, NodeParameters] = NO_PARAMETERS
+    guesses: Mapping[str, tuple[str, ...]] = NO_GUESSES
+    sent: frozenset[str] = frozenset()
+
+
+def stack_of(library: NodeLibrary, name: str) -> tuple[NodeFacts, ...]:
+    """The nodes of a stack, each once; nodes of included stacks come first.
+
+    The name of a node is a stack of that node alone. Raises UsageError for other names, and for
+    what the library's release lacks.
+    """
+    if name in library.elsewhere:
+        hint = "name one of these releases, or leave the stack out"
+        has = f"it is in {library.elsewhere[name]}"
+        raise UsageError(f"{library.release} has no node of stack {name!r}; {has}; {hint}")
+    if name not in library.stacks and name in library.nodes:
+        return (library.nodes[name],)
+    if name not in library.stacks:
+        raise UsageError(unknown("stack", name, library.stacks, library.nodes))
+    found = tuple(dict.fromkeys(_gathered(library, name, ())))
+    for node in found:
+        if any(_are_one(node, other) for other in found):
+            raise UsageError(
+                f"stack {name!r} has two different nodes called {node.name!r}; "
+                "rename one of them with 'as'"
+            )
+    return found
+
+
+def _are_one(node: NodeFacts, other: NodeFacts) -> bool:
+    """Have two nodes one name in one release?"""
+    if node is other or node.name != other.name:
+        return False
+    return share_release(node.releases, other.releases)
+
+
+def with_included(library: NodeLibrary, name: str) -> Iterator[str]:
+    """The names of a stack and of all stacks that it includes; a node is no stack."""
+    yield name
+    for other in library.stacks[name].include if name in library.stacks else ():
+        yield from with_included(library, other)
+
+
+def _gathered(library: NodeLibrary, name: str, above: tuple[str, ...]) -> Iterator[NodeFacts]:
+    if name in above:
+        raise UsageError(f"stack {name!r} includes itself: {' -> '.join((*above, name))}")
+    stack = library.stacks[name]
+    for other in stack.include:
+        yield from (_loaded(it, stack) for it in _gathered(library, other, (*above, name)))
+    yield from (_loaded(it, stack) for it in stack.nodes)
+
+
+def _loaded(node: NodeFacts, stack: Stack) -> NodeFacts:
+    """The node as a component, if the stack has a container for it."""
+    kept = node.host or node.shared or node.name == stack.container or not stack.container
+    return node if kept else node._replace(container=stack.container)
+
+
+def extend(library: NodeLibrary, text: str, file: str, own: bool = False) -> NodeLibrary:
+    """``library`` with what a YAML text adds or changes.
+
+    What an entry says of a known node's endpoints replaces what was known, what it says of its
+    parameters is added. ``own`` says that the text is of this package.
+    """
+    top = table(read_yaml_with_lines(text, file, own), "the file", FILE_KEYS)
+    new = {key: table(top[key], key) for key in ("parts", "nodes", "stacks") if key in top}
+    parts = {**library.parts, **{name: _part(it) for name, it in new.get("parts", {}).items()}}
+    nodes, parameters = dict(library.nodes), dict(library.parameters)
+    for name, item in new.get("nodes", {}).items():
+        keys = table(item, f"node {name!r}", ENTRY_OF_NODE)
+        # A node in its own namespace is known by its last name in parameter files.
+        last = name.rpartition("/")[2]
+        found = read_parameters(last, keys, parameters.get(last))
+        in_files = not keys.keys().isdisjoint(PARAMETER_KEYS)
+        if in_files:
+            parameters[last] = found
+        if not (in_files and keys.keys().isdisjoint(GRAPH_KEYS)):
+            nodes[name] = read_node(name, item, keys, parts, found.params)
+    known = {*library.stacks, *new.get("stacks", {})}
+    grown = library._replace(
+        parts=parts,
+        nodes=nodes,
+        parameters=parameters,
+        guesses={**library.guesses, **dict(read_guesses(top))},
+        sent=library.sent | frozenset(words_of(top, "sent")),
+    )
+    stacks = {name: _stack(item, grown, known) for name, item in new.get("stacks", {}).items()}
+    whole = grown._replace(stacks={**library.stacks, **stacks})
+    for name, item in new.get("stacks", {}).items():
+        _check_stack(whole, name, item)
+    return whole
+
+
+def _check_stack(library: NodeLibrary, name: str, item: YamlItem) -> None:
+    """Includes and names can be checked only when all stacks are known."""
+    try:
+        stack_of(library, name)
+    except UsageError as error:
+        wrong(item, str(error))
+
+
+def _part(item: YamlItem) -> tuple[Endpoint, ...]:
+    return tuple(endpoints_of(table(item, "a part", ROLES)))
+
+
+def _stack(item: YamlItem, library: NodeLibrary, stacks: Iterable[str]) -> Stack:
+    keys = table(item, "a stack", STACK_KEYS)
+    known = {name: name for name in stacks}
+    return Stack(
+        word_of(keys, "about"),
+        tuple(known_word(entry, "stack", known) for entry in entries_of(keys, "include")),
+        tuple(_placed(entry, library) for entry in entries_of(keys, "nodes")),
+        releases_of(keys),
+        word_of(keys, "container"),
+    )
+
+
+def _placed(item: YamlItem, library: NodeLibrary) -> NodeFacts:
+    """A node with the changes that a stack makes to it."""
+    if isinstance(item.value, str):
+        return known_word(item, "node", library.nodes)
+    keys = table(item, "an entry", ENTRY_KEYS)
+    if "node" not in keys:
+        wrong(item, "the entry has no node; write {node: ...}")
+    node = known_word(keys["node"], "node", library.nodes)
+    endpoints = (*node.endpoints, *taken_over(keys, library.parts))
+    name = word_of(keys, "as", node.name)
+    check_name(keys.get("as", item), name)
+    return node._replace(
+        name=name,
+        known=node.name,
+        plugin=word_of(keys, "plugin", node.plugin),
+        shared=flag_of(keys, "shared", node.shared),
+        when=word_of(keys, "when", node.when),
+        releases=releases_of(keys) or node.releases,
+        endpoints=_remapped(_named(endpoints, keys), keys),
+    )
+
+
+def _named(endpoints: tuple[Endpoint, ...], keys: Mapping[str, YamlItem]) -> tuple[Endpoint, ...]:
+    """The endpoints with the names that parameters set."""
+    for given, item in table_of(keys, "names").items():
+        if not any(_has(endpoint, given) for endpoint in endpoints):
+            wrong(item, unknown("name", given, {endpoint.name for endpoint in endpoints}))
+        values = [word(entry, f"names {given}") for entry in entries(item, f"names {given}")]
+        endpoints = tuple(
+            new for endpoint in endpoints for new in _renamed(item, endpoint, given, values)
+        )
+    return endpoints
+
+
+def _renamed(
+    item: YamlItem, endpoint: Endpoint, given: str, values: Iterable[str]
+) -> Iterator[Endpoint]:
+    """One endpoint for each value if it has the name, else itself."""
+    if not _has(endpoint, given):
+        yield endpoint
+        return
+    for value in values:
+        name = endpoint.name.replace(given, value)
+        first = endpoint.named_from or endpoint.name
+        yield checked_endpoint(item, endpoint._replace(name=name, fixed="", named_from=first))
+
+
+def _has(endpoint: Endpoint, given: str) -> bool:
+    """Is this its name, or a run-time part of its name?"""
+    return given in endpoint.name if given.startswith("<") else given == endpoint.name
+
+
+def _remapped(
+    endpoints: tuple[Endpoint, ...], keys: Mapping[str, YamlItem]
+) -> tuple[Endpoint, ...]:
+    """The endpoints with the remap rules of the usual launch file."""
+    for given, item in table_of(keys, "remaps").items():
+        if all(endpoint.name != given for endpoint in endpoints):
+            wrong(item, unknown("name", given, {endpoint.name for endpoint in endpoints}))
+        target = word(item, f"remaps {given}")
+        endpoints = tuple(
+            checked_endpoint(item, e._replace(remapped=target)) if e.name == given else e
+            for e in endpoints
+        )
+    return endpoints

@@ -1,0 +1,205 @@
+"""Where NoDL documents are: in the ament index, in files and folders that a user names.
+
+A document does not say which node it is for; its place does. In the ament index it is the resource
+``nodl/<package>__<name>`` (ament_nodl_register.cmake, ament_resolver.py of ros-tooling/nodl).
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator, Mapping, Sequence
+
+from multibot_rewrite.bounded import read_text
+from multibot_rewrite.knowledge.nodl.document import Document, Include, parse
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.record import NamedTuple
+
+INDEX = os.path.join("share", "ament_index", "resource_index", "nodl")
+SUFFIXES = (".nodl.yaml", ".nodl.yml", ".nodl.json")
+# In place of files and folders: use no document at all.
+NO_DOCUMENTS = "none"
+MAX_FILES = 20_000
+_BETWEEN = "__"
+_PACKAGE_NAME = re.compile(r"<name>\s*([^<\s]+)\s*</name>")
+_LOCAL, _INDEXED = "local://", "nodl://"
+
+
+class Identity(NamedTuple):
+    """The node that a document is for; ``package`` is empty where its place does not tell."""
+
+    package: str
+    name: str
+
+
+class Interfaces(NamedTuple):
+    """The documents there are: those ``given`` come before those in the folders ``installed``."""
+
+    given: Mapping[Identity, str]
+    installed: tuple[str, ...]
+
+
+NONE = Interfaces({}, ())
+
+
+def find_interfaces(paths: Sequence[str]) -> Interfaces:
+    """The documents below ``paths`` and those of installed packages, or none for ``none``.
+
+    A path is a file, a folder of files or a folder where packages are installed. Raises UsageError.
+    """
+    if tuple(paths) == (NO_DOCUMENTS,):
+        return NONE
+    given: dict[Identity, str] = {}
+    for path in paths:
+        for identity, file in _below(path):
+            first = given.setdefault(identity, file)
+            if os.path.realpath(first) != os.path.realpath(file):
+                both = f"{first} and {file}"
+                raise UsageError(f"two interfaces of {shown(identity)}: {both}; leave one out")
+    prefixes = filter(None, os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep))
+    return Interfaces(given, tuple(os.path.join(it, INDEX) for it in prefixes))
+
+
+def shown(identity: Identity) -> str:
+    """How a user names it."""
+    return "/".join(filter(None, identity))
+
+
+def _below(path: str) -> Iterator[tuple[Identity, str]]:
+    if os.path.isfile(path):
+        yield _identity(path, os.path.dirname(path)), path
+        return
+    if not os.path.isdir(path):
+        raise UsageError(f"{path}: does not exist; name a NoDL file or a folder of them")
+    index = os.path.join(path, INDEX)
+    found = list(_indexed(index) if os.path.isdir(index) else _in_folder(path))
+    if not found:
+        raise UsageError(f"{path}: there is no NoDL file (*.nodl.yaml) in this folder")
+    yield from found
+
+
+def _indexed(index: str) -> Iterator[tuple[Identity, str]]:
+    for key in sorted(os.listdir(index)):
+        package, between, name = key.partition(_BETWEEN)
+        if between and os.path.isfile(os.path.join(index, key)):
+            yield Identity(package, name), os.path.join(index, key)
+
+
+def _in_folder(folder: str) -> Iterator[tuple[Identity, str]]:
+    seen = 0
+    for place, folders, names in os.walk(folder):
+        folders[:] = sorted(it for it in folders if not it.startswith("."))
+        seen += len(names)
+        if seen > MAX_FILES:
+            raise UsageError(f"{folder}: over {MAX_FILES} files; name the folder of the NoDL files")
+        for name in sorted(it for it in names if it.endswith(SUFFIXES)):
+            path = os.path.join(place, name)
+            yield _identity(path, folder), path
+
+
+def _identity(path: str, folder: str) -> Identity:
+    """The node by the file's name, the folders above it, and the package that it is in."""
+    name = os.path.basename(path)
+    ending = next((it for it in (*SUFFIXES, os.path.splitext(name)[1]) if name.endswith(it)), "")
+    stem = name.removesuffix(ending)
+    package, between, own = stem.partition(_BETWEEN)
+    if between and package:
+        return Identity(package, own)
+    package = _package_of(path)
+    if package:
+        return Identity(package, stem)
+    below = os.path.relpath(path, folder or ".").removesuffix(ending)
+    return Identity("", below.replace(os.sep, "/"))
+
+
+def _package_of(path: str) -> str:
+    """The package whose folder the file is in; empty without one."""
+    folder = os.path.dirname(os.path.abspath(path))
+    while folder != os.path.dirname(folder):
+        try:
+            found = _PACKAGE_NAME.search(read_text(os.path.join(folder, "package.xml")))
+            return found[1] if found else ""
+        except (OSError, ValueError):
+            folder = os.path.dirname(folder)
+    return ""
+
+
+def file_of(interfaces: Interfaces, identity: Identity) -> str:
+    """The document of a node; empty if there is none."""
+    for wanted in (identity, Identity("", identity.name)):
+        if wanted in interfaces.given:
+            return interfaces.given[wanted]
+    if not identity.package or os.sep in identity.name:
+        return ""
+    key = f"{identity.package}{_BETWEEN}{identity.name}"
+    found = (os.path.join(folder, key) for folder in interfaces.installed)
+    return next(filter(os.path.isfile, found), "")
+
+
+def identities(interfaces: Interfaces) -> set[Identity]:
+    """All nodes that there is a document for."""
+    folders = filter(os.path.isdir, interfaces.installed)
+    return {*interfaces.given, *(it for folder in folders for it, _ in _indexed(folder))}
+
+
+def load(path: str, interfaces: Interfaces) -> Document:
+    """A document with all that it includes; raises UsageError with file and line."""
+    seen = {os.path.realpath(path): path}
+    documents = list(_with_included(path, interfaces, seen))
+    names: dict[tuple[str, str, str], str] = {}
+    for document in documents:
+        for key in _names(document):
+            first = names.setdefault(key, document.file)
+            if first != document.file:
+                what = " ".join(filter(None, key))
+                raise UsageError(f"{document.file}: {what} is in {first} too, which includes it")
+    return Document(
+        path,
+        tuple(end for it in documents for end in it.endpoints),
+        tuple(parameter for it in documents for parameter in it.parameters),
+    )
+
+
+def _names(document: Document) -> Iterator[tuple[str, str, str]]:
+    yield from ((end.role, end.kind, end.name) for end in document.endpoints)
+    yield from (("", "parameter", it.name) for it in document.parameters)
+
+
+def _with_included(path: str, interfaces: Interfaces, seen: dict[str, str]) -> Iterator[Document]:
+    document = _read(path)
+    yield document
+    for include in document.includes:
+        other = _resolved(include, path, interfaces)
+        real = os.path.realpath(other)
+        if real in seen:
+            raise UsageError(
+                f"{include.where}: {include.ref} is included twice; remove one include"
+            )
+        seen[real] = other
+        yield from _with_included(other, interfaces, seen)
+
+
+def _resolved(include: Include, path: str, interfaces: Interfaces) -> str:
+    ref = include.ref
+    if ref.startswith(_LOCAL):
+        found = os.path.join(os.path.dirname(path), ref.removeprefix(_LOCAL))
+        if not os.path.isfile(found):
+            raise UsageError(f"{include.where}: {ref} does not exist; correct the path")
+        return found
+    package, _, name = ref.removeprefix(_INDEXED).partition("/")
+    if not ref.startswith(_INDEXED) or not name:
+        raise UsageError(f"{include.where}: {ref} is not nodl://PACKAGE/NAME or local://FILE")
+    found = file_of(interfaces, Identity(package, name))
+    if not found:
+        hint = "source the workspace that has it, or name its folder with --nodl"
+        raise UsageError(f"{include.where}: {ref} is not installed; {hint}")
+    return found
+
+
+def _read(path: str) -> Document:
+    try:
+        return parse(read_text(path), path)
+    except OSError as error:
+        raise UsageError(f"{path}: cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise UsageError(f"{path}: cannot be read: it is not UTF-8; save it as UTF-8") from None

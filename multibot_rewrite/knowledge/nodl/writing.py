@@ -1,0 +1,91 @@
+"""Endpoints of a node -> the text of its NoDL document, checked by reading it.
+
+A document has no conditions and no endpoint of several types: two types are two entries.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Sequence
+from typing import TypeAlias
+
+from multibot_rewrite.knowledge.nodl.document import GROUP, SECTIONS, parse
+from multibot_rewrite.knowledge.nodl.lookup import SUFFIXES
+from multibot_rewrite.knowledge.records import Endpoint
+from multibot_rewrite.model import ProofError, UsageError
+from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.records import TOPIC
+
+DEFAULT = "SYSTEM_DEFAULT"
+UNKNOWN_QOS: dict[str, object] = {"history": DEFAULT, "reliability": DEFAULT}
+# What is known of the QoS of a topic.
+QosOf: TypeAlias = Callable[[Endpoint], dict[str, object]]
+_WIDTH = 100
+_NAME = re.compile(r"[A-Za-z]|[/~A-Za-z][A-Za-z0-9_/]*[A-Za-z0-9_]")
+_TYPE = re.compile(r"[A-Za-z][A-Za-z0-9_]*/(?:msg|srv|action)/[A-Z][A-Za-z0-9]*")
+
+
+class NodlFile(NamedTuple):
+    """A document: the node it is for, its text, and the endpoints that NoDL has no form for."""
+
+    node: str
+    text: str
+    left_out: tuple[str, ...]
+
+
+def file_name(node: str) -> str:
+    """The file of a node below a folder; a node in its own namespace is in a folder of that name."""
+    return f"{node}{SUFFIXES[0]}"
+
+
+def document_of(
+    node: str, description: str, ends: Iterable[Endpoint], qos_of: QosOf, json: bool = False
+) -> NodlFile:
+    """The document of a node; raises ProofError if reading it gives something else."""
+    written = list(ends)
+    fitting = [it for it in written if _fits(it)]
+    document: dict[str, object] = {"nodl_version": 2, "description": description}
+    for section, (kind, role) in SECTIONS.items():
+        own = [it for it in fitting if (it.kind, it.role) == (kind, role)]
+        if own:
+            document[section] = [_entry(it, qos_of) for it in own]
+    text = _dumped(document, json)
+    _check(node, text, fitting)
+    left = [f"{it.role} {it.name}" for it in written if not _fits(it)]
+    return NodlFile(node, text, tuple(dict.fromkeys(left)))
+
+
+def _fits(end: Endpoint) -> bool:
+    """Has NoDL a form for its name and type? Types of an action's parts have none."""
+    group = f"/{GROUP[end.kind]}/"
+    return bool(_NAME.fullmatch(end.name) and _TYPE.fullmatch(end.type) and group in end.type)
+
+
+def _entry(end: Endpoint, qos_of: QosOf) -> dict[str, object]:
+    entry: dict[str, object] = {"name": end.name, "type": end.type}
+    if end.kind == TOPIC:
+        entry["qos"] = qos_of(end)
+    return {**entry, "description": end.note} if end.note else entry
+
+
+def _dumped(document: dict[str, object], json: bool) -> str:
+    if json:
+        from json import dumps
+
+        return dumps(document, indent=2) + "\n"
+    import yaml
+
+    return str(yaml.safe_dump(document, sort_keys=False, width=_WIDTH, allow_unicode=True))
+
+
+def _check(node: str, text: str, written: Sequence[Endpoint]) -> None:
+    try:
+        read = parse(text, file_name(node)).endpoints
+    except UsageError as error:
+        raise ProofError(f"the document of {node} cannot be read back: {error}") from None
+    if _names(read) != _names(written):
+        raise ProofError(f"the document of {node} is read back differently")
+
+
+def _names(ends: Iterable[Endpoint]) -> set[tuple[str, str, str, str]]:
+    return {(it.kind, it.role, it.name, type_) for it in ends for type_ in (it.type, *it.also)}

@@ -1,0 +1,173 @@
+"""What is known of a node: its endpoints, frames, transforms and claims, before any remap rule."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from multibot_rewrite.record import NamedTuple
+
+MANAGER = "controller_manager"
+# Topics that image_transport's plugins derive from a base name.
+TRANSPORTS = ("compressed", "compressedDepth", "theora", "zstd")
+
+
+NO_TYPES: Mapping[str, str] = {}
+
+
+class Endpoint(NamedTuple):
+    """A topic, service or action in a node's code, before any remap rule.
+
+    ``name`` is relative, absolute or private (``~/x``). ``transport`` is true for an image topic
+    with image_transport siblings. ``fixed`` says why no rule reaches it; else empty. ``parameter`` is
+    the node parameter that sets the name, if any. ``also`` are other types, by parameter or release.
+    ``when`` is the condition under which it exists, empty for always. ``helper`` is true if a helper
+    node in the same process uses it: a rule for the whole process reaches it, one for this node does
+    not. ``remapped`` is its name after the remap rule of the stack's usual launch file: the table's
+    rule must lead there, since only the first match counts. ``condition`` is what its node's parameters
+    must hold for it to exist (``remap.conditions``), for where these are known. ``named_from`` is what
+    its entry calls it, if a stack gives it another name. ``above`` are the releases in which its node
+    resolves a relative name from its parameter in the namespace above its own.
+    ``releases`` are release words (see ``multibot_rewrite.releases``), ``source`` the places where it
+    can be read. ``by`` names the helper node, as what follows the name of its node, with a ``*`` for
+    what is made at run time (``_private_*``); the usual helper, tf2's, has no name of its own.
+    ``types`` are conditions as ``condition``, each with the type that it has where that holds.
+    """
+
+    kind: str
+    role: str
+    name: str
+    type: str = ""
+    transport: bool = False
+    parameter: str = ""
+    fixed: str = ""
+    note: str = ""
+    also: tuple[str, ...] = ()
+    when: str = ""
+    helper: bool = False
+    remapped: str = ""
+    condition: str = ""
+    named_from: str = ""
+    above: str = ""
+    releases: str = ""
+    source: tuple[str, ...] = ()
+    by: str = ""
+    types: tuple[tuple[str, str], ...] = ()
+
+
+class FrameParameter(NamedTuple):
+    """A parameter that holds a frame id, and its default; no remap rule reaches frame ids.
+
+    ``given`` is true where a robot's own files set it.
+    ``releases`` and ``source`` as in ``Endpoint``.
+    """
+
+    parameter: str
+    default: str
+    releases: str = ""
+    source: tuple[str, ...] = ()
+    given: bool = False
+
+
+class Param(NamedTuple):
+    """A parameter by its dotted path: what its value is, and its default.
+
+    ``releases`` are release words (``multibot_rewrite.releases``), ``absolute`` those in which a
+    relative topic in it is not resolved in the robot's namespace, ``deprecated`` those that warn of
+    it, both empty for none; ``source`` are the places where it can be read. ``own`` is true for a
+    frame that the node itself makes, so no description has it.
+    """
+
+    path: str
+    kind: str
+    default: str = ""
+    is_list: bool = False
+    releases: str = ""
+    absolute: str = ""
+    note: str = ""
+    source: tuple[str, ...] = ()
+    deprecated: str = ""
+    own: bool = False
+
+
+class NodeParameters(NamedTuple):
+    """A node in parameter files: ``params`` in each of their forms, ``types`` are controller types,
+    ``known_by`` parameters that identify the node if its section has another name. ``strips`` are the
+    releases in which the node takes off a slash that a frame starts with, empty for none;
+    ``deprecated_types`` has those of types."""
+
+    name: str
+    package: str
+    params: tuple[Param, ...] = ()
+    aliases: tuple[str, ...] = ()
+    types: tuple[str, ...] = ()
+    known_by: tuple[str, ...] = ()
+    releases: str = ""
+    source: tuple[str, ...] = ()
+    strips: str = ""
+    deprecated_types: Mapping[str, str] = NO_TYPES
+
+
+class SentTransform(NamedTuple):
+    """A transform that a node publishes, as the parameters that hold its frames; ``condition`` as in
+    ``Endpoint``."""
+
+    parent: str
+    child: str
+    condition: str = ""
+
+
+class Claim(NamedTuple):
+    """Interfaces that a controller claims: ``kind`` is command or state, ``template`` a name with
+    parameters in <> (``evidence.claims``); ``condition`` and ``releases`` as in ``Endpoint``."""
+
+    kind: str
+    template: str
+    condition: str = ""
+    releases: str = ""
+
+
+class NodeFacts(NamedTuple):
+    """A known node: its default name, its package, and its endpoints.
+
+    A name with slashes is a node in its own namespace below the robot's, such as a costmap.
+    ``shared`` is true if one node serves all robots (a bridge, RViz, a clock). ``host`` is the node
+    whose process it always runs in. ``when`` is the condition under which it is started, empty for
+    always. No rule reaches ``frames`` and ``fixed``. ``sends`` are the transforms it publishes. ``ids``
+    are words in <> of its names, with the parameter that lists what they stand for. ``claims`` are the
+    interfaces that a controller needs. ``known`` is its name in its entry if it has another one.
+    ``origin`` is where a robot's own files name it (``file:line``), or its stack. ``releases`` and
+    ``source`` as in ``Endpoint``. ``nodl`` are further names of its NoDL document, such as its
+    executable; ``interface`` is the NoDL file that its endpoints are from, empty for the library.
+    ``container`` is the node whose process it is loaded into as a component, ``plugin`` the plugin of
+    the simulator that makes it. ``apart`` is true for a node that keeps its name in every layout and
+    runs in its robot's namespace: its code sets its name, or that of a node below it. ``of_hardware``
+    is true for a node that a hardware plugin makes in the process of the controller manager.
+    """
+
+    name: str
+    package: str
+    endpoints: tuple[Endpoint, ...]
+    shared: bool = False
+    note: str = ""
+    host: str = ""
+    when: str = ""
+    frames: tuple[FrameParameter, ...] = ()
+    fixed: tuple[str, ...] = ()
+    sends: tuple[SentTransform, ...] = ()
+    ids: tuple[tuple[str, str], ...] = ()
+    claims: tuple[Claim, ...] = ()
+    known: str = ""
+    origin: str = ""
+    releases: str = ""
+    source: tuple[str, ...] = ()
+    nodl: tuple[str, ...] = ()
+    interface: str = ""
+    container: str = ""
+    plugin: str = ""
+    apart: bool = False
+    of_hardware: bool = False
+
+    @property
+    def is_controller(self) -> bool:
+        """Does the controller manager load it? The hardware's nodes are in its process, too."""
+        return self.host == MANAGER and not self.of_hardware

@@ -1,0 +1,170 @@
+"""YAML with the file and line of every value, for errors in data files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, NoReturn, TypeAlias, TypeVar
+
+from multibot_rewrite.bounded import compose_own_yaml, compose_yaml
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.nearest import did_you_mean_one_of
+from multibot_rewrite.record import NamedTuple
+
+if TYPE_CHECKING:
+    import yaml
+
+_BOOLEAN = "tag:yaml.org,2002:bool"
+_NULL = "tag:yaml.org,2002:null"
+_LINE = "\n"
+Known = TypeVar("Known")
+Value: TypeAlias = "str | bool | Mapping[str, YamlItem] | tuple[YamlItem, ...] | None"
+
+
+class YamlItem(NamedTuple):
+    """A value of a YAML file; ``where`` is ``file:line``."""
+
+    where: str
+    value: Value
+
+
+def read_yaml_with_lines(text: str, file: str, own: bool = False) -> YamlItem:
+    """The one document of a YAML text; raises UsageError naming ``file`` and the line.
+
+    ``own`` says that it is of this package, so that it needs no bounds.
+    """
+    import yaml  # slow to import; only stacks need it
+
+    try:
+        node = compose_own_yaml(text) if own else compose_yaml(text)
+        return YamlItem(f"{file}:1", None) if node is None else _item(node, f"{file}:1", file)
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        # If a document ends too early, the error is after its last line.
+        place = f"{file}:{min(mark.line, text.count(_LINE)) + 1}" if mark else file
+        reason = getattr(error, "problem", None) or str(error).partition("\n")[0]
+        raise UsageError(f"{place}: not valid YAML: {reason}") from None
+
+
+def _item(node: yaml.Node, where: str, file: str) -> YamlItem:
+    if isinstance(node.value, str):
+        if node.tag == _NULL:
+            return YamlItem(where, None)
+        return YamlItem(where, _truth(node.value) if node.tag == _BOOLEAN else node.value)
+    import yaml
+
+    if isinstance(node, yaml.MappingNode):
+        return YamlItem(where, _mapping(node, file))
+    inner = (_item(it, f"{file}:{it.start_mark.line + 1}", file) for it in node.value)
+    return YamlItem(where, tuple(inner))
+
+
+def _truth(word: str) -> bool:
+    return word.lower() in ("true", "yes", "on")
+
+
+def _mapping(node: yaml.Node, file: str) -> dict[str, YamlItem]:
+    found: dict[str, YamlItem] = {}
+    for key, value in node.value:
+        where = f"{file}:{key.start_mark.line + 1}"
+        if not isinstance(key.value, str):
+            raise UsageError(f"{where}: a key is a mapping or a list; use a name as key")
+        if key.value in found:
+            raise UsageError(f"{where}: the key {key.value!r} is repeated; remove one of them")
+        # A block value starts a line below its key; a reader looks for the key.
+        found[key.value] = _item(value, where, file)
+    return found
+
+
+def table(item: YamlItem, what: str, allowed: Sequence[str] = ()) -> Mapping[str, YamlItem]:
+    """The keys of a mapping, or an empty one without a value; keys not ``allowed`` are an error."""
+    if item.value is None:
+        return {}
+    if not isinstance(item.value, Mapping):
+        wrong(item, f"{what} is {_shape(item)}; write keys and values")
+    for key, value in item.value.items():
+        if allowed and key not in allowed:
+            wrong(value, unknown("key", key, allowed))
+    return item.value
+
+
+def word(item: YamlItem, what: str) -> str:
+    """A text; it may be empty."""
+    if not isinstance(item.value, str):
+        wrong(item, f"{what} is {_shape(item)}; write a text, in quotes if needed")
+    return item.value
+
+
+def table_of(keys: Mapping[str, YamlItem], key: str) -> Mapping[str, YamlItem]:
+    """The mapping of a key, empty if it is missing."""
+    return table(keys[key], key) if key in keys else {}
+
+
+def entries_of(keys: Mapping[str, YamlItem], key: str) -> tuple[YamlItem, ...]:
+    """The list of a key, empty if it is missing; a single word is a list of one."""
+    return entries(keys[key], key) if key in keys else ()
+
+
+def entries(item: YamlItem, what: str) -> tuple[YamlItem, ...]:
+    """The entries of a list; a single word is a list of one."""
+    if isinstance(item.value, str):
+        return (item,)
+    if not isinstance(item.value, tuple):
+        wrong(item, f"{what} is {_shape(item)}; write a list")
+    return item.value
+
+
+def words_of(keys: Mapping[str, YamlItem], key: str) -> tuple[str, ...]:
+    """The words listed by a key, empty if it is missing."""
+    return tuple(word(entry, key) for entry in entries_of(keys, key))
+
+
+def word_of(keys: Mapping[str, YamlItem], key: str, otherwise: str = "") -> str:
+    """The text of a key, ``otherwise`` if it is missing."""
+    return word(keys[key], key) if key in keys else otherwise
+
+
+def flag_of(keys: Mapping[str, YamlItem], key: str, otherwise: bool = False) -> bool:
+    """True or false as a key says, ``otherwise`` if it is missing."""
+    if key not in keys:
+        return otherwise
+    value = keys[key].value
+    if not isinstance(value, bool):
+        wrong(keys[key], f"{key} is {_shape(keys[key])}; write true or false")
+    return value
+
+
+def known_word(item: YamlItem, what: str, known: Mapping[str, Known]) -> Known:
+    """What a word stands for; one that is not known is an error."""
+    name = word(item, what)
+    if name not in known:
+        wrong(item, unknown(what, name, known))
+    return known[name]
+
+
+def one_of(item: YamlItem, what: str, value: str, allowed: Sequence[str]) -> str:
+    """The value, which has to be one of those."""
+    if value not in allowed:
+        wrong(item, unknown(what, value, allowed))
+    return value
+
+
+def wrong(item: YamlItem, message: str) -> NoReturn:
+    """Raise UsageError at the place of ``item``."""
+    raise UsageError(f"{item.where}: {message}")
+
+
+def unknown(what: str, name: str, known: Iterable[str], more: Iterable[str] = ()) -> str:
+    """That ``name`` is not known, with the nearest of all and the list of ``known``."""
+    known = sorted(known)
+    near = did_you_mean_one_of(name, [*known, *more])
+    return f"{what} {name!r} is not known; {near}{near and ' '}known: {', '.join(known) or 'none'}"
+
+
+def _shape(item: YamlItem) -> str:
+    if isinstance(item.value, str):
+        return f"the text {item.value!r}"
+    if isinstance(item.value, bool):
+        return "true or false"
+    if item.value is None:
+        return "empty"
+    return "a mapping" if isinstance(item.value, Mapping) else "a list"

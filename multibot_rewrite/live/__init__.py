@@ -1,0 +1,1 @@
+"""A running system looked at: what is in it, what is wrong with it, what changes."""

@@ -1,0 +1,101 @@
+"""A graph -> its robots, the layout that it looks like, and what is wrong with it. Pure."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.graph.bags.recording import RECORDER, is_recorded
+from multibot_rewrite.graph.wording import SEVERAL, shorten
+from multibot_rewrite.naming import LAYOUTS, Layout
+from multibot_rewrite.plural import plural
+from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.rules.check import inconclusive_where_in_doubt
+from multibot_rewrite.rules.find import judge
+from multibot_rewrite.rules.guess import GuessedRobot, guess_robots, whose_by_guess
+from multibot_rewrite.rules.index import TF, Index, index, tree_topic
+from multibot_rewrite.system.records import PUBLISHES, TOPIC, System
+
+
+class Diagnosis(NamedTuple):
+    """What is seen of a system that nobody planned.
+
+    ``layout`` is the one that the robots' names look like; None where there is only one robot, or
+    where tf is shared and frames have no robot's name, so that robots collide. ``tf`` has the nodes
+    that send on each tf topic.
+    """
+
+    graph: System
+    robots: tuple[GuessedRobot, ...]
+    whose: Index
+    layout: Layout | None
+    tf: tuple[tuple[str, tuple[str, ...]], ...]
+    findings: tuple[Finding, ...]
+
+
+def diagnose(graph: System) -> Diagnosis:
+    """Look at a graph without a plan."""
+    robots = guess_robots(graph)
+    seen = index(graph, whose_by_guess(robots))
+    found = inconclusive_where_in_doubt(judge(seen), graph)
+    tf = tuple(_tf_senders(graph))
+    return Diagnosis(graph, robots, seen, _layout(robots, seen, tf), tf, tuple(found))
+
+
+def _tf_senders(graph: System) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """The nodes that publish on each tf topic or its tf_static."""
+    nodes: dict[str, set[str]] = {}
+    for end in graph.ends:
+        if (end.kind, end.role, end.type) == (TOPIC, PUBLISHES, TF):
+            nodes.setdefault(tree_topic(end.name), set()).add(end.node)
+    return ((topic, tuple(sorted(nodes[topic]))) for topic in sorted(nodes))
+
+
+def _layout(
+    robots: Sequence[GuessedRobot], seen: Index, tf: Sequence[tuple[str, tuple[str, ...]]]
+) -> Layout | None:
+    if not robots:
+        return None
+    own_tf = any(seen.robot(topic) for topic, _ in tf)
+    own_frames = any(robot.before or robot.behind for robot in robots)
+    namespaces = any(robot.namespace for robot in robots)
+    wanted = (own_frames, own_tf, namespaces)
+    return next(
+        (it for it in LAYOUTS if wanted == (it.frames, it.tf_per_robot, it.namespaced)), None
+    )
+
+
+def survey(seen: Diagnosis) -> Iterator[str]:
+    """What there is, in a few lines: the robots, the layout, who is on which tf topic."""
+    names = [robot.name for robot in seen.robots]
+    if not names:
+        nodes = "a recording" if is_recorded(seen.graph) else plural(len(seen.graph.nodes), "node")
+        yield f"{nodes}, no name of a robot in them: one robot, or several that share all names"
+    else:
+        where = _where(seen.robots)
+        yield f"{plural(len(names), 'robot')} {where}: {shorten(names, SEVERAL)}"
+        yield f"layout: {_layout_line(seen)}"
+    for topic, nodes_ in seen.tf:
+        if nodes_ == (RECORDER,):
+            yield f"tf on {topic}"
+            continue
+        by_robot = Counter(seen.whose.robot(node) or "no robot" for node in nodes_)
+        yield f"tf on {topic}: {plural(len(nodes_), 'node')} of {shorten(by_robot, SEVERAL)}"
+
+
+def _where(robots: Sequence[GuessedRobot]) -> str:
+    if any(robot.namespace for robot in robots):
+        return "by their namespaces"
+    return (
+        "by what their frames have" if any(it.before for it in robots) else "by the ends of names"
+    )
+
+
+def _layout_line(seen: Diagnosis) -> str:
+    if seen.layout:
+        return f"looks like {seen.layout.name} ({seen.layout.short}: {seen.layout.about})"
+    frames = any(robot.before or robot.behind for robot in seen.robots)
+    if frames:
+        return "frames have the robot's name, topics and nodes have not"
+    return "none of those known: neither tf topics nor frames have the robot's name"

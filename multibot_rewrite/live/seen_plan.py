@@ -1,0 +1,75 @@
+"""What is seen -> a plan that the same graph fulfils: to draw it, and to begin a fleet with. Pure."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
+from multibot_rewrite.graph.tool_nodes import is_tool
+from multibot_rewrite.live.diagnose import Diagnosis
+from multibot_rewrite.naming import DEFAULT_LAYOUT, TF_TOPICS
+from multibot_rewrite.rules.guess import GuessedRobot
+from multibot_rewrite.rules.index import tree_topic, unique
+from multibot_rewrite.system.conventions import EVERYBODYS, SENT_BY_EVERY_NODE, WORLD_FRAMES
+
+# The robot of a graph in which no name has a robot's.
+NAMELESS = GuessedRobot("robot1", "")
+_PARAMETERS = ("rcl_interfaces/", "type_description_interfaces/")
+
+
+def seen_plan(seen: Diagnosis) -> Expectation:
+    """The plan: all nodes but tools, all names but what every node has."""
+    nodes = unique(node.name for node in seen.graph.nodes if not is_tool(node.name))
+    planned = tuple(_robot(seen, robot, nodes) for robot in robots_to_plan(seen))
+    planned = tuple(robot for robot in planned if robot.nodes)
+    owned = {node for robot in planned for node in robot.nodes}
+    shared = tuple(node for node in nodes if node not in owned)
+    topics = unique(end.name for end in seen.graph.ends if end.kind == "topic")
+    bare = (it for it in topics if not seen.whose.robot(it) and "/_" not in it)
+    return Expectation(
+        seen.layout.name if seen.layout else DEFAULT_LAYOUT,
+        planned,
+        shared,
+        tuple(sorted({*bare, *EVERYBODYS})),
+        tuple(sorted(WORLD_FRAMES)),
+        tuple(dict.fromkeys(_endpoints(seen, {*owned, *shared}))),
+    )
+
+
+def robots_to_plan(seen: Diagnosis) -> tuple[GuessedRobot, ...]:
+    """The robots that nodes belong to; one for all nodes where no node shows whose it is."""
+    return tuple(it for it in seen.robots if not it.only_frames) or (NAMELESS,)
+
+
+def _robot(seen: Diagnosis, robot: GuessedRobot, nodes: Iterable[str]) -> PlannedRobot:
+    """Frames without a robot's name are those of the robot on whose topic they are."""
+    whose = seen.whose
+    mine = "" if robot is NAMELESS else robot.name
+    topics = [topic for topic, _ in seen.tf if whose.robot(topic) == mine]
+    shared = f"/{TF_TOPICS[0]}"
+    tf = next(iter(topics), shared)
+    own = {
+        it
+        for edge in seen.graph.edges
+        for it in (edge.child, edge.parent)
+        if whose.frame_robot(it) == robot.name
+        or not mine
+        or (not whose.frame_robot(it) and tree_topic(edge.topic) == tf != shared)
+    }
+    return PlannedRobot(
+        robot.name,
+        tuple(node for node in nodes if whose.robot(node) == mine),
+        tuple(sorted(own - set(WORLD_FRAMES))),
+        tf,
+    )
+
+
+def _endpoints(seen: Diagnosis, nodes: Iterable[str]) -> Iterator[PlannedEndpoint]:
+    for end in seen.graph.ends:
+        common = (
+            end.name in SENT_BY_EVERY_NODE or end.type.startswith(_PARAMETERS) or "/_" in end.name
+        )
+        if end.node in nodes and not common:
+            code = seen.whose.plain(end.name)
+            own = (end.node, end.kind, end.role, end.name)
+            yield PlannedEndpoint(*own, end.type, code)

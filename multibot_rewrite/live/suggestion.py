@@ -1,0 +1,137 @@
+"""What is seen -> files to begin a fleet with: fleet file, nodes, description, plan. Pure.
+
+The description has the frames that were heard, and nothing else: it stands in for the robot's own.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from xml.sax.saxutils import quoteattr
+
+from multibot_rewrite.graph.learning.learn import learn
+from multibot_rewrite.graph.learning.nodes_file import to_yaml as nodes_to_yaml
+from multibot_rewrite.graph.plan_file import to_yaml as plan_to_yaml
+from multibot_rewrite.graph.tool_nodes import is_tool
+from multibot_rewrite.graph.transforms import STATE_PUBLISHER
+from multibot_rewrite.knowledge.node_library import NodeLibrary
+from multibot_rewrite.live.diagnose import Diagnosis
+from multibot_rewrite.live.seen_plan import NAMELESS, robots_to_plan, seen_plan
+from multibot_rewrite.naming import LAYOUTS
+from multibot_rewrite.rules.guess import GuessedRobot
+from multibot_rewrite.rules.system.tf_topics import root_of
+from multibot_rewrite.system.conventions import BODY_FRAMES, WORLD_FRAMES
+from multibot_rewrite.system.records import Edge
+
+STACK = "seen"
+FLEET_FILE, NODES_FILE, DESCRIPTION, PLAN_FILE = (
+    "fleet.yaml",
+    "nodes.yaml",
+    "robot.urdf",
+    "plan.yaml",
+)
+FILES = (FLEET_FILE, NODES_FILE, DESCRIPTION, PLAN_FILE)
+HEAD = """\
+# A first fleet file, from what was seen in the running graph. Before you use it:
+# - put your robot's own URDF or xacro in place of robot.urdf, which has only the frames heard
+# - see whether these are the robots and the layout that you want: multibot help build
+# Then: multibot build fleet.yaml -o out/, and multibot check fleet.yaml while it runs
+"""
+
+
+def suggestion(seen: Diagnosis, library: NodeLibrary) -> dict[str, str]:
+    """The files by name."""
+    robot, *_ = robots_to_plan(seen)
+    nodes = _nodes(seen, robot)
+    learned = [it for it in nodes if not it.endswith(f"/{STATE_PUBLISHER}")]
+    files = {
+        FLEET_FILE: HEAD + "".join(f"{it}\n" for it in _fleet(seen, nodes, bool(learned))),
+        DESCRIPTION: "".join(f"{it}\n" for it in _description(seen, robot)),
+        PLAN_FILE: plan_to_yaml(seen_plan(seen)),
+    }
+    if learned:
+        found = learn(seen.graph, learned, robot.namespace or "/", library)
+        files[NODES_FILE] = nodes_to_yaml(found, STACK, library)
+    return files
+
+
+def _nodes(seen: Diagnosis, robot: GuessedRobot) -> list[str]:
+    """The nodes of the first robot, as far as their names show the code's: not behind a word."""
+    mine = "" if robot is NAMELESS else robot.name
+    if mine and not robot.namespace:
+        return []
+    times = Counter(node.name for node in seen.graph.nodes)
+    own = (
+        it for it in times if seen.whose.robot(it) == mine and not is_tool(it) and times[it] == 1
+    )
+    return sorted(it for it in own if it.startswith(f"{robot.namespace}/"))
+
+
+def _fleet(seen: Diagnosis, nodes: Sequence[str], learned: bool) -> Iterator[str]:
+    robots = robots_to_plan(seen)
+    namespaced = any(robot.namespace for robot in robots)
+    fallback = LAYOUTS[0] if namespaced else LAYOUTS[-1]
+    yield f"layout: {(seen.layout or fallback).name}"
+    if any(robot.before for robot in robots):
+        yield "affix: prefix"
+    between = {it.before[-1:] or it.behind[:1] for it in robots} - {""}
+    if len(between) == 1 and not between & {"/"}:
+        separator = between.pop()
+        yield f"separators: {{link: '{separator}', frame: '{separator}'}}"
+    yield f"description: {DESCRIPTION}"
+    if learned:
+        yield f"nodes: {NODES_FILE}"
+    publisher = any(it.endswith(f"/{STATE_PUBLISHER}") for it in nodes)
+    stacks = [*[STACK] * learned, *["no_robot_state_publisher"] * (learned and not publisher)]
+    if stacks:
+        yield f"stack: [{', '.join(stacks)}]"
+    yield "robots:"
+    for robot in robots:
+        yield f"  - {{name: {robot.name.replace('/', '_')}}}"
+
+
+def _description(seen: Diagnosis, robot: GuessedRobot) -> Iterator[str]:
+    """The frames of a robot below its base, as links and joints."""
+    plain = seen.whose.plain_frame
+    edges = {
+        plain(it.child): it for it in _edges(seen, robot) if plain(it.parent) not in WORLD_FRAMES
+    }
+    edges = {child: it for child, it in edges.items() if plain(it.parent) != "odom"}
+    parents = {child: plain(it.parent) for child, it in edges.items()}
+    root = _base(parents)
+    yield '<?xml version="1.0"?>'
+    yield "<!-- The frames that were heard on tf: put your own description in its place. -->"
+    yield '<robot name="seen">'
+    yield f"  <link name={quoteattr(root)}/>"
+    for child in _below(root, parents):
+        yield f"  <link name={quoteattr(child)}/>"
+        kind = "fixed" if edges[child].static else "continuous"
+        yield f'  <joint name={quoteattr(child + "_joint")} type="{kind}">'
+        yield f"    <parent link={quoteattr(parents[child])}/><child link={quoteattr(child)}/>"
+        yield "  </joint>"
+    yield "</robot>"
+
+
+def _edges(seen: Diagnosis, robot: GuessedRobot) -> list[Edge]:
+    """Those with the robot's name; where frames have none, those on its topic or on all."""
+    whose = seen.whose
+    named = [it for it in seen.graph.edges if whose.frame_robot(it.child) == robot.name]
+    bare = [it for it in seen.graph.edges if not whose.frame_robot(it.child)]
+    own = [it for it in bare if whose.robot(it.topic) == robot.name]
+    return named or own or bare
+
+
+def _base(parents: Mapping[str, str]) -> str:
+    """The frame to begin with: the root of the tree that has a usual base, else any root."""
+    known = {*parents, *parents.values()}
+    base = next((it for it in BODY_FRAMES if it in known), "")
+    root = root_of(base, parents) if base else ""
+    return root or min((it for it in known if it not in parents), default=BODY_FRAMES[1])
+
+
+def _below(root: str, parents: Mapping[str, str]) -> Iterable[str]:
+    """The frames below one, parents first, each once."""
+    found = [root]
+    for frame in found:
+        found += [it for it, above in parents.items() if above == frame and it not in found]
+    return found[1:]

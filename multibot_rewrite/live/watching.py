@@ -1,0 +1,140 @@
+"""A plan and one snapshot after another -> what changed, and the worst verdict so far. Pure."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from enum import IntEnum
+
+from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, Finding
+from multibot_rewrite.graph.expectation import Expectation
+from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.rules.check import ABSENCE, doubts
+from multibot_rewrite.system.records import CHANGING, System
+
+
+class Verdict(IntEnum):
+    """The result of a comparison, from good to bad."""
+
+    PLANNED = 0
+    INCONCLUSIVE = 1
+    WRONG = 2
+
+
+WORDS = {
+    Verdict.PLANNED: "as planned",
+    Verdict.INCONCLUSIVE: "inconclusive, the view may be incomplete",
+    Verdict.WRONG: "not as planned",
+}
+
+
+class Outcome(NamedTuple):
+    """The verdict as a command says it: in which ``words``, and who says it (``by``).
+
+    Without ``planned`` there was no plan to compare with. ``reasons`` say why it is not certain,
+    besides the caveats of the graph.
+    """
+
+    verdict: Verdict
+    words: str
+    by: str = "multibot check"
+    planned: bool = True
+    reasons: tuple[str, ...] = ()
+
+
+class Progress(NamedTuple):
+    """How much of a robot's plan is in the graph, each as (in the graph, planned)."""
+
+    robot: str
+    nodes: tuple[int, int]
+    names: tuple[int, int]
+
+
+class WatchState(NamedTuple):
+    """One state of a watched graph, and how it differs from the state before.
+
+    ``complete`` is set once everything planned was in the graph at the same time; what is missing
+    before that counts as not started yet. ``worst`` is the worst verdict so far.
+    """
+
+    graph: System
+    findings: tuple[Finding, ...]
+    appeared: tuple[Finding, ...]
+    solved: tuple[Finding, ...]
+    robots: tuple[Progress, ...]
+    complete: bool
+    verdict: Verdict
+    worst: Verdict
+
+
+def judge(found: Iterable[Finding], graph: System) -> Verdict:
+    """As planned, not as planned, or inconclusive because the view may be incomplete."""
+    levels = {finding.level for finding in found}
+    if ERROR in levels:
+        return Verdict.WRONG
+    return Verdict.INCONCLUSIVE if INCONCLUSIVE in levels or doubts(graph) else Verdict.PLANNED
+
+
+def with_found(
+    plan: Expectation, graph: System, findings: Iterable[Finding], before: WatchState | None
+) -> WatchState:
+    """The state of the graph in which these are the findings, after the state before.
+
+    What was missing while the fleet started was never announced, so it is not solved either.
+    """
+    found = tuple(findings)
+    old = before.findings if before and before.complete else ()
+    robots = tuple(progress(plan, graph))
+    absent = any(finding.code in ABSENCE for finding in found)
+    complete = (before is not None and before.complete) or not absent
+    verdict = judge(found, graph)
+    return WatchState(
+        graph,
+        found,
+        _not_in(old, found),
+        _not_in(found, old),
+        robots,
+        complete,
+        verdict,
+        max(before.worst if before else Verdict.PLANNED, _to_remember(found, graph, complete)),
+    )
+
+
+def _not_in(known: Iterable[Finding], found: Iterable[Finding]) -> tuple[Finding, ...]:
+    """What is found and not known; a finding with another cause is the same finding."""
+    before = set(map(_without_cause, known))
+    return tuple(finding for finding in found if _without_cause(finding) not in before)
+
+
+def _without_cause(finding: Finding) -> Finding:
+    return finding._replace(hint="", file="", line=0)
+
+
+def _to_remember(found: Iterable[Finding], graph: System, complete: bool) -> Verdict:
+    """The verdict that counts for the worst so far.
+
+    What is not started yet does not count, nor that the graph is still changing.
+    """
+    verdict = judge([it for it in found if complete or it.code not in ABSENCE], graph)
+    changing = not complete or graph.environment.settled == CHANGING
+    return Verdict.PLANNED if verdict == Verdict.INCONCLUSIVE and changing else verdict
+
+
+def final(state: WatchState) -> Verdict:
+    """The worst verdict; what is still missing at the end counts as well."""
+    return max(state.worst, state.verdict)
+
+
+def progress(plan: Expectation, graph: System) -> list[Progress]:
+    """How much of each robot's plan is in the graph."""
+    nodes = {node.name for node in graph.nodes}
+    ends = {(end.node, end.kind, end.role, end.name) for end in graph.ends}
+    planned: dict[str, list[bool]] = {}
+    for end in plan.endpoints:
+        seen = (end.node, end.kind, end.role, end.name) in ends
+        planned.setdefault(end.node, []).append(seen)
+    result = []
+    for robot in plan.robots:
+        names = [seen for node in robot.nodes for seen in planned.get(node, ())]
+        running = sum(node in nodes for node in robot.nodes)
+        result.append(Progress(robot.name, (running, len(robot.nodes)), (sum(names), len(names))))
+    return result

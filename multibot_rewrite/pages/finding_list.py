@@ -1,0 +1,118 @@
+"""The findings on the page: what is the same for many robots is one, opened it says where and why."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+from multibot_rewrite.findings.rule import Rule
+from multibot_rewrite.graph.wording import SEVERAL, shorten
+from multibot_rewrite.live.watching import Verdict
+from multibot_rewrite.pages.explanations import rule_link, with_code
+from multibot_rewrite.pages.page_sections import (
+    LEVELS,
+    PageSection,
+    ids_in,
+    ids_of,
+    link_to,
+)
+from multibot_rewrite.pages.scene import FindingRow, Scene
+from multibot_rewrite.pages.svg import Ids, safe
+from multibot_rewrite.record import NamedTuple
+
+# By whether the verdict is good, and whether there is a plan.
+NOTHING = {
+    (True, True): "No faults: everything planned is in the graph, and no name leaks.",
+    (True, False): "No faults were seen in what runs now.",
+}
+DOUBTFUL = "No faults were found, but the view of the graph may be incomplete."
+
+
+class Sources(NamedTuple):
+    """What findings are explained with: the rules by code, and lines of files by ``file:line``."""
+
+    rules: Mapping[str, Rule]
+    snippets: Mapping[str, Sequence[str]]
+
+
+def filters(scene: Scene) -> Iterator[str]:
+    """The filters of findings and drawings, which the script shows because they need it."""
+    levels = [level for level in LEVELS if any(it.level == level for it in scene.findings)]
+    robots = [(str(at), name) for at, name in enumerate(scene.robots)]
+    yield '<p id="filters" hidden>'
+    yield _select("level", "all levels", [(level, level) for level in levels])
+    yield _select("robot", "all robots", [*robots, ("-1", "no robot")])
+    yield '<label>name <input type="search" name="text" placeholder="node, topic, frame"></label> '
+    yield '<output aria-live="polite"></output></p>\n'
+
+
+def _select(name: str, default: str, options: Iterable[tuple[str, str]]) -> str:
+    inner = "".join(f'<option value="{value}">{safe(text)}</option>' for value, text in options)
+    first = f'<option value="">{default}</option>'
+    return f'<label>{name} <select name="{name}">{first}{inner}</select></label> '
+
+
+def finding_list(
+    scene: Scene, ids: Ids, sections: Sequence[PageSection], sources: Sources
+) -> Iterator[str]:
+    """The findings in their order."""
+    yield '<section id="findings">\n<h2>Findings</h2>\n'
+    if not scene.rows:
+        outcome = scene.outcome
+        text = NOTHING.get((outcome.verdict == Verdict.PLANNED, outcome.planned), DOUBTFUL)
+        yield f'<p class="none">{text}</p>\n'
+    order = {robot: at for at, robot in enumerate(scene.robots)}
+    inside = {one.group.robot: (one.id, ids_in(one, ids)) for one in sections}
+    for at, row in enumerate(scene.rows):
+        targets = ids_of(row.targets, ids)
+        numbers = " ".join(str(order[robot]) for robot in row.robots) or "-1"
+        level = safe(row.finding.level)
+        yield (
+            f'<details class="finding" id="finding-{at}" data-level="{level}"'
+            f' data-robot="{numbers}" data-hits="{" ".join(targets)}">'
+            f"{_head(row, link_to(row.finding, targets, inside))}{_body(row, sources)}</details>\n"
+        )
+    yield "</section>\n"
+
+
+def _head(row: FindingRow, link: str) -> str:
+    finding = row.finding
+    level = safe(finding.level)
+    who = ", ".join(filter(None, (finding.robot, *finding.others))) or ", ".join(row.robots)
+    named = shorten(who.split(", "))
+    hint = f"<small>{safe(finding.hint)}</small>" if finding.hint else ""
+    place = f"<code>{safe(finding.node)}</code>" if finding.node else "show"
+    return (
+        f'<summary><b class="level {level}">{level}</b>'
+        f'<a class="rule" href="{rule_link(finding.code)}">{safe(finding.code)}</a>'
+        f'<b class="who" title="{safe(who)}">{safe(named)}</b>'
+        f'<span class="what"><a class="place" href="{link}">{place}</a>'
+        f" {safe(finding.message)}{hint}</span></summary>"
+    )
+
+
+def _body(row: FindingRow, sources: Sources) -> str:
+    """Where, why, and the line of the description if it is known."""
+    finding = row.finding
+    rule = sources.rules.get(finding.code)
+    names = ", ".join(filter(None, (finding.node, *finding.names)))
+    robots = (finding.robot, *finding.others)
+    parts = [
+        ("Where", safe(shorten(dict.fromkeys(names.split(", ")), SEVERAL * 4))) if names else None,
+        ("Robots", safe(", ".join(robots))) if finding.others else None,
+        ("Why it matters", with_code(rule.why)) if rule else None,
+        ("What to do", with_code(rule.fix)) if rule else None,
+        ("Written in", f"<code>{safe(row.place)}</code>") if row.place else None,
+    ]
+    shown = "".join(f"<div><dt>{part[0]}</dt><dd>{part[1]}</dd></div>" for part in parts if part)
+    return f"<dl>{shown}</dl>{_snippet(row.place, sources.snippets.get(row.place, ()))}"
+
+
+def _snippet(place: str, lines: Sequence[str]) -> str:
+    if not lines:
+        return ""
+    wanted = place.rpartition(":")[2]
+    marked = (
+        f"<b>{safe(line)}</b>" if line.split(maxsplit=1)[0] == wanted else safe(line)
+        for line in lines
+    )
+    return f"<pre>{chr(10).join(marked)}</pre>"

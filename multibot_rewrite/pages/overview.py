@@ -1,0 +1,150 @@
+"""The picture of the fleet: a box for each robot, an arrow where one uses another's names."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+from multibot_rewrite.pages.scene import Crossing
+from multibot_rewrite.pages.states import FAULTY
+from multibot_rewrite.pages.svg import LETTER, MEANINGS, WIDTH, safe, tooltip
+from multibot_rewrite.pages.text import clipped, counted
+from multibot_rewrite.record import NamedTuple
+
+# Space for the arrows above the first row and below the last one.
+MARGIN = 44
+# Up to so many robots: boxes in a row, width and height of a box, the gap below it.
+SIZES = ((4, 4, 230, 58, 74), (30, 6, 160, 54, 60), (100_000, 10, 106, 40, 40))
+# More shared nodes than this are one box; more arrows than this have no labels.
+MOST_NODES, MOST_LABELS = 8, 12
+OTHERS, NO_ROBOT = "other nodes", "names of no robot"
+
+
+class Tile(NamedTuple):
+    """A box: its key in a crossing, its title, a line below it, its link, its CSS class."""
+
+    key: str
+    title: str
+    note: str
+    link: str
+    css_class: str
+
+
+class _Box(NamedTuple):
+    x: float
+    y: float
+    wide: float
+    high: float
+
+
+def overview(robots: Sequence[Tile], crossings: Sequence[Crossing], shared: Iterable[str]) -> str:
+    """The picture; ``shared`` are the nodes of no robot."""
+    below = list(_shared_tiles(crossings, list(shared)))
+    middle = _height(len(robots)) if below else 0.0
+    places = {**_rows(robots, 0), **_rows(below, middle)}
+    tiles = (*robots, *below)
+    high = max((box.y + box.high for box in places.values()), default=0.0) + MARGIN
+    arrows, labels = [], []
+    for crossing in sorted(crossings, key=lambda crossing: crossing.state in FAULTY):
+        path, x, y = _path(*_boxes(crossing, places))
+        arrows.append(_arrow(crossing, path))
+        if len(crossings) <= MOST_LABELS and crossing.target and crossing.state in FAULTY:
+            labels.append(_label(crossing, x, y))
+    # A few boxes are readable on a narrow screen.
+    few = " few" if max(len(robots), len(below)) <= SIZES[0][0] else ""
+    boxes = (_tile(tile, places[tile.key]) for tile in tiles)
+    return (
+        f'<svg class="overview{few}" viewBox="0 0 {WIDTH} {high:g}" role="group"'
+        ' aria-label="the fleet">'
+        f"{_TIPS}{''.join((*arrows, *boxes, *labels))}</svg>"
+    )
+
+
+_TIPS = "<defs>{}</defs>".format(
+    "".join(
+        f'<marker id="{name}" viewBox="0 0 8 8" refX="7" refY="4" markerWidth="7" markerHeight="7"'
+        f' orient="auto"><path class="{name}" d="M0 0L8 4L0 8z"/></marker>'
+        for name in ("tip", "tip-bad")
+    )
+)
+
+
+def _shared_tiles(crossings: Sequence[Crossing], shared: Sequence[str]) -> Iterator[Tile]:
+    """Boxes for the nodes of no robot, and for names of no robot that should belong to one."""
+    if len(shared) > MOST_NODES:
+        yield Tile(OTHERS, counted(len(shared), "other node"), "of no robot", "#shared", "shared")
+    else:
+        yield from (Tile(node, node, "of no robot", "#shared", "shared") for node in shared)
+    leaked = dict.fromkeys(name for r in crossings if not r.target for name in r.names)
+    if leaked:
+        names = dict.fromkeys(name.partition(" ")[2] for name in leaked)
+        yield Tile(NO_ROBOT, NO_ROBOT, ", ".join(names), "#shared", "bad")
+
+
+def _size(number: int) -> tuple[int, int, int, int]:
+    return next(size[1:] for size in SIZES if number <= size[0])
+
+
+def _height(number: int) -> float:
+    columns, _, high, gap = _size(number)
+    return -(-number // columns) * (high + gap)
+
+
+def _rows(tiles: Sequence[Tile], top: float) -> dict[str, _Box]:
+    columns, wide, high, gap = _size(len(tiles))
+    cell = WIDTH / min(columns, max(len(tiles), 1))
+    return {
+        tile.key: _Box(
+            at % columns * cell + (cell - wide) / 2,
+            MARGIN + top + at // columns * (high + gap),
+            wide,
+            high,
+        )
+        for at, tile in enumerate(tiles)
+    }
+
+
+def _tile(tile: Tile, box: _Box) -> str:
+    room = int((box.wide - 16) / LETTER)
+    middle = f'x="{box.x + box.wide / 2:g}"'
+    return (
+        f'<a href="{safe(tile.link)}"><g class="tile {tile.css_class}">'
+        f'<rect x="{box.x:g}" y="{box.y:g}" width="{box.wide:g}" height="{box.high:g}" rx="7"/>'
+        f'<text class="title" {middle} y="{box.y + box.high * 0.44:g}">'
+        f"{safe(clipped(tile.title, room))}</text>"
+        f'<text class="note" {middle} y="{box.y + box.high * 0.8:g}">'
+        f"{safe(clipped(tile.note, room))}</text>"
+        f"{tooltip(tile.title, tile.note)}</g></a>"
+    )
+
+
+def _boxes(crossing: Crossing, places: Mapping[str, _Box]) -> tuple[_Box, _Box]:
+    start = places.get(crossing.source or crossing.node) or places[OTHERS]
+    return start, places[crossing.target or NO_ROBOT]
+
+
+def _arrow(crossing: Crossing, path: str) -> str:
+    css_class, tip = ("bad", "tip-bad") if crossing.state in FAULTY else ("calm", "tip")
+    title = tooltip(
+        f"{crossing.source or crossing.node}: {MEANINGS[crossing.state]}", *crossing.names
+    )
+    return f'<path class="reach {css_class}" d="{path}" marker-end="url(#{tip})">{title}</path>'
+
+
+def _label(crossing: Crossing, x: float, y: float) -> str:
+    first = crossing.names[0].partition(" ")[2]
+    text = clipped(first, 40) if len(crossing.names) == 1 else counted(len(crossing.names), "name")
+    return f'<text class="reach-note" x="{x:g}" y="{y:g}">{safe(text)}</text>'
+
+
+def _path(start: _Box, end: _Box) -> tuple[str, float, float]:
+    """A curve from box to box and its middle; the two directions do not overlap."""
+    x, to_x = start.x + start.wide / 2 + 12, end.x + end.wide / 2 - 12
+    if start.y == end.y:
+        y, bend = start.y, 46 if x < to_x else 26
+        d = f"M{x:g} {y:g}C{x:g} {y - bend:g} {to_x:g} {y - bend:g} {to_x:g} {y:g}"
+        return d, (x + to_x) / 2, y - bend * 0.75 + 4
+    down = start.y < end.y
+    y, to_y = (start.y + start.high, end.y) if down else (start.y, end.y + end.high)
+    half = (to_y - y) / 2
+    d = f"M{x:g} {y:g}C{x:g} {y + half:g} {to_x:g} {to_y - half:g} {to_x:g} {to_y:g}"
+    return d, (x + to_x) / 2, (y + to_y) / 2

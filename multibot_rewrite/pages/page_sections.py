@@ -1,0 +1,139 @@
+"""The sections of the page, short ids for everything on it, and the link of each finding."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Hashable, Iterable, Mapping
+from typing import TypeVar
+
+from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding
+from multibot_rewrite.pages.scene import DrawnGroup, Scene
+from multibot_rewrite.pages.simplify import has_faults, without_common
+from multibot_rewrite.pages.states import Targets
+from multibot_rewrite.pages.svg import Ids
+from multibot_rewrite.pages.text import counted
+from multibot_rewrite.record import NamedTuple
+
+LEVELS = (ERROR, WARNING, INCONCLUSIVE)
+# In a larger fleet only faulty robots are unfolded, and no more than MOST_OPEN.
+SMALL_FLEET, MOST_OPEN = 3, 10
+# Of more robots only so many are drawn, those with findings first, and each finding once before that.
+MOST_DRAWN = 30
+SHARED = "shared"
+_Key = TypeVar("_Key", bound=Hashable)
+
+
+class PageSection(NamedTuple):
+    """The section of a group; ``shown`` is the group without what every node has.
+
+    ``levels`` counts by level the findings that concern its robot; a ``faulty`` section has such
+    findings or faulty names.
+    """
+
+    group: DrawnGroup
+    shown: DrawnGroup
+    id: str
+    levels: Mapping[str, int]
+    faulty: bool
+    open: bool
+    drawn: bool = True
+
+
+def make_ids(scene: Scene) -> Ids:
+    """A short id for everything that is drawn."""
+    nodes = sorted({node.name for group in scene.groups for node in group.nodes})
+    names = sorted({name.name for group in scene.groups for name in group.names})
+    frames = dict.fromkeys((one.topic, row.frame) for one in scene.trees for row in one.rows)
+    ids = Ids(_numbered("n", nodes), _numbered("t", names), _numbered("f", frames), frozenset())
+    wanted = {id_ for row in scene.rows for id_ in ids_of(row.targets, ids)}
+    return ids._replace(anchors=frozenset(wanted))
+
+
+def _numbered(letter: str, things: Iterable[_Key]) -> dict[_Key, str]:
+    return {thing: f"{letter}{at}" for at, thing in enumerate(things)}
+
+
+def ids_of(about: Targets, ids: Ids) -> list[str]:
+    """The ids of what a finding is about, as far as it is drawn."""
+    found = (
+        *(ids.names.get(name, "") for name in about.names),
+        *(ids.nodes.get(node, "") for node in about.nodes),
+        *(ids.frames.get(frame, "") for frame in about.frames),
+    )
+    return [id_ for id_ in found if id_]
+
+
+def make_sections(scene: Scene) -> list[PageSection]:
+    """One for each robot, then one for what belongs to no robot.
+
+    Of robots with the same findings the first is unfolded.
+    """
+    concerns = concerns_of(scene)
+    met: set[tuple[int, ...]] = set()
+    sections, left = [], MOST_OPEN
+    for at, group in enumerate(scene.groups):
+        id_ = f"g{at}" if group.robot else SHARED
+        own = concerns.get(group.robot, ())
+        counts = Counter(scene.rows[number].finding.level for number in own)
+        levels = {level: counts[level] for level in LEVELS}
+        faulty = bool(sum(levels.values())) or has_faults(group)
+        opened = len(scene.robots) <= SMALL_FLEET or (
+            faulty and left > 0 and not (own and own in met)
+        )
+        met.add(own)
+        left -= opened
+        shown = without_common(group)
+        sections.append(PageSection(group, shown, id_, levels, faulty, opened))
+    worst_first = sorted(sections[:-1], key=lambda it: (not it.open, not it.faulty))
+    drawn = {it.id for it in worst_first[:MOST_DRAWN]} | {SHARED}
+    return [it._replace(drawn=it.id in drawn) for it in sections]
+
+
+def concerns_of(scene: Scene) -> dict[str, tuple[int, ...]]:
+    """The numbers of the findings that concern each robot."""
+    found: dict[str, list[int]] = {}
+    for at, row in enumerate(scene.rows):
+        for robot in row.robots or ("",):
+            found.setdefault(robot, []).append(at)
+    return {robot: tuple(rows) for robot, rows in found.items()}
+
+
+def look_of(section: PageSection) -> str:
+    """The CSS class of a robot."""
+    return "bad" if section.levels[ERROR] else "odd" if section.faulty else "good"
+
+
+def ids_in(section: PageSection, ids: Ids) -> set[str]:
+    """What can be linked to in a section."""
+    if not section.drawn:
+        return set()
+    nodes = {ids.nodes[node.name] for node in section.shown.nodes}
+    return nodes | {ids.names[name.name] for name in section.shown.names if not name.merged}
+
+
+def link_to(
+    finding: Finding, targets: Iterable[str], sections: Mapping[str, tuple[str, set[str]]]
+) -> str:
+    """Where a finding is shown: in its robot's section, or in another one.
+
+    ``targets`` are the ids of what it is about. ``sections`` has by robot the id of its section
+    and the ids in it.
+    """
+    own = sections.get(finding.robot) or sections[""]
+    for target in targets:
+        if target.startswith("f"):
+            return f"#tf-{target}"
+        for section, inside in (own, *sections.values()):
+            if target in inside:
+                return f"#{section}-{target}"
+    return f"#{own[0]}"
+
+
+def summarize(levels: Mapping[str, int]) -> str:
+    """``2 errors, 1 warning``; empty without findings."""
+    words = (
+        f"{levels[level]} {level}" if level == INCONCLUSIVE else counted(levels[level], level)
+        for level in LEVELS
+        if levels[level]
+    )
+    return ", ".join(words)

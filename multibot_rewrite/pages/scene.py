@@ -1,0 +1,335 @@
+"""What is drawn of a checked graph, each part with its state. Pure, and without any drawing."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Collection, Container, Iterable, Iterator, Mapping, Sequence
+
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.findings.grouping import with_members
+from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, robot_words
+from multibot_rewrite.graph.patterns import fitted
+from multibot_rewrite.graph.tool_nodes import is_tool
+from multibot_rewrite.live.watching import WORDS, Outcome, judge
+from multibot_rewrite.pages.states import (
+    FAULTY,
+    LEAK,
+    MISSING,
+    OK,
+    UNEXPECTED,
+    States,
+    Targets,
+    find_targets,
+    make_states,
+    merged,
+    robots_of,
+    worst,
+)
+from multibot_rewrite.pages.tf_tree_rows import FrameTree, make_frame_trees
+from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.rules.pair.comparison import EndpointKey, View, make_view
+from multibot_rewrite.system.records import ACTION, SERVICE, TOPIC, End, Environment, System
+
+# Packages with the types of endpoints that every node has: logging, parameters, life cycle; and
+# tf, which has its own picture.
+COMMON_PACKAGES = (
+    "rcl_interfaces",
+    "lifecycle_msgs",
+    "type_description_interfaces",
+    "bond",
+    "tf2_msgs",
+)
+# Stands for the bridge that should carry a topic; a space cannot be in the name of a real node.
+BRIDGE = "a ros_gz_bridge"
+# In the topics and services that an action is made of.
+ACTION_PART = "/_action/"
+
+
+class DrawnEdge(NamedTuple):
+    """A node's endpoint of a name. ``common`` endpoints are those that every node has."""
+
+    node: str
+    kind: str
+    role: str
+    name: str
+    type: str
+    state: str
+    common: bool
+
+
+class DrawnNode(NamedTuple):
+    """A node. With ``is_robot`` it stands for a whole robot, in the group of what is shared.
+
+    ``is_tool`` nodes are neither planned nor in a finding.
+    """
+
+    name: str
+    robot: str
+    state: str
+    is_robot: bool = False
+    is_tool: bool = False
+
+
+class DrawnName(NamedTuple):
+    """A topic, service or action; one that stands for several has their names in ``merged``."""
+
+    kind: str
+    name: str
+    robot: str
+    state: str
+    types: tuple[str, ...]
+    merged: tuple[str, ...] = ()
+
+
+class DrawnGroup(NamedTuple):
+    """What belongs to one robot, or to none where ``robot`` is empty."""
+
+    robot: str
+    nodes: tuple[DrawnNode, ...]
+    names: tuple[DrawnName, ...]
+    edges: tuple[DrawnEdge, ...]
+
+
+class Crossing(NamedTuple):
+    """What connects two groups: a node of robot ``source`` uses ``names`` of robot ``target``.
+
+    Without ``source`` the node is ``node``, of no robot; without ``target`` the names are of no
+    robot.
+    """
+
+    source: str
+    node: str
+    target: str
+    state: str
+    names: tuple[str, ...]
+
+
+class FindingRow(NamedTuple):
+    """A finding, with the robots of which the same is true, and what it is about at all of them.
+
+    ``robots`` are all that it concerns: that it is about, or of which it names a node, a name or a
+    frame. ``place`` is ``file:line`` in a source, or else says where the node comes from.
+    """
+
+    finding: Finding
+    targets: Targets
+    robots: tuple[str, ...]
+    place: str
+
+
+class Scene(NamedTuple):
+    """All that is drawn; ``rows`` are the ``findings``, those of several robots as one.
+
+    Of each group of nodes in ``one_of`` one should run; those that do are ``running``.
+    """
+
+    outcome: Outcome
+    layout: str
+    robots: tuple[str, ...]
+    groups: tuple[DrawnGroup, ...]
+    crossings: tuple[Crossing, ...]
+    trees: tuple[FrameTree, ...]
+    findings: tuple[Finding, ...]
+    rows: tuple[FindingRow, ...]
+    environment: Environment
+    one_of: tuple[tuple[str, ...], ...]
+    running: frozenset[str]
+
+
+class _RobotOf(NamedTuple):
+    """The robot of each node and name; empty for none."""
+
+    nodes: Mapping[str, str]
+    names: Mapping[str, str]
+
+
+def make_scene(
+    plan: Expectation,
+    graph: System,
+    found: Sequence[Finding],
+    outcome: Outcome | None = None,
+) -> Scene:
+    """What is drawn of ``graph`` with its plan and findings; the outcome follows from these if a
+    command does not say otherwise."""
+    verdict = judge(found, graph)
+    view = make_view(*fitted(plan, graph))
+    targets = find_targets(view, found)
+    states = make_states(found, targets)
+    edges = sorted(_edges(view, states))
+    robot_of = _robot_of(view, states, edges)
+    nodes = _nodes(view, states, edges, robot_of)
+    return Scene(
+        outcome or Outcome(verdict, WORDS[verdict]),
+        plan.layout,
+        tuple(robot.name for robot in plan.robots),
+        tuple(_groups(plan, edges, nodes, robot_of)),
+        tuple(_crossings(edges, robot_of)),
+        make_frame_trees(view, states),
+        tuple(found),
+        tuple(_rows(view, dict(zip(found, targets, strict=True)))),
+        graph.environment,
+        plan.one_of,
+        frozenset(view.seen),
+    )
+
+
+def _rows(view: View, targets: Mapping[Finding, Targets]) -> Iterator[FindingRow]:
+    origins = {**dict(view.plan.origins), **view.places}
+    for finding, members in with_members(targets, robot_words(view.plan)):
+        concerned = {robot for it in members for robot in robots_of(view, it)}
+        robots = tuple(robot for robot in view.robots if robot in concerned)
+        written = f"{finding.file}:{finding.line}" if finding.line else finding.file
+        place = written or origins.get(finding.node, "")
+        yield FindingRow(finding, merged(targets[it] for it in members), robots, place)
+
+
+def _edges(view: View, states: States) -> Iterator[DrawnEdge]:
+    """The endpoints in the graph, and those that a finding reports as missing."""
+    common_names = _common_names((*view.graph.ends, *view.plan.endpoints))
+    bridged = {(role, it.name): it.type for it in view.plan.topics for role in it.bridge}
+    for key, type_ in dict.fromkeys(
+        ((e.node, e.kind, e.role, e.name), e.type) for e in view.graph.ends
+    ):
+        node, *_, name = key
+        common = name in common_names
+        state = states.endpoints.get((node, name), OK)
+        if state in (OK, MISSING):
+            state = OK if common or _is_expected(view, key, bridged) else UNEXPECTED
+        yield DrawnEdge(*key, type_, state, common)
+    for key, planned in view.planned.items():
+        node, *_, name = key
+        missing = MISSING in (states.nodes.get(node), states.endpoints.get((node, name)))
+        if missing and key not in view.types:
+            yield DrawnEdge(*key, planned.type, MISSING, name in common_names)
+
+    carried = {(role, name) for _, _, role, name in view.types}
+    for (role, name), type_ in bridged.items():
+        if name in states.names and (role, name) not in carried:
+            yield DrawnEdge(BRIDGE, TOPIC, role, name, type_, MISSING, False)
+
+
+def _is_expected(view: View, key: EndpointKey, bridged: Container[tuple[str, str]]) -> bool:
+    """Whether the plan has an endpoint of the graph, by itself or in another form.
+
+    An action may be planned as its parts. Helpers of a robot's nodes have what these have.
+    """
+    node, kind, role, name = key
+    if key in view.planned or node in view.plan.shared_nodes or (role, name) in bridged:
+        return True
+    if kind == ACTION and (node, SERVICE, role, f"{name}{ACTION_PART}send_goal") in view.planned:
+        return True
+    return is_tool(node) and bool(view.ownership.robot(node))
+
+
+def _common_names(ends: Iterable[End | PlannedEndpoint]) -> set[str]:
+    """The names that every node has; one endpoint with a known type is enough."""
+    return {
+        end.name
+        for end in ends
+        if ACTION_PART in end.name or end.type.partition("/")[0] in COMMON_PACKAGES
+    }
+
+
+def _robot_of(view: View, states: States, edges: Iterable[DrawnEdge]) -> _RobotOf:
+    missing = (node for node, state in states.nodes.items() if state == MISSING)
+    nodes = {*view.seen, *missing, *(edge.node for edge in edges)}
+    names = {edge.name for edge in edges}
+    robot, shared = view.ownership.robot, {*view.plan.shared_nodes, *view.plan.shared_topics}
+    return _RobotOf(
+        {node: "" if node in shared else robot(node) for node in sorted(nodes)},
+        {name: "" if name in shared else robot(name) for name in sorted(names)},
+    )
+
+
+def _nodes(
+    view: View, states: States, edges: Iterable[DrawnEdge], robot_of: _RobotOf
+) -> dict[str, DrawnNode]:
+    planned = {*view.robot_of, *view.plan.shared_nodes}
+    edge_states: dict[str, set[str]] = defaultdict(set)
+    own_states: dict[str, set[str]] = defaultdict(set)
+    for edge in edges:
+        edge_states[edge.node].add(edge.state)
+        if not edge.common:
+            own_states[edge.node].add(edge.state)
+    # Planned nodes under another name, which the same node of each robot would have.
+    misnamed = set(view.probable_matches.values())
+    result = {}
+    for node, robot in robot_of.nodes.items():
+        own = {states.nodes.get(node, OK), *(edge_states[node] & FAULTY - {MISSING})}
+        state = LEAK if node in misnamed and not robot else worst(own)
+        if node not in view.seen and node not in view.by_node:
+            state = MISSING
+        elif state == OK and node not in planned and own_states[node] != {OK}:
+            state = OK if robot and is_tool(node) else UNEXPECTED
+        unknown = node not in planned and node not in states.nodes
+        result[node] = DrawnNode(node, robot, state, is_tool=unknown)
+    return result
+
+
+def _groups(
+    plan: Expectation,
+    edges: Iterable[DrawnEdge],
+    nodes: Mapping[str, DrawnNode],
+    robot_of: _RobotOf,
+) -> Iterator[DrawnGroup]:
+    """One for each robot, then one for the rest; an endpoint that connects two robots is in both."""
+    parts: dict[str, list[DrawnEdge]] = {robot.name: [] for robot in plan.robots}
+    parts[""] = []
+    for edge in edges:
+        for robot in {robot_of.nodes[edge.node], robot_of.names[edge.name]}:
+            parts[robot].append(edge)
+    names = {(name.kind, name.name): name for name in _names(edges, robot_of)}
+    for robot, ends in parts.items():
+        shown = tuple(ends) if robot else tuple(_nodes_as_robots(ends, nodes))
+        own = {node.name: node for node in nodes.values() if node.robot == robot}
+        users = {e.node: nodes.get(e.node) or DrawnNode(e.node, e.node, OK, True) for e in shown}
+        keys = dict.fromkeys((edge.kind, edge.name) for edge in shown)
+        yield DrawnGroup(
+            robot, tuple((own | users).values()), tuple(names[key] for key in keys), shown
+        )
+
+
+def _nodes_as_robots(
+    edges: Iterable[DrawnEdge], nodes: Mapping[str, DrawnNode]
+) -> Iterator[DrawnEdge]:
+    """Among shared names a robot's nodes are drawn as one robot, unless their endpoint is faulty."""
+    states: dict[DrawnEdge, set[str]] = defaultdict(set)
+    for edge in edges:
+        robot = nodes[edge.node].robot
+        if not robot or edge.state in FAULTY - {MISSING}:
+            yield edge
+        else:
+            states[edge._replace(node=robot, type="", state=OK)].add(edge.state)
+    for edge, found in states.items():
+        yield edge._replace(state=combined_state(found))
+
+
+def _names(edges: Iterable[DrawnEdge], robot_of: _RobotOf) -> Iterator[DrawnName]:
+    by_name: dict[tuple[str, str], list[DrawnEdge]] = defaultdict(list)
+    for edge in edges:
+        by_name[edge.kind, edge.name].append(edge)
+    for (kind, name), ends in by_name.items():
+        types = tuple(sorted({end.type for end in ends if end.type}))
+        state = combined_state({end.state for end in ends})
+        yield DrawnName(kind, name, robot_of.names[name], state, types)
+
+
+def combined_state(states: Collection[str]) -> str:
+    """Missing or unexpected only if all endpoints are; otherwise the worst of the other states."""
+    if len(states) == 1:
+        return next(iter(states))
+    return worst(state for state in states if state not in (MISSING, UNEXPECTED))
+
+
+def _crossings(edges: Iterable[DrawnEdge], robot_of: _RobotOf) -> Iterator[Crossing]:
+    found: dict[tuple[str, str, str, str], dict[str, None]] = defaultdict(dict)
+    for edge in edges:
+        source, target = robot_of.nodes[edge.node], robot_of.names[edge.name]
+        faulty = edge.state in FAULTY
+        if edge.state == MISSING or source == target or not (faulty or target):
+            continue
+        if faulty or not edge.common:
+            node = "" if source else edge.node
+            found[source, node, target, edge.state][f"{edge.role} {edge.name}"] = None
+    for key, names in sorted(found.items()):
+        yield Crossing(*key, tuple(names))

@@ -1,0 +1,140 @@
+"""What each finding is about, and the states of endpoints, nodes and frames that follow from it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import chain
+
+from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.rules.check import ALL_RULES
+from multibot_rewrite.rules.index import tree_topic
+from multibot_rewrite.rules.pair.comparison import View
+
+OK, LEAK, CROSS_TALK, MISSING = "ok", "leak", "cross-talk", "missing"
+UNEXPECTED, CLASH = "unexpected", "clash"
+# The worst first.
+STATES = (LEAK, CROSS_TALK, CLASH, MISSING, UNEXPECTED, OK)
+FAULTY = frozenset({LEAK, CROSS_TALK, CLASH, MISSING})
+STATE_OF_CODE = {
+    it.code: str(it.options["drawn"]) for it in ALL_RULES.values() if it.options["drawn"]
+}
+# For all other codes.
+STATE_OF_LEVEL = {ERROR: CLASH, WARNING: UNEXPECTED}
+TF_CODES = ("MG2", "MG4")
+# A frame where it is drawn: the tf topic of its tree, and its name.
+FrameKey = tuple[str, str]
+
+
+class Targets(NamedTuple):
+    """What a finding is about."""
+
+    nodes: tuple[str, ...]
+    names: tuple[str, ...]
+    frames: tuple[FrameKey, ...]
+
+
+def merged(targets: Iterable[Targets]) -> Targets:
+    """What several findings are about, each part once."""
+    nodes, names, frames = zip(*targets, strict=True)
+    return Targets(*(tuple(dict.fromkeys(chain(*part))) for part in (nodes, names, frames)))
+
+
+class States(NamedTuple):
+    """States by (node, name) and by node, and the codes of the findings about a frame.
+
+    ``names`` are all that findings are about.
+    """
+
+    endpoints: Mapping[tuple[str, str], str]
+    nodes: Mapping[str, str]
+    frames: Mapping[FrameKey, tuple[str, ...]]
+    names: frozenset[str]
+
+
+def worst(states: Iterable[str]) -> str:
+    """The worst of some states; ``ok`` if there are none."""
+    return min(states, key=STATES.index, default=OK)
+
+
+def find_targets(view: View, findings: Iterable[Finding]) -> tuple[Targets, ...]:
+    """What each finding is about, by its fields and by the names in its message."""
+    homes = (tree_topic(robot.tf) for robot in view.plan.robots)
+    topics = [*dict.fromkeys((*(tree.topic for tree in view.trees), *homes))]
+    return tuple(
+        Targets(
+            tuple(filter(None, (finding.node,))), (), tuple(_frame_targets(view, finding, topics))
+        )
+        if finding.code.startswith(TF_CODES) and not _names_topics(view, finding)
+        else _endpoint_targets(view, finding)
+        for finding in findings
+    )
+
+
+def _names_topics(view: View, finding: Finding) -> bool:
+    """Whether a finding about tf is about its topics, not about frames."""
+    return bool(finding.names) and all(name in view.by_name for name in finding.names)
+
+
+def make_states(findings: Iterable[Finding], targets: Sequence[Targets]) -> States:
+    """The states of everything that findings are about; the worst where there are several."""
+    endpoints: dict[tuple[str, str], str] = {}
+    nodes: dict[str, str] = {}
+    frames: dict[FrameKey, tuple[str, ...]] = {}
+    for finding, about in zip(findings, targets, strict=True):
+        state = STATE_OF_CODE.get(finding.code) or STATE_OF_LEVEL.get(finding.level, OK)
+        for node in about.nodes:
+            for name in about.names:
+                endpoints[node, name] = worst((state, endpoints.get((node, name), OK)))
+            if not about.names:
+                nodes[node] = worst((state, nodes.get(node, OK)))
+        for frame in about.frames:
+            frames[frame] = tuple(dict.fromkeys((*frames.get(frame, ()), finding.code)))
+    return States(endpoints, nodes, frames, frozenset(chain(*(it.names for it in targets))))
+
+
+def _endpoint_targets(view: View, finding: Finding) -> Targets:
+    nodes = tuple(it for it in finding.names if _is_node(view, it))
+    names = tuple(it for it in finding.names if it not in nodes)
+    if nodes:
+        return Targets(nodes, names, ())
+    users = dict.fromkeys(end.node for name in names for end in view.by_name.get(name, ()))
+    if not finding.node:
+        robot = view.robots.get(finding.robot)
+        return Targets(robot.nodes if robot else tuple(sorted(users)), names, ())
+    words = words_of(finding.message)
+    rule = ALL_RULES.get(finding.code)
+    others = [node for node in users if node in words or (rule and rule.options["all_ends"])]
+    return Targets(tuple(dict.fromkeys((finding.node, *sorted(others)))), names, ())
+
+
+def _is_node(view: View, name: str) -> bool:
+    """Whether a finding that has this name speaks of a node: nothing else is called so."""
+    if any(name in group for group in view.plan.one_of):
+        return True
+    return name in view.seen and name not in view.by_name
+
+
+def robots_of(view: View, finding: Finding) -> set[str]:
+    """The robots that a finding is about, or of which it names a node, a name or a frame."""
+    in_tf = finding.code.startswith(TF_CODES)
+    of_name = view.frame_ownership.robot if in_tf else view.ownership.robot
+    words = words_of(finding.message)
+    found = {finding.robot, *finding.others, *map(of_name, finding.names)}
+    found |= {view.ownership.robot(it) for it in (finding.node, *words) if it.startswith("/")}
+    found |= {it for it in words if it in view.robots} - view.ownership.ambiguous_words
+    return found & view.robots.keys()
+
+
+def _frame_targets(view: View, finding: Finding, topics: Sequence[str]) -> Iterator[FrameKey]:
+    """The frames on the topics that the message names; else on the robot's own, or on any topic."""
+    words = {tree_topic(word) for word in words_of(finding.message)}
+    robot = view.robots.get(finding.robot)
+    own = [topic for topic in topics if robot and topic == tree_topic(robot.tf)]
+    named = [topic for topic in topics if topic in words]
+    return ((topic, frame) for topic in named or own or topics for frame in finding.names)
+
+
+def words_of(message: str) -> set[str]:
+    """The words of a message, without punctuation."""
+    return {word.strip(",:;?()") for word in message.split()}

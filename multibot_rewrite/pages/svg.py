@@ -1,0 +1,218 @@
+"""SVG of a group and of a tf tree, with places and states only; page.css has colours and styles."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from html import escape
+
+from multibot_rewrite.pages.layout import OFFERING, GroupLayout, lay_out
+from multibot_rewrite.pages.scene import DrawnGroup, DrawnName, DrawnNode
+from multibot_rewrite.pages.states import (
+    CLASH,
+    CROSS_TALK,
+    FAULTY,
+    LEAK,
+    MISSING,
+    OK,
+    UNEXPECTED,
+    FrameKey,
+)
+from multibot_rewrite.pages.text import clipped, columns, counted, visible
+from multibot_rewrite.pages.tf_tree_rows import FrameTree
+from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.records import ACTION, SERVICE
+
+# What each state means, for the legend and the tooltips.
+MEANINGS = {
+    OK: "as planned",
+    LEAK: "leak: a robot's node uses a name that belongs to no robot",
+    CROSS_TALK: "cross-talk: a robot's node uses another robot's name",
+    CLASH: "conflict: two nodes with one name, types or QoS that do not match",
+    MISSING: "missing: in the plan, but not in the graph",
+    UNEXPECTED: "not in the plan, or with a warning",
+}
+WIDTH = 1180
+# Left edge and width of the three columns.
+LEFT, MIDDLE, RIGHT = (2, 290), (375, 430), (888, 290)
+NODE_HIGH, NAME_HIGH = 26, 19
+# The width of a letter in the 12 px fixed-width font is 7.3 px at most.
+LETTER, MARGIN = 7.3, 18
+COLUMN_TITLES = ("publishes, serves", "topics, services, actions", "subscribes, calls")
+BADGES = {SERVICE: "srv", ACTION: "act"}
+TREE_ROW, INDENT = 26, 20
+
+
+class Ids(NamedTuple):
+    """Short ids for the page's script; ``anchors`` are those that are linked to."""
+
+    nodes: Mapping[str, str]
+    names: Mapping[str, str]
+    frames: Mapping[FrameKey, str]
+    anchors: frozenset[str]
+
+
+def safe(text: str) -> str:
+    """Text for HTML, between tags or in quotes."""
+    return escape(visible(text))
+
+
+def tooltip(*lines: str) -> str:
+    """The text that is shown under the mouse pointer."""
+    return f"<title>{chr(10).join(map(safe, filter(None, lines)))}</title>"
+
+
+def group_svg(group: DrawnGroup, ids: Ids, prefix: str) -> str:
+    """The picture of a group; ``prefix`` is put before its anchors, without it there are none."""
+    place = lay_out(group)
+    kinds = {counted(len(group.nodes), "node"), counted(len(group.names), "name")}
+    label = safe(f"{group.robot or 'shared'}: {', '.join(sorted(kinds))}")
+    parts = [
+        f'<svg class="graph" viewBox="0 0 {WIDTH} {place.height + 4:.0f}" role="group"'
+        f' aria-label="{label}">',
+        *_column_titles(),
+        *_edges(group, place, ids),
+        *_boxes(group, place, ids, prefix),
+        "</svg>",
+    ]
+    return "".join(parts)
+
+
+def _column_titles() -> Iterator[str]:
+    for (x, wide), text in zip((LEFT, MIDDLE, RIGHT), COLUMN_TITLES, strict=True):
+        yield f'<text class="head" x="{x + wide / 2:g}" y="16">{text}</text>'
+
+
+def _edges(group: DrawnGroup, place: GroupLayout, ids: Ids) -> Iterator[str]:
+    """Faulty edges are drawn last, above the others."""
+    left = {node.name: y for node, y in place.left}
+    right = {node.name: y for node, y in place.right}
+    names = {(name.kind, name.name): y for name, y in place.names}
+    for edge in sorted(group.edges, key=lambda edge: edge.state in FAULTY):
+        there = names[edge.kind, edge.name]
+        if edge.role in OFFERING:
+            path = _curve(sum(LEFT), left[edge.node], MIDDLE[0], there)
+        else:
+            path = _curve(sum(MIDDLE), there, RIGHT[0], right[edge.node])
+        joined = f"{ids.nodes.get(edge.node, '')} {ids.names.get(edge.name, '')}"
+        yield f'<path class="e {edge.state}" data-e="{joined}" d="{path}"/>'
+
+
+def _curve(x: int, y: float, to_x: int, to_y: float) -> str:
+    bend = (x + to_x) // 2
+    return f"M{x} {y:.0f}C{bend} {y:.0f} {bend} {to_y:.0f} {to_x} {to_y:.0f}"
+
+
+def _boxes(group: DrawnGroup, place: GroupLayout, ids: Ids, prefix: str) -> Iterator[str]:
+    drawn = set()
+    for column, things in ((LEFT, place.left), (RIGHT, place.right)):
+        for node, y in things:
+            anchors = prefix if node.name not in drawn else ""
+            drawn.add(node.name)
+            yield _node(
+                node, group.robot, column, y, _id_attributes(ids.nodes.get(node.name), ids, anchors)
+            )
+    for name, y in place.names:
+        yield _name(name, group.robot, y, _id_attributes(ids.names.get(name.name), ids, prefix))
+
+
+def _id_attributes(id_: str | None, ids: Ids, prefix: str) -> str:
+    if id_ is None:
+        return ""
+    anchor = f' id="{prefix}{id_}"' if prefix and id_ in ids.anchors else ""
+    return f' data-id="{id_}"{anchor}'
+
+
+def _node(
+    node: DrawnNode, robot: str, column: tuple[int, int], y: float, id_attributes: str
+) -> str:
+    x, wide = column
+    foreign = " foreign" if node.robot != robot else ""
+    return (
+        f'<g class="n {node.state}{foreign}"{id_attributes}>'
+        f'<rect x="{x}" y="{y - NODE_HIGH / 2:g}" width="{wide}" height="{NODE_HIGH}" rx="5"/>'
+        f'<text x="{x + 9}" y="{y + 4:g}">{_label(node.name, robot, wide - MARGIN)}</text>'
+        f"{tooltip(node.name, _meaning(node.state))}</g>"
+    )
+
+
+def _name(name: DrawnName, robot: str, y: float, id_attributes: str) -> str:
+    x, wide = MIDDLE
+    badge = BADGES.get(name.kind, "")
+    many = counted(len(name.merged), name.kind)
+    label = (
+        safe(f"{many} without a client")
+        if name.merged
+        else _label(name.name, robot, wide - MARGIN - (26 if badge else 0))
+    )
+    shape = "2" if badge else f"{NAME_HIGH / 2:g}"
+    end = f'<text class="badge" x="{x + wide - 7}" y="{y + 4:g}">{badge}</text>' if badge else ""
+    return (
+        f'<g class="t {name.state}"{id_attributes}>'
+        f'<rect x="{x}" y="{y - NAME_HIGH / 2:g}" width="{wide}" height="{NAME_HIGH}"'
+        f' rx="{shape}"/><text x="{x + 10}" y="{y + 4:g}">{label}</text>{end}'
+        f"{tooltip(*_about(name))}</g>"
+    )
+
+
+def _about(name: DrawnName) -> tuple[str, ...]:
+    types = " and ".join(name.types)
+    return name.merged or (f"{name.kind} {name.name}", types, _meaning(name.state))
+
+
+def _meaning(state: str) -> str:
+    return "" if state == OK else MEANINGS[state]
+
+
+def _label(name: str, robot: str, room: float) -> str:
+    """A name cut to ``room`` pixels, with the robot's name in it dimmed."""
+    text = visible(name)
+    spaces = int(room / LETTER)
+    for own in (f"/{robot}", f"_{robot}"):
+        if robot and text.startswith(f"{own}/") and own[0] == "/":
+            rest = clipped(text[len(own) :], spaces - columns(own))
+            return f'<tspan class="dim">{escape(own)}</tspan>{escape(rest)}'
+        if robot and text.endswith(own) and text != own:
+            rest = clipped(text[: -len(own)], spaces - columns(own))
+            return f'{escape(rest)}<tspan class="dim">{escape(own)}</tspan>'
+    return escape(clipped(text, spaces))
+
+
+def tree_svg(found: FrameTree, robots: Iterable[str], ids: Ids) -> str:
+    """A tf tree, the frames in the colours of their robots."""
+    colours = {robot: f" c{at % 8}" for at, robot in enumerate(robots)}
+    wide = max(_tree_end(row.frame, row.depth, row.faults) for row in found.rows)
+    high = len(found.rows) * TREE_ROW
+    lines, boxes = [], []
+    for at, row in enumerate(found.rows):
+        x, y = 2 + row.depth * INDENT, at * TREE_ROW + TREE_ROW / 2
+        if row.parent >= 0:
+            top = row.parent * TREE_ROW + TREE_ROW - 3
+            lines.append(f'<path class="branch" d="M{x - 10} {top}V{y:g}H{x}"/>')
+        id_ = ids.frames.get((found.topic, row.frame))
+        id_attributes = _id_attributes(id_, ids, "" if row.repeated else "tf-")
+        boxes.append(
+            _frame(row.frame, x, y, f"{row.state}{colours.get(row.robot, '')}", id_attributes)
+        )
+        notes = [*row.faults, *(["static"] if row.static else []), *(["…"] if row.repeated else [])]
+        after = x + columns(visible(row.frame)) * LETTER + 30
+        bad = " bad" if row.faults else ""
+        note = safe(", ".join(notes))
+        boxes.append(f'<text class="note{bad}" x="{after:.0f}" y="{y + 4:g}">{note}</text>')
+    size = f'width="{wide:.0f}" height="{high}" viewBox="0 0 {wide:.0f} {high}"'
+    return f'<svg class="tree" {size}>{"".join(lines)}{"".join(boxes)}</svg>'
+
+
+def _frame(frame: str, x: float, y: float, css_class: str, id_attributes: str) -> str:
+    text = visible(frame)
+    wide = columns(text) * LETTER + 22
+    return (
+        f'<g class="f {css_class}"{id_attributes}>'
+        f'<rect x="{x}" y="{y - 10:g}" width="{wide:.0f}" height="20" rx="4"/>'
+        f'<rect class="bar" x="{x}" y="{y - 10:g}" width="5" height="20" rx="2"/>'
+        f'<text x="{x + 12}" y="{y + 4:g}">{escape(text)}</text></g>'
+    )
+
+
+def _tree_end(frame: str, depth: int, faults: Iterable[str]) -> float:
+    letters = columns(visible(frame)) + columns(", ".join((*faults, "static, …")))
+    return depth * INDENT + letters * LETTER + 60

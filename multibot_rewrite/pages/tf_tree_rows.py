@@ -1,0 +1,147 @@
+"""The tf trees of a graph as rows: a frame, its depth, and what is wrong with it."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+from multibot_rewrite.graph.expectation import PlannedRobot
+from multibot_rewrite.pages.states import CLASH, MISSING, OK, States
+from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.rules.check import ALL_RULES
+from multibot_rewrite.rules.index import tree_topic
+from multibot_rewrite.rules.pair.comparison import View
+from multibot_rewrite.system.records import Edge
+
+
+class FrameRow(NamedTuple):
+    """A frame; ``parent`` is the index of its parent's row, -1 for none. ``faults`` are in words.
+
+    The children of a ``repeated`` frame are shown only where the frame is first.
+    """
+
+    frame: str
+    parent: int
+    depth: int
+    robot: str
+    state: str
+    faults: tuple[str, ...]
+    static: bool
+    repeated: bool
+
+
+class FrameTree(NamedTuple):
+    """One tree on ``topic`` and its tf_static.
+
+    Without ``received`` it has the frames of ``robot`` that are declared and were not received.
+    """
+
+    topic: str
+    robot: str
+    received: bool
+    rows: tuple[FrameRow, ...]
+
+
+def make_frame_trees(view: View, states: States) -> tuple[FrameTree, ...]:
+    """The trees on each topic in the order of the robots, then the frames missing there."""
+    if not (view.trees or states.frames):
+        return ()
+    order = {robot: at for at, robot in enumerate(view.robots)}
+    edges = {tree.topic: tree.edges for tree in view.trees}
+    found: list[FrameTree] = []
+    home_topics = (tree_topic(robot.tf) for robot in view.plan.robots)
+    for topic in dict.fromkeys((*home_topics, *sorted(edges))):
+        home = [robot for robot in view.plan.robots if tree_topic(robot.tf) == topic]
+        forest = _forest(view, topic, edges.get(topic, ()), home)
+        trees = [FrameTree(topic, _robot(rows), True, rows) for rows in _trees(forest, states)]
+        found += sorted(trees, key=lambda tree: order.get(tree.robot, len(order)))
+        found += _not_received(forest, home, states)
+    return tuple(found)
+
+
+def _robot(rows: Sequence[FrameRow]) -> str:
+    """The robot of a tree: the first one in it."""
+    return next((row.robot for row in rows if row.robot), "")
+
+
+class _Forest(NamedTuple):
+    """All transforms on one topic; ``static`` by (parent, child)."""
+
+    topic: str
+    static: Mapping[tuple[str, str], bool]
+    children: Mapping[str, Sequence[str]]
+    robots: Mapping[str, str]
+
+
+def _forest(view: View, topic: str, edges: Sequence[Edge], home: Sequence[PlannedRobot]) -> _Forest:
+    static = {(edge.parent, edge.child): edge.static for edge in edges}
+    children: dict[str, list[str]] = defaultdict(list)
+    for parent, child in sorted(static):
+        children[parent].append(child)
+    only = home[0].name if len(home) == 1 else ""
+    frames = sorted({frame for edge in static for frame in edge})
+    robots = {frame: view.frame_ownership.robot(frame) or only for frame in frames}
+    return _Forest(topic, static, children, robots)
+
+
+def _trees(forest: _Forest, states: States) -> Iterator[tuple[FrameRow, ...]]:
+    """One tree from each root; below a root of no robot one for each robot."""
+    below = {child for _, child in forest.static}
+    seen: set[str] = set()
+    # After the roots only frames in a loop are left.
+    for root in (*sorted(set(forest.children) - below), *sorted(forest.children)):
+        if root in seen:
+            continue
+        parts: dict[str, list[str]] = defaultdict(list)
+        for child in forest.children[root]:
+            parts[forest.robots[child] if not forest.robots[root] else ""].append(child)
+        for part in parts.values():
+            seen.discard(root)
+            yield tuple(_rows(forest, states, root, part, seen))
+
+
+def _rows(
+    forest: _Forest, states: States, root: str, first: Sequence[str], seen: set[str]
+) -> Iterator[FrameRow]:
+    """Depth first from ``root`` through the children ``first``.
+
+    With its own stack: a tree may be deeper than Python's.
+    """
+    waiting = [(root, "", -1, 0)]
+    at = 0
+    while waiting:
+        frame, parent, parent_row, depth = waiting.pop()
+        codes = states.frames.get((forest.topic, frame), ())
+        yield FrameRow(
+            frame,
+            parent_row,
+            depth,
+            forest.robots[frame],
+            CLASH if codes else OK,
+            _in_words(codes),
+            forest.static.get((parent, frame), False),
+            repeated=frame in seen,
+        )
+        if frame not in seen:
+            seen.add(frame)
+            below = forest.children.get(frame, ()) if depth else first
+            waiting += [(child, frame, at, depth + 1) for child in reversed(below)]
+        at += 1
+
+
+def _not_received(
+    forest: _Forest, home: Iterable[PlannedRobot], states: States
+) -> Iterator[FrameTree]:
+    for robot in home:
+        missing = [frame for frame in robot.frames if frame not in forest.robots]
+        faults = [_in_words(states.frames.get((forest.topic, frame), ())) for frame in missing]
+        rows = (
+            FrameRow(frame, -1, 0, robot.name, MISSING, words, False, False)
+            for frame, words in zip(missing, faults, strict=True)
+        )
+        if missing:
+            yield FrameTree(forest.topic, robot.name, False, tuple(rows))
+
+
+def _in_words(codes: Iterable[str]) -> tuple[str, ...]:
+    return tuple(ALL_RULES[code].name.replace("-", " ") for code in codes)

@@ -1,0 +1,47 @@
+"""A graph and its robots -> findings: every declared danger in the order of the codes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import cast
+
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.findings.rule import Rule
+from multibot_rewrite.gc_pause import gc_paused
+from multibot_rewrite.graph.bags.recording import is_recorded
+from multibot_rewrite.rules.index import Index
+from multibot_rewrite.rules.system import (
+    clocks,
+    commands,
+    frame_ids,
+    matching,
+    names,
+    nodes,
+    relays,
+    sharing,
+    tf_topics,
+    transforms,
+)
+from multibot_rewrite.rules.system import (
+    states as states_,
+)
+
+_MODULES = (
+    nodes, names, matching, commands, relays, sharing, transforms, tf_topics, frame_ids, clocks,
+    states_,
+)  # fmt: skip
+_FOUND = [it for module in _MODULES for it in vars(module).values() if isinstance(it, Rule)]
+DANGERS = {it.code: it for it in sorted(_FOUND, key=lambda it: it.code)}
+TF_DANGERS = {it.code: it for it in DANGERS.values() if it in vars(transforms).values()}
+
+
+def judge(seen: Index) -> list[Finding]:
+    """All findings in the order of the rules; empty for a system that is as it should be."""
+    with gc_paused():
+        # A recording has no nodes.
+        rules = TF_DANGERS if is_recorded(seen.system) else DANGERS
+        return [it for rule in rules.values() for it in _ask(rule, seen)]
+
+
+def _ask(rule: Rule, seen: Index) -> Iterator[Finding]:
+    return cast(Callable[[Index], Iterator[Finding]], rule.check)(seen)

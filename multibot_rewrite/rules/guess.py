@@ -1,0 +1,221 @@
+"""A graph without a plan -> the robots that are in it, and whose each of its names is. Pure.
+
+A namespace is a robot's where nodes are in it, and topics that a body has: commands, joints, odometry,
+a description, tf. Without namespaces a robot is a word at the end of such topics (``cmd_vel/robot1``),
+or one that several trees of frames have (``robot1/base_link``).
+"""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from functools import cache
+
+from multibot_rewrite.graph.tool_nodes import is_tool
+from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.rules.ownership import SEPARATORS, Whose
+from multibot_rewrite.system.conventions import USUAL_FRAMES
+from multibot_rewrite.system.records import TOPIC, System
+
+# Topics of a robot's body: two of them are enough, or one of tf.
+BODY = (
+    "cmd_vel",
+    "odom",
+    "joint_states",
+    "robot_description",
+    "tf",
+    "tf_static",
+    "initialpose",
+    "scan",
+)
+_TF = frozenset(("tf", "tf_static"))
+# Namespaces with topics like a robot's that are only a part of one.
+_PART = re.compile(
+    r".*(cam|costmap|lidar|laser|scan|sensor|imu|gps|realsense|zed|oakd?$|velodyne|ouster|sick|wheel|motor"
+    r"|gripper|controller|manager|server).*"
+)
+_NUMBER = re.compile(r"\d+")
+
+
+class GuessedRobot(NamedTuple):
+    """A robot as it shows: its name, its namespace (empty without one), its word in frames with its
+    separator: ``robot1/`` before a frame, ``/robot1`` behind it, empty without one.
+
+    ``only_frames``: topics and nodes have no word for it, whatever theirs are called.
+    """
+
+    name: str
+    namespace: str
+    before: str = ""
+    behind: str = ""
+    only_frames: bool = False
+
+
+def guess_robots(graph: System) -> tuple[GuessedRobot, ...]:
+    """The robots of a graph, in the order of their names; empty where none has a name."""
+    namespaces = _namespaces(graph)
+    frames = {it for edge in graph.edges for it in (edge.child, edge.parent)}
+    if namespaces:
+        found = [GuessedRobot(_name(it, namespaces), it) for it in namespaces]
+        return tuple(with_frames(it, frames) for it in found)
+    words = _last_words(graph)
+    if words:
+        return tuple(with_frames(GuessedRobot(it, ""), frames) for it in words)
+    return tuple(_by_frames(frames))
+
+
+def _name(namespace: str, all_of_them: Iterable[str]) -> str:
+    """Its last word, or the whole namespace where two end alike."""
+    last = namespace.rpartition("/")[2]
+    alike = [it for it in all_of_them if it.rpartition("/")[2] == last]
+    return last if len(alike) == 1 else namespace.strip("/")
+
+
+def _namespaces(graph: System) -> list[str]:
+    """The namespaces of robots, in order."""
+    nodes = {node.name for node in graph.nodes}
+    found: dict[str, set[str]] = defaultdict(set)
+    for end in graph.ends:
+        space, _, word = end.name.rpartition("/")
+        # Below a node's own name are its private names.
+        if end.kind == TOPIC and word in BODY and space and space not in nodes:
+            found[space].add(word)
+    lived_in = [node.name for node in graph.nodes if not is_tool(node.name)]
+    bodies = [
+        space
+        for space, words in found.items()
+        if (len(words) > 1 or words & _TF) and _may_be_a_robot(space, lived_in)
+    ]
+    outer = [it for it in bodies if not any(it.startswith(f"{other}/") for other in bodies)]
+    return sorted({*outer, *_numbered_alike(outer, lived_in)})
+
+
+def _may_be_a_robot(space: str, nodes: Collection[str]) -> bool:
+    part = _PART.fullmatch(space.rpartition("/")[2].lower())
+    # A recording has no nodes.
+    return not part and (not nodes or any(node.startswith(f"{space}/") for node in nodes))
+
+
+def _numbered_alike(spaces: Collection[str], nodes: Iterable[str]) -> Iterator[str]:
+    """Namespaces of nodes that differ from a robot's by the number alone: it has just started."""
+    patterns = {_NUMBER.sub("#", space) for space in spaces if _NUMBER.search(space)}
+    for node in nodes:
+        space = node.rpartition("/")[0]
+        while space:
+            if _NUMBER.search(space) and _NUMBER.sub("#", space) in patterns:
+                yield space
+            space = space.rpartition("/")[0]
+
+
+def _last_words(graph: System) -> list[str]:
+    """Words behind topics of a body: ``robot1`` of ``/cmd_vel/robot1`` and ``/odom/robot1``."""
+    found: dict[str, set[str]] = defaultdict(set)
+    for end in graph.ends:
+        *_, before, last = ("", *end.name.split("/"))
+        if end.kind == TOPIC and before in BODY and last not in BODY:
+            found[last].add(before)
+    nodes = [node.name for node in graph.nodes]
+    return sorted(
+        word
+        for word, topics in found.items()
+        if len(topics) > 1 and any(node.endswith(f"_{word}") for node in nodes)
+    )
+
+
+def _by_frames(frames: Iterable[str]) -> Iterator[GuessedRobot]:
+    """Two or more words that are beside the usual names of frames in the same way."""
+    ways: dict[tuple[str, bool], set[str]] = defaultdict(set)
+    for frame in frames:
+        for separator in ("/", *SEPARATORS):
+            for usual in USUAL_FRAMES:
+                if frame.endswith(separator + usual):
+                    ways[separator, True].add(frame.removesuffix(separator + usual))
+                if frame.startswith(usual + separator):
+                    ways[separator, False].add(frame.removeprefix(usual + separator))
+    several = {way: words for way, words in ways.items() if len(words) > 1}
+    if several:
+        (separator, first), words = max(several.items(), key=lambda it: len(it[1]))
+        for word in sorted(words):
+            before, behind = (word + separator, "") if first else ("", separator + word)
+            yield GuessedRobot(word, "", before, behind, True)
+
+
+def with_frames(robot: GuessedRobot, frames: Iterable[str]) -> GuessedRobot:
+    """With the way in which most frames have its name."""
+    word = robot.namespace.rpartition("/")[2] or robot.name
+    times: dict[tuple[str, str], int] = defaultdict(int)
+    for frame in frames:
+        for separator in ("/", *SEPARATORS):
+            times[word + separator, ""] += frame.startswith(word + separator)
+            times["", separator + word] += frame.endswith(separator + word)
+    way = max(times, key=times.__getitem__, default=("", ""))
+    return robot._replace(before=way[0], behind=way[1]) if times.get(way) else robot
+
+
+def whose_by_guess(robots: Iterable[GuessedRobot]) -> Whose:
+    """Whose each name is, by how the robots show."""
+    known = tuple(robots)
+    there = [it for it in known if not it.only_frames]
+    by_word = {it.namespace or it.name: it for it in there}
+    by_word |= {it.name: it for it in there}
+    of_name = cache(lambda name: _whose(name, by_word))
+    of_frame = cache(lambda frame: _whose_frame(frame, known))
+
+    def name_of(robot: GuessedRobot | None) -> str:
+        return robot.name if robot else ""
+
+    return Whose(
+        tuple(sorted(it.name for it in known)),
+        cache(lambda name: name_of(of_name(name))),
+        cache(lambda name: _plain(name, of_name(name))),
+        cache(lambda frame: name_of(of_frame(frame))),
+        cache(lambda frame: _plain_frame(frame, of_frame(frame))),
+    )
+
+
+def _whose(name: str, robots: Mapping[str, GuessedRobot]) -> GuessedRobot | None:
+    """By namespace, by the last word, or by a word of a node's or topic's name in the root.
+
+    ``robots`` are by namespace and by name.
+    """
+    above = name
+    while above:
+        if above in robots:
+            return robots[above]
+        above = above.rpartition("/")[0]
+    words = _words_in(name) if name.count("/") == 1 else (name.rpartition("/")[2],)
+    return next((robots[word] for word in words if word in robots), None)
+
+
+def _words_in(name: str) -> Iterator[str]:
+    """The last segment, and what is before and after each ``_`` of it."""
+    last = name.rpartition("/")[2]
+    yield last
+    for found in re.finditer("_", last):
+        yield last[: found.start()]
+        yield last[found.end() :]
+
+
+def _whose_frame(frame: str, robots: Iterable[GuessedRobot]) -> GuessedRobot | None:
+    for robot in robots:
+        if robot.before and frame.startswith(robot.before):
+            return robot
+        if robot.behind and frame.endswith(robot.behind):
+            return robot
+    return None
+
+
+def _plain(name: str, robot: GuessedRobot | None) -> str:
+    if robot is None:
+        return name
+    if robot.namespace and name.startswith(f"{robot.namespace}/"):
+        return name.removeprefix(robot.namespace)
+    bare = name.removesuffix(f"/{robot.name}").removesuffix(f"_{robot.name}")
+    return bare.replace(f"/{robot.name}_", "/", 1) or name
+
+
+def _plain_frame(frame: str, robot: GuessedRobot | None) -> str:
+    if robot is None:
+        return frame
+    return frame.removeprefix(robot.before).removesuffix(robot.behind)

@@ -1,0 +1,205 @@
+"""Which robot a node, topic or frame belongs to, by the plan and by how its name is written."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import cache
+
+from multibot_rewrite.graph.expectation import Expectation
+from multibot_rewrite.record import NamedTuple
+
+# What may separate a robot's name from the rest of a segment.
+SEPARATORS = "_-."
+NO_TAGS: Mapping[str, str] = {}
+
+
+class Whose(NamedTuple):
+    """The robots of a system, and whose each name is: ``robot`` of a node, topic, service or action,
+    ``frame_robot`` of a frame; empty where it is of no robot or of all. ``plain`` and ``plain_frame``
+    have the name without the robot's.
+    """
+
+    robots: tuple[str, ...]
+    robot: Callable[[str], str]
+    plain: Callable[[str], str]
+    frame_robot: Callable[[str], str]
+    plain_frame: Callable[[str], str]
+
+
+class NameOwnership(NamedTuple):
+    """How the names of one sort, graph names or frames, show their robot.
+
+    ``exact`` are planned names that belong to one robot, ``nodes`` the planned nodes, whose names
+    begin their private names. A robot's tag is its name in these names, a namespace of several levels
+    with its slashes: ``robots`` maps tags to robots, ``tags`` robots to tags where the tag is not the
+    robot's name. ``ambiguous_words`` are
+    tags that occur as an ordinary word as well (a robot ``scan``). ``robot_is_last`` says that the
+    tag is at the end of a name; ``levels`` is the largest number of segments of a tag.
+    """
+
+    exact: Mapping[str, str]
+    nodes: Mapping[str, str]
+    robots: Mapping[str, str]
+    ambiguous_words: frozenset[str]
+    robot_is_last: bool
+    tags: Mapping[str, str] = NO_TAGS
+    levels: int = 1
+
+    def robot(self, name: str) -> str:
+        """The robot that a name belongs to, or an empty string."""
+        known = self.exact.get(name)
+        if known is not None:
+            return known
+        above = name.rpartition("/")[0]
+        while above:
+            if above in self.nodes:
+                return self.nodes[above]
+            above = above.rpartition("/")[0]
+        return self._robot_by_tag(name)
+
+    def _robot_by_tag(self, name: str) -> str:
+        segments = name.strip("/").split("/")
+        if len(segments) > 1:
+            found = self._at_its_place(segments) or self._longest(segments)
+            if found:
+                return self.robots[found]
+        found = self._longest(end for segment in segments for end in _ends(segment))
+        return self.robots.get(found, "")
+
+    def _at_its_place(self, segments: Sequence[str]) -> str:
+        """The tag at the end where this plan has them; the longest of those with several levels."""
+        if self.robot_is_last:
+            return segments[-1] if segments[-1] in self.robots else ""
+        deepest = min(self.levels, len(segments) - 1)
+        ways_in = ("/".join(segments[:count]) for count in range(deepest, 0, -1))
+        return next((it for it in ways_in if it in self.robots), "")
+
+    def _longest(self, parts: Iterable[str]) -> str:
+        """The longest tag among the parts: ``arm_left`` rather than ``arm``."""
+        found = (part for part in parts if part in self.robots and part not in self.ambiguous_words)
+        return max(found, key=len, default="")
+
+    def tag(self, robot: str) -> str:
+        """The robot's name as these names have it."""
+        return self.tags.get(robot, robot)
+
+    def without_robot(self, name: str, robot: str) -> str:
+        """The name without the robot's: ``/robot1/scan`` and ``/scan/robot1`` are ``/scan``."""
+        tag = self.tag(robot)
+        if not tag or tag not in name:
+            return name
+        slash = "/" if name.startswith("/") else ""
+        if "/" in tag:
+            return slash + f"{name.strip('/')}/".removeprefix(f"{tag}/").rstrip("/")
+        bare = name.strip("/")
+        # The usual cases, checked first because that is fast.
+        if self.robot_is_last and bare.endswith(f"/{tag}"):
+            return slash + bare[: -len(tag) - 1]
+        if not self.robot_is_last and bare.startswith(f"{tag}/"):
+            return slash + bare[len(tag) + 1 :]
+        segments = bare.split("/")
+        places = [at for at, segment in enumerate(segments) if segment == tag]
+        if places and len(segments) > 1:
+            del segments[places[-1 if self.robot_is_last else 0]]
+        else:
+            segments = [_without_tag(segment, tag) for segment in segments]
+        return slash + "/".join(segments)
+
+
+def whose_by_plan(plan: Expectation, names: NameOwnership, frames: NameOwnership) -> Whose:
+    """Whose names are by a plan; what it has for all robots is nobody's."""
+    shared = {*plan.shared_nodes, *plan.shared_topics}
+    robot = cache(lambda name: "" if name in shared else names.robot(name))
+    frame_robot = cache(frames.robot)
+    return Whose(
+        tuple(sorted(it.name for it in plan.robots)),
+        robot,
+        cache(lambda name: names.without_robot(name, robot(name))),
+        frame_robot,
+        cache(lambda frame: frames.without_robot(frame, frame_robot(frame))),
+    )
+
+
+def _ends(segment: str) -> Iterator[str]:
+    """What is before and after each separator of a segment."""
+    for at, letter in enumerate(segment):
+        if letter in SEPARATORS:
+            yield segment[:at]
+            yield segment[at + 1 :]
+
+
+def _without_tag(segment: str, tag: str) -> str:
+    after, before = segment.removeprefix(tag), segment.removesuffix(tag)
+    if after != segment and after.startswith(tuple(SEPARATORS)):
+        return after.lstrip(SEPARATORS)
+    if before != segment and before.endswith(tuple(SEPARATORS)):
+        return before.rstrip(SEPARATORS)
+    return segment
+
+
+def without_tag_once(name: str, tag: str) -> Iterator[str]:
+    """The name with the tag removed from its beginning or its end, for every separator that fits."""
+    for separator in ("/", *SEPARATORS, ""):
+        if name.startswith(tag + separator):
+            yield name[len(tag + separator) :]
+        if name.endswith(separator + tag):
+            yield name[: -len(separator + tag)]
+
+
+def name_ownership(plan: Expectation) -> NameOwnership:
+    """The ownership of graph names: nodes, topics, services, actions."""
+    nodes = {node: robot.name for robot in plan.robots for node in robot.nodes}
+    planned = ((w.name, nodes[w.node]) for w in plan.endpoints if w.node in nodes)
+    robots = {robot.name: robot.name for robot in plan.robots}
+    last = _is_last(
+        (name, robot.name) for robot in plan.robots for name in (*robot.nodes, robot.tf)
+    )
+    exact = _of_one_robot((*nodes.items(), *planned))
+    levels = max((name.count("/") + 1 for name in robots), default=1)
+    draft = NameOwnership(exact, nodes, robots, frozenset(), last, levels=levels)
+    return draft._replace(ambiguous_words=frozenset(robots.keys() & _plain_words(plan, draft)))
+
+
+def _plain_words(plan: Expectation, draft: NameOwnership) -> set[str]:
+    """The words of nodes and names without their robot's name, as far as they may be a robot."""
+    nodes = draft.nodes
+    likely = draft.robots.keys() & _words({w.code_name for w in plan.endpoints})
+    in_code = {(w.code_name, nodes.get(w.node, "")) for w in plan.endpoints if likely}
+    return _words({draft.without_robot(name, robot) for name, robot in (*in_code, *nodes.items())})
+
+
+def frame_ownership(plan: Expectation) -> NameOwnership:
+    """The ownership of tf frames."""
+    declared = [(frame, robot.name) for robot in plan.robots for frame in robot.frames]
+    others = ((frame, robot.name) for robot in plan.robots for frame in robot.other_frames)
+    tags = {robot.name: robot.frame_tag for robot in plan.robots if robot.frame_tag}
+    robots = {tags.get(robot.name, robot.name): robot.name for robot in plan.robots}
+    last = _is_last((frame, tags.get(robot, robot)) for frame, robot in declared)
+    exact = _of_one_robot((*declared, *others))
+    draft = NameOwnership(exact, {}, robots, frozenset(), last, tags)
+    # All robots have the same description: the first robot's frames are enough.
+    plain = (draft.without_robot(*pair) for pair in declared if pair[1] == declared[0][1])
+    return draft._replace(ambiguous_words=frozenset(robots.keys() & _words(plain)))
+
+
+def _of_one_robot(pairs: Iterable[tuple[str, str]]) -> dict[str, str]:
+    """The names that belong to one robot only."""
+    found: dict[str, str] = {}
+    of_several = set()
+    for name, robot in pairs:
+        if found.setdefault(name, robot) != robot:
+            of_several.add(name)
+    for name in of_several:
+        del found[name]
+    return found
+
+
+def _is_last(names: Iterable[tuple[str, str]]) -> bool:
+    """Whether the tag is more often at the end of a name than at its beginning."""
+    stripped = ((name.strip("/"), tag) for name, tag in names)
+    return sum(name.endswith(tag) - name.startswith(tag) for name, tag in stripped) > 0
+
+
+def _words(names: Iterable[str]) -> set[str]:
+    segments = {segment for name in names for segment in name.strip("/").split("/")}
+    return segments.union(end for segment in segments for end in _ends(segment))

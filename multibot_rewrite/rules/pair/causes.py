@@ -1,0 +1,175 @@
+"""Sentences for findings: the most likely cause, and what to do about it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from multibot_rewrite.graph.expectation import PlannedEndpoint, PlannedRobot
+from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.remap.ways import COMPONENT, HOST, PLUGIN, SPAWNER
+from multibot_rewrite.rosnames import check_topic_name, expand
+from multibot_rewrite.rules.pair.comparison import View
+from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SERVES, SUBSCRIBES
+
+# What a node does with a name, by the role of its endpoint.
+DOES = {
+    PUBLISHES: "publishes",
+    SUBSCRIBES: "subscribes to",
+    SERVES: "offers",
+    CALLS: "has a client for",
+}
+# FILE:LINE, as plans have the place of a plugin.
+_PLACE = re.compile(r"(.+):(\d{1,9})")
+
+
+class Cause(NamedTuple):
+    """Why something is so, and what to do; file and line of a description where that is written.
+
+    The fields are those of ``Finding``.
+    """
+
+    hint: str
+    file: str = ""
+    line: int = 0
+
+
+def caused(hint: str, place: str) -> Cause:
+    """The cause that is written at ``place``, which is ``file:line`` or something else."""
+    found = _PLACE.fullmatch(place)
+    return Cause(hint, found[1], int(found[2])) if found else Cause(hint)
+
+
+def plugin_of(view: View, node: str) -> tuple[str, str]:
+    """The plugin that starts a node, and its place in the description; both empty without one."""
+    place = view.places.get(node, "")
+    if not place:
+        return "", ""
+    plain = view.ownership.without_robot(node, view.robot_of.get(node, ""))
+    return f"plugin {plain.rpartition('/')[2]}", place
+
+
+def remap_rule(planned: PlannedEndpoint) -> str:
+    """The remap rule that gives the node's name its planned form; empty where none is needed."""
+    if not planned.code_name or name_without_rules(planned) == planned.name:
+        return ""
+    namespace = planned.node.rpartition("/")[0] + "/"
+    return f"{planned.code_name}:={planned.name.removeprefix(namespace)}"
+
+
+def name_without_rules(planned: PlannedEndpoint) -> str:
+    """The full name that the name in the node's code has without any remap rule."""
+    if check_topic_name(planned.code_name):
+        return ""
+    namespace, _, node = planned.node.rpartition("/")
+    return expand(planned.code_name, namespace or "/", node)
+
+
+def names_without_rules(view: View, planned: PlannedEndpoint) -> tuple[str, ...]:
+    """The names an endpoint may have where no remap rule and no namespace is applied."""
+    in_root = f"/{planned.code_name.strip('/').removeprefix('~/')}"
+    robot = view.robot_of.get(planned.node) or view.ownership.robot(planned.name)
+    plain = view.ownership.without_robot(planned.name, robot)
+    names = (name_without_rules(planned), in_root, plain)
+    return tuple(name for name in names if name not in ("", "/", planned.name))
+
+
+def in_namespaces_above(node: str, name: str) -> Iterator[str]:
+    """A name directly in a node's namespace, moved to each of the namespaces above."""
+    namespace = node.rpartition("/")[0]
+    while namespace and name.startswith(f"{namespace}/"):
+        rest = name.removeprefix(namespace)
+        namespace = namespace.rpartition("/")[0]
+        yield namespace + rest
+        name = namespace + rest
+
+
+def use_absolute(name: str) -> str:
+    """What to do about a relative name below the node's own namespace."""
+    return f"the node resolves a relative name in its own namespace: write {name} in its parameters"
+
+
+def why_not_remapped(view: View, planned: PlannedEndpoint) -> Cause:
+    """Why a name is still the one in the code, although a rule should remap it."""
+    rule = remap_rule(planned)
+    plugin, place = plugin_of(view, planned.node)
+    if plugin:
+        # It may have the rule: what it loads is not given it in every release.
+        missing = f"no remap rule {rule} of {plugin} is applied"
+        text = missing if rule else f"{plugin} has no namespace or remap rule for it"
+        return caused(f"{text}, see {place}", place)
+    if not rule:
+        return Cause("another remap rule, or an absolute name in its parameters, changes it")
+    return Cause(f"the remap rule {rule} is not applied")
+
+
+def how_to_remap(view: View, planned: PlannedEndpoint) -> str:
+    """How to pass the rule to a node of the stack; empty for a plugin's node, which has a file."""
+    rule = remap_rule(planned)
+    if not rule or planned.node in view.places:
+        return ""
+    parts = ", and one rule for each of its _action/ names" if planned.kind == ACTION else ""
+    return f"; pass {how_to_pass(view, planned.node, rule, 'it')}{parts}"
+
+
+def how_to_pass(view: View, node: str, rule: str, what: str = "") -> str:
+    """Where a rule for a node stands, and how it is written there; ``what`` is what to call it."""
+    ways = dict(view.plan.ways)
+    way, _, taker = ways.get(node, "").partition(" ")
+    what = what or rule
+    if way == PLUGIN:
+        return f"{what} in the description: <remapping>{rule}</remapping> of the plugin of {taker}"
+    if way == HOST:
+        # In the process of another node a rule says whose it is.
+        led = f"{node.rpartition('/')[2]}:{rule}"
+        return f"{what} to {taker}, whose process it is in: {_as_written(ways.get(taker, ''), led)}"
+    if way == SPAWNER:
+        return f"{what} to its spawner: {_as_written(way, rule)}"
+    if way == COMPONENT:
+        return f"{what} where it is loaded into its container: {_as_written(way, rule)}"
+    return f"{what} with {_as_written(way, rule)}"
+
+
+def _as_written(way: str, rule: str) -> str:
+    source, _, target = rule.partition(":=")
+    pair = f"remappings=[({source!r}, {target!r})]"
+    if way == SPAWNER:
+        return f'--controller-ros-args "-r {rule}"'
+    if way == COMPONENT:
+        return f"{pair} of its ComposableNode"
+    return f"--ros-args -r {rule}, or with {pair} in the launch file"
+
+
+def tf_rule(robot: PlannedRobot, topic: str) -> str:
+    """The remap rule for a tf topic; its target is relative in the robot's own namespace."""
+    namespaced = any(node.startswith(f"/{robot.name}/") for node in robot.nodes)
+    place = robot.tf.removeprefix(f"/{robot.name}/") if namespaced else robot.tf
+    return f"/{topic}:={'/'.join(topic if it == 'tf' else it for it in place.split('/'))}"
+
+
+def why_other_name(view: View, node: str, match: str) -> Cause:
+    """Why a planned node runs under another name, which is ``match``."""
+    robot = view.robot_of[node]
+    plugin, place = plugin_of(view, node)
+    plain = view.ownership.without_robot(node, robot)
+    namespaced = node == f"/{robot}{plain}"
+    if match not in (plain, f"/{plain.rpartition('/')[2]}"):
+        return Cause(f"{match} is running; is it this node under another name?")
+    if plugin:
+        missing = "namespace" if namespaced else "separate name for each robot"
+        return caused(f"{match} is running: {plugin} has no {missing}, see {place}", place)
+    way, _, taker = dict(view.plan.ways).get(node, "").partition(" ")
+    if way == HOST:
+        return Cause(f"{match} is running: {taker} makes it; start that as the plan says")
+    if namespaced and way == COMPONENT:
+        option, missing = f"namespace={f'/{robot}'!r} of its ComposableNode", "namespace"
+    elif way == COMPONENT:
+        name = node.rpartition("/")[2]
+        option, missing = f"name={name!r} of its ComposableNode", "name"
+    elif namespaced:
+        option = f"namespace={robot!r} in the launch file, or --ros-args -r __ns:=/{robot}"
+        missing = "namespace"
+    else:
+        option = f"--ros-args -r __node:={node.rpartition('/')[2]}"
+        missing = "name"
+    return Cause(f"{match} is running: it was started without the robot's {missing}; use {option}")

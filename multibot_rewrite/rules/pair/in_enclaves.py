@@ -1,0 +1,89 @@
+"""Rules about enclaves of SROS2: is every node of a robot in the robot's own?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.graph.enclaves import enclave_of
+from multibot_rewrite.graph.wording import shorten
+from multibot_rewrite.rules.declaration import graph_rule
+from multibot_rewrite.rules.pair.comparison import View
+from multibot_rewrite.system.records import Node
+
+
+@graph_rule(
+    "MG112",
+    "enclave-of-another-robot",
+    ERROR,
+    drawn="cross-talk",
+    what="A robot's node runs in the SROS2 enclave of another robot.",
+    why="It may do what the other robot may, such as drive it, and not what its own robot has to.",
+    fix="Start it with `--ros-args --enclave /ROBOT`, the enclave of its own robot.",
+    bad="""\
+as planned: /robot1/driver
+running: enclave /robot2 of /robot1/driver
+as planned: /robot2/driver
+running: enclave /robot2 of /robot2/driver
+""",
+    good="""\
+as planned: /robot1/driver
+running: enclave /robot1 of /robot1/driver
+as planned: /robot2/driver
+running: enclave /robot2 of /robot2/driver
+""",
+    line=1,
+)
+def enclave_of_another_robot(view: View) -> Iterator[Finding]:
+    """By the robots' names in the path of the enclave."""
+    for name, enclave in dict.fromkeys((it.name, it.enclave) for it in view.graph.nodes):
+        robot = view.robot_of.get(name, "")
+        if not (robot and enclave) or _is_of(enclave, robot):
+            continue
+        other = next((it for it in sorted(view.robots) if _is_of(enclave, it)), "")
+        if other:
+            message = f"{name} is in the enclave {enclave}, which is of {other}"
+            yield enclave_of_another_robot.finding(message, _start(robot), robot=robot, node=name)
+
+
+def _is_of(enclave: str, robot: str) -> bool:
+    """A robot's name may have several levels."""
+    return bool(robot) and f"/{robot}/" in f"{enclave}/"
+
+
+@graph_rule(
+    "MG113",
+    "without-enclave",
+    WARNING,
+    what="A robot's node is in no SROS2 enclave, and others of the fleet are in one.",
+    why="Nodes with and without security do not meet: it is alone, or the others are not protected.",
+    fix="Start it with `ROS_SECURITY_ENABLE=true` and `--ros-args --enclave /ROBOT`.",
+    bad="""\
+as planned: /robot1/driver
+as planned: /robot2/driver
+running: enclave /robot2 of /robot2/driver
+""",
+    good="as planned: /robot1/driver\nas planned: /robot2/driver\n",
+    line=1,
+)
+def without_enclave(view: View) -> Iterator[Finding]:
+    """One finding a robot."""
+    planned = [it for it in view.graph.nodes if it.name in view.robot_of]
+    if not any(it.enclave for it in planned):
+        return
+    bare: dict[str, list[Node]] = {robot: [] for robot in view.robots}
+    for it in planned:
+        if not it.enclave:
+            bare[view.robot_of[it.name]].append(it)
+    yield from (_bare(robot, nodes) for robot, nodes in bare.items() if nodes)
+
+
+def _bare(robot: str, nodes: list[Node]) -> Finding:
+    names = [it.name for it in nodes]
+    return without_enclave.finding(
+        f"{shorten(names)}: in no enclave", _start(robot), robot=robot, node=names[0]
+    )
+
+
+def _start(robot: str) -> str:
+    return f"start it with --ros-args --enclave {enclave_of(robot)}"

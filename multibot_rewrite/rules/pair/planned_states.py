@@ -1,0 +1,259 @@
+"""Rules about states of the plan: life cycle, parameters, clocks, machines."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.graph.expectation import PlannedParameter, PlannedState
+from multibot_rewrite.graph.reach import machines
+from multibot_rewrite.graph.wording import FEW, SEVERAL, shorten
+from multibot_rewrite.rules.declaration import graph_rule
+from multibot_rewrite.rules.pair.comparison import View
+from multibot_rewrite.system.conventions import CLOCK
+from multibot_rewrite.system.parameters import parameter_text, parameter_value
+from multibot_rewrite.system.records import SIM_TIME, SUBSCRIBES, clocks
+
+# A planned parameter, and its value there.
+Difference = tuple[PlannedParameter, str]
+
+
+@graph_rule(
+    "MG131",
+    "state-not-planned",
+    ERROR,
+    what="A managed (lifecycle) node is in another state than `states` of the plan has. Asked for by"
+    " `--state`.",
+    why="A node that is not active publishes nothing and refuses goals; one that was to wait works.",
+    fix="See the log of its lifecycle manager; `ros2 lifecycle set NODE activate`. If it is right,"
+    " change `lifecycle` in the plan.",
+    bad="""\
+planned: state of /robot1/amcl: active
+as planned: /robot1/amcl
+running: /robot1/amcl is inactive
+""",
+    good="""\
+planned: state of /robot1/amcl: active
+as planned: /robot1/amcl
+running: /robot1/amcl is active
+""",
+    line=3,
+)
+def state_not_planned(view: View) -> Iterator[Finding]:
+    """A node that did not answer is not known."""
+    states = {it.name: it.lifecycle for it in view.graph.nodes if it.lifecycle}
+    for planned in view.plan.states:
+        seen = states.get(planned.node, planned.lifecycle)
+        if planned.lifecycle and seen != planned.lifecycle:
+            yield state_not_planned.finding(
+                f"is {seen}, planned is {planned.lifecycle}",
+                f"ros2 lifecycle get {planned.node}; see the log of its lifecycle manager",
+                robot=view.robot_of.get(planned.node, ""),
+                node=planned.node,
+            )
+
+
+@graph_rule(
+    "MG132",
+    "parameter-not-planned",
+    ERROR,
+    what="A parameter of a running node has another value than the plan, or than the file that"
+    " `multibot build` wrote for it. A value of a file that is no frame of a robot is a warning: it may"
+    " have been tuned. Asked for by `--state`.",
+    why="The node was started without its file, with that of another robot, or changed by hand: its"
+    " frames and topics are not those of its robot.",
+    fix="Start the node with its file (`--params-file`, `parameters=[...]`); what a launch file gives"
+    " behind it wins. If the value is right, change it in the file or in `states` of the plan.",
+    bad="""\
+planned: parameter base_frame_id of /robot1/amcl: robot1/base_link
+as planned: /robot1/amcl
+running: /robot1/amcl has base_frame_id base_link
+""",
+    good="""\
+planned: parameter base_frame_id of /robot1/amcl: robot1/base_link
+as planned: /robot1/amcl
+running: /robot1/amcl has base_frame_id robot1/base_link
+""",
+    line=3,
+)
+def parameter_not_planned(view: View) -> Iterator[Finding]:
+    """One finding a node; a parameter that it does not have is not known."""
+    values = {(it.node, it.name): it.value for it in view.graph.parameters}
+    for planned in view.plan.states:
+        found = [*_differences(planned, values)]
+        # What makes it an error comes first.
+        found.sort(key=lambda it: not _is_serious(view, planned.node, it[0]))
+        if found:
+            yield _differs(view, planned.node, found)
+
+
+def _differences(
+    planned: PlannedState, values: Mapping[tuple[str, str], str]
+) -> Iterator[Difference]:
+    for it in planned.parameters:
+        value = values.get((planned.node, it.name))
+        if value is not None and not _is_same(it.value, value):
+            yield it, value
+
+
+def _is_same(planned: str, value: str) -> bool:
+    """1 is 1.0: people write either; true is not 1."""
+    if planned == value:
+        return True
+    if "true" in (planned, value) or "false" in (planned, value):
+        return False
+    return bool(parameter_value(planned) == parameter_value(value))
+
+
+def _is_serious(view: View, node: str, it: PlannedParameter) -> bool:
+    """Whether the plan itself says it, or it is a frame of a robot."""
+    frames = view.frames_of.get(view.robot_of.get(node, ""), frozenset())
+    return not it.place or parameter_value(it.value) in [
+        *frames,
+        *(f"/{frame}" for frame in frames),
+    ]
+
+
+def _differs(view: View, node: str, found: Sequence[Difference]) -> Finding:
+    listed = [f"{it.name} is {value}, planned is {it.value}{_at(it)}" for it, value in found]
+    robot, (first, _) = view.robot_of.get(node, ""), found[0]
+    file = first.place.rpartition(":")[0]
+    start = f"start it with {file}" if file else "change it, or states of the plan"
+    other = _whose(view, node, found)
+    hint = f"has it the parameters of {other}? {start}" if other else start
+    serious = _is_serious(view, node, first)
+    level = ERROR if serious else WARNING
+    names = tuple(it.name for it, _ in found)
+    message = "; ".join(listed[:FEW]) + (f"; {len(found) - FEW} more" if len(found) > FEW else "")
+    return parameter_not_planned.finding(
+        message, hint, level=level, robot=robot, node=node, names=names
+    )
+
+
+def _at(it: PlannedParameter) -> str:
+    return f" ({it.place})" if it.place else ""
+
+
+def _whose(view: View, node: str, found: Sequence[Difference]) -> str:
+    """The robot whose node of that name is planned to have these values."""
+    whose = view.ownership
+    robot = view.robot_of.get(node, "")
+    plain = whose.without_robot(node, robot)
+    wanted = {(it.name, value) for it, value in found}
+    for other in view.plan.states:
+        theirs = view.robot_of.get(other.node, "")
+        if not theirs or whose.without_robot(other.node, theirs) != plain:
+            continue
+        if wanted <= {(it.name, it.value) for it in other.parameters}:
+            return theirs
+    return ""
+
+
+@graph_rule(
+    "MG134",
+    "clock-not-planned",
+    ERROR,
+    absence=True,
+    what="A node of which the plan or fleet file says `use_sim_time: true` does not subscribe to"
+    " `/clock`, or one of which it says false does. What a node answers is compared by MG132.",
+    why="Every node with `use_sim_time` subscribes to `/clock`, and no other one does. Nodes on two"
+    " clocks refuse each other's messages and transforms as decades old.",
+    fix="Start all nodes of the robot with the value of the fleet file: `use_sim_time:=...` of the"
+    " launch file, `SetParameter`, the files that `multibot build` wrote, the lines of commands.md.",
+    bad="""\
+planned: parameter use_sim_time of /robot1/amcl: true
+as planned: /robot1/amcl
+""",
+    good="""\
+planned: parameter use_sim_time of /robot1/amcl: true
+as planned: /robot1/amcl
+running: /robot1/amcl subscribes /clock rosgraph_msgs/msg/Clock
+running: /bridge publishes /clock rosgraph_msgs/msg/Clock
+""",
+    line=2,
+)
+def clock_not_planned(view: View) -> Iterator[Finding]:
+    """One finding for the nodes of a robot that differ alike."""
+    timed = {it.node for it in view.by_name.get(CLOCK, ()) if it.role == SUBSCRIBES}
+    asked = clocks(view.graph)
+    differing: dict[tuple[str, str], list[str]] = defaultdict(list)
+    for node, wanted in planned_clocks(view.plan.states):
+        if node in view.seen and node not in asked and wanted != parameter_text(node in timed):
+            differing[view.robot_of.get(node, ""), wanted].append(node)
+    for (robot, wanted), nodes in differing.items():
+        seen = "do not subscribe" if wanted == parameter_text(True) else "subscribe"
+        which = f"these nodes {seen} to {CLOCK}: {shorten(nodes)}"
+        yield clock_not_planned.finding(
+            f"{SIM_TIME} is planned to be {wanted}, but {which}",
+            f"start them with {SIM_TIME}: {wanted}",
+            robot=robot,
+            node=nodes[0],
+            names=tuple(nodes),
+        )
+
+
+def planned_clocks(states: Iterable[PlannedState]) -> Iterator[tuple[str, str]]:
+    """By node: the clock that it is planned to have."""
+    for state in states:
+        yield from ((state.node, it.value) for it in state.parameters if it.name == SIM_TIME)
+
+
+@graph_rule(
+    "MG133",
+    "host-not-planned",
+    ERROR,
+    what="Nodes of one `host` of the plan run on several machines, or those of two hosts on one.",
+    why="A driver without its hardware, a planner that eats the other robot's processor, and images"
+    " over the radio.",
+    fix="Start the node on its machine, or change `host` in `states` of the plan.",
+    bad="""\
+planned: host of /robot1/lidar: robot1_pc
+planned: host of /robot1/camera: robot1_pc
+planned: host of /robot1/amcl: robot1_pc
+running: /robot1/lidar on machine 1
+running: /robot1/amcl on machine 1
+running: /robot1/camera on machine 2
+""",
+    good="""\
+planned: host of /robot1/lidar: robot1_pc
+planned: host of /robot1/camera: robot1_pc
+planned: host of /robot2/lidar: robot2_pc
+running: /robot1/lidar on machine 1
+running: /robot1/camera on machine 1
+running: /robot2/lidar on machine 2
+""",
+    line=6,
+)
+def host_not_planned(view: View) -> Iterator[Finding]:
+    """A snapshot tells machines apart, and has no names: a host is where most of its nodes are."""
+    machine_of = {node: it for it, nodes in machines(view.graph).items() for node in nodes}
+    hosts = _hosts(view, machine_of)
+    homes = {
+        host: max(sorted(found), key=lambda it: len(found[it])) for host, found in hosts.items()
+    }
+    for host, found in hosts.items():
+        away = [node for it, nodes in found.items() if it != homes[host] for node in nodes]
+        if away:
+            message = f"not on {host}, where {shorten(found[homes[host]])} runs: {shorten(away)}"
+            yield _on_wrong_host(view, message, away, "start it there, or change host in the plan")
+    for machine in dict.fromkeys(homes.values()):
+        own = [host for host, home in homes.items() if home == machine]
+        if len(own) > 1:
+            message = f"hosts {shorten(own, SEVERAL)} are one machine"
+            nodes = hosts[own[1]][machine]
+            yield _on_wrong_host(view, message, nodes, "is this a simulation? Then leave out host")
+
+
+def _hosts(view: View, machine_of: Mapping[str, str]) -> Mapping[str, dict[str, list[str]]]:
+    """Host of the plan -> machine -> the nodes that run there."""
+    found: dict[str, dict[str, list[str]]] = defaultdict(lambda: defaultdict(list))
+    for it in view.plan.states:
+        if it.host and it.node in machine_of:
+            found[it.host][machine_of[it.node]].append(it.node)
+    return found
+
+
+def _on_wrong_host(view: View, message: str, nodes: Sequence[str], hint: str) -> Finding:
+    robot = view.robot_of.get(nodes[0], "")
+    return host_not_planned.finding(message, hint, robot=robot, node=nodes[0], names=tuple(nodes))

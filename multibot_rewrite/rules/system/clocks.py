@@ -1,0 +1,148 @@
+"""Dangers of time: simulated time without a clock, two clocks, clocks mixed in one robot."""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+from fnmatch import translate
+
+from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.graph.tool_nodes import is_tool
+from multibot_rewrite.graph.wording import shorten
+from multibot_rewrite.rules.declaration import danger_rule
+from multibot_rewrite.rules.index import Index, and_then, is_viewer, last_word, nodes_of
+from multibot_rewrite.system.conventions import CLOCK
+from multibot_rewrite.system.records import TOPIC
+
+# They compare the time of messages with their own clock, and subscribe to /clock with use_sim_time.
+_TIMED = (
+    "robot_state_publisher*", "amcl*", "ekf*", "ukf*", "*slam_toolbox*", "cartographer_node*",
+    "bt_navigator*", "controller_server*", "planner_server*", "behavior_server*", "map_server*",
+    "velocity_smoother*", "collision_monitor*", "local_costmap", "global_costmap", "navsat_transform*",
+    "icp_odometry", "rgbd_odometry",
+)  # fmt: skip
+_IS_TIMED = re.compile("|".join(map(translate, _TIMED)))
+
+
+@danger_rule(
+    "MG501",
+    "no-clock",
+    ERROR,
+    absence=True,
+    what="Nodes subscribe to `/clock` (use_sim_time), but nobody publishes it.",
+    why="Their time stands at 0: no timer fires, tf has no transform, nothing moves.",
+    fix="Set `use_sim_time: false` on a real robot; in simulation bridge `/clock`, or play the bag with"
+    " `--clock`.",
+    bad="running: /robot1/amcl subscribes /clock rosgraph_msgs/msg/Clock\n",
+    good="""\
+running: /robot1/amcl subscribes /clock rosgraph_msgs/msg/Clock
+running: /ros_gz_bridge publishes /clock rosgraph_msgs/msg/Clock
+""",
+)
+def no_clock(seen: Index) -> Iterator[Finding]:
+    """A finding for each robot; tools subscribe to whatever there is."""
+    by_robot = _on_simulated_time(seen)
+    if _clocks(seen):
+        return
+    for robot, nodes in by_robot.items():
+        message = (
+            f"on simulated time (use_sim_time), but nobody publishes {CLOCK}: {shorten(nodes)}"
+        )
+        cause = "use_sim_time: false on a real robot, or start the simulator's bridge for /clock"
+        yield no_clock.finding(message, cause, robot=robot, node=nodes[0], names=(CLOCK,))
+
+
+def _clocks(seen: Index) -> tuple[str, ...]:
+    ends = seen.names.get((TOPIC, CLOCK))
+    return nodes_of(ends.publishers) if ends else ()
+
+
+def _on_simulated_time(seen: Index) -> dict[str, list[str]]:
+    """The nodes that subscribe to the clock, by robot."""
+    ends = seen.names.get((TOPIC, CLOCK))
+    found: dict[str, list[str]] = defaultdict(list)
+    for node in nodes_of(ends.subscribers) if ends else ():
+        if not is_viewer(node) and not is_tool(node):
+            found[seen.robot(node)].append(node)
+    return found
+
+
+@danger_rule(
+    "MG502",
+    "two-clocks",
+    ERROR,
+    what="Several nodes publish `/clock`.",
+    why="Time jumps between the two: tf throws its buffer away at every jump back.",
+    fix="Bridge `/clock` from one simulator only; play bags without `--clock`, or in another"
+    " ROS_DOMAIN_ID.",
+    bad="""\
+running: /ros_gz_bridge publishes /clock rosgraph_msgs/msg/Clock
+running: /rosbag2_player publishes /clock rosgraph_msgs/msg/Clock
+""",
+    good="""\
+running: /ros_gz_bridge publishes /clock rosgraph_msgs/msg/Clock
+running: /rosbag2_player publishes /recorded/clock rosgraph_msgs/msg/Clock
+""",
+)
+def two_clocks(seen: Index) -> Iterator[Finding]:
+    """Two nodes of one name count as well: a bridge that was started for each robot."""
+    ends = seen.names.get((TOPIC, CLOCK))
+    nodes = _clocks(seen)
+    times = {node: sum(it.name == node for it in seen.system.nodes) for node in nodes}
+    if ends and sum(max(1, count) for count in times.values()) > 1:
+        who = and_then(nodes) if len(nodes) > 1 else f"{times[nodes[0]]} nodes {nodes[0]}"
+        cause = "a clock bridge for each robot, two simulators, or a bag with --clock: keep one"
+        message = f"{who} publish {CLOCK}"
+        yield two_clocks.finding(message, cause, node=nodes[0], names=(CLOCK,))
+
+
+@danger_rule(
+    "MG503",
+    "clocks-mixed",
+    ERROR,
+    absence=True,
+    planned="MG134",
+    what="Of the nodes of one robot that compare times, some are on simulated time and some are not.",
+    why="Their messages are decades apart: tf refuses every lookup between them (`extrapolation into"
+    " the future`).",
+    fix="Set `use_sim_time` alike in all nodes of the robot (`SetParameter` in the launch file).",
+    bad="""\
+running: /ros_gz_bridge publishes /clock rosgraph_msgs/msg/Clock
+running: /robot1/amcl subscribes /clock rosgraph_msgs/msg/Clock
+running: /robot1/ekf_node publishes /robot1/odom nav_msgs/msg/Odometry
+""",
+    good="""\
+running: /ros_gz_bridge publishes /clock rosgraph_msgs/msg/Clock
+running: /robot1/amcl subscribes /clock rosgraph_msgs/msg/Clock
+running: /robot1/ekf_node subscribes /clock rosgraph_msgs/msg/Clock
+""",
+    line=3,
+)
+def clocks_mixed(seen: Index) -> Iterator[Finding]:
+    """Also a robot that is not on simulated time as the others are."""
+    simulated = {node for nodes in _on_simulated_time(seen).values() for node in nodes}
+    if not simulated or not _clocks(seen):
+        return
+    timed = {node.name for node in seen.system.nodes if _IS_TIMED.fullmatch(last_word(node.name))}
+    for robot in dict.fromkeys(map(seen.robot, sorted(timed))):
+        own = [node for node in sorted(timed) if seen.robot(node) == robot]
+        others = [node for node in own if node not in simulated]
+        if others and robot in map(seen.robot, simulated):
+            yield _mixed(robot, others, sorted(simulated & set(own)) or sorted(simulated))
+        elif others and robot:
+            yield _real_beside_simulated(robot, others, simulated)
+
+
+def _mixed(robot: str, others: list[str], simulated: list[str]) -> Finding:
+    message = f"not on simulated time, as {simulated[0]} is: {shorten(others)}"
+    cause = "set use_sim_time: true for all nodes of the robot"
+    return clocks_mixed.finding(message, cause, robot=robot, node=others[0], names=(CLOCK,))
+
+
+def _real_beside_simulated(robot: str, others: list[str], simulated: Iterable[str]) -> Finding:
+    message = f"{robot} is on the machine's time, {min(simulated)} on simulated time"
+    cause = f"a real robot beside a simulation? Else set use_sim_time: true for {robot}"
+    return clocks_mixed.finding(
+        message, cause, level=WARNING, robot=robot, node=others[0], names=(CLOCK,)
+    )

@@ -1,0 +1,282 @@
+"""Dangers of commands: who may move a robot, and how many send at a time."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+
+from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING, Finding
+from multibot_rewrite.graph.tool_nodes import is_tool
+from multibot_rewrite.graph.wording import shorten
+from multibot_rewrite.rules import words
+from multibot_rewrite.rules.declaration import danger_rule
+from multibot_rewrite.rules.index import (
+    TF,
+    Ends,
+    Index,
+    and_then,
+    at_work,
+    is_hidden,
+    is_viewer,
+    last_word,
+    nodes_of,
+    robots_of,
+)
+from multibot_rewrite.rules.system.names import ABSENT, alike, nobody_in
+from multibot_rewrite.rules.system.sharing import own_namespace
+from multibot_rewrite.system.conventions import EVERYBODYS, OF_EVERY_NODE, chooses, team
+from multibot_rewrite.system.records import ACTION, TOPIC, End
+
+
+@danger_rule(
+    "MG310",
+    "command-for-several-robots",
+    ERROR,
+    drawn="leak",
+    planned="MG103",
+    what="Nodes of several robots subscribe to one topic with velocities, trajectories, a goal or a"
+    " start pose. For a joystick it is a warning: its buttons may choose the robot.",
+    why="One command moves all of them.",
+    fix="Use relative topics, or a remap rule, so that each robot has its own.",
+    bad="""\
+running: /robot1/driver subscribes /cmd_vel geometry_msgs/msg/Twist
+running: /robot2/driver subscribes /cmd_vel geometry_msgs/msg/Twist
+""",
+    good="""\
+running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
+running: /robot2/driver subscribes /robot2/cmd_vel geometry_msgs/msg/Twist
+""",
+)
+def command_for_several_robots(seen: Index) -> Iterator[Finding]:
+    """Whether or not anybody sends at the moment."""
+    for (kind, name), ends in seen.names.items():
+        joystick = ends.type == words.JOYSTICK and not seen.robot(name)
+        order = kind == TOPIC and (joystick or name in seen.orders)
+        nodes = nodes_of(at_work(ends.subscribers)) if order else ()
+        robots = robots_of(seen, nodes)
+        if len(robots) > 1:
+            message = f"{and_then(robots)} all obey {name}: {shorten(nodes)}"
+            cause = own_namespace(seen, name, robots[0])
+            yield command_for_several_robots.finding(
+                message,
+                f"{cause}; or give each its own enable_button" if joystick else cause,
+                level=WARNING if joystick else ERROR,
+                node=nodes[0],
+                names=(name,),
+            )
+
+
+@danger_rule(
+    "MG308",
+    "command-to-nobody",
+    ERROR,
+    absence=True,
+    drawn="leak",
+    what="A node sends velocities, a goal or a start pose that no node reads, while robots obey nearly"
+    " the same name.",
+    why="The joystick does nothing, RViz's goal is ignored, and there is no error message.",
+    fix="Start the sender in the robot's namespace, or pass the remap rule of the hint.",
+    bad="""\
+running: /joystick publishes /cmd_vel geometry_msgs/msg/Twist
+running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
+running: /robot1/controller_server publishes /robot1/cmd_vel geometry_msgs/msg/Twist
+""",
+    good="""\
+running: /joystick publishes /joy_vel geometry_msgs/msg/Twist
+running: /robot1/twist_mux subscribes /joy_vel geometry_msgs/msg/Twist
+running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
+running: /robot1/controller_server publishes /robot1/cmd_vel geometry_msgs/msg/Twist
+""",
+)
+def command_to_nobody(seen: Index) -> Iterator[Finding]:
+    """Where the other name has no sender, its reader is the finding; what RViz offers is a note."""
+    obeyed = defaultdict(list)
+    unread = {name: it for name, it in seen.orders.items() if it.publishers and not _obeyed(it)}
+    for (kind, name), ends in seen.names.items() if unread else ():
+        if kind == TOPIC and ends.publishers and _obeyed(ends):
+            obeyed[ends.type].append(name)
+    for name, ends in unread.items():
+        same = obeyed[ends.type]
+        robots = [it for it in same if seen.plain(it) == name]
+        meant = next(iter(robots), "") or alike(name, same, ends.type)
+        if meant:
+            yield _unread(seen, ends, meant, len(robots))
+            continue
+        absent = nobody_in(seen, name, same)
+        for node in nodes_of(at_work(ends.publishers)) if absent else ():
+            yield command_to_nobody.finding(
+                f"publishes {name}, which nobody reads; {absent}",
+                ABSENT,
+                level=WARNING,
+                node=node,
+                names=(name,),
+            )
+
+
+def _obeyed(ends: Ends) -> bool:
+    return bool(at_work(ends.subscribers))
+
+
+def _unread(seen: Index, ends: Ends, meant: str, robots: int) -> Finding:
+    node = nodes_of(ends.publishers)[0]
+    reader = nodes_of(at_work(seen.names[TOPIC, meant].subscribers))[0]
+    message = f"publishes {ends.name}, which nobody reads; {reader} reads {meant}"
+    several = f" (or that of another of the {robots} robots)" if robots > 1 else ""
+    cause = f"start it in the robot's namespace, or pass the rule {ends.name}:={meant}{several}"
+    level = NOTE if is_viewer(node) and not is_hidden(node) else ERROR
+    return command_to_nobody.finding(
+        message, cause, level=level, robot=seen.robot(node), node=node, names=(ends.name, meant)
+    )
+
+
+@danger_rule(
+    "MG311",
+    "command-from-another-robot",
+    ERROR,
+    drawn="cross-talk",
+    planned="MG104",
+    what="A robot's node sends commands to another robot: velocities, trajectories, goals, requests to"
+    " its services, or a topic for which its own robot waits.",
+    why="Who drives, or stops, the one robot moves the other.",
+    fix="Correct the remap rule, namespace or parameter that has the other robot's name.",
+    bad="""\
+running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
+running: /robot2/teleop publishes /robot1/cmd_vel geometry_msgs/msg/Twist
+""",
+    good="""\
+running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
+running: /robot2/teleop publishes /robot2/cmd_vel geometry_msgs/msg/Twist
+""",
+    line=2,
+)
+def command_from_another_robot(seen: Index) -> Iterator[Finding]:
+    """Tools as well: a joystick of one robot is not for another."""
+    for (kind, name), ends in seen.names.items():
+        owner = seen.robot(name)
+        crossing = _of_others(seen, owner, (*ends.publishers, *ends.clients)) if owner else ()
+        if not crossing:
+            continue
+        order = kind == TOPIC and (name in seen.orders or _is_waited_for(seen, ends))
+        senders = ends.publishers if order else ends.clients
+        served = kind == TOPIC or ends.servers
+        for node in nodes_of(_of_others(seen, owner, senders)) if served else ():
+            robot = seen.robot(node)
+            if not _mistaken(seen, node, robot, ends):
+                continue
+            does = "publishes" if kind == TOPIC else "sends goals to" if kind == ACTION else "calls"
+            message = f"{does} {name}, which belongs to {owner}"
+            cause = f"a namespace, remap rule or parameter of {robot} names {owner}"
+            yield command_from_another_robot.finding(
+                message, cause, robot=robot, node=node, names=(name,)
+            )
+
+
+def _of_others(seen: Index, owner: str, ends: Iterable[End]) -> list[End]:
+    """The ends of other robots' nodes."""
+    return [it for it in ends if seen.robot(it.node) not in ("", owner)]
+
+
+def _is_waited_for(seen: Index, ends: Ends) -> bool:
+    """Has the robot of a sender the same topic, with readers and nobody who sends? As an emergency stop
+    with the other robot's name."""
+    plain = seen.plain(ends.name)
+    if ends.kind != TOPIC or ends.name in EVERYBODYS or ends.type == TF:
+        return False
+    own = (seen.of_robot(it, ends.kind, plain) for it in robots_of(seen, nodes_of(ends.publishers)))
+    return any(it and at_work(it.subscribers) and not it.publishers for it in own)
+
+
+def _mistaken(seen: Index, node: str, robot: str, ends: Ends) -> bool:
+    """Is it the other robot's name in place of its own? Who has both coordinates the two; a service
+    that its own robot does not have is for others."""
+    own = seen.of_robot(robot, ends.kind, seen.plain(ends.name))
+    if own is None:
+        return ends.kind == TOPIC
+    return node not in nodes_of((*own.publishers, *own.clients))
+
+
+@danger_rule(
+    "MG312",
+    "several-command-senders",
+    WARNING,
+    what="Several nodes send velocities or trajectories to one robot, and nothing chooses between"
+    " them.",
+    why="While two of them send, the robot follows both by turns: it jerks, or drives against the"
+    " safety of the other.",
+    fix="Put twist_mux (or another node that chooses) between the senders and the robot, each sender"
+    " on a topic of its own.",
+    bad="""\
+running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
+running: /robot1/controller_server publishes /robot1/cmd_vel geometry_msgs/msg/Twist
+running: /robot1/teleop publishes /robot1/cmd_vel geometry_msgs/msg/Twist
+""",
+    good="""\
+running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
+running: /robot1/controller_server publishes /robot1/cmd_vel geometry_msgs/msg/Twist
+running: /robot1/behavior_server publishes /robot1/cmd_vel geometry_msgs/msg/Twist
+""",
+    line=3,
+)
+def several_command_senders(seen: Index) -> Iterator[Finding]:
+    """The nodes of Nav2, and those of MoveIt, send one after another: they are one sender."""
+    for ends in seen.orders.values():
+        if len(ends.publishers) < 2 or not words.moves(seen.plain(ends.name), ends.type):
+            continue
+        readers = nodes_of(at_work(ends.subscribers))
+        # A program to look with that sends velocities is a joystick.
+        senders = nodes_of(ends.publishers)
+        teams = {team(node): node for node in reversed(senders)}
+        played = any(last_word(node).startswith(words.PLAYER) for node in senders)
+        if not readers or len(teams) < 2 or played or all(map(chooses, readers)):
+            continue
+        # A sender of another robot is a rule of its own.
+        if len(robots_of(seen, senders)) > 1:
+            continue
+        tool = next((node for node in teams.values() if is_tool(node)), max(teams.values()))
+        others = [node for node in teams.values() if node != tool]
+        message = f"publishes {ends.name} beside {shorten(others)}, and {readers[0]} obeys both"
+        cause = "put twist_mux before the robot's driver, each sender with a topic of its own"
+        robot = seen.robot(ends.name) or seen.robot(readers[0])
+        yield several_command_senders.finding(
+            message, cause, robot=robot, node=tool, names=(ends.name,)
+        )
+
+
+@danger_rule(
+    "MG313",
+    "bag-beside-a-robot",
+    ERROR,
+    what="`ros2 bag play` publishes topics that nodes of the running system publish as well, or obey.",
+    why="Recorded scans, transforms and commands are mixed with those of now: the robot drives by the"
+    " past.",
+    fix="Play the bag in another ROS_DOMAIN_ID, or remap its topics (`ros2 bag play --remap`).",
+    bad="""\
+running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan
+running: /rosbag2_player publishes /robot1/scan sensor_msgs/msg/LaserScan
+""",
+    good="""\
+running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan
+running: /rosbag2_player publishes /recorded/scan sensor_msgs/msg/LaserScan
+""",
+    line=2,
+)
+def bag_beside_a_robot(seen: Index) -> Iterator[Finding]:
+    """A bag that is played to nodes which only read is what bags are for."""
+    mixed: dict[str, list[str]] = {}
+    played = {end.name for end in seen.system.ends if words.PLAYER in end.node}
+    for ends in seen.names.values() if played else ():
+        if ends.kind != TOPIC or ends.name not in played:
+            continue
+        players = [it for it in nodes_of(ends.publishers) if last_word(it).startswith(words.PLAYER)]
+        others = [it for it in nodes_of(at_work(ends.publishers)) if it not in players]
+        obeyed = words.moves(seen.plain(ends.name), ends.type) and _obeyed(ends)
+        if players and ends.name not in OF_EVERY_NODE and (others or obeyed):
+            mixed.setdefault(players[0], []).append(ends.name)
+    for player, names in mixed.items():
+        message = f"plays {shorten(sorted(names))} into the running system"
+        cause = "play it in another ROS_DOMAIN_ID, or give its topics other names with --remap"
+        robots = robots_of(seen, names)
+        robot = robots[0] if len(robots) == 1 else ""
+        yield bag_beside_a_robot.finding(
+            message, cause, robot=robot, node=player, names=tuple(sorted(names))
+        )

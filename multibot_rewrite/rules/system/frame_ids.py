@@ -1,0 +1,188 @@
+"""Dangers of ``header.frame_id``: messages in a frame of another robot, or in one that is in no tf."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from functools import cache
+
+from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.graph.wording import SEVERAL, shorten
+from multibot_rewrite.nearest import MISTYPED, nearest
+from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.rules.declaration import danger_rule
+from multibot_rewrite.rules.index import (
+    Index,
+    Tree,
+    and_then,
+    at_work,
+    nodes_of,
+    only,
+    robots_of,
+)
+from multibot_rewrite.system.records import TOPIC
+
+# What a robot measures is in its own frames. A pose, a path or a marker may be in another robot's.
+_MEASURED = ("sensor_msgs/", "nav_msgs/msg/Odometry", "stereo_msgs/", "radar_msgs/")
+
+
+class _Message(NamedTuple):
+    """A frame that messages on ``topic`` name; ``robot`` is whose topic it is, else whose senders."""
+
+    topic: str
+    type: str
+    frame: str
+    robot: str
+    senders: tuple[str, ...]
+
+
+@danger_rule(
+    "MG411",
+    "frame-id-of-another-robot",
+    ERROR,
+    what="`header.frame_id` of what a robot measures is a frame of another robot.",
+    why="tf places the scan or the image at the other robot: both see obstacles that are not there.",
+    fix="Set the frame of the sender (`frame_id`, `base_frame`, or `gz_frame_id` in the description) to"
+    " its own robot's; a launch file may have the other robot's name.",
+    bad="""\
+running: transform robot1/base_link -> robot1/lidar_link on /tf
+running: transform robot2/base_link -> robot2/lidar_link on /tf
+running: /robot2/lidar publishes /robot2/scan sensor_msgs/msg/LaserScan
+running: frame_id robot1/lidar_link on /robot2/scan
+""",
+    good="""\
+running: transform robot1/base_link -> robot1/lidar_link on /tf
+running: transform robot2/base_link -> robot2/lidar_link on /tf
+running: /robot2/lidar publishes /robot2/scan sensor_msgs/msg/LaserScan
+running: frame_id robot2/lidar_link on /robot2/scan
+""",
+    line=4,
+)
+def frame_id_of_another_robot(seen: Index) -> Iterator[Finding]:
+    """By the names of frames: robots with a tf topic each may have the same ones."""
+    for (frame, robot, senders), messages in _by_sender(seen).items():
+        if _is_of_another(seen, frame, robot, messages):
+            topics = [it.topic for it in messages if it.type.startswith(_MEASURED)]
+            owner = seen.frame_robot(frame)
+            message = f"frame_id of {shorten(topics)} is {frame}, a frame of {owner}"
+            cause = f"set the frame of {_who(senders)} to that of {robot}"
+            yield frame_id_of_another_robot.finding(
+                f"{message}; sent by {_who(senders)}",
+                cause,
+                robot=robot,
+                node=senders[0],
+                names=(frame,),
+            )
+
+
+def _is_of_another(seen: Index, frame: str, robot: str, messages: Sequence[_Message]) -> bool:
+    measured = any(it.type.startswith(_MEASURED) for it in messages)
+    return bool(robot) and measured and seen.frame_robot(frame) not in ("", robot)
+
+
+@danger_rule(
+    "MG412",
+    "frame-id-unknown",
+    ERROR,
+    absence=True,
+    what="`header.frame_id` of messages is in no transform that the robot gets. For a name that is like"
+    " none of its frames it is a warning.",
+    why="tf cannot say where the sensor is: RViz shows nothing, costmaps and filters drop every message"
+    " (`frame does not exist`).",
+    fix="Set the frame of the sender to the one in tf, with the robot's name where the layout has it;"
+    " or send a transform for it.",
+    bad="""\
+running: transform robot1/base_link -> robot1/lidar_link on /tf
+running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan
+running: frame_id lidar_link on /robot1/scan
+""",
+    good="""\
+running: transform robot1/base_link -> robot1/lidar_link on /tf
+running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan
+running: frame_id robot1/lidar_link on /robot1/scan
+""",
+    line=3,
+)
+def frame_id_unknown(seen: Index) -> Iterator[Finding]:
+    """Where no transform was received at all nothing is known; others say that."""
+    frames = {tree.topic: frames_in(tree) for tree in seen.trees}
+    heard_by = cache(
+        lambda robot: {it for tree in _trees(seen, robot) for it in frames[tree.topic]}
+    )
+    for (frame, robot, senders), messages in _by_sender(seen).items():
+        heard = heard_by(robot)
+        if not heard or frame in heard or _is_of_another(seen, frame, robot, messages):
+            continue
+        own = [it for it in heard if seen.frame_robot(it) in ("", robot)]
+        meant = _meant(seen, frame, own)
+        elsewhere = [topic for topic, it in frames.items() if frame in it]
+        topics = shorten([it.topic for it in messages])
+        yield frame_id_unknown.finding(
+            f"frame_id of {topics} is {frame}, which is in no transform of {robot or 'tf'}; sent by"
+            f" {_who(senders)}",
+            _remedy(senders, meant or _alike(frame, own), elsewhere),
+            level=ERROR if meant or elsewhere else WARNING,
+            robot=robot,
+            node=senders[0],
+            names=(frame,),
+        )
+
+
+def _remedy(senders: Sequence[str], meant: Sequence[str], elsewhere: Sequence[str]) -> str:
+    if meant:
+        word = meant[0] if len(meant) == 1 else f"one of {shorten(meant, SEVERAL)}"
+        return f"set the frame of {_who(senders)} to {word}"
+    if elsewhere:
+        return f"it is on {and_then(elsewhere)}: who sends it there is to send it here, too"
+    return f"send a transform for it, or set the frame of {_who(senders)} to one that is in tf"
+
+
+def _meant(seen: Index, frame: str, own: Sequence[str]) -> list[str]:
+    """The frames of the robot that have this name beside the robot's, or without it."""
+    last = frame.rpartition("/")[2]
+    return sorted(it for it in own if seen.plain_frame(it) in (frame, last) or it == last)
+
+
+def _alike(frame: str, own: Sequence[str]) -> list[str]:
+    found = nearest(frame, sorted(own), MISTYPED)
+    return [found] if found else []
+
+
+def _by_sender(seen: Index) -> dict[tuple[str, str, tuple[str, ...]], list[_Message]]:
+    """Frame, robot and senders -> the messages; a camera has several topics, and one fault."""
+    found: dict[tuple[str, str, tuple[str, ...]], list[_Message]] = defaultdict(list)
+    for it in _messages(seen):
+        found[it.frame, it.robot, it.senders].append(it)
+    return found
+
+
+def _messages(seen: Index) -> Iterator[_Message]:
+    """What nodes other than viewers send; tf2 takes a frame with a slash in front as one without."""
+    for topic, written in seen.system.heard:
+        ends = seen.names.get((TOPIC, topic))
+        senders = nodes_of(at_work(ends.publishers)) if ends else ()
+        frame = written.removeprefix("/")
+        if ends and senders and frame:
+            robot = seen.robot(topic) or only(robots_of(seen, senders))
+            yield _Message(topic, ends.type, frame, robot, senders)
+
+
+def _trees(seen: Index, robot: str) -> list[Tree]:
+    """The trees that a robot gets: on its own topic, on one of all robots, where its nodes are."""
+    if not robot:
+        return list(seen.trees)
+    return [
+        it
+        for it in seen.trees
+        if seen.robot(it.topic) in ("", robot)
+        or robot in robots_of(seen, (*it.senders, *it.listeners))
+    ]
+
+
+def frames_in(tree: Tree) -> set[str]:
+    """The frames of a tree, without a slash in front."""
+    return {it.removeprefix("/") for edge in tree.edges for it in (edge.parent, edge.child)}
+
+
+def _who(senders: Sequence[str]) -> str:
+    return senders[0] if len(senders) == 1 else f"one of {shorten(senders, SEVERAL)}"

@@ -1,0 +1,310 @@
+"""Dangers of names: a subscriber or client whose other side has nearly the same name, two servers."""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from itertools import islice, zip_longest
+
+from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING, Finding
+from multibot_rewrite.nearest import CHOICE, COMPARED, MISTYPED, nearest
+from multibot_rewrite.rules.declaration import danger_rule
+from multibot_rewrite.rules.index import (
+    TF,
+    Ends,
+    Index,
+    and_then,
+    at_work,
+    is_spawner,
+    is_viewer,
+    last_word,
+    nodes_of,
+    robots_of,
+)
+from multibot_rewrite.rules.pair.causes import in_namespaces_above
+from multibot_rewrite.system.conventions import EVERYBODYS, chooses
+from multibot_rewrite.system.records import ACTION, SERVICE, TOPIC, End
+
+ABSENT = "is that robot started, and is its name right?"
+_DIGITS = re.compile(r"_?\d+")
+# Every node serves them, or many do: another one of such a type says nothing.
+_COMMON = (
+    "rcl_interfaces/",
+    "lifecycle_msgs/",
+    "std_srvs/",
+    "type_description_interfaces/",
+    "std_msgs/",
+)
+
+
+@danger_rule(
+    "MG303",
+    "topic-names-miss",
+    ERROR,
+    absence=True,
+    planned="MG111",
+    what="A node subscribes to a topic that nobody publishes, while nearly the same name is published:"
+    " with or without the robot's namespace, below another namespace or the node's own name, or"
+    " misspelled.",
+    why="The two sides never meet, and there is no error message.",
+    fix="Pass the remap rule of the hint, or write the other side's name in the parameters.",
+    bad="""\
+running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
+running: /joystick publishes /cmd_vel geometry_msgs/msg/Twist
+""",
+    good="""\
+running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
+running: /joystick publishes /robot1/cmd_vel geometry_msgs/msg/Twist
+""",
+)
+def topic_names_miss(seen: Index) -> Iterator[Finding]:
+    """What a person may click in RViz, and what only tools read, is a note."""
+    published = {
+        name: it for (kind, name), it in seen.names.items() if kind == TOPIC and it.publishers
+    }
+    unheard = {name: it for name, it in published.items() if not at_work(it.subscribers)}
+    for (kind, name), ends in seen.names.items():
+        if kind != TOPIC or ends.publishers or name in EVERYBODYS or ends.type == TF:
+            continue
+        for end in _each_node(ends.subscribers):
+            if is_viewer(end.node):
+                continue
+            # What chooses between several inputs seldom has all of them.
+            offered = unheard if chooses(end.node) else published
+            other = _published_instead(seen, end, offered, unheard)
+            if other:
+                yield _missed_topic(seen, end, published[other])
+
+
+def _each_node(ends: Iterable[End]) -> Iterator[End]:
+    return iter({end.node: end for end in ends}.values())
+
+
+def _published_instead(
+    seen: Index, end: End, published: dict[str, Ends], unheard: dict[str, Ends]
+) -> str:
+    """The published topic that was probably meant; empty for none."""
+    above = (it for it in _written_out(end.node, end.name) if it in published)
+    captured = next((it for it in above if published[it].type == end.type), "")
+    if captured:
+        return captured
+    robot, owner = seen.robot(end.node), seen.robot(end.name)
+    if not owner and robot:
+        # Its own robot has it: whether or not others read it as well.
+        own = [it for it in published if seen.robot(it) == robot and seen.plain(it) == end.name]
+        return next((it for it in own if published[it].type == end.type), "")
+    same = [
+        name
+        for name, it in published.items()
+        if it.type == end.type and nodes_of(it.publishers) != (end.node,)
+    ]
+    below = _without_own_name(end)
+    hidden = (it for it in same if it == below or _hides(published[it], end.name))
+    unheard_one = next((it for it in hidden if it in unheard), "")
+    if unheard_one:
+        return unheard_one
+    bare = (it for it in same if owner and not seen.robot(it) and it == seen.plain(end.name))
+    unread = (it for it in bare if it in unheard)
+    return next(unread, "") or alike(end.name, same, end.type)
+
+
+def _written_out(node: str, name: str) -> Iterator[str]:
+    """What a relative name may have been meant as: one of a namespace above, or one with its namespace
+    written out: ``/robot1/costmap/robot1/scan`` of ``robot1/scan``."""
+    yield from in_namespaces_above(node, name)
+    space = node
+    while space := space.rpartition("/")[0]:
+        if name.startswith(f"{space}/"):
+            yield name.removeprefix(space)
+
+
+def _hides(ends: Ends, meant: str) -> bool:
+    """Is it the other name below its publisher's own name, or with its namespace twice?"""
+    space, _, last = meant.rpartition("/")
+    own = (f"{space}/{last_word(node)}/{last}" for node in nodes_of(ends.publishers))
+    return ends.name in own or _is_doubled(ends.name, meant)
+
+
+def _without_own_name(end: End) -> str:
+    """What ``cmd_vel`` is for others that the node has as ``~/cmd_vel``; empty for other names."""
+    last = last_word(end.name)
+    return f"{end.node.rpartition('/')[0]}/{last}" if end.name == f"{end.node}/{last}" else ""
+
+
+def _is_doubled(name: str, meant: str) -> bool:
+    """Is it the other name with a namespace of it once more in front?"""
+    front = name.removesuffix(meant)
+    return front != name and meant.startswith(f"{front}/")
+
+
+def alike(name: str, known: Iterable[str], type_: str) -> str:
+    """The known name that is the same but for case, dashes or a misspelled word; empty for none.
+
+    Names that differ in their numbers alone are two things.
+    """
+    letters = _letters(name)
+    names = [it for it in islice(known, COMPARED) if it != name]
+    folded = next((it for it in names if _letters(it) == letters), "")
+    if folded or type_.startswith(_COMMON):
+        return folded
+    parts = name.split("/")
+    for at in (1, len(parts) - 1):
+        near = dict(_with_other_word(parts, at, names))
+        swapped = (it for it in near if sorted(it) == sorted(parts[at]))
+        slips = [it for it in near if _is_slip(it, parts[at])]
+        found = next(swapped, "") or nearest(parts[at], slips, MISTYPED)
+        if found:
+            return near[found]
+    return ""
+
+
+def _with_other_word(parts: list[str], at: int, names: Iterable[str]) -> Iterator[tuple[str, str]]:
+    """The names that differ in the word at one place alone, by that word; not by its number."""
+    rest = parts[:at] + parts[at + 1 :]
+    for name in names:
+        other = name.split("/")
+        same = len(other) == len(parts) and other[:at] + other[at + 1 :] == rest
+        if same and not _same_but_number(other[at], parts[at]):
+            yield other[at], name
+
+
+def _is_slip(one: str, other: str) -> bool:
+    """Is no part between underscores another word? `cmd_vel_out` is no slip of `cmd_vel_ui`, nor is
+    `lidar_l` of `lidar_r`."""
+    parts = list(zip_longest(one.split("_"), other.split("_"), fillvalue=""))
+    return all(here == there or nearest(here, (there,), CHOICE) for here, there in parts)
+
+
+def _letters(name: str) -> str:
+    """Its letters, digits and slashes, in lower case."""
+    return "".join(it for it in name.lower() if it.isalnum() or it == "/")
+
+
+def _same_but_number(one: str, other: str) -> bool:
+    return _DIGITS.sub("", one) == _DIGITS.sub("", other)
+
+
+def _missed_topic(seen: Index, end: End, other: Ends) -> Finding:
+    sender = nodes_of(other.publishers)[0]
+    message = f"subscribes to {end.name}, which nobody publishes; {sender} publishes {other.name}"
+    # The side in the wrong place is the one whose name has no robot, or is below the node.
+    if _is_doubled(other.name, end.name):
+        cause = f"its namespace is there twice: name it {last_word(other.name)} in {sender}"
+    elif seen.robot(end.name) and not seen.robot(other.name):
+        cause = f"pass the rule {other.name}:={end.name} to {sender}, or start it in the namespace"
+    else:
+        cause = f"pass the rule {end.name}:={other.name}, or write {other.name} in its parameters"
+    clicked = is_viewer(sender)
+    level = NOTE if clicked else ERROR
+    robot = seen.robot(end.node) or seen.robot(end.name)
+    return topic_names_miss.finding(
+        message, cause, level=level, robot=robot, node=end.node, names=(end.name, other.name)
+    )
+
+
+@danger_rule(
+    "MG304",
+    "server-names-miss",
+    ERROR,
+    absence=True,
+    what="A node calls a service or action that nobody serves, while nearly the same name is served:"
+    " with or without the robot's namespace, or misspelled. In a namespace without any node it is a"
+    " warning.",
+    why="The client waits for ever: no goal arrives, no node is activated.",
+    fix="Write the name as the server has it, or start the client in the robot's namespace.",
+    bad="""\
+running: /fleet_manager calls /robot_2/navigate_to_pose nav2_msgs/action/NavigateToPose
+running: /robot2/bt_navigator serves /robot2/navigate_to_pose nav2_msgs/action/NavigateToPose
+""",
+    good="""\
+running: /fleet_manager calls /robot2/navigate_to_pose nav2_msgs/action/NavigateToPose
+running: /robot2/bt_navigator serves /robot2/navigate_to_pose nav2_msgs/action/NavigateToPose
+""",
+)
+def server_names_miss(seen: Index) -> Iterator[Finding]:
+    """A service that is nowhere to be found may be optional: it is no finding."""
+    served: dict[tuple[str, str], list[str]] = defaultdict(list)
+    for (kind, name), ends in seen.names.items():
+        if ends.servers:
+            served[kind, ends.type].append(name)
+    for (kind, name), ends in seen.names.items():
+        if kind == TOPIC or ends.servers:
+            continue
+        for end in _each_node(ends.clients):
+            other = _served_instead(seen, end, served[kind, end.type])
+            does = "sends goals to" if kind == ACTION else "calls"
+            absent = (
+                not other
+                and not is_viewer(end.node)
+                and nobody_in(seen, name, served[kind, end.type])
+            )
+            if absent:
+                yield server_names_miss.finding(
+                    f"{does} {name}, which nobody serves; {absent}",
+                    ABSENT, level=WARNING, node=end.node, names=(name,),
+                )  # fmt: skip
+            if not other:
+                continue
+            server = nodes_of(seen.names[kind, other].servers)[0]
+            message = f"{does} {name}, which nobody serves; {server} serves {other}"
+            cause = f"pass the rule {name}:={other}, or start it in the namespace of the robot"
+            robot = seen.robot(end.node) or seen.robot(other)
+            level = NOTE if is_viewer(end.node) and not is_spawner(end.node) else ERROR
+            yield server_names_miss.finding(
+                message, cause, level=level, robot=robot, node=end.node, names=(name, other)
+            )
+
+
+def _served_instead(seen: Index, end: End, served: Sequence[str]) -> str:
+    robot, owner = seen.robot(end.node), seen.robot(end.name)
+    same = [it for it in served if seen.plain(it) == seen.plain(end.name)]
+    # Another robot's is no answer to a robot that lacks it.
+    near = [it for it in same if not owner or not seen.robot(it)]
+    own = [it for it in near if seen.robot(it) == robot]
+    captured: Callable[[str], bool] = served.__contains__
+    above = next(filter(captured, _written_out(end.node, end.name)), "")
+    return next(iter(own), "") or next(iter(near), "") or above or alike(end.name, served, end.type)
+
+
+def nobody_in(seen: Index, name: str, known: Iterable[str]) -> str:
+    """Words for a name in a namespace without any node, where robots have it in theirs; else ""."""
+    if seen.robot(name):
+        return ""
+    ends = {seen.plain(it): it for it in known if seen.robot(it)}
+    rests = (at for at in range(2, len(name)) if name[at] == "/")
+    for at in rests:
+        other, space = ends.get(name[at:]), name[:at]
+        if other and not any(it.name.startswith(f"{space}/") for it in seen.system.nodes):
+            return f"no node is in {space}, and {seen.robot(other)} has {other}"
+    return ""
+
+
+@danger_rule(
+    "MG305",
+    "service-of-two-nodes",
+    ERROR,
+    what="Nodes of several robots serve a service of the same name, or several nodes the same action.",
+    why="A request is answered by any of them, and a goal reaches all: two robots drive to it.",
+    fix="Use a relative name, or a remap rule, so that each robot has its own.",
+    bad="""\
+running: /robot1/bt_navigator serves /navigate_to_pose nav2_msgs/action/NavigateToPose
+running: /robot2/bt_navigator serves /navigate_to_pose nav2_msgs/action/NavigateToPose
+""",
+    good="""\
+running: /robot1/bt_navigator serves /robot1/navigate_to_pose nav2_msgs/action/NavigateToPose
+running: /robot2/bt_navigator serves /robot2/navigate_to_pose nav2_msgs/action/NavigateToPose
+""",
+)
+def service_of_two_nodes(seen: Index) -> Iterator[Finding]:
+    """Of two nodes with one name the nodes are the finding; two filters of robot_localization in one
+    robot both serve `set_pose`, which is how they are made."""
+    for (kind, name), ends in seen.names.items():
+        nodes = nodes_of(ends.servers) if ends.servers else ()
+        if len(nodes) > 1 and (kind == ACTION or len(robots_of(seen, nodes)) > 1):
+            what = "action" if kind == ACTION else SERVICE
+            message = f"{and_then(nodes)} both serve the {what} {name}"
+            cause = "an absolute name in their code or parameters: make it relative, or remap it"
+            yield service_of_two_nodes.finding(
+                message, cause, robot=seen.robot(name), node=nodes[0], names=(name,)
+            )

@@ -1,0 +1,113 @@
+"""Dangers of nodes: two of one name, two managers of one node."""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Iterator, Sequence
+
+from multibot_rewrite.findings.finding import ERROR, Finding
+from multibot_rewrite.graph.tool_nodes import is_tool
+from multibot_rewrite.graph.wording import SEVERAL, shorten
+from multibot_rewrite.rules.declaration import danger_rule
+from multibot_rewrite.rules.index import Index, and_then, is_viewer, nodes_of
+from multibot_rewrite.system.records import SERVICE
+
+# So many doubled nodes are two robots rather than two nodes.
+MANY = 3
+_CHANGE_STATE = "/change_state"
+
+
+@danger_rule(
+    "MG301",
+    "nodes-of-one-name",
+    ERROR,
+    planned="MG105",
+    what="Several nodes that run have the same full name.",
+    why="They have the same topics, parameters and services: a command or parameter that is meant for"
+    " one reaches both, or either. Where all nodes of a robot are there twice, two robots were started"
+    " without a namespace.",
+    fix="Give each robot a namespace (`namespace:=robot1`, `PushRosNamespace`), or each node a name"
+    " (`--ros-args -r __node:=NAME`). A node that was killed stays visible for 20 s: look again.",
+    bad="""\
+running: /driver
+running: /driver
+""",
+    good="""\
+running: /robot1/driver
+running: /robot2/driver
+""",
+)
+def nodes_of_one_name(seen: Index) -> Iterator[Finding]:
+    """Many of them are one finding: two robots."""
+    times = Counter(node.name for node in seen.system.nodes)
+    twins = [name for name, count in times.items() if count > 1 and _counts(name)]
+    by_robot: dict[str, list[str]] = defaultdict(list)
+    for name in twins:
+        by_robot[seen.robot(name)].append(name)
+    for robot, names in by_robot.items():
+        if len(names) >= MANY:
+            yield _two_robots(robot, names)
+            continue
+        for name in names:
+            message = f"{times[name]} nodes have the name {name}"
+            cause = (
+                "started twice, or two robots without a namespace of their own; a node that was"
+                " killed stays visible for 20 s"
+            )
+            yield nodes_of_one_name.finding(message, cause, robot=robot, node=name)
+
+
+def _counts(node: str) -> bool:
+    """Tools may run twice. Of two containers each gets the components of the other."""
+    return not is_tool(node) or node.endswith("_container")
+
+
+def _two_robots(robot: str, names: Sequence[str]) -> Finding:
+    """``names`` are all there more than once."""
+    message = f"{len(names)} nodes run more than once: {shorten(names, SEVERAL)}"
+    if robot:
+        cause = f"{robot} was started twice, or another robot was started with its namespace"
+    else:
+        cause = (
+            "two robots were started without a namespace: give each its own (namespace:=robot1,"
+            " PushRosNamespace in the launch file)"
+        )
+    return nodes_of_one_name.finding(message, cause, robot=robot, node=names[0], names=tuple(names))
+
+
+@danger_rule(
+    "MG302",
+    "managed-twice",
+    ERROR,
+    what="Several nodes change the life cycle state of the same node: two lifecycle managers.",
+    why="One manager shuts down what the other has just activated; with `bond` both reset all nodes.",
+    fix="Start one lifecycle manager for a node, and write in its `node_names` only nodes of its own"
+    " robot.",
+    bad="""\
+running: /robot1/lifecycle_manager calls /robot1/amcl/change_state lifecycle_msgs/srv/ChangeState
+running: /robot1/lifecycle_manager_2 calls /robot1/amcl/change_state lifecycle_msgs/srv/ChangeState
+running: /robot1/amcl serves /robot1/amcl/change_state lifecycle_msgs/srv/ChangeState
+""",
+    good="""\
+running: /robot1/lifecycle_manager calls /robot1/amcl/change_state lifecycle_msgs/srv/ChangeState
+running: /robot1/amcl serves /robot1/amcl/change_state lifecycle_msgs/srv/ChangeState
+""",
+)
+def managed_twice(seen: Index) -> Iterator[Finding]:
+    """One finding for all nodes that the same managers have; an operator's tool is none."""
+    managed: dict[tuple[str, ...], list[str]] = defaultdict(list)
+    for (kind, name), ends in seen.names.items():
+        if kind == SERVICE and name.endswith(_CHANGE_STATE):
+            clients = nodes_of(end for end in ends.clients if not _asks_for_a_person(end.node))
+            managed[clients].append(name.removesuffix(_CHANGE_STATE))
+    for managers, nodes in managed.items():
+        if len(managers) > 1:
+            message = f"{and_then(managers)} all manage the life cycle of {shorten(sorted(nodes))}"
+            cause = "one of them is too many, or its node_names has nodes of another robot"
+            yield managed_twice.finding(
+                message, cause, robot=seen.robot(nodes[0]), node=managers[0], names=tuple(managers)
+            )
+
+
+def _asks_for_a_person(node: str) -> bool:
+    return is_viewer(node) or is_tool(node)

@@ -1,0 +1,129 @@
+"""Dangers of what is between a sender and a robot: relays to another robot, limits left out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from multibot_rewrite.findings.finding import ERROR, Finding
+from multibot_rewrite.rules import words
+from multibot_rewrite.rules.declaration import danger_rule
+from multibot_rewrite.rules.index import Ends, Index, at_work, last_word, nodes_of
+from multibot_rewrite.system.conventions import chooses
+from multibot_rewrite.system.records import TOPIC
+
+# Of Nav2, between its controller and the robot: they limit velocities, and stop before obstacles.
+_LIMITS = ("velocity_smoother", "collision_monitor")
+_CONTROLLER = "controller_server"
+
+
+@danger_rule(
+    "MG314",
+    "relayed-to-another-robot",
+    ERROR,
+    what="A node that belongs to no robot reads commands, or what a body measures, of one robot and"
+    " publishes them as those of another: a relay or bridge.",
+    why="Who drives the one robot moves the other, or one is localized with the scan of the other.",
+    fix="Correct the robot's name in the topics of the relay. Where one robot is meant to do what the"
+    " other does, write the relay into the plan.",
+    bad="""\
+running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
+running: /robot2/driver subscribes /robot2/cmd_vel geometry_msgs/msg/Twist
+running: /relay subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
+running: /relay publishes /robot2/cmd_vel geometry_msgs/msg/Twist
+""",
+    good="""\
+running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
+running: /relay subscribes /robot1/joy_vel geometry_msgs/msg/Twist
+running: /relay publishes /robot1/cmd_vel geometry_msgs/msg/Twist
+""",
+    line=4,
+)
+def relayed_to_another_robot(seen: Index) -> Iterator[Finding]:
+    """Who also publishes what it reads is a bridge of all robots to another network."""
+    read = {
+        (end.node, seen.plain(ends.name)): ends
+        for ends in _of_bodies(seen)
+        for end in at_work(ends.subscribers)
+        if not seen.robot(end.node)
+    }
+    for ends in _of_bodies(seen):
+        for node in nodes_of(ends.publishers):
+            source = read.get((node, seen.plain(ends.name)))
+            if source is None or node in nodes_of(ends.subscribers):
+                continue
+            owner, other = seen.robot(source.name), seen.robot(ends.name)
+            yield relayed_to_another_robot.finding(
+                f"reads {source.name} of {owner} and publishes {ends.name} of {other}",
+                f"a name in its topics is wrong: {other} gets what is of {owner}",
+                robot=other,
+                node=node,
+                names=(ends.name,),
+            )
+
+
+def _of_bodies(seen: Index) -> Iterator[Ends]:
+    """The robots' topics with commands, and with what a body measures."""
+    for (kind, name), ends in seen.names.items():
+        own = kind == TOPIC and seen.robot(name)
+        if own and (words.is_of_a_body(ends.type) or words.moves(seen.plain(name), ends.type)):
+            yield ends
+
+
+@danger_rule(
+    "MG315",
+    "limits-left-out",
+    ERROR,
+    what="Nav2's controller_server sends velocities on the topic on which velocity_smoother or"
+    " collision_monitor sends them, after it has limited them; or a driver reads an input of twist_mux,"
+    " and nobody its output.",
+    why="The robot obeys what was not limited or chosen: nothing stops it before an obstacle.",
+    fix="Pass the remap rule cmd_vel:=cmd_vel_nav to controller_server, as Nav2's launch files do; give"
+    " the driver the output of twist_mux.",
+    bad="""\
+running: /robot1/controller_server publishes /robot1/cmd_vel geometry_msgs/msg/Twist
+running: /robot1/collision_monitor subscribes /robot1/cmd_vel_smoothed geometry_msgs/msg/Twist
+running: /robot1/collision_monitor publishes /robot1/cmd_vel geometry_msgs/msg/Twist
+""",
+    good="""\
+running: /robot1/controller_server publishes /robot1/cmd_vel_nav geometry_msgs/msg/Twist
+running: /robot1/collision_monitor subscribes /robot1/cmd_vel_nav geometry_msgs/msg/Twist
+running: /robot1/collision_monitor publishes /robot1/cmd_vel geometry_msgs/msg/Twist
+""",
+)
+def limits_left_out(seen: Index) -> Iterator[Finding]:
+    """docking_server sends beside collision_monitor, as it is made."""
+    yield from _mux_left_out(seen)
+    for ends in _velocities(seen):
+        nodes = nodes_of(ends.publishers)
+        limits = [it for it in nodes if last_word(it) in _LIMITS]
+        for node in nodes if limits else ():
+            if last_word(node) == _CONTROLLER:
+                yield limits_left_out.finding(
+                    f"publishes {ends.name} beside {limits[0]}, which is to limit it",
+                    "pass it the rule cmd_vel:=cmd_vel_nav, so that velocity_smoother reads it first",
+                    robot=seen.robot(node),
+                    node=node,
+                    names=(ends.name,),
+                )
+
+
+def _mux_left_out(seen: Index) -> Iterator[Finding]:
+    """A driver that reads an input of a mux whose output nobody reads."""
+    chosen = [it for it in _velocities(seen) if not at_work(it.subscribers)]
+    for ends in chosen:
+        for mux in filter(chooses, nodes_of(ends.publishers)):
+            for given in _velocities(seen):
+                readers = nodes_of(at_work(given.subscribers))
+                drivers = [it for it in readers if it != mux]
+                if mux in readers and drivers and given.publishers:
+                    yield limits_left_out.finding(
+                        f"obeys {given.name}, an input of {mux}, whose output {ends.name} nobody reads",
+                        f"pass it the rule {last_word(given.name)}:={last_word(ends.name)}",
+                        robot=seen.robot(drivers[0]),
+                        node=drivers[0],
+                        names=(given.name, ends.name),
+                    )
+
+
+def _velocities(seen: Index) -> Iterator[Ends]:
+    return (it for it in seen.orders.values() if words.moves(seen.plain(it.name), it.type))

@@ -1,0 +1,261 @@
+"""Dangers of data: one topic written or read by several robots, a map or joint states twice."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.graph.wording import shorten
+from multibot_rewrite.rules import words
+from multibot_rewrite.rules.declaration import danger_rule
+from multibot_rewrite.rules.index import (
+    Ends,
+    Index,
+    and_then,
+    at_work,
+    last_word,
+    nodes_of,
+    robots_of,
+)
+
+
+def own_namespace(seen: Index, name: str, robot: str) -> str:
+    """What to do about a name that the robots share: how each gets its own."""
+    return (
+        f"each robot needs its own: a relative name in the node's code or parameters, or the rule"
+        f" {name}:={name.strip('/')} (--ros-args -r, remappings= in the launch file) for a node in"
+        f" the namespace of {robot}"
+    )
+
+
+@danger_rule(
+    "MG320",
+    "topic-of-several-robots",
+    ERROR,
+    drawn="leak",
+    planned="MG103",
+    what="Nodes of several robots publish sensor data, odometry, a map, a command or a description on"
+    " the same topic.",
+    why="Whoever reads it gets the data of all robots by turns: localization jumps, a controller"
+    " follows two plans.",
+    fix="Use relative topics in the nodes' parameters, or a remap rule: each robot needs its own.",
+    bad="""\
+running: /robot1/lidar publishes /scan sensor_msgs/msg/LaserScan
+running: /robot2/lidar publishes /scan sensor_msgs/msg/LaserScan
+""",
+    good="""\
+running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan
+running: /robot2/lidar publishes /robot2/scan sensor_msgs/msg/LaserScan
+""",
+)
+def topic_of_several_robots(seen: Index) -> Iterator[Finding]:
+    """Reports and orders of a fleet are none: only what belongs to one robot."""
+    for ends in seen.topics:
+        if len(ends.publishers) < 2:
+            continue
+        nodes = nodes_of(at_work(ends.publishers))
+        robots = robots_of(seen, nodes)
+        plain = seen.plain(ends.name)
+        # Who sends commands to another robot is a rule of its own.
+        orders = words.moves(plain, ends.type) and bool(seen.robot(ends.name))
+        if len(robots) > 1 and words.is_of_one_robot(plain, ends.type) and not orders:
+            message = f"{and_then(robots)} publish on {ends.name}: {shorten(nodes)}"
+            cause = own_namespace(seen, ends.name, robots[0])
+            yield topic_of_several_robots.finding(message, cause, node=nodes[0], names=(ends.name,))
+
+
+@danger_rule(
+    "MG321",
+    "data-of-another-robot",
+    ERROR,
+    drawn="cross-talk",
+    planned="MG104",
+    what="A robot's node subscribes to data of another robot, although its own robot has the same"
+    " topic.",
+    why="The robot is localized, or avoids obstacles, with the data of the other.",
+    fix="Correct the parameter or remap rule that has the other robot's name.",
+    bad="""\
+running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan
+running: /robot2/lidar publishes /robot2/scan sensor_msgs/msg/LaserScan
+running: /robot2/amcl subscribes /robot1/scan sensor_msgs/msg/LaserScan
+""",
+    good="""\
+running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan
+running: /robot2/lidar publishes /robot2/scan sensor_msgs/msg/LaserScan
+running: /robot2/amcl subscribes /robot2/scan sensor_msgs/msg/LaserScan
+""",
+    line=3,
+)
+def data_of_another_robot(seen: Index) -> Iterator[Finding]:
+    """A node that reads both robots' topics is meant to: it compares or follows."""
+    read_across = any(_is_read_across(seen, it) for it in seen.topics)
+    own = _topics_by_robot(seen) if read_across else {}
+    for (owner, plain), ends in own.items():
+        sensors = words.is_of_one_robot(plain, ends.type)
+        for end in at_work(ends.subscribers) if sensors else ():
+            robot = seen.robot(end.node)
+            mine = own.get((robot, plain))
+            if robot in ("", owner) or mine is None or end.node in nodes_of(mine.subscribers):
+                continue
+            message = (
+                f"subscribes to {ends.name} of {owner}, but {robot} has {mine.name}, which it does"
+                " not read"
+            )
+            cause = f"a parameter or remap rule of {robot} names {owner}"
+            yield data_of_another_robot.finding(
+                message, cause, robot=robot, node=end.node, names=(ends.name, mine.name)
+            )
+
+
+def _is_read_across(seen: Index, ends: Ends) -> bool:
+    """Does a node of one robot read the topic of another?"""
+    owner = seen.robot(ends.name)
+    return bool(owner) and any(seen.robot(it.node) not in ("", owner) for it in ends.subscribers)
+
+
+def _topics_by_robot(seen: Index) -> dict[tuple[str, str], Ends]:
+    """What each robot publishes, by the name without the robot's."""
+    return {
+        (robot, seen.plain(ends.name)): ends
+        for ends in seen.topics
+        if ends.publishers and (robot := seen.robot(ends.name))
+    }
+
+
+@danger_rule(
+    "MG322",
+    "one-sensor-for-several-robots",
+    ERROR,
+    drawn="leak",
+    planned="MG103",
+    what="Nodes of several robots subscribe to one topic with a scan, odometry, IMU data or joint"
+    " states.",
+    why="These are of one robot's body: all others are localized with them as well.",
+    fix="Use relative topics in the nodes' parameters, or a remap rule: each robot needs its own.",
+    bad="""\
+running: /lidar publishes /scan sensor_msgs/msg/LaserScan
+running: /robot1/amcl subscribes /scan sensor_msgs/msg/LaserScan
+running: /robot2/amcl subscribes /scan sensor_msgs/msg/LaserScan
+""",
+    good="""\
+running: /lidar publishes /robot1/scan sensor_msgs/msg/LaserScan
+running: /robot1/amcl subscribes /robot1/scan sensor_msgs/msg/LaserScan
+running: /robot2/amcl subscribes /robot2/scan sensor_msgs/msg/LaserScan
+""",
+    line=2,
+)
+def one_sensor_for_several_robots(seen: Index) -> Iterator[Finding]:
+    """Of a topic without a robot's name; that of a robot is for those who follow it."""
+    for ends in seen.topics:
+        if not words.is_of_a_body(ends.type) or seen.robot(ends.name):
+            continue
+        nodes = nodes_of(at_work(ends.subscribers))
+        robots = robots_of(seen, nodes)
+        senders = robots_of(seen, nodes_of(ends.publishers))
+        if len(robots) > 1 and len(senders) < 2:
+            message = f"{and_then(robots)} all read {ends.name}: {shorten(nodes)}"
+            cause = own_namespace(seen, ends.name, robots[0])
+            yield one_sensor_for_several_robots.finding(
+                message, cause, node=nodes[0], names=(ends.name,)
+            )
+
+
+@danger_rule(
+    "MG323",
+    "two-maps",
+    ERROR,
+    what="Several nodes publish a map on the same topic.",
+    why="A map is latched: a node that starts gets both, and uses the one that comes last.",
+    fix="Start one of map_server and SLAM for a topic, or give each robot's map its own topic.",
+    bad="""\
+running: /robot1/map_server publishes /robot1/map nav_msgs/msg/OccupancyGrid reliable transient_local
+running: /robot1/slam_toolbox publishes /robot1/map nav_msgs/msg/OccupancyGrid reliable transient_local
+""",
+    good="""\
+running: /robot1/map_server publishes /robot1/map nav_msgs/msg/OccupancyGrid reliable transient_local
+running: /robot2/slam_toolbox publishes /robot2/map nav_msgs/msg/OccupancyGrid reliable transient_local
+""",
+)
+def two_maps(seen: Index) -> Iterator[Finding]:
+    """Of nodes of several robots on one topic it is a topic of several robots."""
+    for ends in seen.topics:
+        nodes = nodes_of(ends.publishers) if ends.type == words.MAP else ()
+        if len(nodes) < 2 or len(robots_of(seen, nodes)) > 1:
+            continue
+        message = f"{and_then(nodes)} both publish the map {ends.name}"
+        cause = "map_server and SLAM, or the map servers of two robots: start one, or remap one"
+        yield two_maps.finding(
+            message, cause, robot=seen.robot(ends.name), node=nodes[0], names=(ends.name,)
+        )
+
+
+@danger_rule(
+    "MG324",
+    "joint-states-twice",
+    WARNING,
+    what="joint_state_publisher publishes on the same topic as a driver or controller.",
+    why="It publishes every movable joint of the description, by default at 0: the robot's joints jump"
+    " between their true position and 0.",
+    fix="Start joint_state_publisher only where no hardware or simulator is, or let it read the others"
+    " (`source_list`) and publish on another topic.",
+    bad="""\
+running: /robot1/joint_state_broadcaster publishes /robot1/joint_states sensor_msgs/msg/JointState
+running: /robot1/joint_state_publisher publishes /robot1/joint_states sensor_msgs/msg/JointState
+""",
+    good="""\
+running: /robot1/joint_state_broadcaster publishes /robot1/joint_states sensor_msgs/msg/JointState
+running: /robot1/robot_state_publisher subscribes /robot1/joint_states sensor_msgs/msg/JointState
+""",
+    line=2,
+)
+def joint_states_twice(seen: Index) -> Iterator[Finding]:
+    """Several drivers with a part of the joints each are usual."""
+    for ends in seen.topics:
+        nodes: Sequence[str] = nodes_of(ends.publishers) if ends.type == words.JOINTS else ()
+        made_up = [node for node in nodes if last_word(node).startswith("joint_state_publisher")]
+        if made_up and len(nodes) > 1 and len(robots_of(seen, nodes)) < 2:
+            other = next((node for node in nodes if node not in made_up), nodes[1])
+            message = f"publishes on {ends.name} as {other} does"
+            cause = "joint_state_publisher is for a robot without hardware or simulator: stop it"
+            yield joint_states_twice.finding(
+                message, cause, robot=seen.robot(ends.name), node=made_up[0], names=(ends.name,)
+            )
+
+
+@danger_rule(
+    "MG325",
+    "odometry-twice",
+    ERROR,
+    what="Two nodes publish the odometry of one robot, or its description, on the same topic. For a"
+    " description it is a warning.",
+    why="Who reads it gets both by turns: the odometry of two filters jumps from one to the other, a"
+    " controller takes the description that comes last.",
+    fix="Give each its own topic: `odometry/filtered:=odometry/local` for the first of two filters.",
+    bad="""\
+running: /robot1/ekf_local publishes /robot1/odometry/filtered nav_msgs/msg/Odometry
+running: /robot1/ekf_global publishes /robot1/odometry/filtered nav_msgs/msg/Odometry
+""",
+    good="""\
+running: /robot1/ekf_local publishes /robot1/odometry/local nav_msgs/msg/Odometry
+running: /robot1/ekf_global publishes /robot1/odometry/filtered nav_msgs/msg/Odometry
+""",
+)
+def odometry_twice(seen: Index) -> Iterator[Finding]:
+    """A bag that is played is one as well, and so are relays: they are findings of their own."""
+    for ends in seen.topics:
+        if len(ends.publishers) < 2:
+            continue
+        described = last_word(ends.name) == words.DESCRIPTION
+        nodes = nodes_of(at_work(ends.publishers))
+        twice = len(nodes) > 1 and (described or ends.type == words.ODOMETRY)
+        played = any(last_word(node).startswith(words.PLAYER) for node in nodes)
+        if not twice or played or len(robots_of(seen, nodes)) > 1:
+            continue
+        yield odometry_twice.finding(
+            f"{and_then(nodes)} both publish {ends.name}",
+            "give each its own topic, or stop one",
+            level=WARNING if described else ERROR,
+            robot=seen.robot(ends.name),
+            node=nodes[0],
+            names=(ends.name,),
+        )

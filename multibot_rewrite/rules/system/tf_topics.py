@@ -1,0 +1,156 @@
+"""Dangers of tf topics: one robot on two of them, a tree in pieces."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+
+from multibot_rewrite.findings.finding import ERROR, Finding
+from multibot_rewrite.graph.wording import shorten
+from multibot_rewrite.rules.declaration import danger_rule
+from multibot_rewrite.rules.index import (
+    Index,
+    is_viewer,
+    last_word,
+    only,
+    robots_of,
+    unique,
+)
+from multibot_rewrite.system.conventions import BODY_FRAMES
+
+TF = "tf"
+
+
+@danger_rule(
+    "MG405",
+    "tf-on-two-topics",
+    ERROR,
+    planned="MG205",
+    what="Of one robot's nodes some send or hear tf on `/tf`, some on the robot's own topic.",
+    why="A listener hears one half of the tree: `Could not find a connection between 'odom' and"
+    " 'base_link'`.",
+    fix="Pass `-r /tf:=tf -r /tf_static:=tf_static` to all nodes of the robot, or to none; for"
+    " listeners in a process to the whole process.",
+    bad="""\
+running: /robot1/robot_state_publisher publishes /robot1/tf tf2_msgs/msg/TFMessage
+running: /robot1/driver publishes /tf tf2_msgs/msg/TFMessage
+""",
+    good="""\
+running: /robot1/robot_state_publisher publishes /robot1/tf tf2_msgs/msg/TFMessage
+running: /robot1/driver publishes /robot1/tf tf2_msgs/msg/TFMessage
+""",
+    line=2,
+)
+def tf_on_two_topics(seen: Index) -> Iterator[Finding]:
+    """Where the odd topic is another robot's, it is that robot's tree that is disturbed. One that is
+    not called tf, such as that of a simulator's ground truth, is no robot's tree."""
+    senders: dict[str, dict[str, list[str]]] = defaultdict(dict)
+    listeners: dict[str, dict[str, list[str]]] = defaultdict(dict)
+    for tree in (it for it in seen.trees if last_word(seen.plain(it.topic)) == TF):
+        for found, nodes in ((senders, tree.senders), (listeners, tree.listeners)):
+            for node in (it for it in nodes if seen.robot(it) and not is_viewer(it)):
+                found[seen.robot(node)].setdefault(tree.topic, []).append(node)
+    for robot, topics in senders.items():
+        home = _home(seen, robot, topics)
+        odd = [it for it in topics if it != home]
+        yield from (_sends_elsewhere(seen, robot, home, it, topics[it]) for it in odd)
+        heard = listeners.get(robot, {})
+        lost = [it for it in heard if it not in topics and it != home]
+        for topic in lost:
+            deaf = [it for it in heard[topic] if it not in heard.get(home, ())]
+            if deaf:
+                yield _hears_elsewhere(seen, robot, home, topic, deaf)
+
+
+def _home(seen: Index, robot: str, topics: Mapping[str, Sequence[str]]) -> str:
+    """The tf topic of a robot: its own one if it has one, else where most of its nodes send."""
+    own = [it for it in topics if seen.robot(it) == robot]
+    return next(iter(own), "") or max(topics, key=lambda it: len(topics[it]))
+
+
+def _sends_elsewhere(
+    seen: Index, robot: str, home: str, topic: str, nodes: Sequence[str]
+) -> Finding:
+    verb = "sends" if len(nodes) == 1 else "send"
+    message = f"{shorten(nodes)} {verb} tf on {topic}, the other nodes of {robot} on {home}"
+    return tf_on_two_topics.finding(
+        message, _remap(seen, robot, home, topic), robot=robot, node=nodes[0], names=(topic, home)
+    )
+
+
+def _hears_elsewhere(
+    seen: Index, robot: str, home: str, topic: str, nodes: Sequence[str]
+) -> Finding:
+    verb = "hears" if len(nodes) == 1 else "hear"
+    message = f"{shorten(nodes)} {verb} tf on {topic}, but {robot} sends it on {home}"
+    return tf_on_two_topics.finding(
+        message, _remap(seen, robot, home, topic), robot=robot, node=nodes[0], names=(topic, home)
+    )
+
+
+def _remap(seen: Index, robot: str, home: str, topic: str) -> str:
+    other = seen.robot(topic)
+    if other not in ("", robot):
+        return f"a namespace or remap rule of {robot} names {other}"
+    target = "tf" if home.startswith(f"/{robot}/") else home
+    static = "/".join("tf_static" if it == "tf" else it for it in target.split("/"))
+    rules = f"-r {topic}:={target} -r /tf_static:={static}"
+    return f"pass {rules}: to the whole process, where the node shares one"
+
+
+@danger_rule(
+    "MG406",
+    "tf-tree-in-pieces",
+    ERROR,
+    absence=True,
+    what="The odometry frame and the robot's base are on one tf topic and not connected.",
+    why="Nothing that needs the robot's place works: costmaps, AMCL, RViz with the fixed frame `odom`.",
+    fix="Start what sends odometry (a driver, a controller, an EKF), with the frames that the others"
+    " use: `odom_frame`, `base_frame_id`, `robot_base_frame`.",
+    bad="""\
+running: transform map -> odom on /robot1/tf by /robot1/amcl
+running: transform base_link -> laser on /robot1/tf_static by /robot1/robot_state_publisher
+""",
+    good="""\
+running: transform map -> odom on /robot1/tf by /robot1/amcl
+running: transform odom -> base_link on /robot1/tf by /robot1/driver
+running: transform base_link -> laser on /robot1/tf_static by /robot1/robot_state_publisher
+""",
+    line=1,
+)
+def tf_tree_in_pieces(seen: Index) -> Iterator[Finding]:
+    """By the usual names of these frames (REP 105); other pieces may be meant."""
+    bases = BODY_FRAMES[::-1]
+    for tree in seen.trees:
+        above: dict[str, str] = {edge.child: edge.parent for edge in tree.edges}
+        if len({(edge.child, edge.parent) for edge in tree.edges}) > len(above):
+            # A frame with two parents is a finding of its own.
+            continue
+        frames = unique(it for edge in tree.edges for it in (edge.parent, edge.child))
+        plain = {it: seen.plain_frame(it) for it in frames}
+        for odom in (it for it in frames if plain[it] == "odom"):
+            robot = seen.frame_robot(odom)
+            own = [it for it in frames if plain[it] in bases and seen.frame_robot(it) == robot]
+            roots = {root_of(it, above) for it in own}
+            # In a circle there is no root.
+            if not own or root_of(odom, above) in {*roots, *above}:
+                continue
+            found = next(iter(roots))
+            message = (
+                f"{odom} and {own[0]} are not connected on {tree.topic}: one hangs below"
+                f" {root_of(odom, above)}, the other below {found}"
+            )
+            cause = f"nobody sends {odom} -> {found}: is odometry started, are its frames the same?"
+            yield tf_tree_in_pieces.finding(
+                message, cause, robot=robot or only(robots_of(seen, tree.senders)),
+                names=(odom, own[0]),
+            )  # fmt: skip
+
+
+def root_of(frame: str, above: Mapping[str, str]) -> str:
+    """The frame above all that are above it; in a circle any of them."""
+    for _ in above:
+        if frame not in above:
+            return frame
+        frame = above[frame]
+    return frame

@@ -1,0 +1,292 @@
+"""Dangers of transforms: two parents, cycles, frames of several robots that collide."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+from multibot_rewrite.findings.finding import ERROR, Finding
+from multibot_rewrite.graph.wording import SEVERAL, shorten
+from multibot_rewrite.rules.declaration import danger_rule
+from multibot_rewrite.rules.index import (
+    Index,
+    Tree,
+    and_then,
+    last_word,
+    only,
+    robots_of,
+    unique,
+)
+from multibot_rewrite.system.conventions import WORLD_FRAMES
+
+_STATIC = "static_transform_publisher"
+
+
+@danger_rule(
+    "MG401",
+    "frame-with-two-parents",
+    ERROR,
+    planned="MG201",
+    what="A tf frame has two parents on one tf topic: two nodes send it.",
+    why="For listeners it jumps between two places.",
+    fix="Stop one of the two: `publish_tf: false` of the EKF, `enable_odom_tf: false` of"
+    " diff_drive_controller, `tf_broadcast: false` of AMCL; or give each robot its frames.",
+    bad="""\
+running: transform odom -> robot1/base_link on /tf
+running: transform map -> robot1/base_link on /tf
+""",
+    good="""\
+running: transform odom -> robot1/base_link on /tf
+running: transform map -> odom on /tf
+""",
+)
+def frame_with_two_parents(seen: Index) -> Iterator[Finding]:
+    """The cause names the nodes that may have sent it."""
+    for tree in seen.trees:
+        for child, parents in _parents(tree).items():
+            if len(parents) < 2:
+                continue
+            both = and_then(sorted(parents))
+            message = f"frame {child} has {len(parents)} parents on {tree.topic}: {both}"
+            robot = seen.frame_robot(child) or only(robots_of(seen, tree.senders))
+            yield frame_with_two_parents.finding(
+                message, _who_sends(seen, tree, child), robot=robot, names=(child, *sorted(parents))
+            )
+
+
+def _parents(tree: Tree) -> dict[str, set[str]]:
+    found: dict[str, set[str]] = defaultdict(set)
+    for edge in tree.edges:
+        found[edge.child].add(edge.parent)
+    return found
+
+
+def _who_sends(seen: Index, tree: Tree, frame: str) -> str:
+    """The nodes that may have sent it: those of the frame's robot first."""
+    robots = robots_of(seen, tree.senders)
+    owner = seen.frame_robot(frame)
+    nodes = sorted(tree.senders, key=lambda it: seen.robot(it) != owner)
+    sent = f"two of the nodes that send on {tree.topic}: {shorten(nodes, SEVERAL)}" if nodes else ""
+    if len(robots) > 1 and not owner:
+        return f"{and_then(robots)} need frames of their own, or tf topics of their own; {sent}"
+    if len(robots) > 1:
+        return f"{sent}; a node of another robot that has the names of {owner}?"
+    return sent or "two nodes send it: stop one"
+
+
+@danger_rule(
+    "MG402",
+    "robots-frames-collide",
+    ERROR,
+    planned="MG202",
+    what="Several robots send frames on one tf topic whose names do not say which robot's they are:"
+    " `base_link` of both.",
+    why="Every listener sees one robot that jumps between the places of all: Nav2 drives by the"
+    " odometry of another robot, RViz flickers.",
+    fix="Either give each robot its own tf topic: `-r /tf:=tf -r /tf_static:=tf_static` for all nodes"
+    " in its namespace; or its own frames: `urdf-postfix`, and the frames in its nodes' parameters.",
+    bad="""\
+running: transform odom -> base_link on /tf by /robot1/driver, /robot2/driver
+""",
+    good="""\
+running: transform odom -> base_link on /robot1/tf by /robot1/driver
+running: transform odom -> base_link on /robot2/tf by /robot2/driver
+""",
+)
+def robots_frames_collide(seen: Index) -> Iterator[Finding]:
+    """One robot may have no name in its frames, if all others have."""
+    for tree in seen.trees:
+        who = _collide(seen, tree)
+        if who:
+            bare = _bare_frames(seen, tree)
+            message = f"{who} on {tree.topic}: {shorten(bare, SEVERAL)}"
+            cause = _either(tree, robots_of(seen, tree.senders))
+            yield robots_frames_collide.finding(message, cause, names=tuple(bare))
+
+
+def _collide(seen: Index, tree: Tree) -> str:
+    """Who sends frames that do not say whose they are; empty where nothing collides."""
+    robots, bare = robots_of(seen, tree.senders), set(_bare_frames(seen, tree))
+    # Who sends on another robot's topic is a finding of its own.
+    if bare and not seen.robot(tree.topic):
+        named = {seen.frame_robot(edge.child) for edge in tree.edges}
+        nameless = [robot for robot in robots if robot not in named]
+        doubled = {seen.plain_frame(it) for it in _named_frames(seen, tree)}
+        if len(nameless) > 1 or (not nameless and doubled & bare):
+            return f"{and_then(nameless or robots)} send frames without a robot's name"
+    if bare and _twice(seen, tree.senders):
+        return "two nodes of one name send the same frames"
+    return ""
+
+
+def _twice(seen: Index, senders: Iterable[str]) -> list[str]:
+    """Senders of which two run, as where two robots have no namespace."""
+    running = [node.name for node in seen.system.nodes]
+    return [it for it in senders if running.count(it) > 1 and "robot_state" in last_word(it)]
+
+
+def _bare_frames(seen: Index, tree: Tree) -> list[str]:
+    children = unique(edge.child for edge in tree.edges)
+    return [it for it in children if not seen.frame_robot(it) and it not in WORLD_FRAMES]
+
+
+def _named_frames(seen: Index, tree: Tree) -> Iterator[str]:
+    frames = (it for edge in tree.edges for it in (edge.child, edge.parent))
+    return (it for it in frames if seen.frame_robot(it))
+
+
+def _either(tree: Tree, robots: Sequence[str]) -> str:
+    namespaced = any(node.startswith(f"/{robot}/") for robot in robots for node in tree.senders)
+    rules = "pass -r /tf:=tf -r /tf_static:=tf_static to every node of a robot"
+    own = rules if namespaced else f"give each robot a namespace and {rules}"
+    senders = shorten(tree.senders, SEVERAL)
+    return f"{own}, or put its name into its frames (urdf-postfix); the senders are {senders}"
+
+
+@danger_rule(
+    "MG403",
+    "tf-cycle",
+    ERROR,
+    what="Transforms on a tf topic go round in a circle: a frame is above itself.",
+    why="tf2 finds no transform between its frames, or takes for ever.",
+    fix="Find the node that sends one of them the wrong way round (`frame_id` and `child_frame_id`, or"
+    " `map_frame` and `odom_frame` swapped), or that sends frames of another robot.",
+    bad="""\
+running: transform map -> odom on /tf
+running: transform odom -> base_link on /tf
+running: transform base_link -> map on /tf
+""",
+    good="""\
+running: transform map -> odom on /tf
+running: transform odom -> base_link on /tf
+""",
+)
+def tf_cycle(seen: Index) -> Iterator[Finding]:
+    """Each circle once."""
+    for tree in seen.trees:
+        for circle in _circles(_parents(tree)):
+            way = " -> ".join((*circle, circle[0]))
+            message = f"the transforms on {tree.topic} go round in a circle: {way}"
+            robots = unique(filter(None, (seen.frame_robot(it) for it in circle)))
+            robot = only(robots) or only(robots_of(seen, tree.senders))
+            yield tf_cycle.finding(
+                message, _who_sends(seen, tree, circle[0]), robot=robot, names=circle
+            )
+
+
+def _circles(parents: Mapping[str, Iterable[str]]) -> Iterator[tuple[str, ...]]:
+    """Circles that have no frame in common, each from the parent to the child."""
+    left = {child: set(above) for child, above in parents.items()}
+    while left := _that_end_nowhere(left):
+        way = [min(left)]
+        while way[-1] not in way[:-1]:
+            way.append(min(left[way[-1]]))
+        circle = way[way.index(way[-1]) : -1]
+        yield tuple(reversed(circle))
+        left = {child: above for child, above in left.items() if child not in circle}
+
+
+def _that_end_nowhere(parents: Mapping[str, set[str]]) -> dict[str, set[str]]:
+    """The frames above which no way ends, each with those of its parents that are such frames."""
+    left = dict(parents)
+    while True:
+        kept = {child: above & left.keys() for child, above in left.items() if above & left.keys()}
+        if kept == left:
+            return kept
+        left = kept
+
+
+@danger_rule(
+    "MG404",
+    "static-and-moving",
+    ERROR,
+    what="A transform is sent on `/tf_static` and on `/tf`: two nodes send it.",
+    why="tf2 keeps one of the two, and which one changes with the order of the messages.",
+    fix="Stop one of the senders, usually a static_transform_publisher that was to stand in for"
+    " odometry or localization.",
+    bad="""\
+running: transform map -> odom on /tf_static by /robot1/static_map
+running: transform map -> odom on /tf by /robot1/amcl
+""",
+    good="running: transform map -> odom on /tf by /robot1/amcl\n",
+)
+def static_and_moving(seen: Index) -> Iterator[Finding]:
+    """A frame with two parents is a finding of its own."""
+    for tree in seen.trees:
+        several = {child for child, parents in _parents(tree).items() if len(parents) > 1}
+        fixed = {it.child: it for it in tree.edges if "tf_static" in it.topic.split("/")}
+        for edge in tree.edges:
+            other = fixed.get(edge.child)
+            if other is None or other.topic == edge.topic or edge.child in several:
+                continue
+            message = f"{edge.parent} -> {edge.child} is sent on {other.topic} and on {edge.topic}"
+            nodes = [it for it in other.publishers if _STATIC in it] or other.publishers
+            cause = f"{shorten(nodes)} or {shorten(edge.publishers)}: stop one"
+            robot = seen.frame_robot(edge.child) or only(robots_of(seen, tree.senders))
+            yield static_and_moving.finding(
+                message, cause, robot=robot, names=(edge.child, edge.parent)
+            )
+
+
+@danger_rule(
+    "MG408",
+    "transform-of-two-senders",
+    ERROR,
+    what="Several publishers send the same transform: an EKF and the controller both odometry, AMCL and"
+    " SLAM both the place in the map.",
+    why="The robot jumps between what the two believe, many times a second.",
+    fix="Let one of them send it: `publish_tf: false` of the EKF, `enable_odom_tf: false` of"
+    " diff_drive_controller, `publish_odom_tf` of a simulator's plugin, `tf_broadcast: false` of AMCL.",
+    bad="running: transform odom -> base_link on /robot1/tf by /robot1/ekf, /robot1/driver twice\n",
+    good="running: transform odom -> base_link on /robot1/tf by /robot1/ekf, /robot1/driver\n",
+)
+def transform_of_two_senders(seen: Index) -> Iterator[Finding]:
+    """Where robots' frames collide, that is the finding; all transforms of a tree are one."""
+    for tree in seen.trees:
+        if _collide(seen, tree):
+            continue
+        edges = [it for it in tree.edges if it.several]
+        for robot in unique(seen.frame_robot(it.child) for it in edges):
+            own = [it for it in edges if seen.frame_robot(it.child) == robot]
+            listed = shorten(f"{it.parent} -> {it.child}" for it in own)
+            message = f"several nodes send {listed} on {tree.topic}"
+            who = robot or only(robots_of(seen, tree.senders))
+            nodes = [it for it in tree.senders if seen.robot(it) in ("", who)] or tree.senders
+            listed_nodes = shorten(nodes, SEVERAL)
+            cause = f"stop one, or its tf (publish_tf, enable_odom_tf): two of {listed_nodes}"
+            others = [it for it in tree.senders if it not in nodes]
+            if others:
+                cause += f"; or {shorten(others)} with the description or parameters of {who}"
+            names = tuple(it.child for it in own)
+            yield transform_of_two_senders.finding(message, cause, robot=who, names=names)
+
+
+@danger_rule(
+    "MG407",
+    "robots-name-twice",
+    ERROR,
+    planned="MG206",
+    what="A frame has the robot's name twice: `robot1/robot1/base_link`.",
+    why="No other node uses that frame: every lookup fails.",
+    fix="Leave `frame_prefix` of robot_state_publisher empty and set `tf_frame_prefix_enable: false`"
+    " where the description has the robot's name already.",
+    bad="running: transform robot1/odom -> robot1/robot1/base_link on /tf\n",
+    good="running: transform robot1/odom -> robot1/base_link on /tf\n",
+)
+def robots_name_twice(seen: Index) -> Iterator[Finding]:
+    """All frames of a robot and topic are one finding."""
+    for tree in seen.trees:
+        doubled: dict[str, list[str]] = defaultdict(list)
+        for frame in unique(it for edge in tree.edges for it in (edge.child, edge.parent)):
+            robot = seen.frame_robot(frame)
+            plain = seen.plain_frame(frame)
+            if robot and robot in plain.split("/") and plain != robot:
+                doubled[robot].append(frame)
+        for robot, frames in doubled.items():
+            verb = "has" if len(frames) == 1 else "have"
+            message = f"{shorten(frames)} {verb} the name of {robot} twice"
+            cause = (
+                "frame_prefix of robot_state_publisher, or tf_frame_prefix_enable of a controller (on"
+                " by default), on top of a description that has the name: set them to '' and false"
+            )
+            yield robots_name_twice.finding(message, cause, robot=robot, names=tuple(frames))

@@ -1,0 +1,282 @@
+"""One system: what runs on some robots and what it needs, from whatever source. Frozen, pure.
+
+Names of nodes and ends are fully qualified, as rcl resolved them. What a file says has its place.
+Texts for people decide nothing.
+"""
+
+from __future__ import annotations
+
+from multibot_rewrite.record import NamedTuple
+
+TOPIC, SERVICE, ACTION = "topic", "service", "action"
+KINDS = (TOPIC, SERVICE, ACTION)
+PUBLISHES, SUBSCRIBES, SERVES, CALLS = "publishes", "subscribes", "serves", "calls"
+ROLES = (PUBLISHES, SUBSCRIBES, SERVES, CALLS)
+# Roles of an interface of the hardware: the hardware exports it, a controller claims it.
+EXPORTS, CLAIMS = "exports", "claims"
+# Why an observation ended: all expected nodes are there, the graph no longer changes, the timeout
+# is over. CHANGING: it has not ended, the graph is being watched.
+EXPECTED, QUIET, TIMEOUT, CHANGING = "expected", "quiet", "timeout", "changing"
+# The node name in rmw of an end whose participant has not announced its nodes yet.
+UNKNOWN_NODE = "_NODE_NAME_UNKNOWN_"
+# The RMW of a view from a Zenoh router.
+ZENOH = "rmw_zenoh_cpp"
+# The parameter of every node that says which clock it goes by.
+SIM_TIME = "use_sim_time"
+
+
+class Place(NamedTuple):
+    """Where something is written; lines and columns count from 1, 0 is not known."""
+
+    file: str
+    line: int = 0
+    column: int = 0
+
+    def __str__(self) -> str:
+        numbers = (self.line, self.column)[: bool(self.line) + bool(self.line and self.column)]
+        return ":".join((self.file, *map(str, numbers)))
+
+
+NOWHERE = Place("")
+
+
+class Sure(NamedTuple):
+    """Whether something is there: ``runs`` always, ``may`` on a condition, or it is ``unknown``.
+
+    ``why`` is the condition, or why it is not known, for people. Of the nodes ``instead`` exactly one
+    runs.
+    """
+
+    word: str
+    why: str = ""
+    instead: tuple[str, ...] = ()
+
+
+RUNS, MAY, UNKNOWN = Sure("runs"), Sure("may"), Sure("unknown")
+
+
+class Qos(NamedTuple):
+    """The quality of service an end offers or requests; words as in ``rosgraph_msgs``.
+
+    Times are seconds, ``inf`` (null in JSON) is no limit. Fast DDS does not announce history and
+    depth to other processes: they are ``UNKNOWN`` and 0 then.
+    """
+
+    history: str
+    depth: int
+    reliability: str
+    durability: str
+    deadline: float
+    lifespan: float
+    liveliness: str
+    liveliness_lease_duration: float
+
+
+class Robot(NamedTuple):
+    """One robot: its tf topic, the frames of its description.
+
+    ``namespace`` is that of its nodes, empty where it has none. ``other_frames`` are further frames
+    that its nodes may send. ``tag`` is its name in frames, where that is another one than its name.
+    """
+
+    name: str
+    frames: tuple[str, ...] = ()
+    tf_topic: str = "/tf"
+    other_frames: tuple[str, ...] = ()
+    tag: str = ""
+    namespace: str = ""
+    place: Place = NOWHERE
+
+
+class Node(NamedTuple):
+    """One node. Two nodes with one name are two records.
+
+    ``process`` identifies its process, empty where it is not known; ``enclave`` is that of its process
+    (SROS2), empty for none. ``robot`` is its robot's name, empty for a node of all robots or where that
+    is not known. ``way`` is how it gets its remap rules if not by --ros-args of its own
+    (``remap.ways``), ``taker`` the node that takes them for it. ``lifecycle`` is the label of its
+    state, empty for a node that is not managed. ``host`` is any word: nodes of one host run on one
+    machine, those of two on two. ``known`` leads to the fact about it. ``plugin_place`` has the plugin
+    that starts it, ``place`` what else names it.
+    """
+
+    name: str
+    process: str = ""
+    enclave: str = ""
+    robot: str = ""
+    lifecycle: str = ""
+    host: str = ""
+    way: str = ""
+    taker: str = ""
+    package: str = ""
+    program: str = ""
+    known: str = ""
+    sure: Sure = RUNS
+    place: Place = NOWHERE
+    plugin_place: Place = NOWHERE
+
+    @property
+    def namespace(self) -> str:
+        """Empty for the root."""
+        return self.name.rpartition("/")[0]
+
+
+class End(NamedTuple):
+    """A node's end of a topic, service or action.
+
+    ``kind`` and ``role`` are words of ``KINDS`` and ``ROLES``. ``type`` is empty where it is not known;
+    ``also`` are other types that it may have, by parameter or release. ``type_hash``, ``qos`` and the
+    end's own ``process`` are known only where the topic was queried; otherwise they are empty, None
+    and the process of the node. ``code_name`` is the name in the node's code, before any remap rule,
+    ``parameter`` the parameter that sets it.
+    """
+
+    kind: str
+    role: str
+    name: str
+    type: str
+    type_hash: str
+    node: str
+    qos: Qos | None
+    process: str
+    code_name: str = ""
+    also: tuple[str, ...] = ()
+    parameter: str = ""
+    sure: Sure = RUNS
+    place: Place = NOWHERE
+
+
+class Edge(NamedTuple):
+    """A transform on ``topic``, which is empty in a plan that says who sends it; ``publishers`` are all
+    nodes that may have sent it.
+
+    tf messages do not say which node sent them; ``several`` is whether more than one did.
+    ``transform`` is the last one: x, y, z in metres and a quaternion x, y, z, w; empty if not known.
+    """
+
+    child: str
+    parent: str
+    topic: str
+    static: bool
+    publishers: tuple[str, ...]
+    several: bool = False
+    transform: tuple[float, ...] = ()
+    sure: Sure = RUNS
+    place: Place = NOWHERE
+
+
+class Heard(NamedTuple):
+    """The ``header.frame_id`` of a message that was received on ``topic``, as it is written there."""
+
+    topic: str
+    frame: str
+
+
+class Parameter(NamedTuple):
+    """A parameter of a node; ``value`` is what ``parameter_text`` makes of it."""
+
+    node: str
+    name: str
+    value: str
+    place: Place = NOWHERE
+
+
+class Controller(NamedTuple):
+    """A controller of the controller manager ``manager``, a node; ``claims`` are command interfaces,
+    while it is active."""
+
+    manager: str
+    name: str
+    state: str
+    claims: tuple[str, ...] = ()
+
+
+class Interface(NamedTuple):
+    """An interface of the hardware, ``kind`` is command or state: its ``node`` ``exports`` it, or, a
+    controller, ``claims`` it."""
+
+    kind: str
+    name: str
+    node: str
+    role: str
+    place: Place = NOWHERE
+
+
+class RemapRule(NamedTuple):
+    """A remap rule of a node, or of all nodes of its process."""
+
+    node: str
+    source: str
+    target: str
+    process_wide: bool = False
+    place: Place = NOWHERE
+
+
+class Address(NamedTuple):
+    """A port, device, file or IP that one process holds."""
+
+    kind: str
+    value: str
+    node: str
+    place: Place = NOWHERE
+
+
+class Caveat(NamedTuple):
+    """What to know about a view; with ``incomplete`` something may be missing in it."""
+
+    code: str
+    incomplete: bool
+    message: str
+
+
+class Environment(NamedTuple):
+    """How a running system was observed, and how complete the view is; all is empty for other sources.
+
+    ``participants`` counts the DDS participants without the observer's own. ``settled`` is
+    ``EXPECTED``, ``QUIET``, ``TIMEOUT`` or ``CHANGING``, reached after ``seconds``.
+    """
+
+    domain: int = 0
+    range: str = ""
+    static_peers: tuple[str, ...] = ()
+    rmw: str = ""
+    discovery_server: str = ""
+    super_client: bool = False
+    participants: int = 0
+    settled: str = EXPECTED
+    seconds: float = 0.0
+    caveats: tuple[Caveat, ...] = ()
+
+
+class System(NamedTuple):
+    """What runs, or would run, on some robots; what no source tells is empty.
+
+    ``heard`` are frames that messages name, one message a topic. ``parameters`` and ``controllers`` are
+    what nodes answered, or what files set.
+    """
+
+    nodes: tuple[Node, ...] = ()
+    ends: tuple[End, ...] = ()
+    edges: tuple[Edge, ...] = ()
+    environment: Environment = Environment()
+    heard: tuple[Heard, ...] = ()
+    parameters: tuple[Parameter, ...] = ()
+    controllers: tuple[Controller, ...] = ()
+    robots: tuple[Robot, ...] = ()
+
+
+def incomplete(system: System) -> tuple[Caveat, ...]:
+    """Why something may be missing in the view; empty for a complete one."""
+    return tuple(caveat for caveat in system.environment.caveats if caveat.incomplete)
+
+
+def clocks(system: System) -> dict[str, bool]:
+    """By node: whether it goes by simulated time, where that is known."""
+    return {it.node: it.value == "true" for it in system.parameters if it.name == SIM_TIME}
+
+
+def answering(system: System) -> frozenset[str]:
+    """The nodes of which a state, parameter or controller is known."""
+    states = (it.name for it in system.nodes if it.lifecycle)
+    parameters = (it.node for it in system.parameters)
+    return frozenset((*states, *parameters, *(it.manager for it in system.controllers)))

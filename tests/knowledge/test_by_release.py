@@ -1,0 +1,151 @@
+"""What nodes and stacks are in one release: facts left out, conditional, different, or refused."""
+
+from __future__ import annotations
+
+import pytest
+
+from multibot_rewrite.knowledge.by_release import in_release
+from multibot_rewrite.knowledge.node_library import NodeLibrary, extend, stack_of
+from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.releases import RELEASES
+
+NOTHING = NodeLibrary({}, {}, {})
+DOCK = """
+parts:
+  reloading:
+    serves:
+      ~/reload: {type: std_srvs/srv/Trigger, releases: jazzy 1.3.9+}
+nodes:
+  docking_server:
+    package: opennav_docking
+    with: [reloading]
+    releases: jazzy+
+    publishes:
+      dock_pose: geometry_msgs/msg/PoseStamped
+      staging_pose: {type: geometry_msgs/msg/PoseStamped, releases: "jazzy 1.3.9+, kilted+"}
+      cmd_vel:
+        - {type: geometry_msgs/msg/Twist, releases: <=jazzy}
+        - {type: geometry_msgs/msg/TwistStamped, releases: kilted+}
+    frames:
+      base_frame: base_link
+      fixed_frame: {default: odom, releases: kilted+}
+    sends: {fixed_frame: base_frame}
+  camera: {package: camera}
+  later: {package: later, releases: lyrical}
+stacks:
+  docks: {nodes: [docking_server]}
+  all: {include: [docks], nodes: [camera, {node: camera, as: second, releases: humble}]}
+  nobody: {about: leaves something out}
+  new: {releases: rolling, nodes: [camera]}
+"""
+
+
+def library(release: str, text: str = DOCK) -> NodeLibrary:
+    return in_release(extend(NOTHING, text, "n.yaml"), release)
+
+
+def dock(release: str) -> NodeFacts:
+    return library(release).nodes["docking_server"]
+
+
+def conditions(node: NodeFacts) -> dict[str, str]:
+    return {it.name: it.when for it in node.endpoints}
+
+
+def test_an_endpoint_is_there_in_its_releases_only() -> None:
+    assert "~/reload" not in conditions(dock("kilted"))
+    assert conditions(dock("kilted"))["staging_pose"] == ""
+
+
+def test_what_came_with_a_version_of_the_package_is_conditional_there() -> None:
+    found = conditions(dock("jazzy"))
+    assert found["staging_pose"] == found["~/reload"] == "opennav_docking 1.3.9 or newer"
+    assert found["dock_pose"] == ""
+
+
+def test_a_node_that_came_with_a_version_is_conditional_beside_its_own_condition() -> None:
+    text = "nodes: {a: {package: p, releases: jazzy 2.0+}}\n"
+    text += "stacks: {s: {nodes: [{node: a, when: asked}]}}"
+    (node,) = stack_of(library("jazzy", text), "s")
+    assert node.when == "asked; p 2.0 or newer"
+
+
+@pytest.mark.parametrize(("release", "type_"), [("jazzy", "Twist"), ("lyrical", "TwistStamped")])
+def test_an_endpoint_may_differ_from_release_to_release(release: str, type_: str) -> None:
+    (found,) = (it.type for it in dock(release).endpoints if it.name == "cmd_vel")
+    assert found == f"geometry_msgs/msg/{type_}"
+
+
+def test_a_frame_that_a_release_lacks_is_not_sent_there() -> None:
+    assert [it.parameter for it in dock("jazzy").frames] == ["base_frame"]
+    assert dock("jazzy").sends == ()
+    assert [it[:2] for it in dock("kilted").sends] == [("fixed_frame", "base_frame")]
+
+
+@pytest.mark.parametrize(
+    ("release", "names"),
+    [("humble", ["camera", "second"]), ("jazzy", ["docking_server", "camera"])],
+)
+def test_a_stack_has_the_nodes_of_the_release(release: str, names: list[str]) -> None:
+    assert [it.name for it in stack_of(library(release), "all")] == names
+
+
+@pytest.mark.parametrize(
+    ("release", "name", "releases"),
+    [
+        ("humble", "docks", "jazzy, kilted, lyrical, rolling"),
+        ("humble", "docking_server", "jazzy, kilted, lyrical, rolling"),
+        ("jazzy", "new", "rolling"),
+        ("rolling", "later", "lyrical"),
+    ],
+)
+def test_a_stack_without_nodes_is_refused_with_the_releases_that_have_it(
+    release: str, name: str, releases: str
+) -> None:
+    with pytest.raises(UsageError, match=f"{release} has no node of stack '{name}'.* {releases};"):
+        stack_of(library(release), name)
+
+
+def test_a_stack_that_never_has_nodes_is_in_every_release() -> None:
+    assert [stack_of(library(it), "nobody") for it in RELEASES] == [()] * 5
+
+
+def test_two_nodes_of_a_name_may_be_in_different_releases() -> None:
+    text = """
+nodes: {a: {package: a}, b: {package: b}}
+stacks: {s: {nodes: [{node: a, as: x, releases: <=jazzy}, {node: b, as: x, releases: REST}]}}
+"""
+    (node,) = stack_of(library("humble", text.replace("REST", "kilted+")), "s")
+    assert (node.name, node.package) == ("x", "a")
+    with pytest.raises(UsageError, match=r"n.yaml:3: stack 's' has two different nodes called 'x'"):
+        library("humble", text.replace("REST", "jazzy+"))
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ("releases: jazy", "release 'jazy' is not known; did you mean 'jazzy'"),
+        ("releases: <=jazzy+", "releases '<=jazzy\\+' names no releases; write jazzy, kilted"),
+        ("releases: jazzy 1.3", "releases 'jazzy 1.3' names no releases"),
+        ("source: navigation2", "source 'navigation2' names no place; write OWNER/NAME@TAG PATH"),
+        ("frames: {f: {releases: jazzy}}", "frame f has no default; add default:"),
+        (
+            "publishes: {t: [{type: a/msg/B}, {type: a/msg/C}]}",
+            "publishes 't' is there twice in hu",
+        ),
+        ("publishes: {t: []}", "publishes 't' is an empty list"),
+    ],
+)
+def test_wrong_words_name_their_line(words: str, message: str) -> None:
+    with pytest.raises(UsageError, match=f"^n.yaml:2: {message}"):
+        extend(NOTHING, f"nodes:\n  a: {{{words}}}", "n.yaml")
+
+
+def test_a_source_is_a_place_in_a_tag_or_commit() -> None:
+    one, two = "ros-navigation/navigation2@1.3.9 nav2_amcl/src/amcl_node.cpp:250", "a/b@f00 c.hpp"
+    topic = f"{{t: {{type: a/msg/B, source: {one}}}}}"
+    text = f"nodes: {{a: {{source: [{one}, {two}], publishes: {topic}}}}}"
+    node = extend(NOTHING, text, "n.yaml").nodes["a"]
+    assert node.source == (one, two)
+    assert node.endpoints[0].source == (one,)

@@ -1,0 +1,358 @@
+"""Known nodes and stacks: the data is whole, and a user's own file is read or refused in words."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from paths import ROOT
+
+from multibot_rewrite.fleets.fleet import NO_STATE_PUBLISHER
+from multibot_rewrite.knowledge.node_library import NodeLibrary, extend, stack_of
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
+from multibot_rewrite.knowledge.stacks import (
+    built_in,
+    load_nodes,
+    load_stack,
+    user_stack,
+)
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.releases import NEWEST_LTS
+from multibot_rewrite.rosnames import expand
+from multibot_rewrite.system.records import ACTION, SERVICE, TOPIC
+
+WANTED = {
+    "robot_state": {"robot_state_publisher", "joint_state_publisher"},
+    "localization": {"map_server", "amcl", "lifecycle_manager_localization"},
+    "nav2": {
+        *("map_server", "amcl", "controller_server", "planner_server", "bt_navigator"),
+        *("local_costmap/local_costmap", "global_costmap/global_costmap", "collision_monitor"),
+    },
+    "slam_toolbox": {"slam_toolbox"},
+    "robot_localization": {"ekf_filter_node"},
+    "ros2_control": {
+        *("controller_manager", "joint_state_broadcaster", "diff_drive_controller"),
+        "joint_trajectory_controller",
+    },
+    "moveit": {"move_group"},
+    "teleop": {"joy_node", "teleop_twist_joy_node", "teleop_twist_keyboard", "twist_mux"},
+    "perception": {"pointcloud_to_laserscan", "depthimage_to_laserscan"},
+    "image_proc": {"debayer_node", "rectify_mono_node", "rectify_color_node"},
+    "bridge": {"ros_gz_bridge"},
+    "rviz": {"rviz2"},
+    "static_tf": {"static_transform_publisher"},
+}
+
+
+def endpoint(node: NodeFacts, role: str, name: str) -> Endpoint:
+    """The one endpoint of a role and name."""
+    (found,) = [e for e in node.endpoints if (e.role, e.name) == (role, name)]
+    return found
+
+
+def extra(text: str) -> NodeLibrary:
+    """The built-in library with a user's text."""
+    return extend(built_in(NEWEST_LTS), text, "mine.yaml")
+
+
+@pytest.mark.parametrize("name", WANTED)
+def test_a_stack_has_its_nodes(name: str) -> None:
+    assert {node.name for node in load_stack(name, NEWEST_LTS)} >= WANTED[name]
+
+
+@pytest.mark.parametrize("name", sorted(built_in(NEWEST_LTS).stacks))
+def test_a_stack_names_each_node_once(name: str) -> None:
+    names = [node.name for node in load_stack(name, NEWEST_LTS)]
+    assert names or name == NO_STATE_PUBLISHER
+    assert sorted(set(names)) == sorted(names)
+
+
+def test_shared_nodes_are_those_that_serve_all() -> None:
+    shared = {name for name, node in load_nodes(NEWEST_LTS).items() if node.shared}
+    bridges = {"foxglove_bridge", "ros_gz_bridge", "rosbridge_websocket"}
+    assert shared == {*bridges, "rviz2", "map_merging"}
+    assert [node.shared for node in load_stack("rviz_nav2", NEWEST_LTS)] == [False]
+
+
+def test_the_type_decides_the_kind() -> None:
+    node = load_nodes(NEWEST_LTS)["joint_trajectory_controller"]
+    kinds = {e.name: e.kind for e in node.endpoints}
+    assert kinds["~/joint_trajectory"] == TOPIC
+    assert kinds["~/query_state"] == SERVICE
+    assert kinds["~/follow_joint_trajectory"] == ACTION
+
+
+def test_a_host_is_a_node() -> None:
+    nodes = load_nodes(NEWEST_LTS)
+    hosts = {name: node.host for name, node in nodes.items() if node.host}
+    assert hosts["local_costmap/local_costmap"] == "controller_server"
+    assert [name for name, host in hosts.items() if host not in nodes] == []
+
+
+@pytest.mark.parametrize("name", sorted(load_nodes(NEWEST_LTS)))
+def test_a_name_made_at_run_time_is_out_of_reach(name: str) -> None:
+    made = [e for e in load_nodes(NEWEST_LTS)[name].endpoints if "<" in e.name]
+    assert [e.name for e in made if not e.fixed] == []
+
+
+def test_a_stack_says_what_is_made_at_run_time() -> None:
+    nodes = {node.name: node for node in load_stack("nav2", NEWEST_LTS)}
+    scan = endpoint(nodes["global_costmap/global_costmap"], "subscribes", "/scan")
+    assert (scan.fixed, scan.also) == ("", ("sensor_msgs/msg/PointCloud2",))
+    manager = nodes["lifecycle_manager_localization"]
+    called = {e.name for e in manager.endpoints if e.name.endswith("/change_state")}
+    assert called == {"map_server/change_state", "amcl/change_state"}
+
+
+def test_only_a_process_wide_rule_reaches_the_tf_of_a_costmap() -> None:
+    nodes = load_nodes(NEWEST_LTS)
+    assert endpoint(nodes["local_costmap/local_costmap"], "subscribes", "/tf").helper
+    assert not endpoint(nodes["amcl"], "subscribes", "/tf").helper
+
+
+def test_what_launch_files_remap_is_kept_in_mind() -> None:
+    nodes = {node.name: node for node in load_stack("nav2", NEWEST_LTS)}
+    leads = {
+        name: [e.remapped for e in node.endpoints if e.name == "cmd_vel"]
+        for name, node in nodes.items()
+    }
+    nav = ["cmd_vel_nav"]
+    assert leads["controller_server"] == leads["behavior_server"] == nav
+    assert leads["velocity_smoother"] == nav
+    assert leads["collision_monitor"] == [""]
+
+
+def leads(node: NodeFacts, asked: Endpoint) -> str:
+    """Where an endpoint leads in a system of one robot, started by the usual launch files."""
+    above, _, name = node.name.rpartition("/")
+    return expand(asked.remapped or asked.name, f"/{above}", name)
+
+
+def met(stack: str, asking: str, giving: str) -> tuple[set[str], set[str]]:
+    """Where all endpoints of two roles lead, those of one role and those of the other."""
+    found = [
+        (e.role, leads(node, e)) for node in load_stack(stack, NEWEST_LTS) for e in node.endpoints
+    ]
+    one, other = ({name for role, name in found if role == wanted} for wanted in (asking, giving))
+    return {name for name in one if "<" not in name}, other
+
+
+def test_whatever_nav2_calls_is_served_by_nav2() -> None:
+    called, served = met("nav2", "calls", "serves")
+    assert called - served == {"/fromLL"}
+
+
+def test_what_nav2_hears_but_does_not_say() -> None:
+    heard, said = met("nav2", "subscribes", "publishes")
+    from_nav2 = {name for name in heard if name.startswith(("/local_", "/global_", "/cmd_vel_"))}
+    own = {name for name in from_nav2 if name.count("/") == 2 or name.startswith("/cmd_vel")}
+    assert own - said == {
+        *("/local_costmap/footprint", "/global_costmap/footprint", "/cmd_vel_teleop"),
+        *("/local_costmap/costmap_filter_info", "/global_costmap/costmap_filter_info"),
+    }
+
+
+def test_teleop_goes_through_the_mux() -> None:
+    heard, said = met("teleop", "subscribes", "publishes")
+    assert {"/joy_vel", "/key_vel"} <= heard & said
+    assert "/cmd_vel" in said - heard
+
+
+def test_frames_are_reported_with_their_defaults() -> None:
+    frames = {it.parameter: it.default for it in load_nodes(NEWEST_LTS)["amcl"].frames}
+    assert frames == {
+        "base_frame_id": "base_footprint",
+        "odom_frame_id": "odom",
+        "global_frame_id": "map",
+    }
+
+
+def test_a_stack_says_what_it_is_about() -> None:
+    library = extra("stacks:\n  cell:\n    about: a cell of two arms\n    nodes: [rviz2]\n")
+    assert library.stacks["cell"].about == "a cell of two arms"
+
+
+def test_a_node_is_a_stack_of_its_own() -> None:
+    assert load_stack("rplidar_node", NEWEST_LTS) == (load_nodes(NEWEST_LTS)["rplidar_node"],)
+
+
+def test_the_example_of_the_page_is_read() -> None:
+    text = (ROOT / "docs" / "stacks.md").read_text().partition("```yaml\n")[2].partition("```")[0]
+    nodes = {node.name: node for node in stack_of(extra(text), "cell")}
+    assert {"move_group", "gripper_driver", "table_to_base", "twist_mux"} <= nodes.keys()
+    assert endpoint(nodes["gripper_driver"], "publishes", "/gripper/image").transport
+    assert endpoint(nodes["twist_mux"], "subscribes", "pad_vel").fixed == ""
+
+
+def test_unknown_stack_is_reported_with_the_nearest() -> None:
+    with pytest.raises(UsageError, match=r"stack 'nav' is not known; did you mean 'nav2'\? known:"):
+        load_stack("nav", NEWEST_LTS)
+
+
+def test_a_user_adds_nodes_and_stacks() -> None:
+    library = extra(
+        "nodes:\n  gripper:\n    package: acme\n    serves: {grip: acme_msgs/srv/Grip}\n"
+        "stacks:\n  cell: {include: [robot_state], nodes: [gripper, {node: amcl, as: amcl2}]}\n"
+    )
+    names = [node.name for node in stack_of(library, "cell")]
+    assert names == ["robot_state_publisher", "joint_state_publisher", "gripper", "amcl2"]
+    assert endpoint(library.nodes["gripper"], "serves", "grip").kind == SERVICE
+
+
+def test_a_users_file_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "mine.yaml"
+    path.write_text("stacks:\n  cell:\n    nodes: [rviz2]\n")
+    assert [node.name for node in stack_of(user_stack(str(path), NEWEST_LTS), "cell")] == ["rviz2"]
+
+
+def test_a_type_may_be_left_out() -> None:
+    library = extra("nodes: {a: {calls: {b: }, publishes: {c: {when: asked}}}}")
+    assert [(e.kind, e.name, e.type) for e in library.nodes["a"].endpoints] == [
+        (TOPIC, "c", ""),
+        (SERVICE, "b", ""),
+    ]
+
+
+def test_an_empty_file_adds_nothing() -> None:
+    assert extra("") == built_in(NEWEST_LTS)
+
+
+def test_a_name_can_be_taken_out() -> None:
+    library = extra("stacks: {cell: {nodes: [{node: amcl, names: {scan: [], map: [/a, /b]}}]}}")
+    (node,) = stack_of(library, "cell")
+    heard = {e.name for e in node.endpoints if e.role == "subscribes"}
+    assert "scan" not in heard
+    assert {"/a", "/b"} <= heard
+
+
+def test_the_same_node_by_two_ways_is_one() -> None:
+    library = extra("stacks: {cell: {include: [localization, nav2]}}")
+    assert stack_of(library, "cell") == load_stack("nav2", NEWEST_LTS)
+
+
+def test_what_a_file_says_anew_counts_in_its_stacks() -> None:
+    library = extra(
+        "nodes: {amcl: {publishes: {x: std_msgs/msg/Empty}}}\nstacks: {cell: {nodes: [amcl]}}"
+    )
+    assert [e.name for e in stack_of(library, "cell")[0].endpoints] == ["x"]
+    assert stack_of(library, "nav2") == load_stack("nav2", NEWEST_LTS)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        pytest.param("nodes: [", "mine.yaml:1: not valid YAML: ", id="broken"),
+        pytest.param("a: 1\n--- \nb: 2", "mine.yaml:2: not valid YAML", id="two-documents"),
+        pytest.param("- a", "mine.yaml:1: the file is a list; write keys and values", id="list"),
+        pytest.param(
+            "\nnode: {}", "mine.yaml:2: key 'node' is not known; did you mean 'nodes'", id="key"
+        ),
+        pytest.param(
+            "nodes:\n  a: {}\n  a: {}", "mine.yaml:3: the key 'a' is repeated", id="twice"
+        ),
+        pytest.param(
+            "nodes:\n  ? [a]\n  : b", "mine.yaml:2: a key is a mapping or a list", id="odd-key"
+        ),
+        pytest.param(
+            "nodes: &a {b: *a}",
+            "mine.yaml:1: not valid YAML: the alias is inside the",
+            id="endless",
+        ),
+        pytest.param(
+            "nodes: {a: text}", "node 'a' is the text 'text'; write keys", id="no-mapping"
+        ),
+        pytest.param("nodes: {1a: {}}", "mine.yaml:1: node name '1a': ", id="node-name"),
+        pytest.param(
+            "nodes: {a: {shared: 'yes'}}",
+            "shared is the text 'yes'; write true or false",
+            id="flag",
+        ),
+        pytest.param("nodes: {a: {note: {}}}", "note is a mapping; write a text", id="text"),
+        pytest.param(
+            "nodes: {a: {fixed: true}}", "fixed is true or false; write a list", id="no-list"
+        ),
+        pytest.param(
+            "nodes: {a: {with: [tf_lis]}}",
+            "part 'tf_lis' is not known; did you mean 'tf_listener'",
+            id="part",
+        ),
+        pytest.param("nodes: {a: {calls: {b c: x}}}", "mine.yaml:1: name 'b c': ", id="name"),
+        pytest.param(
+            "nodes:\n  a:\n    calls:\n      b:\n        typ: x",
+            "mine.yaml:5: key 'typ' is not known; did you mean 'type'?",
+            id="endpoint-key",
+        ),
+        pytest.param(
+            "nodes: {a: {calls: {b: Empty}}}", "'Empty' is not a ROS type; write it like", id="type"
+        ),
+        pytest.param(
+            "nodes: {a: {calls: {b: std_msgs/msg/Empty}}}",
+            "calls 'b': std_msgs/msg/Empty is the type of a topic",
+            id="topic-called",
+        ),
+        pytest.param(
+            "nodes: {a: {publishes: {b: std_srvs/srv/Empty}}}",
+            "publishes 'b': std_srvs/srv/Empty is the type of a service",
+            id="service-published",
+        ),
+        pytest.param(
+            "stacks: {a: {nodes: [amlc]}}",
+            "node 'amlc' is not known; did you mean 'amcl'?",
+            id="node",
+        ),
+        pytest.param("stacks: {a: {nodes: [{as: b}]}}", "the entry has no node", id="no-node"),
+        pytest.param("stacks: {a: {nodes: [{node: amcl, as: a-b}]}}", "node name 'a-b': ", id="as"),
+        pytest.param(
+            "stacks: {a: {nodes: [{node: amcl, names: {scam: x}}]}}",
+            "name 'scam' is not known; did you mean 'scan'?",
+            id="names",
+        ),
+        pytest.param(
+            "stacks: {a: {nodes: [{node: amcl, remaps: {scam: x}}]}}",
+            "name 'scam' is not known; did you mean 'scan'?",
+            id="remaps",
+        ),
+        pytest.param(
+            "stacks: {a: {nodes: [{node: amcl, remaps: {scan: x//y}}]}}",
+            "name 'x//y': ",
+            id="target",
+        ),
+        pytest.param(
+            "stacks: {a: {include: [nav]}}",
+            "stack 'nav' is not known; did you mean 'nav2'?",
+            id="stack",
+        ),
+        pytest.param(
+            "stacks:\n  a: {include: [b]}\n  b: {include: [a]}",
+            "mine.yaml:2: stack 'a' includes itself: a -> b -> a",
+            id="circle",
+        ),
+        pytest.param(
+            "stacks: {a: {nodes: [amcl, {node: map_server, as: amcl}]}}",
+            "stack 'a' has two different nodes called 'amcl'",
+            id="two-nodes",
+        ),
+    ],
+)
+def test_what_is_wrong_is_reported_with_its_place(text: str, message: str) -> None:
+    with pytest.raises(UsageError) as caught:
+        extra(text)
+    assert str(caught.value).startswith("mine.yaml:")
+    assert message in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_file_that_cannot_be_read_is_reported(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=r"none\.yaml: cannot be read: No such file"):
+        user_stack(str(tmp_path / "none.yaml"), NEWEST_LTS)
+    (tmp_path / "latin.yaml").write_bytes(b"about: \xe4")
+    with pytest.raises(UsageError, match="it is not UTF-8"):
+        user_stack(str(tmp_path / "latin.yaml"), NEWEST_LTS)
+
+
+def test_yaml_is_loaded_where_a_stack_is_asked_for_only() -> None:
+    code = "import sys, multibot_rewrite.knowledge.stacks; print('yaml' in sys.modules)"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout == "False\n"

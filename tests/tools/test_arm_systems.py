@@ -1,0 +1,218 @@
+"""Two healthy arms with MoveIt and ros2_control have no finding, in any layout and release.
+
+``fixtures/arm_systems.yaml`` has what the vendors' launch files start, ``fixtures/interfaces/`` what
+the sources of these nodes declare. The plan is made from a controllers.yaml and a system model with
+the same names; the rules are those of its table.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from declared_graph import endpoints, facts
+from lxml import etree
+from nav2_graphs import environment
+from paths import FIXTURES
+
+from multibot_rewrite.fleets.fleet import expected
+from multibot_rewrite.fleets.fleet_file import read_fleet
+from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.knowledge.parameters import built_in_nodes
+from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.knowledge.stacks import built_in
+from multibot_rewrite.remap.records import NodeTable
+from multibot_rewrite.remap.table import parsed
+from multibot_rewrite.rosnames import bind, resolve_bound
+from multibot_rewrite.rules.check import check
+from multibot_rewrite.system.records import TOPIC, Edge, End, Node, System
+
+LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
+SYSTEMS = yaml.safe_load((FIXTURES / "arm_systems.yaml").read_text())
+CASES = [(name, release) for name, it in SYSTEMS.items() for release in it["releases"]]
+ROBOTS = ("left", "right")
+PUBLISHER = "robot_state_publisher"
+# Humble's manager subscribes to it only without the parameter of that name, which the vendors' launch
+# files give it (controller_manager.cpp): with all that its sources declare it waits for a publisher.
+WAITS = {
+    ("humble", f"/{it}/controller_manager/robot_description", f"/{it}/robot_description")
+    for it in ROBOTS
+}
+ARM = """\
+<robot name="arm">
+  <link name="world"/><link name="base"/><link name="tool"/>
+  <joint name="fixed" type="fixed"><parent link="world"/><child link="base"/></joint>
+  <joint name="joint1" type="revolute">
+    <parent link="base"/><child link="tool"/>
+    <limit lower="-1" upper="1" effort="1" velocity="1"/>
+  </joint>
+  <ros2_control name="arm" type="system">
+    <hardware><plugin>mock_components/GenericSystem</plugin></hardware>
+    <joint name="joint1"><command_interface name="position"/><state_interface name="position"/></joint>
+    <sensor name="tcp_pose"/>
+  </ros2_control>
+</robot>
+"""
+
+
+@cache
+def started(name: str, release: str) -> tuple[dict[str, Any], dict[str, Any]]:
+    """The nodes and the controllers of a system in a release."""
+    system = SYSTEMS[name]
+    nodes, controllers = (
+        {key: it for key, it in system[part].items() if release in it.get("releases", [release])}
+        for part in ("nodes", "controllers")
+    )
+    return nodes, controllers
+
+
+def planned(name: str, release: str, layout: str, folder: Path) -> FleetPlan:
+    nodes, controllers = started(name, release)
+    sections: dict[str, Any] = {
+        key: {"ros__parameters": it["params"]} for key, it in controllers.items() if "params" in it
+    }
+    types = {key: {"type": it.get(release, it["type"])} for key, it in controllers.items()}
+    sections["controller_manager"] = {"ros__parameters": types}
+    model = {f"/{key}": _model(key, it) for key, it in nodes.items()}
+    fleet = {
+        "layout": layout,
+        "affix": "prefix",
+        "distro": release,
+        "description": "arm.urdf",
+        "launch": ["system.yaml"],
+        "companions": {"params": ["controllers.yaml"]},
+        "robots": [{"name": it} for it in ROBOTS],
+    }
+    texts = {"fleet.yaml": fleet, "controllers.yaml": sections}
+    for file, data in (*texts.items(), ("system.yaml", {"structure": {"nodes": model}})):
+        (folder / file).write_text(yaml.safe_dump(data, sort_keys=False))
+    (folder / "arm.urdf").write_text(ARM)
+    return plan_fleet(read_fleet(str(folder / "fleet.yaml"), "", {}), trust=True)
+
+
+def _model(name: str, it: dict[str, Any]) -> dict[str, Any]:
+    package, executable = it["runs"].split("/")
+    return {"pkg": package, "exec": executable, "node_name": name, "params": it.get("params", {})}
+
+
+def kinds(name: str, release: str) -> dict[str, str]:
+    """Every node that runs -> the node of the facts that it is."""
+    nodes, controllers = started(name, release)
+    types = built_in_nodes(release).types
+    loaded = {key: types[it.get(release, it["type"])] for key, it in controllers.items()}
+    return {**{it: it for it in nodes}, **loaded}
+
+
+def played(name: str, release: str, plan: FleetPlan) -> System:
+    """The graph of all nodes that run, with what their sources declare."""
+    placed = {(it.robot, it.node): it for it in plan.fleet.table.nodes}
+    known: dict[str, NodeFacts] = {it.name: it for it in plan.fleet.facts}
+    ends: list[End] = []
+    nodes: list[str] = []
+    for robot in ROBOTS:
+        for node, kind in kinds(name, release).items():
+            at = placed[robot, node]
+            nodes.append(f"{at.namespace.rstrip('/')}/{at.name}")
+            there = known.get(node, built_in(release).nodes[kind])
+            ends += endpoints(kind, there, at, release) if kind in facts(release) else ()
+    owners = dict.fromkeys([*nodes, *(it.node for it in ends)])
+    frames = [
+        frame
+        for robot in plan.robots
+        for frame in _tree(robot.description, placed[robot.spec.name, PUBLISHER])
+    ]
+    frames += [
+        _pose(frame, it["params"])
+        for it in started(name, release)[1].values()
+        if it["type"] == "pose_broadcaster/PoseBroadcaster"
+        for frame in frames
+        if not frame.static
+    ]
+    return System(tuple(map(_node, owners)), tuple(ends), tuple(frames), environment())
+
+
+def _pose(beside: Edge, params: dict[str, str]) -> Edge:
+    """What pose_broadcaster sends: its frames are spelled as the links are."""
+    child = beside.parent.replace(params["frame_id"], params["tf.child_frame_id"])
+    return beside._replace(child=child)
+
+
+def _node(name: str) -> Node:
+    return Node(name, name)
+
+
+def _tree(description: bytes, publisher: NodeTable) -> Iterator[Edge]:
+    """What robot_state_publisher sends of a description."""
+    bound = bind(publisher.name, publisher.namespace, parsed(publisher.rules))
+    for joint in etree.fromstring(description).findall("joint"):
+        fixed = joint.get("type") == "fixed"
+        topic = resolve_bound("/tf_static" if fixed else "/tf", TOPIC, bound)
+        parent, child = (joint.find(it).get("link") for it in ("parent", "child"))
+        node = f"{publisher.namespace.rstrip('/')}/{publisher.name}"
+        yield Edge(child, parent, topic, fixed, (node,))
+
+
+def told(plan: FleetPlan, seen: System, release: str = "") -> list[str]:
+    found = (it for it in check(expected(plan.fleet), seen) if (release, *it.names) not in WAITS)
+    return [f"{it.code} {it.node} {it.message}" for it in found]
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+@pytest.mark.parametrize(("name", "release"), CASES)
+def test_two_healthy_arms(name: str, release: str, layout: str, tmp_path: Path) -> None:
+    plan = planned(name, release, layout, tmp_path)
+    assert told(plan, played(name, release, plan), release) == []
+
+
+@pytest.fixture(scope="module")
+def ur(tmp_path_factory: pytest.TempPathFactory) -> tuple[FleetPlan, System]:
+    plan = planned("ur", "jazzy", "both", tmp_path_factory.mktemp("ur"))
+    return plan, played("ur", "jazzy", plan)
+
+
+@pytest.mark.parametrize(
+    ("node", "code"),
+    [("dashboard_client", "MG101"), ("io_and_status_controller", "MG101")],
+)
+def test_a_node_that_is_gone_is_found(node: str, code: str, ur: tuple[FleetPlan, System]) -> None:
+    plan, seen = ur
+    gone = f"/right/{node}"
+    left = seen._replace(
+        nodes=tuple(it for it in seen.nodes if it.name != gone),
+        ends=tuple(it for it in seen.ends if it.node != gone),
+    )
+    assert [it[:5] for it in told(plan, left)] == [code]
+
+
+@pytest.mark.parametrize(
+    ("name", "other"),
+    [
+        # The state helper of one arm asks the other.
+        ("/left/io_and_status_controller/robot_mode", "/right/io_and_status_controller/robot_mode"),
+        # Its rule is lost: it acts on whatever tool_contact_controller there is.
+        ("/left/force_mode_controller/start_force_mode", "/force_mode_controller/start_force_mode"),
+    ],
+)
+def test_a_name_that_goes_astray_is_found(
+    name: str, other: str, ur: tuple[FleetPlan, System]
+) -> None:
+    plan, seen = ur
+    moved = (it._replace(name=other) if it.name == name else it for it in seen.ends)
+    assert any(
+        it.startswith(("MG102", "MG104")) for it in told(plan, seen._replace(ends=tuple(moved)))
+    )
+
+
+def test_every_node_of_the_systems_has_facts() -> None:
+    assert len(CASES) == 14
+    lacking = {
+        (release, kind)
+        for name, release in CASES
+        for kind in kinds(name, release).values()
+        if kind not in facts(release)
+    }
+    assert lacking == set()

@@ -1,0 +1,260 @@
+"""C++ -> what its classes call.
+
+What is looked for is data: ``HANDLERS`` has a function for each kind of syntax.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any
+
+from tools.interfaces.expressions import (
+    MAKERS,
+    MESSAGE,
+    NAMES_PARAMETER,
+    arguments_of,
+    braced,
+    callee,
+    evaluated,
+    is_node,
+    last,
+    template_arguments,
+    text_of,
+)
+from tools.interfaces.records import (
+    Alias,
+    Call,
+    Class,
+    Constructor,
+    Place,
+    Plugin,
+    Source,
+    Value,
+)
+from tools.interfaces.syntax import nodes_of
+
+if TYPE_CHECKING:
+    from tools.interfaces.syntax import Node
+
+LONGEST_CONDITION = 60
+_EXPORT = re.compile(r"PLUGINLIB_EXPORT_CLASS\(\s*([\w:<>]+)\s*,\s*([\w:<>]+)\s*,?\s*\)")
+_COMPONENT = re.compile(r"^\s*RCLCPP_COMPONENTS_REGISTER_NODE\(\s*([\w:]+)\s*\)", re.MULTILINE)
+_MACRO = re.compile(r"\b[A-Z][A-Z0-9_]*_(?:PUBLIC|EXPORT|LOCAL)\b")
+
+
+def read_cpp(text: str, place: Place) -> Source:
+    """What a C++ file declares and calls."""
+    clean = _MACRO.sub(lambda found: " " * len(found[0]), text)
+    found: dict[type, list[Any]] = {kind: [] for kind in _COLUMNS}
+    for node in nodes_of(clean, tuple(HANDLERS)):
+        for item in HANDLERS[node.type](node, place):
+            found[type(item)].append(item)
+    found[Plugin] = [Plugin(last(one), last(base)) for one, base in _EXPORT.findall(text)]
+    found[Call] += [_component(it, place) for it in _COMPONENT.findall(text)]
+    return Source(*(tuple(found[kind]) for kind in _COLUMNS))
+
+
+def _component(name: str, place: Place) -> Call:
+    """A registered component is made as a main would."""
+    return Call("", "main", last(name), (), (), "", "", place)
+
+
+_COLUMNS = (Class, Call, Value, Alias, Constructor, Plugin)
+
+
+def _up(node: Node, *types: str) -> Node | None:
+    above = node.parent
+    while above is not None and above.type not in types:
+        above = above.parent
+    return above
+
+
+def _declarator(node: Node) -> Node | None:
+    """The function's declarator, below pointers and references."""
+    found = node.child_by_field_name("declarator")
+    while found is not None and found.type != "function_declarator":
+        found = found.child_by_field_name("declarator") or next(iter(found.named_children), None)
+    return found
+
+
+def _around(node: Node) -> tuple[str, str]:
+    """The class and function that something is in."""
+    function = node if node.type == "function_definition" else _up(node, "function_definition")
+    name = ""
+    if function is not None and (declarator := _declarator(function)) is not None:
+        full = text_of(declarator.child_by_field_name("declarator"))
+        name = last(full) if "operator" not in full else ""
+        if "::" in re.sub(r"<[^<>]*>", "", full):
+            return last(re.sub(r"<[^<>]*>", "", full).rpartition("::")[0]), name
+    owner = _up(function or node, "class_specifier", "struct_specifier")
+    return last(text_of(owner.child_by_field_name("name"))) if owner else "", name
+
+
+def _condition(node: Node) -> str:
+    """The text of the nearest ``if`` around it, in its function."""
+    above = node
+    while above.parent is not None and above.parent.type not in ("function_definition",):
+        below, above = above, above.parent
+        if above.type == "if_statement" and below != above.child_by_field_name("condition"):
+            text = text_of(above.child_by_field_name("condition"))[1:-1]
+            wrong = below.type == "else_clause"
+            text = f"not ({text})" if wrong else text
+            return text if len(text) <= LONGEST_CONDITION else text[: LONGEST_CONDITION - 1] + "…"
+    return ""
+
+
+def _class(node: Node, place: Place) -> Iterator[Class]:
+    body, name = node.child_by_field_name("body"), node.child_by_field_name("name")
+    if body is None or name is None:
+        return
+    clause = next((it for it in node.children if it.type == "base_class_clause"), None)
+    named = ("type_identifier", "qualified_identifier", "template_type")
+    bases = tuple(text_of(it) for it in clause.named_children if it.type in named) if clause else ()
+    above = node.parent
+    heads = above.child_by_field_name("parameters") if above is not None else None
+    parameters = tuple(_head(it) for it in heads.named_children) if heads else ()
+    members = {
+        last(text_of(field.child_by_field_name("declarator"))): text_of(
+            field.child_by_field_name("type")
+        )
+        for field in body.named_children
+        if field.type == "field_declaration"
+        and not text_of(field.child_by_field_name("declarator")).startswith(("&", "*"))
+    }
+    yield Class(last(text_of(name)), bases, parameters, members, _at(node, place))
+
+
+def _head(node: Node) -> str:
+    """``typename T = a::B`` -> ``T=a::B``."""
+    name, _, default = text_of(node).partition("=")
+    return f"{name.split()[-1]}={default.strip()}" if default else name.split()[-1]
+
+
+def _at(node: Node, place: Place) -> Place:
+    return place._replace(line=node.start_point[0] + 1)
+
+
+def _call(node: Node, place: Place) -> Iterator[Call | Value]:
+    function = node.child_by_field_name("function")
+    arguments = node.child_by_field_name("arguments")
+    if function is None:
+        return
+    name, types, on = callee(function)
+    given = arguments_of(arguments)
+    if name in MAKERS and types:
+        yield _made(node, types[0], given, place)
+        return
+    owner, inside = _around(node)
+    call = Call(owner, inside, name, types, given, on, _condition(node), _at(node, place))
+    yield call
+    if NAMES_PARAMETER.fullmatch(name):
+        yield from _parameter(call)
+
+
+def _made(node: Node, type_: str, given: tuple[str, ...], place: Place) -> Call:
+    owner, inside = _around(node)
+    name = "" if MESSAGE.search(type_.partition("<")[0]) else last(type_)
+    own = (name, template_arguments(type_), given, "", _condition(node), _at(node, place))
+    return Call(owner, inside, *own)
+
+
+def _parameter(call: Call) -> Iterator[Value]:
+    """``get_parameter("p", variable)``, ``declare_parameter(node, "p", default)``."""
+    texts = [it for it in call.given if not is_node(it)]
+    parameter = braced(texts[0]) if texts else ""
+    for other in texts[1:]:
+        if other.startswith("<") and call.name.startswith("get") and "(" not in other:
+            yield Value(call.owner, call.function, other.strip("<>"), f"<@{parameter}>", call.place)
+        elif not other.startswith("<"):
+            yield Value("", call.function, f"@{parameter}", other, call.place)
+
+
+def _made_new(node: Node, place: Place) -> Iterator[Call]:
+    type_ = text_of(node.child_by_field_name("type"))
+    yield _made(node, type_, arguments_of(node.child_by_field_name("arguments")), place)
+
+
+def _initialised(node: Node, place: Place) -> Iterator[Call | Value]:
+    """``: member_(value)`` or ``: Base<T>(value)`` of a constructor."""
+    name = text_of(node.named_children[0]) if node.named_children else ""
+    given = arguments_of(node.named_children[-1])
+    owner, inside = _around(node)
+    if given:
+        yield Value(owner, inside, last(name), given[0], place)
+    yield Call(owner, "", last(name), template_arguments(name), given, "", "", _at(node, place))
+
+
+def _declared(node: Node, place: Place) -> Iterator[Call | Value]:
+    """``Type name = value;`` or ``Type name(value);``."""
+    declarator, value = (node.child_by_field_name(it) for it in ("declarator", "value"))
+    if value is None or declarator is None or node.parent is None:
+        return
+    owner, inside = _around(node)
+    if value.type == "argument_list":
+        type_ = text_of(node.parent.child_by_field_name("type"))
+        given = arguments_of(value)
+        yield _made(node, type_, given, place)
+        text = given[0] if given else ""
+    else:
+        text = evaluated(value)
+    yield Value(owner, inside, last(text_of(declarator).partition("[")[0]), text, place)
+
+
+def _assigned(node: Node, place: Place) -> Iterator[Value]:
+    left, right = (node.child_by_field_name(it) for it in ("left", "right"))
+    yield Value(*_around(node), evaluated(left).strip("<>"), evaluated(right), place)
+
+
+def _default(node: Node, place: Place) -> Iterator[Value]:
+    """The default of a function's parameter, or of a member."""
+    name, value = (node.child_by_field_name(it) for it in ("declarator", "default_value"))
+    if value is None:
+        return
+    owner, inside = _around(node)
+    yield Value(owner, inside, last(text_of(name)), evaluated(value), place)
+
+
+def _alias(node: Node, place: Place) -> Iterator[Alias]:
+    name = text_of(node.child_by_field_name("name") or node.child_by_field_name("declarator"))
+    type_ = text_of(node.child_by_field_name("type"))
+    yield Alias(_around(node)[0], name, type_)
+
+
+def _used(node: Node, place: Place) -> Iterator[Alias]:
+    """``using a_msgs::msg::Scan;``; not of a namespace."""
+    name = text_of(node.named_children[-1])
+    if MESSAGE.search(name):
+        yield Alias(_around(node)[0], last(name), name)
+
+
+def _taking(node: Node, place: Place) -> Iterator[Constructor]:
+    """The names of a function's parameters."""
+    parameters = node.child_by_field_name("parameters")
+    full = text_of(node.child_by_field_name("declarator"))
+    if parameters is None:
+        return
+    owner, _ = _around(node)
+    names = tuple(
+        re.split(r"[\s&*]", text_of(it.child_by_field_name("declarator")))[-1]
+        for it in parameters.named_children
+        if it.type in ("parameter_declaration", "optional_parameter_declaration")
+    )
+    yield Constructor(owner or last(full.rpartition("::")[0]), last(full), names)
+
+
+HANDLERS: dict[str, Callable[[Any, Place], Iterator[Any]]] = {
+    "class_specifier": _class,
+    "struct_specifier": _class,
+    "call_expression": _call,
+    "new_expression": _made_new,
+    "field_initializer": _initialised,
+    "init_declarator": _declared,
+    "assignment_expression": _assigned,
+    "optional_parameter_declaration": _default,
+    "field_declaration": _default,
+    "alias_declaration": _alias,
+    "type_definition": _alias,
+    "using_declaration": _used,
+    "function_declarator": _taking,
+}

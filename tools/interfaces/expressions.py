@@ -1,0 +1,146 @@
+"""A C++ expression -> a text, as far as the file says it; what is not known is in <>.
+
+Which functions hand a text on is data: ``SAME_TEXT``, ``LAST_TEXT``; each kind of syntax has a
+function in ``TEXTS``.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from tools.interfaces.syntax import Node
+
+MAKERS = ("make_shared", "make_unique", "allocate_shared")
+# Their first argument is the text that they give back.
+SAME_TEXT = (
+    *("string", "c_str", "str", "to_string", "move", "getString", "topicResolve", "ParameterValue"),
+    *("static_pointer_cast", "dynamic_pointer_cast"),
+    *("resolve_topic_or_service_name", "expand_topic_or_service_name"),
+)
+LAST_TEXT = ("joinWithParentNamespace", "resolve_topic_name", "append")
+NAMES_PARAMETER = re.compile(r"(get|declare|add)\w*[pP]aram(eter)?(_if_not_declared|_or)?")
+LONGEST_NAME = 80
+MESSAGE = re.compile(r"::(msg|srv|action)::")
+_SCOPE = re.compile(r"(?:\w+(?:<[^<>]*>)?::)+(?=\w)")
+_NODE = re.compile(
+    r"<(this|\w*[nN]ode\w*|nh_?|n_?|parent\w*|shared_from_this|\w*interface\w*|Node:.*)>"
+)
+
+
+def text_of(node: Node | None) -> str:
+    """The source text, on one line."""
+    return " ".join((node.text or b"").decode("utf-8", "replace").split()) if node else ""
+
+
+def last(name: str) -> str:
+    """``a::B<c::D>`` -> ``B``."""
+    return name.partition("<")[0].rpartition("::")[2].strip(" &*")
+
+
+def template_arguments(type_: str) -> tuple[str, ...]:
+    """``a::B<c::D, E<F, G>>`` -> ``c::D``, ``E<F, G>``."""
+    inside = type_.partition("<")[2].rpartition(">")[0]
+    found, depth, start = [], 0, 0
+    for at, sign in enumerate(inside):
+        depth += (sign in "<(") - (sign in ">)")
+        if sign == "," and not depth:
+            found.append(inside[start:at].strip())
+            start = at + 1
+    return tuple(part for part in (*found, inside[start:].strip()) if part)
+
+
+def is_node(text: str) -> bool:
+    """Is this argument a node, or a part of one?"""
+    return _NODE.fullmatch(text) is not None
+
+
+def braced(text: str) -> str:
+    """The text inside another name in <>."""
+    return text.replace("<", "{").replace(">", "}")
+
+
+def evaluated(node: Node | None) -> str:
+    """An expression as a text; what is not known is in <>."""
+    if node is None:
+        return "<?>"
+    if node.type in TEXTS:
+        return TEXTS[node.type](node)
+    text = text_of(node)
+    return f"<{_SCOPE.sub('', text)}>" if len(text) <= LONGEST_NAME else "<?>"
+
+
+def arguments_of(node: Node | None) -> tuple[str, ...]:
+    """What a call is given, each as a text."""
+    if node is None:
+        return ()
+    return tuple(evaluated(it) for it in node.named_children if it.type != "comment")
+
+
+def callee(function: Node) -> tuple[str, tuple[str, ...], str]:
+    """Its last name, its template arguments, and the object that is asked."""
+    full, on = text_of(function), ""
+    if function.type == "field_expression":
+        on = evaluated(function.child_by_field_name("argument"))
+        full = text_of(function.child_by_field_name("field"))
+    full = full.removeprefix("template ")
+    if MESSAGE.search(full.partition("<")[0]):
+        return "", (), ""
+    return last(full), template_arguments(full), "" if on == "<this>" else on
+
+
+def _field(field: str) -> Callable[[Any], str]:
+    return lambda node: evaluated(node.child_by_field_name(field))
+
+
+def _all(node: Node) -> str:
+    return "".join(evaluated(it) for it in node.named_children)
+
+
+def _sum(node: Node) -> str:
+    return _all(node) if any(it.type == "+" for it in node.children) else "<?>"
+
+
+def _last_field(node: Node) -> str:
+    return f"<{text_of(node.child_by_field_name('field'))}>"
+
+
+def _called(node: Node) -> str:
+    function, arguments = (node.child_by_field_name(it) for it in ("function", "arguments"))
+    if function is None:
+        return "<?>"
+    name, types, on = callee(function)
+    given = arguments_of(arguments)
+    made = last(types[0]) if types else last(text_of(function).rpartition("::")[0])
+    if name in MAKERS and made.endswith("Node"):
+        return f"<Node:{braced(given[0]) if given else ''}>"
+    if NAMES_PARAMETER.fullmatch(name):
+        texts = [it for it in given if not is_node(it)]
+        return f"<@{braced(texts[0])}>" if texts else "<?>"
+    return _passed_on(name, given, on) or f"<{name}>"
+
+
+def _passed_on(name: str, given: tuple[str, ...], on: str) -> str:
+    """The text that a function gives back; empty where it is another one."""
+    if name.startswith(("as_", "get_value", "value")) and "@" in on:
+        return on
+    if name in LAST_TEXT and given:
+        return given[-1]
+    return (given[0] if given else on) if name in SAME_TEXT else ""
+
+
+TEXTS: dict[str, Callable[[Any], str]] = {
+    "string_literal": lambda node: text_of(node)[1:-1],
+    "user_defined_literal": lambda node: evaluated(node.named_children[0]),
+    "concatenated_string": _all,
+    "initializer_list": _all,
+    "compound_literal_expression": _field("value"),
+    "binary_expression": _sum,
+    "parenthesized_expression": _all,
+    "pointer_expression": _field("argument"),
+    "conditional_expression": lambda node: "<either>",
+    "field_expression": _last_field,
+    "call_expression": _called,
+}

@@ -1,0 +1,38 @@
+"""C++ -> its nodes of syntax. The only import of tree-sitter."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING
+
+from multibot_rewrite.model import UsageError
+
+if TYPE_CHECKING:
+    from tree_sitter import Node, Parser, QueryCursor
+
+
+__all__ = ["Node", "nodes_of"]
+
+
+def nodes_of(text: str, kinds: tuple[str, ...]) -> list[Node]:
+    """The nodes of these kinds, in the order of the text, an inner one before the one around it that
+    begins with it; raises UsageError without tree-sitter."""
+    parser, query = _tools(kinds)
+    tree = parser.parse(text.encode())
+    found = query.captures(tree.root_node).get("found", ())
+    return sorted(found, key=lambda it: (it.start_byte, it.end_byte))
+
+
+@cache
+def _tools(kinds: tuple[str, ...]) -> tuple[Parser, QueryCursor]:
+    """The parser, and the query for these kinds."""
+    try:
+        import tree_sitter
+        import tree_sitter_cpp
+    except ImportError:
+        raise UsageError(
+            "reading C++ needs tree-sitter; pip install tree-sitter tree-sitter-cpp"
+        ) from None
+    language = tree_sitter.Language(tree_sitter_cpp.language())
+    query = tree_sitter.Query(language, "\n".join(f"({kind}) @found" for kind in kinds))
+    return tree_sitter.Parser(language), tree_sitter.QueryCursor(query)

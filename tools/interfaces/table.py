@@ -1,0 +1,32 @@
+"""Facts as a table: one line a fact, columns with tabs between, sorted."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from tools.interfaces.records import Fact, Place
+
+COLUMNS = (*Place._fields[:-1], *Fact._fields[:-1])
+
+
+def to_table(facts: Iterable[Fact]) -> str:
+    """The table's text."""
+    rows = sorted({_row(fact) for fact in facts}, key=lambda it: (it[0], it[4:8], it))
+    return "".join("\t".join(row) + "\n" for row in (COLUMNS, *rows))
+
+
+def _row(fact: Fact) -> tuple[str, ...]:
+    place = fact.place
+    where = (place.repository, place.version, place.path, str(place.line))
+    own = (fact.node, fact.role, fact.name, fact.type, fact.way, fact.parameter, fact.condition)
+    return (*where, *own)
+
+
+def from_table(text: str) -> tuple[Fact, ...]:
+    """The facts of a table that ``to_table`` wrote."""
+    return tuple(_fact(line.split("\t")) for line in text.splitlines()[1:])
+
+
+def _fact(row: list[str]) -> Fact:
+    repository, version, path, line, *own = row
+    return Fact(*own, Place(repository, version, path, int(line)))  # type: ignore[call-arg,arg-type]
