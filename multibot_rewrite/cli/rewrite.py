@@ -29,6 +29,7 @@ from multibot_rewrite.cli.report import (
 from multibot_rewrite.cli.rewrite_use import check_unread, check_use, input_name, target_path
 from multibot_rewrite.cli.usage import policy, robots, xacro_args
 from multibot_rewrite.cli.walk import standard_input
+from multibot_rewrite.companions.kinds import is_text_beside
 from multibot_rewrite.config import configured_vocabulary
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.selection import fails
@@ -59,6 +60,10 @@ def run(options: argparse.Namespace) -> int:
     check_use(options, names)
     options.vocabulary = [*configured_vocabulary(options.input), *options.vocabulary]
     source: Source = standard_input() if options.input == "-" else options.input
+    if is_text_beside(source):
+        from multibot_rewrite.cli import rewrite_file  # a description needs none of it
+
+        return rewrite_file.run(options, source, names)
     return (_undo if options.strip else _rewrite)(options, source, names)
 
 
@@ -70,8 +75,8 @@ def _undo(options: argparse.Namespace, source: Source, names: list[str]) -> int:
     beside = read_whole(options.xacro, given, options.trust).read if options.xacro else ()
     stripped = _strip(options, read.data, robot)
     check_unread(options, [robot], (*read.read, *beside))
-    _deliver(options, [(robot, read.data, stripped)], [], 1)
-    _note(options, f"{robot} taken out, proved by rewriting again")
+    deliver(options, [(robot, read.data, stripped)], [], 1)
+    tell(options, f"{robot} taken out, proved by rewriting again")
     return DONE
 
 
@@ -95,24 +100,24 @@ def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> i
     check_unread(options, names, (path for it in jobs for path in it.job.read.files))
     about = About([input_name(options)], by_themselves(names), first.distro)
     found = dict.fromkeys(finding for it in (first, *others) for finding in it.findings)
-    if report_beside(options, _told(options, chosen(options, found)), about):
+    if report_beside(options, told(options, chosen(options, found)), about):
         say(f"--fail-on {options.fail_on}: nothing was written", options.program)
         return STOPPED
     results = ((it.robot, it.prepared.job.data, it.data) for it in chain([first], others, rewrites))
     own = {it.robot: it for it in others}
     every = [own.get(robot, first._replace(robot=robot)) for robot in names]
     changes = [(options.changes, changes_json(every))] if options.changes else []
-    _deliver(options, results, changes, len(names))
-    _note(options, summary(first, names, _own_arguments(options, names)))
+    deliver(options, results, changes, len(names))
+    tell(options, summary(first, names, _own_arguments(options, names)))
     return DONE
 
 
-def _told(options: argparse.Namespace, findings: Sequence[Finding]) -> Sequence[Finding]:
+def told(options: argparse.Namespace, findings: Sequence[Finding]) -> Sequence[Finding]:
     """What is reported: to a program only what stops the rewrite."""
     return () if options.silent and not fails(findings, options.fail_on) else findings
 
 
-def _note(options: argparse.Namespace, text: str) -> None:
+def tell(options: argparse.Namespace, text: str) -> None:
     if not options.silent:
         note(options, text)
 
@@ -134,7 +139,7 @@ def _strip(options: argparse.Namespace, source: bytes, robot: str) -> bytes:
     )
 
 
-def _deliver(
+def deliver(
     options: argparse.Namespace,
     results: Iterable[tuple[str, bytes, bytes]],
     more: list[tuple[str, bytes]],

@@ -34,7 +34,7 @@ from multibot_rewrite.companions.names.rename_map import is_declared, spell
 from multibot_rewrite.companions.names.robot_topics import NOTHING, robot_topic
 from multibot_rewrite.companions.rviz.read_config import text_of
 from multibot_rewrite.companions.sites import GZ_TOPIC, NamedFile, Site, site_at
-from multibot_rewrite.companions.template import make_template
+from multibot_rewrite.companions.template import FileTemplate, make_template
 from multibot_rewrite.companions.yaml_blocks import Block, blocks, cut_out, is_block, newline
 from multibot_rewrite.companions.yaml_text import (
     Splice,
@@ -57,10 +57,12 @@ WORLD = frozenset({"clock", "stats"})
 
 
 class BridgeFile(NamedTuple):
-    """A bridge file: the entries of each robot with slots, and the text of those that all share."""
+    """A bridge file: the entries of each robot with slots, the text of those that all share, and both
+    with slots."""
 
     own: Companion
     shared: str
+    whole: FileTemplate
 
 
 def rewrite_bridge(
@@ -84,7 +86,8 @@ def rewrite_bridge(
     )
     text = cut_out(document, 0, len(document.text), _only(document, shared)) if shared else ""
     found = (*other_models(document, model_of(document)), *shared_services(document, entries))
-    return BridgeFile(Companion(template, found, _named(document, context, entries)), text)
+    whole = make_template(document.text, [*_only(document, entries), *splices])
+    return BridgeFile(Companion(template, found, _named(document, context, entries)), text, whole)
 
 
 def read_bridge(document: YamlText, context: Context) -> NamedFile:

@@ -23,11 +23,28 @@ _MARKS = (
         ),
     ),
 )
+IS_TREE = lazy_compile(rb"<BehaviorTree\b|<root\b[^>]*\b(?:BTCPP_format|main_tree_to_execute)\b", 0)
 
 
 def is_beside(path: str) -> bool:
     """Is a file called like one of these?"""
     return path.lower().endswith(SUFFIXES)
+
+
+def is_text_beside(source: object) -> bool:
+    """Is it the path or the bytes of such a file, or of a tree or Lua file, and of no description?"""
+    if isinstance(source, bytes):
+        return bool(IS_TREE.search(source)) or not source.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(
+            b"<"
+        )
+    path = str(source).lower()
+    if not path.endswith(".xml"):
+        return path.endswith((*SUFFIXES, ".lua"))
+    try:
+        with open(str(source), "rb") as file:
+            return bool(IS_TREE.search(file.read(MAX_BYTES)))
+    except OSError:
+        return False
 
 
 def is_linted(path: str) -> bool:

@@ -86,6 +86,12 @@ def rewrite_lua(text: str, file: str, context: Context) -> Companion:
     return Companion(template, found, named)
 
 
+def read_lua(text: str, file: str, context: Context) -> NamedFile:
+    """The names of a file; raises as ``rewrite_lua``."""
+    tokens = list(tokens_of(text, file))
+    return _named(text, file, context, tokens, list(_options(tokens)))
+
+
 def tokens_of(text: str, file: str) -> Iterator[Token]:
     """The tokens of Lua code without comments; InputError where one does not end."""
     for found in _TOKEN.finditer(text):

@@ -9,6 +9,7 @@ from multibot_rewrite.companions.behavior_tree.ports import (
     Port,
     place_of,
     port_data,
+    ports_of,
 )
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.kinds import TREE
@@ -27,6 +28,12 @@ def read_tree(data: bytes, file: str) -> Document:
         place = f"{file}:{document.root.sourceline or 1}"
         raise InputError(f"{place}: not a behavior tree: the root is <{document.root.tag}>")
     return document
+
+
+def named_tree(data: bytes, file: str, context: Context) -> NamedFile:
+    """The names of a tree; raises as ``read_tree``."""
+    document = read_tree(data, file)
+    return named_ports(document, context, list(ports_of(document)))
 
 
 def named_ports(document: Document, context: Context, ports: Iterable[Port]) -> NamedFile:
