@@ -7,6 +7,7 @@ import shlex
 from collections.abc import Sequence
 
 from multibot_rewrite.cli import check, doctor, pictures
+from multibot_rewrite.cli.output import note
 from multibot_rewrite.cli.report import check_report
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.fleets.fleet import known_nodes
@@ -26,6 +27,9 @@ def run(options: argparse.Namespace) -> int:
     _check_use(options, order)
     plan = check.plan_of(options) if options.plan else None
     made = graph_of(options, order)
+    for it in made.environment.caveats:
+        if not it.incomplete:
+            note(options, it.message)
     if plan is not None:
         return check.conclude(options, plan, made)
     # What doctor is told besides: there is no snapshot, and nothing to begin.

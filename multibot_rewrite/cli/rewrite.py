@@ -4,20 +4,14 @@ from __future__ import annotations
 
 import argparse
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from itertools import chain
 
 from multibot_rewrite.checks.verdict import not_proved
-from multibot_rewrite.cli.diffs import diff
 from multibot_rewrite.cli.output import (
     STANDARD,
-    note,
-    print_bytes,
-    prints_colour,
     say,
     serves_a_program,
-    watched,
-    write_files,
 )
 from multibot_rewrite.cli.process import DONE, STOPPED
 from multibot_rewrite.cli.report import (
@@ -26,13 +20,12 @@ from multibot_rewrite.cli.report import (
     chosen,
     report_beside,
 )
-from multibot_rewrite.cli.rewrite_use import check_unread, check_use, input_name, target_path
+from multibot_rewrite.cli.rewrite_output import deliver, tell, told
+from multibot_rewrite.cli.rewrite_use import check_unread, check_use, input_name
 from multibot_rewrite.cli.usage import policy, robots, xacro_args
 from multibot_rewrite.cli.walk import standard_input
 from multibot_rewrite.companions.kinds import is_text_beside
 from multibot_rewrite.config import configured_vocabulary
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.findings.selection import fails
 from multibot_rewrite.library import Rewrite, rewrite_all, strip
 from multibot_rewrite.naming import SEPARATORS
 from multibot_rewrite.plural import plural
@@ -112,16 +105,6 @@ def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> i
     return DONE
 
 
-def told(options: argparse.Namespace, findings: Sequence[Finding]) -> Sequence[Finding]:
-    """What is reported: to a program only what stops the rewrite."""
-    return () if options.silent and not fails(findings, options.fail_on) else findings
-
-
-def tell(options: argparse.Namespace, text: str) -> None:
-    if not options.silent:
-        note(options, text)
-
-
 def _strip(options: argparse.Namespace, source: bytes, robot: str) -> bytes:
     name, vocabulary = input_name(options), options.vocabulary
     extra = policy(options)
@@ -137,26 +120,6 @@ def _strip(options: argparse.Namespace, source: bytes, robot: str) -> bytes:
         distro=options.distro or "",
         **extra,
     )
-
-
-def deliver(
-    options: argparse.Namespace,
-    results: Iterable[tuple[str, bytes, bytes]],
-    more: list[tuple[str, bytes]],
-    total: int,
-) -> None:
-    """Print or write the results (robot, before, after) as they are made, and ``more`` files."""
-    target = options.input if options.in_place else options.output
-    if target:
-        files = ((target_path(target, robot), data) for robot, _, data in results)
-        write_files(options, watched(chain(more, files), total, "writing"))
-        return
-    write_files(options, more)
-    colour = prints_colour(options)
-    for robot, before, data in results:
-        name = input_name(options)
-        text = diff(before, data, name, f"{name} for {robot}", colour) if options.diff else data
-        print_bytes(text)
 
 
 def changes_json(rewrites: Sequence[Rewrite]) -> bytes:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import argparse
 
-from multibot_rewrite.cli import rewrite
 from multibot_rewrite.cli.output import say
 from multibot_rewrite.cli.process import DONE, STOPPED
 from multibot_rewrite.cli.report import About, by_themselves, chosen, report_beside
+from multibot_rewrite.cli.rewrite_output import deliver, tell, told
 from multibot_rewrite.cli.rewrite_use import check_unread, input_name
 from multibot_rewrite.cli.usage import policy, xacro_args
 from multibot_rewrite.companions.kinds import BRIDGE, LUA, MOVEIT, PARAMS, RVIZ, TREE
@@ -49,12 +49,12 @@ def run(options: argparse.Namespace, source: Source, names: list[str]) -> int:
     release = release_here(options.distro or "")
     about = About([input_name(options)], by_themselves(names), release)
     found = dict.fromkeys(finding for it in every for finding in it.findings)
-    if report_beside(options, rewrite.told(options, chosen(options, found)), about):
+    if report_beside(options, told(options, chosen(options, found)), about):
         say(f"--fail-on {options.fail_on}: nothing was written", options.program)
         return STOPPED
     results = ((it.robot, before.data, it.data) for it in every)
-    rewrite.deliver(options, results, [], len(names))
-    rewrite.tell(options, summary(every, names, release))
+    deliver(options, results, [], len(names))
+    tell(options, summary(every, names, release))
     return DONE
 
 

@@ -6,12 +6,13 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.closure.gap import Gap
 from multibot_rewrite.evidence.filling import filled, lookup
-from multibot_rewrite.evidence.records import GivenNode, Place
+from multibot_rewrite.evidence.records import GivenNode
 from multibot_rewrite.graph.transforms import Edge
 from multibot_rewrite.knowledge.conditions import AND, holds, parse_condition
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.system.conventions import USUAL_FRAMES
+from multibot_rewrite.system.records import Place
 
 FRAME, TREE, READ = "frame", "tree", "read frame"
 

@@ -5,11 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 
 from multibot_rewrite.closure.gap import Gap
-from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.nearest import nearest
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.system.conventions import is_from_outside
-from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SERVES, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.records import (
+    ACTION,
+    CALLS,
+    PUBLISHES,
+    SERVES,
+    SUBSCRIBES,
+    TOPIC,
+    Place,
+)
 
 TYPE, STATUS = "type", "/_action/status"
 GIVES, NEEDS = (PUBLISHES, SERVES), (SUBSCRIBES, CALLS)

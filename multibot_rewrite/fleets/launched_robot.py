@@ -46,6 +46,7 @@ def launch_of(orders: Sequence[LaunchOrder], robot: str) -> LaunchGraph:
         tuple(node for it in graphs for node in it.nodes),
         tuple(note for it in graphs for note in it.notes),
         tuple(file for it in graphs for file in it.files),
+        any(it.stood_in for it in graphs),
     )
 
 

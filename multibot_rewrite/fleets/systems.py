@@ -13,7 +13,7 @@ from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, pair
 from multibot_rewrite.evidence.hardware import Exported, exported
 from multibot_rewrite.evidence.nodes import children_of
 from multibot_rewrite.evidence.parameter_files import given_nodes
-from multibot_rewrite.evidence.records import GivenNode, Place
+from multibot_rewrite.evidence.records import GivenNode
 from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.fleets.fleet_file import REAL
 from multibot_rewrite.fleets.member import without_simulator
@@ -30,7 +30,7 @@ from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import EndpointName
 from multibot_rewrite.rosnames import expand
 from multibot_rewrite.steps.document import read_document
-from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Place
 
 FIXED, MOVEIT = "fixed", "moveit_simple_controller_manager"
 BRIDGE_FILE, BRIDGE_NODE = "bridge.yaml", "ros_gz_bridge"

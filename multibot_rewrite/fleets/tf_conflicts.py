@@ -17,11 +17,11 @@ from multibot_rewrite.fleets.member import line_of as line_of_element
 from multibot_rewrite.fleets.output_values import OutputText, line_in_source
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.fleets.robot_groups import RobotGroup, group_robots
-from multibot_rewrite.graph.expectation import tf_topic
 from multibot_rewrite.graph.transforms import Edge
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.own_defaults import frame_sites
 from multibot_rewrite.rewriters.text import text_at
+from multibot_rewrite.spelling.plan import tf_topic
 
 DESCRIPTION = "the description"
 SIMULATOR = "the bridge from gz-sim"

@@ -38,7 +38,8 @@ A node:
     absolute   releases in which a relative topic in it is not resolved in the robot's namespace, so
                that it is made absolute; ``strips``: those in which it takes off a slash that a
                frame starts with
-    params     its parameters by path
+    declared_in   packages besides its own whose classes declare parameters on it
+    params     its parameters by path; those that hold no names are in ``declared.schema``
 
 An endpoint is a type or {...}: type, also (other types, by parameter or release), types (condition
 -> the one of them that it has), parameter (sets the name), transport (an image topic, with its

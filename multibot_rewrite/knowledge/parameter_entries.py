@@ -39,13 +39,8 @@ KINDS = (*NAME_KINDS, *GRAPH_NAME_KINDS, *OTHER_KINDS, *SWITCH_KINDS, "exclusive
 # Placeholders for a segment of a path; an id holds no name of a robot.
 SEGMENTS = ("joint", "sensor", "gpio", "frame", "interface", "controller", "group", "id")
 PARAMETER_KEYS = (
-    "aliases",
-    "types",
-    "deprecated_types",
-    "known_by",
-    "absolute",
-    "strips",
-    "params",
+    *("aliases", "types", "deprecated_types", "known_by", "absolute", "strips", "params"),
+    "declared_in",
 )
 PARAM_KEYS = ("kind", "default", "list", "absolute", "deprecated", "own", "note", *FACT_KEYS)
 
@@ -70,6 +65,7 @@ def read_parameters(
         source_of(keys) or old.source,
         releases_of(keys, "strips") or old.strips,
         {**old.deprecated_types, **{type_: releases_of(deprecated, type_) for type_ in deprecated}},
+        (*old.declared_in, *words_of(keys, "declared_in")),
     )
 
 

@@ -93,7 +93,8 @@ class NodeParameters(NamedTuple):
     """A node in parameter files: ``params`` in each of their forms, ``types`` are controller types,
     ``known_by`` parameters that identify the node if its section has another name. ``strips`` are the
     releases in which the node takes off a slash that a frame starts with, empty for none;
-    ``deprecated_types`` has those of types."""
+    ``deprecated_types`` has those of types. ``declared_in`` are packages besides its own whose classes
+    declare parameters on it: plugins, helpers, libraries."""
 
     name: str
     package: str
@@ -105,6 +106,7 @@ class NodeParameters(NamedTuple):
     source: tuple[str, ...] = ()
     strips: str = ""
     deprecated_types: Mapping[str, str] = NO_TYPES
+    declared_in: tuple[str, ...] = ()
 
 
 class SentTransform(NamedTuple):

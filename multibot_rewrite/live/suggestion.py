@@ -34,7 +34,7 @@ FILES = (FLEET_FILE, NODES_FILE, DESCRIPTION, PLAN_FILE)
 HEAD = """\
 # A first fleet file, from what was seen in the running graph. Before you use it:
 # - put your robot's own URDF or xacro in place of robot.urdf, which has only the frames heard
-# - see whether these are the robots and the layout that you want: multibot help build
+# - see whether these are the robots and the layout that you want: multibot build --help
 # Then: multibot build fleet.yaml -o out/, and multibot check fleet.yaml while it runs
 """
 

@@ -7,7 +7,6 @@ from collections.abc import Collection, Container, Iterable, Iterator, Mapping, 
 
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.grouping import with_members
-from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, robot_words
 from multibot_rewrite.graph.patterns import fitted
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.live.watching import WORDS, Outcome, judge
@@ -28,7 +27,16 @@ from multibot_rewrite.pages.states import (
 from multibot_rewrite.pages.tf_tree_rows import FrameTree, make_frame_trees
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules.pair.comparison import EndpointKey, View, make_view
-from multibot_rewrite.system.records import ACTION, SERVICE, TOPIC, End, Environment, System
+from multibot_rewrite.spelling.plan import robot_words
+from multibot_rewrite.system.records import (
+    ACTION,
+    SERVICE,
+    TOPIC,
+    End,
+    Environment,
+    System,
+    alternatives,
+)
 
 # Packages with the types of endpoints that every node has: logging, parameters, life cycle; and
 # tf, which has its own picture.
@@ -144,7 +152,7 @@ class _RobotOf(NamedTuple):
 
 
 def make_scene(
-    plan: Expectation,
+    plan: System,
     graph: System,
     found: Sequence[Finding],
     outcome: Outcome | None = None,
@@ -168,24 +176,23 @@ def make_scene(
         tuple(found),
         tuple(_rows(view, dict(zip(found, targets, strict=True)))),
         graph.environment,
-        plan.one_of,
+        alternatives(plan),
         frozenset(view.seen),
     )
 
 
 def _rows(view: View, targets: Mapping[Finding, Targets]) -> Iterator[FindingRow]:
-    origins = {**dict(view.plan.origins), **view.places}
     for finding, members in with_members(targets, robot_words(view.plan)):
         concerned = {robot for it in members for robot in robots_of(view, it)}
         robots = tuple(robot for robot in view.robots if robot in concerned)
         written = f"{finding.file}:{finding.line}" if finding.line else finding.file
-        place = written or origins.get(finding.node, "")
+        place = written or _origin(view, finding.node)
         yield FindingRow(finding, merged(targets[it] for it in members), robots, place)
 
 
 def _edges(view: View, states: States) -> Iterator[DrawnEdge]:
     """The endpoints in the graph, and those that a finding reports as missing."""
-    common_names = _common_names((*view.graph.ends, *view.plan.endpoints))
+    common_names = _common_names((*view.graph.ends, *view.plan.ends))
     bridged = {(role, it.name): it.type for it in view.plan.topics for role in it.bridge}
     for key, type_ in dict.fromkeys(
         ((e.node, e.kind, e.role, e.name), e.type) for e in view.graph.ends
@@ -214,14 +221,23 @@ def _is_expected(view: View, key: EndpointKey, bridged: Container[tuple[str, str
     An action may be planned as its parts. Helpers of a robot's nodes have what these have.
     """
     node, kind, role, name = key
-    if key in view.planned or node in view.plan.shared_nodes or (role, name) in bridged:
+    if key in view.planned or node in view.own[""] or (role, name) in bridged:
         return True
     if kind == ACTION and (node, SERVICE, role, f"{name}{ACTION_PART}send_goal") in view.planned:
         return True
     return is_tool(node) and bool(view.ownership.robot(node))
 
 
-def _common_names(ends: Iterable[End | PlannedEndpoint]) -> set[str]:
+def _origin(view: View, node: str) -> str:
+    """Where a planned node is from: its plugin, a file, or its stack."""
+    planned = view.nodes.get(node)
+    if planned is None:
+        return ""
+    stack = f"stack {planned.stack}" if planned.stack else ""
+    return str(planned.plugin) or str(planned.place) or stack
+
+
+def _common_names(ends: Iterable[End]) -> set[str]:
     """The names that every node has; one endpoint with a known type is enough."""
     return {
         end.name
@@ -234,7 +250,7 @@ def _robot_of(view: View, states: States, edges: Iterable[DrawnEdge]) -> _RobotO
     missing = (node for node, state in states.nodes.items() if state == MISSING)
     nodes = {*view.seen, *missing, *(edge.node for edge in edges)}
     names = {edge.name for edge in edges}
-    robot, shared = view.ownership.robot, {*view.plan.shared_nodes, *view.plan.shared_topics}
+    robot, shared = view.ownership.robot, {*view.own[""], *view.plan.shared_topics}
     return _RobotOf(
         {node: "" if node in shared else robot(node) for node in sorted(nodes)},
         {name: "" if name in shared else robot(name) for name in sorted(names)},
@@ -244,7 +260,7 @@ def _robot_of(view: View, states: States, edges: Iterable[DrawnEdge]) -> _RobotO
 def _nodes(
     view: View, states: States, edges: Iterable[DrawnEdge], robot_of: _RobotOf
 ) -> dict[str, DrawnNode]:
-    planned = {*view.robot_of, *view.plan.shared_nodes}
+    planned = view.nodes
     edge_states: dict[str, set[str]] = defaultdict(set)
     own_states: dict[str, set[str]] = defaultdict(set)
     for edge in edges:
@@ -267,7 +283,7 @@ def _nodes(
 
 
 def _groups(
-    plan: Expectation,
+    plan: System,
     edges: Iterable[DrawnEdge],
     nodes: Mapping[str, DrawnNode],
     robot_of: _RobotOf,

@@ -10,6 +10,7 @@ from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules.check import ALL_RULES
 from multibot_rewrite.rules.index import tree_topic
 from multibot_rewrite.rules.pair.comparison import View
+from multibot_rewrite.system.records import alternatives
 
 OK, LEAK, CROSS_TALK, MISSING = "ok", "leak", "cross-talk", "missing"
 UNEXPECTED, CLASH = "unexpected", "clash"
@@ -59,7 +60,7 @@ def worst(states: Iterable[str]) -> str:
 
 def find_targets(view: View, findings: Iterable[Finding]) -> tuple[Targets, ...]:
     """What each finding is about, by its fields and by the names in its message."""
-    homes = (tree_topic(robot.tf) for robot in view.plan.robots)
+    homes = (tree_topic(robot.tf_topic) for robot in view.plan.robots)
     topics = [*dict.fromkeys((*(tree.topic for tree in view.trees), *homes))]
     return tuple(
         Targets(
@@ -101,7 +102,7 @@ def _endpoint_targets(view: View, finding: Finding) -> Targets:
     users = dict.fromkeys(end.node for name in names for end in view.by_name.get(name, ()))
     if not finding.node:
         robot = view.robots.get(finding.robot)
-        return Targets(robot.nodes if robot else tuple(sorted(users)), names, ())
+        return Targets(tuple(view.own[robot.name] if robot else sorted(users)), names, ())
     words = words_of(finding.message)
     rule = ALL_RULES.get(finding.code)
     others = [node for node in users if node in words or (rule and rule.options["all_ends"])]
@@ -110,7 +111,7 @@ def _endpoint_targets(view: View, finding: Finding) -> Targets:
 
 def _is_node(view: View, name: str) -> bool:
     """Whether a finding that has this name speaks of a node: nothing else is called so."""
-    if any(name in group for group in view.plan.one_of):
+    if any(name in group for group in alternatives(view.plan)):
         return True
     return name in view.seen and name not in view.by_name
 
@@ -130,7 +131,7 @@ def _frame_targets(view: View, finding: Finding, topics: Sequence[str]) -> Itera
     """The frames on the topics that the message names; else on the robot's own, or on any topic."""
     words = {tree_topic(word) for word in words_of(finding.message)}
     robot = view.robots.get(finding.robot)
-    own = [topic for topic in topics if robot and topic == tree_topic(robot.tf)]
+    own = [topic for topic in topics if robot and topic == tree_topic(robot.tf_topic)]
     named = [topic for topic in topics if topic in words]
     return ((topic, frame) for topic in named or own or topics for frame in finding.names)
 

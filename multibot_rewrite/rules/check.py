@@ -12,7 +12,6 @@ from multibot_rewrite.findings.finding import INCONCLUSIVE, Finding
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.graph.bags.recording import is_recorded
-from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.patterns import fitted
 from multibot_rewrite.rules.find import DANGERS
 from multibot_rewrite.rules.pair import (
@@ -57,7 +56,7 @@ ALL_RULES = {**RULES, **DANGERS}
 ABSENCE = frozenset(it.code for it in ALL_RULES.values() if it.options["absence"])
 
 
-def check(plan: Expectation, graph: System) -> list[Finding]:
+def check(plan: System, graph: System) -> list[Finding]:
     """All findings in the order of the rules; empty for a fleet as planned."""
     with gc_paused():
         view = make_view(*fitted(plan, graph))

@@ -9,12 +9,11 @@ from typing import Any
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.findings.rule import Rule, declare
 from multibot_rewrite.graph.bags.recording import RecordedTopic, Recording
-from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules.ownership import NameOwnership, frame_ownership, name_ownership
 from multibot_rewrite.system.conventions import EVERYBODYS
-from multibot_rewrite.system.records import PUBLISHES, TOPIC
+from multibot_rewrite.system.records import PUBLISHES, TOPIC, End, System
 
 # Topics of one robot and of another are as often, unless something is wrong: so many times.
 RATIO = 3.0
@@ -43,7 +42,7 @@ NO_ROBOT = _rule(
     *("MG602", "recorded-without-robot", ERROR),
     "A topic that each robot has was recorded under a name of no robot of the plan.",
     "All robots use it, or none does: one command moves both, or nobody hears it.",
-    "Start the node in its robot's namespace, with the rules of `multibot remap`.",
+    "Start the node in its robot's namespace, with the rules of `multibot plan`.",
     "planned: /robot1/scan, recorded: /scan\n",
     "planned: /robot1/scan, recorded: /robot1/scan\n",
 )
@@ -120,8 +119,8 @@ RULES = (
 class _Planned(NamedTuple):
     """The plan by topic. ``plain`` are the names without a robot's, each with its names by robot."""
 
-    plan: Expectation
-    ends: Mapping[str, list[PlannedEndpoint]]
+    plan: System
+    ends: Mapping[str, list[End]]
     plain: Mapping[str, Mapping[str, str]]
     names: NameOwnership
     frames: NameOwnership
@@ -131,7 +130,7 @@ class _Planned(NamedTuple):
         return "" if topic in (*self.plan.shared_topics, *EVERYBODYS) else self.names.robot(topic)
 
 
-def compare(plan: Expectation, found: Recording) -> list[Finding]:
+def compare(plan: System, found: Recording) -> list[Finding]:
     """All findings about topics; those about frames are of the rules of the graph."""
     planned = _planned(plan)
     recorded = {it.name: it for it in found.topics}
@@ -141,20 +140,20 @@ def compare(plan: Expectation, found: Recording) -> list[Finding]:
     return sorted([*by_topic, *between, *tf], key=lambda it: it.code)
 
 
-def _planned(plan: Expectation) -> _Planned:
+def _planned(plan: System) -> _Planned:
     names = name_ownership(plan)
-    ends: dict[str, list[PlannedEndpoint]] = defaultdict(list)
+    ends: dict[str, list[End]] = defaultdict(list)
     plain: dict[str, dict[str, str]] = defaultdict(dict)
     shared = {*plan.shared_topics, *EVERYBODYS}
-    for end in plan.endpoints:
+    for end in plan.ends:
         if end.kind == TOPIC:
             ends[end.name].append(end)
             robot = names.robot(end.name)
             if robot and end.name not in shared:
                 plain[names.without_robot(end.name, robot)][robot] = end.name
     for it in plan.robots:
-        if it.frames and it.tf not in shared and names.robot(it.tf) == it.name:
-            plain[names.without_robot(it.tf, it.name)][it.name] = it.tf
+        if it.frames and it.tf_topic not in shared and names.robot(it.tf_topic) == it.name:
+            plain[names.without_robot(it.tf_topic, it.name)][it.name] = it.tf_topic
     return _Planned(plan, ends, plain, names, frame_ownership(plan))
 
 
@@ -240,7 +239,7 @@ def _between_robots(
     planned: _Planned, recorded: Mapping[str, RecordedTopic], seconds: float
 ) -> Iterator[Finding]:
     """Of the same topic of several robots: which has none, which has fewer messages."""
-    trees = {it.tf for it in planned.plan.robots}
+    trees = {it.tf_topic for it in planned.plan.robots}
     for names in planned.plain.values():
         sent = {
             robot: name

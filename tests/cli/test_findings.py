@@ -177,9 +177,20 @@ def test_a_report_of_a_check_goes_to_a_file(
     assert suites.failures > 0
 
 
-@pytest.mark.parametrize("command", ["remap", "plan"])
-def test_a_table_s_findings(command: str, tmp_path: Path, siren: list[str], said: Said) -> None:
-    words = ["multibot", command, ROVER, "r1", "r2", *siren, "-o", str(tmp_path / "result")]
+@pytest.mark.parametrize("form", ["plan", "table"])
+def test_a_table_s_findings(form: str, tmp_path: Path, siren: list[str], said: Said) -> None:
+    words = [
+        "multibot",
+        "plan",
+        "--form",
+        form,
+        ROVER,
+        "r1",
+        "r2",
+        *siren,
+        "-o",
+        str(tmp_path / "result"),
+    ]
     code, out, err = said(*words)
     assert (code, out) == (0, "")
     assert "siren: warning: MR101 " in err

@@ -42,12 +42,12 @@ def open_(tmp_path: Path) -> Folder:
     return Folder(tmp_path, OPEN)
 
 
-@pytest.mark.parametrize("command", ["plan", "remap"])
+@pytest.mark.parametrize("form", ["plan", "table"])
 def test_a_table_is_made_with_what_is_open(
-    command: str, open_: Folder, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    form: str, open_: Folder, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     capsys.readouterr()
-    words = [command, open_.fleet, "-o", str(tmp_path / "made"), "--select", "MF812"]
+    words = ["plan", open_.fleet, "--form", form, "-o", str(tmp_path / "made"), "--select", "MF812"]
     assert main(words) == 0
     said = capsys.readouterr().err
     assert said.count("MF812") == 1

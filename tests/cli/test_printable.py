@@ -103,17 +103,24 @@ LINES = (
         ["urdf-lint", f"{EVIL}.lint.urdf", "--fix", "--diff"],
         ["urdf-lint", f"{EVIL}.xacro"],
         ["urdf-postfix", f"{EVIL}.xacro", "robot1", f"{EVIL}:={EVIL}"],
-        ["arguments", f"{EVIL}.xacro"],
-        ["coverage", "."],
-        ["coverage", ".", "--form", "json"],
-        ["coverage", FILE, "--explained", f"{EVIL}.yaml"],
+        ["inspect", f"{EVIL}.xacro"],
+        ["inspect", "."],
+        ["inspect", ".", "--form", "json"],
     ),
-    *(["vocabulary", "--suggest", FILE], ["vocabulary", EVIL], ["vocabulary", "--type", EVIL]),
-    *(["arguments", f"{EVIL}.xacro"], ["arguments", f"{EVIL}.xacro", f"a:={EVIL}"]),
-    *(["arguments", EVIL], ["urdf-postfix", f"{EVIL}.xacro", "r", f"a:={EVIL}{{robot}}"]),
-    *(["explain", EVIL], ["help", EVIL], [EVIL], ["remap", FILE, "robot1", "--stack", EVIL]),
-    *(["remap", FILE, "robot1", "robot2", "--stack", "nav2", "--form", it] for it in ("table",)),
-    *(["remap", FILE, "robot1", "--nodes", f"{EVIL}.yaml", "--stack", "nav2"],),
+    *(["inspect", "--suggest", FILE], ["inspect", EVIL]),
+    *(["inspect", f"{EVIL}.xacro"], ["inspect", f"{EVIL}.xacro", f"a:={EVIL}"]),
+    *(["urdf-postfix", f"{EVIL}.xacro", "r", f"a:={EVIL}{{robot}}"]),
+    *(
+        ["explain", EVIL],
+        ["help", EVIL],
+        [EVIL],
+        ["plan", "--form=table", FILE, "robot1", "--stack", EVIL],
+    ),
+    *(
+        ["plan", "--form=table", FILE, "robot1", "robot2", "--stack", "nav2", "--form", it]
+        for it in ("table",)
+    ),
+    *(["plan", "--form=table", FILE, "robot1", "--nodes", f"{EVIL}.yaml", "--stack", "nav2"],),
     *(["plan", FILE, "robot1", "robot2", "--stack", "nav2", "-o", EVIL],),
     *(["check", "plan.yaml", "--snapshot", "graph.json"],),
     *(["check", "plan.yaml", "--snapshot", "graph.json", "--format", it] for it in ("text",)),
@@ -152,7 +159,7 @@ def test_a_name_does_not_steer_the_terminal(
     out, err = capfdbinary.readouterr()
     text = err.decode("utf-8", "surrogateescape")
     # What is made of a description holds its names as they are, for programs.
-    if not (out.startswith(b"<robot") or words[0] in ("vocabulary", "learn")):
+    if not (out.startswith(b"<robot") or "--suggest" in words or words[0] == "learn"):
         text += out.decode("utf-8", "surrogateescape")
     assert text or out
     assert STEERING.findall(text) == []

@@ -8,11 +8,11 @@ import pytest
 from closed_robot import FILES
 
 from multibot_rewrite.closure.frames import Sender, tree_gaps
-from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.fleets.closing import closing
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import plan_fleet
 from multibot_rewrite.graph.transforms import Edge
+from multibot_rewrite.system.records import Place
 
 
 def edge(text: str) -> Edge:

@@ -12,10 +12,11 @@ from multibot_rewrite.closure.moveit import moveit_gaps
 from multibot_rewrite.closure.topics import End, closed, topic_gaps
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.evidence.hardware import Exported, exported
-from multibot_rewrite.evidence.records import Given, GivenNode, Place
+from multibot_rewrite.evidence.records import Given, GivenNode
 from multibot_rewrite.knowledge.records import Claim
 from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.releases import NEWEST_LTS
+from multibot_rewrite.system.records import Place
 
 IMU, SCAN = "sensor_msgs/msg/Imu", "sensor_msgs/msg/LaserScan"
 HERE = Place("bridge.yaml", 4)

@@ -300,7 +300,7 @@ def test_a_tf_topic_of_one_robot_alone_needs_no_endpoint_of_the_plan() -> None:
     """A plan that somebody wrote names a robot's tf, and no node that sends it."""
     name = "/robot1/tf"
     topic = RecordedTopic(name, TF, 100)
-    wanted = plan()._replace(endpoints=())
+    wanted = plan()._replace(ends=())
     assert [str(it.names) for it in compare(wanted, Recording((topic,), (), 10.0))] == [
         "('/robot2/tf',)"
     ]

@@ -64,7 +64,6 @@ def one(graph: LaunchGraph) -> LaunchedNode:
     return node
 
 
-@in_launch
 def test_a_node_is_under_the_group_that_has_it(tmp_path: Path) -> None:
     (tmp_path / "p.yaml").write_text("/**: {ros__parameters: {a: 1}}\n")
     found = one(
@@ -114,7 +113,6 @@ def test_includes_get_their_arguments_and_conditions_decide(tmp_path: Path) -> N
     assert (Path(found.place.file).name, found.place.line) == ("inner.launch.xml", 4)
 
 
-@in_launch
 def test_components_are_in_their_container(tmp_path: Path) -> None:
     graph = read(
         tmp_path,
@@ -138,7 +136,6 @@ def test_components_are_in_their_container(tmp_path: Path) -> None:
     assert {first.container, second.container} == {"/robot1/box"}
 
 
-@in_launch
 def test_functions_run_and_what_starts_later_says_so(tmp_path: Path) -> None:
     graph = read(
         tmp_path,
@@ -234,7 +231,6 @@ def generate_launch_description():
 """
 
 
-@in_launch
 def test_a_timer_knows_the_folder_of_its_launch_file(tmp_path: Path) -> None:
     """It keeps the locals of its place (timer_action.py), an event handler does not."""
     inner = 'Node(package="acme", executable="d", arguments=[ThisLaunchFileDir()])'
@@ -242,7 +238,6 @@ def test_a_timer_knows_the_folder_of_its_launch_file(tmp_path: Path) -> None:
     assert one(graph).arguments == (str(tmp_path),)
 
 
-@in_launch
 def test_a_timer_that_starts_itself_again_is_told(tmp_path: Path) -> None:
     file = tmp_path / "again.launch.py"
     file.write_text(AGAIN)
@@ -252,7 +247,6 @@ def test_a_timer_that_starts_itself_again_is_told(tmp_path: Path) -> None:
     assert 1 < len(graph.nodes) < 100
 
 
-@in_launch
 def test_a_configuration_that_is_gone_at_an_event_is_told(tmp_path: Path) -> None:
     late = 'Node(package="acme", executable="e", namespace=LaunchConfiguration("robot"))'
     event = f"RegisterEventHandler(OnProcessExit(on_exit=[{late}]))"
@@ -264,7 +258,6 @@ def test_a_configuration_that_is_gone_at_an_event_is_told(tmp_path: Path) -> Non
     )
 
 
-@in_launch
 def test_what_starts_later_is_outside_the_group_that_it_stands_in(tmp_path: Path) -> None:
     """launch leaves the scope of a group before any event (LaunchService, GroupAction)."""
     graph = read(
@@ -281,7 +274,6 @@ def test_what_starts_later_is_outside_the_group_that_it_stands_in(tmp_path: Path
     assert found == {"n": "/robot1", "e": "/robot1", "t": "/"}
 
 
-@in_launch
 def test_a_node_without_its_parameter_file_is_known(tmp_path: Path) -> None:
     """launch_ros warns of the file and starts the node (``_perform_substitutions`` of Node)."""
     graph = read(tmp_path, 'Node(package="acme", executable="d", parameters=["none.yaml"]),')
@@ -289,7 +281,6 @@ def test_a_node_without_its_parameter_file_is_known(tmp_path: Path) -> None:
     assert ([it.parameters for it in graph.notes], graph.whole) == ([True], True)
 
 
-@in_launch
 def test_nothing_is_started(tmp_path: Path) -> None:
     made = tmp_path / "made"
     found = one(
@@ -305,7 +296,6 @@ def test_nothing_is_started(tmp_path: Path) -> None:
     assert any("rate: 1" in it.text for it in found.parameters)
 
 
-@in_launch
 def test_a_missing_package_is_named_and_found_in_its_sources(tmp_path: Path) -> None:
     share = 'FindPackageShare("acme_bringup")'
     include = f'        IncludeLaunchDescription([{share}, "/launch/a.launch.py"]),'
@@ -321,7 +311,6 @@ def test_a_missing_package_is_named_and_found_in_its_sources(tmp_path: Path) -> 
     assert found.place == (str(sources / "launch" / "a.launch.py"), NAMES + 1)
 
 
-@in_launch
 @pytest.mark.parametrize(
     ("text", "said"),
     [
@@ -342,16 +331,25 @@ def test_a_launch_file_that_cannot_be_read_is_one_line(
     assert "\n" not in str(caught.value)
 
 
-@in_launch
 def test_a_launch_without_nodes_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="it starts no node"):
         read(tmp_path, '        Node(package="a", executable="b", condition=IfCondition("0")),')
 
 
 @pytest.mark.skipif(not without(), reason="launch_ros is here")
-def test_without_launch_one_line_says_what_to_do(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"launch_ros cannot be imported.*source ROS 2") as caught:
-        read(tmp_path, "")
+@pytest.mark.skipif(not without(), reason="launch is here")
+def test_without_launch_a_stand_in_reads_and_says_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    found = read(tmp_path, 'Node(package="acme", executable="driver", name="d"),')
+    assert found.stood_in and one(found).name == "d"
+    main(["check-launch", str(tmp_path / "bringup.launch.py")])
+    assert (
+        "launch is not installed here: a stand-in read the launch file" in capsys.readouterr().err
+    )
+    (tmp_path / "bringup.launch.xml").write_text("<launch/>")
+    with pytest.raises(InputError, match=r"needs launch itself.*source ROS 2") as caught:
+        launch_graph(LaunchOrder(str(tmp_path / "bringup.launch.xml"), (), (), True))
     assert "\n" not in str(caught.value)
 
 
@@ -359,7 +357,6 @@ def test_the_command_itself_imports_no_launch() -> None:
     assert "launch_ros" not in sys.modules or not without()
 
 
-@in_launch
 def test_a_file_that_is_made_of_another_one_names_it(tmp_path: Path) -> None:
     source = tmp_path / "p.yaml"
     source.write_text("/**:\n  ros__parameters: {rate: $(var rate)}\n")
@@ -373,7 +370,6 @@ def test_a_file_that_is_made_of_another_one_names_it(tmp_path: Path) -> None:
     assert "rate: 5" in given.text
 
 
-@in_launch
 def test_the_file_of_a_rewritten_one_is_found(tmp_path: Path) -> None:
     source, name = tmp_path / "p.yaml", repr(str(tmp_path / "p.yaml"))
     source.write_text("/**:\n  ros__parameters: {rate: 5}\n")
@@ -402,7 +398,6 @@ class RewrittenYaml(Substitution):
     assert given.text.startswith("# made\n# made\n")
 
 
-@in_launch
 def test_the_files_of_a_spawner_are_its_parameters(tmp_path: Path) -> None:
     source = tmp_path / "p.yaml"
     source.write_text("a:\n  ros__parameters: {type: x/X}\n")
@@ -414,7 +409,6 @@ def test_the_files_of_a_spawner_are_its_parameters(tmp_path: Path) -> None:
     assert found.arguments[0] == "a"
 
 
-@in_launch
 def test_a_launch_file_sees_the_command_line_of_ros2_launch(tmp_path: Path) -> None:
     """As nav2_common's ParseMultiRobotPose looks at it."""
     file = tmp_path / "bringup.launch.py"
@@ -431,7 +425,6 @@ def test_a_launch_file_sees_the_command_line_of_ros2_launch(tmp_path: Path) -> N
     assert [it.namespace for it in launch_graph(order).nodes] == ["/r1", "/r2"]
 
 
-@in_launch
 def test_the_text_of_a_file_that_the_launch_makes_is_kept(tmp_path: Path) -> None:
     made = "tempfile.NamedTemporaryFile('w', suffix='.yaml', delete=False)"
     file = tmp_path / "bringup.launch.py"
@@ -465,7 +458,6 @@ COMMANDS = """\
 """
 
 
-@in_launch
 def test_the_output_of_commands_is_known_and_nothing_is_started(tmp_path: Path) -> None:
     file, plain = tmp_path / "rover.urdf.xacro", tmp_path / "plain.txt"
     file.write_text(XACRO)
@@ -523,7 +515,6 @@ def generate_launch_description():
 """
 
 
-@in_launch
 @pytest.mark.parametrize(
     ("rules", "code"),
     [("[]", 1), ("[('/tf', 'tf'), ('/tf_static', 'tf_static')]", 0), ("[('/tf', '1tf')]", 3)],
@@ -542,7 +533,7 @@ def test_the_whole_command(
     assert ("rcl refuses 2 nodes" in told.err) == (code == 3)
     assert "description is not known" not in told.err
     if code == 0:
-        words = ["plan", "--from-launch", str(file), "--distro", "jazzy", "-o", str(plan)]
+        words = ["plan", str(file), "--distro", "jazzy", "-o", str(plan)]
         assert main(words) == 0
         assert "tip" in plan.read_text()
         other = tmp_path / "other.launch.py"
@@ -551,8 +542,10 @@ def test_the_whole_command(
         assert "MG102" in capsys.readouterr().out
 
 
-@in_launch
-@pytest.mark.parametrize("name", ["two.launch.py", "three.launch.py", "three.launch.xml"])
+@pytest.mark.parametrize(
+    "name",
+    ["two.launch.py", "three.launch.py", pytest.param("three.launch.xml", marks=in_launch)],
+)
 def test_actions_for_robots_are_read_with_their_names(name: str) -> None:
     """Their names are known when they run: of two robots with everything of their own."""
     file = ROOT / "examples" / "launch_tutorial" / name
@@ -573,7 +566,6 @@ def test_actions_for_robots_are_read_with_their_names(name: str) -> None:
     assert made == 3
 
 
-@in_launch
 def test_files_that_plugins_of_a_description_name_are_kept(tmp_path: Path) -> None:
     """A launch makes them of others, and they are gone when it has been read."""
     file = tmp_path / "controllers.yaml"

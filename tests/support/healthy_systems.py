@@ -15,7 +15,6 @@ from nav2_graphs import EVERYDAY, ROVER
 from nav2_graphs import healthy as as_planned
 
 from multibot_rewrite.cli import multibot
-from multibot_rewrite.graph.expectation import Expectation, PlannedRobot
 from multibot_rewrite.graph.plan_file import from_yaml
 from multibot_rewrite.system.records import (
     ACTION,
@@ -28,6 +27,7 @@ from multibot_rewrite.system.records import (
     Edge,
     End,
     Node,
+    Robot,
     System,
 )
 
@@ -47,7 +47,7 @@ TWO = ("robot1", "robot2")
 
 
 @cache
-def plan(stacks: tuple[str, ...], layout: str = "L1", robots: tuple[str, ...] = TWO) -> Expectation:
+def plan(stacks: tuple[str, ...], layout: str = "L1", robots: tuple[str, ...] = TWO) -> System:
     """The plan of rovers with these stacks, as the command writes it."""
     with TemporaryDirectory() as folder:
         file = f"{folder}/plan.yaml"
@@ -64,10 +64,10 @@ def started(stacks: tuple[str, ...], layout: str = "L1", robots: tuple[str, ...]
     return sent(graph._replace(edges=tuple(edges)))
 
 
-def _edges(robot: PlannedRobot) -> Iterator[Edge]:
+def _edges(robot: Robot) -> Iterator[Edge]:
     """The rover's tree, which localization hangs below the map."""
     odom = next(it for it in robot.frames if unspelled(it, robot.name) == "odom")
-    yield Edge(odom, "map", robot.tf, False, ())
+    yield Edge(odom, "map", robot.tf_topic, False, ())
     yield from robot_edges(robot)
 
 

@@ -12,10 +12,10 @@ from functools import cache
 import pytest
 from paths import FIXTURES
 
+from multibot_rewrite.knowledge.declared import DECLARED, YAML
 from multibot_rewrite.knowledge.stacks import every_release
 from multibot_rewrite.releases import RELEASES
-from multibot_rewrite.rules.files.parameter_files import DECLARED, YAML
-from multibot_rewrite.rules.files.parameter_owners import Owners, owners
+from tools.interfaces.declared_table import plugin_owners
 from tools.interfaces.parameter_comparison import (
     DEFAULT,
     MISSING,
@@ -32,7 +32,7 @@ from tools.interfaces.records import Place
 TABLES = FIXTURES / "interfaces"
 LEAST_FACTS = 1400
 PLACE = Place("acme/nav", "1.0.0", "nav/src/nav.cpp", 1)
-NONE = Owners({}, {})
+NONE: dict[str, str] = {}
 
 
 def rows(file: str) -> list[list[str]]:
@@ -52,8 +52,8 @@ def facts(release: str) -> tuple[ParameterFact, ...]:
 
 @cache
 def found(release: str) -> tuple[Difference, ...]:
-    ours = our_parameters(every_release().parameters.values(), owners())
-    return tuple(differences(ours, facts(release), release, owners()))
+    ours = our_parameters(every_release().parameters.values())
+    return tuple(differences(ours, facts(release), release, plugin_owners().below))
 
 
 @pytest.mark.parametrize("release", RELEASES)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from multibot_rewrite.knowledge.stacks import every_release
 from multibot_rewrite.releases import RELEASES
-from multibot_rewrite.rules.files.parameter_owners import owners
+from tools.interfaces.declared_table import plugin_owners
 from tools.interfaces.launch_comparison import (
     launch_differences,
     launch_files,
@@ -51,9 +51,8 @@ def section(tables: Path) -> str:
 
 
 def _row(tables: Path, release: str, facts: tuple[ParameterFact, ...]) -> str:
-    known = owners()
-    ours = our_parameters(every_release().parameters.values(), known)
-    left = len({it.key for it in differences(ours, facts, release, known)})
+    ours = our_parameters(every_release().parameters.values())
+    left = len({it.key for it in differences(ours, facts, release, plugin_owners().below)})
     corrected = _corrected(tables / "parameters_corrected.tsv", release)
     counts = (
         len({(it.package, it.owner, it.path) for it in facts}),

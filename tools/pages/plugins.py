@@ -18,7 +18,7 @@ HEAD = """\
 # Plugins, elements and hardware classes
 
 Everything the rewriters know, from `multibot_rewrite/rewriters/vocabulary/*.vocab`; `multibot
-vocabulary NAME` prints one.
+inspect NAME` prints one.
 
 `declares` and `uses` name kinds, tried in order until one resolves; `keep` values are never renamed.
 A default is inserted where the element is absent, or put into an empty one that means the same, if it

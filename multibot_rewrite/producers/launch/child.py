@@ -13,8 +13,6 @@ from multibot_rewrite.producers.launch.system_model import is_system_model, read
 
 _MODULE = "multibot_rewrite.producers.launch"
 SECONDS = 120
-NO_LAUNCH = 3
-INSTALL = "source ROS 2 (. /opt/ros/jazzy/setup.bash), or give a system_model.yaml of play_launch"
 # A launch file may load the fleet that names it.
 _INSIDE = "MULTIBOT_READS_LAUNCH"
 
@@ -23,7 +21,7 @@ _INSIDE = "MULTIBOT_READS_LAUNCH"
 def launch_graph(order: LaunchOrder) -> LaunchGraph:
     """What a launch file or system_model.yaml starts.
 
-    Raises InputError for a file that cannot be read, and where launch is missing.
+    Raises InputError for a file that cannot be read.
     """
     if not os.path.isfile(order.file):
         raise InputError(f"{order.file}: the launch file does not exist; correct the path")
@@ -60,6 +58,4 @@ def _asked(order: LaunchOrder) -> LaunchGraph:
         return graph_of(done.stdout)
     lines = [it.strip() for it in done.stderr.splitlines() if it.strip()]
     last = lines[-1] if lines else f"exit code {done.returncode}"
-    if done.returncode == NO_LAUNCH:
-        raise InputError(f"{order.file}: launch_ros cannot be imported here ({last}); {INSTALL}")
     raise InputError(f"{order.file}: the launch file cannot be read: {last}")

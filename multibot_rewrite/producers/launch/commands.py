@@ -17,6 +17,7 @@ from types import MappingProxyType
 from typing import Any
 
 from multibot_rewrite.model import MultibotError
+from multibot_rewrite.producers.launch.describe import text
 from multibot_rewrite.producers.launch.door import of_launch
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.sources.access import SECONDS
@@ -42,7 +43,7 @@ def read_commands() -> None:
     """From now on ``Command`` gives what is known of its output, and no program has to be there."""
     known = of_launch("substitutions")
     known.Command.perform = _perform
-    known.FindExecutable.perform = lambda self, context: _text(self.name, context)
+    known.FindExecutable.perform = lambda self, context: text(self.name, context)
 
 
 def faults(context: Any) -> list[str]:
@@ -51,7 +52,7 @@ def faults(context: Any) -> list[str]:
 
 
 def _perform(self: Any, context: Any) -> str:
-    found = output_of(_text(self.command, context))
+    found = output_of(text(self.command, context))
     if found.fault and found.fault not in faults(context):
         context.extend_globals({_FAULTS: [*faults(context), found.fault]})
     return found.text
@@ -93,7 +94,3 @@ def _postfix(words: Sequence[str]) -> str:
 _READERS: Mapping[str, Callable[[Sequence[str]], str]] = MappingProxyType(
     {"xacro": _xacro, "cat": _cat, "urdf-postfix": _postfix}
 )
-
-
-def _text(value: Any, context: Any) -> str:
-    return str(of_launch("utilities").perform_substitutions(context, value))

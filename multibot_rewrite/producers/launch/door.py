@@ -31,6 +31,15 @@ def is_installed(package: str) -> bool:
     return True
 
 
+def is_there() -> bool:
+    """Can launch and launch_ros be imported?"""
+    try:
+        of_launch_ros("actions")
+    except ImportError:
+        return False
+    return not missing()
+
+
 def missing() -> str:
     """Why launch cannot be imported; empty if it can."""
     try:

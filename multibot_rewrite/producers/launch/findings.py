@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph
+from multibot_rewrite.system.records import Place
 
 _ROBOTS = """\
 robots:
@@ -62,6 +62,7 @@ NOT_WHOLE = declare(
         "known.yaml": _AMCL,
     },
 )
+STOOD_IN = "launch is not installed here: a stand-in read the launch file"
 _WITHOUT_VALUES = "the node is in the plan without what the file sets"
 
 
@@ -70,6 +71,9 @@ def launch_findings(
 ) -> Iterator[Finding]:
     """What of launch files is not known, launched nodes that are not, each with its name, and nodes of
     stacks that are left out."""
+    if graph.stood_in:
+        place = Place(next((it.place.file for it in graph.nodes), ""), 1)
+        yield NOT_WHOLE.finding(STOOD_IN, "", **_place(place))._replace(level=NOTE)
     for note in graph.notes:
         hint = (
             _WITHOUT_VALUES if note.parameters else "the nodes that it starts are not in the plan"

@@ -9,12 +9,13 @@ from functools import lru_cache, wraps
 from types import FrameType
 from typing import Any
 
-from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 from multibot_rewrite.producers.launch.launch_files import launched_nodes
+from multibot_rewrite.system.records import Place
 
 _KEPT = "multibot_place"
 # What makes actions for a launch file, and what reads launch files: neither is one.
+_READERS = tuple(f"{__package__}.{it}" for it in ("read", "visit"))
 _MAKERS = ("launch", "launch_ros", "launch_xml", "launch_yaml", "multibot_rewrite")
 
 
@@ -49,7 +50,7 @@ def _maker(frame: FrameType | None) -> Place | None:
     """The line of the launch file that made an action; None for a file that a parser reads."""
     while frame is not None:
         module = str(frame.f_globals.get("__name__", ""))
-        if module.startswith(__name__.rpartition(".")[0]):
+        if module in _READERS:
             return None
         if module.partition(".")[0] not in _MAKERS:
             return Place(os.path.realpath(frame.f_code.co_filename), frame.f_lineno)

@@ -9,10 +9,10 @@ from collections.abc import Mapping, Sequence
 from itertools import takewhile
 from typing import Any
 
-from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.producers.launch.package_files import file_of_package
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.records import Place
 
 
 class LaunchOrder(NamedTuple):
@@ -77,11 +77,13 @@ class LaunchNote(NamedTuple):
 
 class LaunchGraph(NamedTuple):
     """What launch files start. ``files`` are the parameter files that plugins in descriptions name, by
-    the path that they have there."""
+    the path that they have there. ``stood_in`` is true where launch is not installed and its stand-in
+    read them."""
 
     nodes: tuple[LaunchedNode, ...] = ()
     notes: tuple[LaunchNote, ...] = ()
     files: tuple[tuple[str, ParameterText], ...] = ()
+    stood_in: bool = False
 
     @property
     def whole(self) -> bool:
@@ -132,12 +134,13 @@ def order_of(text: str) -> LaunchOrder:
 
 def graph_of(text: str) -> LaunchGraph:
     """The graph that ``to_json`` wrote."""
-    nodes, notes, files = json.loads(text)
+    nodes, notes, files, stood_in = json.loads(text)
     found = (LaunchNote(Place(*place), *rest) for place, *rest in notes)
     return LaunchGraph(
         tuple(_node(dict(zip(_FIELDS, it, strict=True))) for it in nodes),
         tuple(found),
         tuple((path, ParameterText(*it)) for path, it in files),
+        stood_in,
     )
 
 

@@ -18,6 +18,7 @@ from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
 from multibot_rewrite.producers.launch.bridges import bridged_by, is_bridge
+from multibot_rewrite.producers.launch.findings import STOOD_IN
 from multibot_rewrite.producers.launch.of_robot import programs
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchNote
 from multibot_rewrite.producers.launch.running import (
@@ -87,7 +88,8 @@ def would_run(graph: LaunchGraph, known: Knowledge) -> System:
         except UsageError as error:
             refused.append(f"{it.full_name} ({it.place}: {error})")
             parts.append(_Part(it.full_name, (), ()))
-    caveats = (*_refused(refused), *_caveats((*graph.notes, *notes), nodes), *_in_classic(graph))
+    caveats = (*_stood_in(graph), *_refused(refused), *_caveats((*graph.notes, *notes), nodes))
+    caveats = (*caveats, *_in_classic(graph))
     return System(
         tuple(Node(part.name, it.process) for it, part in zip(nodes, parts, strict=True)),
         tuple(end for part in parts for end in part.endpoints),
@@ -95,6 +97,11 @@ def would_run(graph: LaunchGraph, known: Knowledge) -> System:
         Environment(caveats=caveats),
         parameters=tuple(_clocks(nodes)),
     )
+
+
+def _stood_in(graph: LaunchGraph) -> Iterator[Caveat]:
+    if graph.stood_in:
+        yield Caveat(NOT_WHOLE, False, STOOD_IN)
 
 
 def _refused(nodes: Sequence[str]) -> Iterator[Caveat]:

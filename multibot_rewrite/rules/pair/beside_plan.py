@@ -39,8 +39,8 @@ def dangers_beside(view: View, found: Sequence[Finding]) -> Iterator[Finding]:
 
 def _without_planned(view: View) -> System:
     """The graph without the states that the plan has: they are compared with it."""
-    states = {it.node for it in view.plan.states if it.lifecycle}
-    timed = dict(planned_clocks(view.plan.states))
+    states = {it.name for it in view.plan.nodes if it.lifecycle}
+    timed = dict(planned_clocks(view.plan))
     return view.graph._replace(
         nodes=tuple(
             it._replace(lifecycle="") if it.name in states else it for it in view.graph.nodes
@@ -60,7 +60,7 @@ def _is_meant(view: View, danger: Finding) -> bool:
     """Whether somebody sends or calls each of its names, and all who do are planned to; the clocks of
     the plan are compared with it."""
     if DANGERS[danger.code].options["planned"] == clock_not_planned.code:
-        return danger.node in dict(planned_clocks(view.plan.states))
+        return danger.node in dict(planned_clocks(view.plan))
     return bool(danger.names) and all(_is_used_as_planned(view, it) for it in danger.names)
 
 

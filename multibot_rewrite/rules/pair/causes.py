@@ -5,12 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from multibot_rewrite.graph.expectation import PlannedEndpoint, PlannedRobot
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.ways import COMPONENT, HOST, PLUGIN, SPAWNER
 from multibot_rewrite.rosnames import check_topic_name, expand
 from multibot_rewrite.rules.pair.comparison import View
-from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SERVES, SUBSCRIBES
+from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SERVES, SUBSCRIBES, End, Robot
 
 # What a node does with a name, by the role of its endpoint.
 DOES = {
@@ -42,14 +41,14 @@ def caused(hint: str, place: str) -> Cause:
 
 def plugin_of(view: View, node: str) -> tuple[str, str]:
     """The plugin that starts a node, and its place in the description; both empty without one."""
-    place = view.places.get(node, "")
+    place = plugin_place(view, node)
     if not place:
         return "", ""
     plain = view.ownership.without_robot(node, view.robot_of.get(node, ""))
     return f"plugin {plain.rpartition('/')[2]}", place
 
 
-def remap_rule(planned: PlannedEndpoint) -> str:
+def remap_rule(planned: End) -> str:
     """The remap rule that gives the node's name its planned form; empty where none is needed."""
     if not planned.code_name or name_without_rules(planned) == planned.name:
         return ""
@@ -57,7 +56,7 @@ def remap_rule(planned: PlannedEndpoint) -> str:
     return f"{planned.code_name}:={planned.name.removeprefix(namespace)}"
 
 
-def name_without_rules(planned: PlannedEndpoint) -> str:
+def name_without_rules(planned: End) -> str:
     """The full name that the name in the node's code has without any remap rule."""
     if check_topic_name(planned.code_name):
         return ""
@@ -65,7 +64,7 @@ def name_without_rules(planned: PlannedEndpoint) -> str:
     return expand(planned.code_name, namespace or "/", node)
 
 
-def names_without_rules(view: View, planned: PlannedEndpoint) -> tuple[str, ...]:
+def names_without_rules(view: View, planned: End) -> tuple[str, ...]:
     """The names an endpoint may have where no remap rule and no namespace is applied."""
     in_root = f"/{planned.code_name.strip('/').removeprefix('~/')}"
     robot = view.robot_of.get(planned.node) or view.ownership.robot(planned.name)
@@ -89,7 +88,7 @@ def use_absolute(name: str) -> str:
     return f"the node resolves a relative name in its own namespace: write {name} in its parameters"
 
 
-def why_not_remapped(view: View, planned: PlannedEndpoint) -> Cause:
+def why_not_remapped(view: View, planned: End) -> Cause:
     """Why a name is still the one in the code, although a rule should remap it."""
     rule = remap_rule(planned)
     plugin, place = plugin_of(view, planned.node)
@@ -103,10 +102,10 @@ def why_not_remapped(view: View, planned: PlannedEndpoint) -> Cause:
     return Cause(f"the remap rule {rule} is not applied")
 
 
-def how_to_remap(view: View, planned: PlannedEndpoint) -> str:
+def how_to_remap(view: View, planned: End) -> str:
     """How to pass the rule to a node of the stack; empty for a plugin's node, which has a file."""
     rule = remap_rule(planned)
-    if not rule or planned.node in view.places:
+    if not rule or plugin_place(view, planned.node):
         return ""
     parts = ", and one rule for each of its _action/ names" if planned.kind == ACTION else ""
     return f"; pass {how_to_pass(view, planned.node, rule, 'it')}{parts}"
@@ -114,20 +113,33 @@ def how_to_remap(view: View, planned: PlannedEndpoint) -> str:
 
 def how_to_pass(view: View, node: str, rule: str, what: str = "") -> str:
     """Where a rule for a node stands, and how it is written there; ``what`` is what to call it."""
-    ways = dict(view.plan.ways)
-    way, _, taker = ways.get(node, "").partition(" ")
+    way, taker = _way(view, node)
     what = what or rule
     if way == PLUGIN:
         return f"{what} in the description: <remapping>{rule}</remapping> of the plugin of {taker}"
     if way == HOST:
         # In the process of another node a rule says whose it is.
         led = f"{node.rpartition('/')[2]}:{rule}"
-        return f"{what} to {taker}, whose process it is in: {_as_written(ways.get(taker, ''), led)}"
+        return (
+            f"{what} to {taker}, whose process it is in: {_as_written(_way(view, taker)[0], led)}"
+        )
     if way == SPAWNER:
         return f"{what} to its spawner: {_as_written(way, rule)}"
     if way == COMPONENT:
         return f"{what} where it is loaded into its container: {_as_written(way, rule)}"
     return f"{what} with {_as_written(way, rule)}"
+
+
+def plugin_place(view: View, node: str) -> str:
+    """The ``file:line`` of the plugin that starts a planned node; empty for any other node."""
+    planned = view.nodes.get(node)
+    return str(planned.plugin) if planned else ""
+
+
+def _way(view: View, node: str) -> tuple[str, str]:
+    """How a planned node gets its rules, and which one takes them for it."""
+    planned = view.nodes.get(node)
+    return (planned.way, planned.taker) if planned else ("", "")
 
 
 def _as_written(way: str, rule: str) -> str:
@@ -140,10 +152,10 @@ def _as_written(way: str, rule: str) -> str:
     return f"--ros-args -r {rule}, or with {pair} in the launch file"
 
 
-def tf_rule(robot: PlannedRobot, topic: str) -> str:
+def tf_rule(view: View, robot: Robot, topic: str) -> str:
     """The remap rule for a tf topic; its target is relative in the robot's own namespace."""
-    namespaced = any(node.startswith(f"/{robot.name}/") for node in robot.nodes)
-    place = robot.tf.removeprefix(f"/{robot.name}/") if namespaced else robot.tf
+    namespaced = any(node.startswith(f"/{robot.name}/") for node in view.own[robot.name])
+    place = robot.tf_topic.removeprefix(f"/{robot.name}/") if namespaced else robot.tf_topic
     return f"/{topic}:={'/'.join(topic if it == 'tf' else it for it in place.split('/'))}"
 
 
@@ -158,7 +170,7 @@ def why_other_name(view: View, node: str, match: str) -> Cause:
     if plugin:
         missing = "namespace" if namespaced else "separate name for each robot"
         return caused(f"{match} is running: {plugin} has no {missing}, see {place}", place)
-    way, _, taker = dict(view.plan.ways).get(node, "").partition(" ")
+    way, taker = _way(view, node)
     if way == HOST:
         return Cause(f"{match} is running: {taker} makes it; start that as the plan says")
     if namespaced and way == COMPONENT:

@@ -3,16 +3,24 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Mapping, Set
+from collections.abc import Iterable, Mapping, Sequence, Set
 
-from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules.ownership import NameOwnership, frame_ownership, name_ownership
 from multibot_rewrite.rules.pair.similar_names import probable_matches
 from multibot_rewrite.rules.pair.tf_copies import without_bridged
 from multibot_rewrite.rules.pair.tf_trees import TfTree, tf_trees
-from multibot_rewrite.system.records import PUBLISHES, TOPIC, End, System
+from multibot_rewrite.system.records import (
+    PUBLISHES,
+    TOPIC,
+    End,
+    Node,
+    Robot,
+    System,
+    may_miss,
+    nodes_by_robot,
+)
 
 # Node, kind, role and name of an endpoint.
 EndpointKey = tuple[str, str, str, str]
@@ -27,11 +35,11 @@ class View(NamedTuple):
     hidden topics and services of actions. ``published_topics`` have a publisher in the graph.
     ``seen`` counts the nodes by name. ``unplanned`` are nodes that are not in the plan and not
     ignored. ``probable_matches`` maps a missing node to the running node that it probably is.
-    ``places`` has file and line of the plugin that starts a node. ``may_miss`` are the planned nodes
-    that need not run: optional ones, and those of which another one may run in their place.
+    ``nodes`` has the planned nodes by name, ``own`` the names of those of each robot. ``may_miss`` are
+    the planned nodes that need not run: on a condition, or because another one may run instead.
     """
 
-    plan: Expectation
+    plan: System
     graph: System
     by_node: dict[str, list[End]]
     by_name: dict[str, list[End]]
@@ -39,30 +47,30 @@ class View(NamedTuple):
     ownership: NameOwnership
     frame_ownership: NameOwnership
     types: Mapping[EndpointKey, str]
-    planned: Mapping[EndpointKey, PlannedEndpoint]
-    missing: Mapping[EndpointKey, PlannedEndpoint]
+    planned: Mapping[EndpointKey, End]
+    missing: Mapping[EndpointKey, End]
     unplanned_endpoints: Mapping[str, list[End]]
     published_topics: Set[str]
     seen: Mapping[str, int]
     unplanned: tuple[str, ...]
     probable_matches: Mapping[str, str]
-    places: Mapping[str, str]
+    nodes: Mapping[str, Node]
+    own: Mapping[str, Sequence[str]]
     trees: tuple[TfTree, ...]
-    robots: Mapping[str, PlannedRobot]
+    robots: Mapping[str, Robot]
     frames_of: Mapping[str, frozenset[str]]
     may_miss: frozenset[str]
 
 
-def make_view(plan: Expectation, graph: System) -> View:
+def make_view(plan: System, graph: System) -> View:
     """Build the look-ups once for all rules."""
     graph = graph._replace(edges=without_bridged(plan, graph.edges))
-    # Their first four fields are the key.
-    planned = {end[:4]: end for end in plan.endpoints}
+    planned = {(it.node, it.kind, it.role, it.name): it for it in plan.ends}
     index = _index_endpoints(graph.ends, planned)
-    robot_of = {node: robot.name for robot in plan.robots for node in robot.nodes}
+    nodes = {it.name: it for it in plan.nodes}
+    robot_of = {it.name: it.robot for it in plan.nodes if it.robot}
     seen = Counter(node.name for node in graph.nodes)
-    in_plan = {*robot_of, *plan.shared_nodes}
-    others = [node for node in seen if node not in in_plan]
+    others = [node for node in seen if node not in nodes]
     unplanned = tuple(node for node in others if not is_tool(node, plan.ignored_nodes))
     missing = {node: robot for node, robot in robot_of.items() if node not in seen}
     ownership = name_ownership(plan)
@@ -82,15 +90,12 @@ def make_view(plan: Expectation, graph: System) -> View:
         seen=seen,
         unplanned=unplanned,
         probable_matches=probable_matches(missing, others, unplanned, ownership),
-        places=dict(plan.sources),
+        nodes=nodes,
+        own=nodes_by_robot(plan),
         trees=tf_trees(graph.edges, plan.robots, ownership),
         robots={robot.name: robot for robot in plan.robots},
         frames_of={r.name: frozenset((*r.frames, *r.other_frames)) for r in plan.robots},
-        may_miss=frozenset(
-            node
-            for group in (*(robot.optional for robot in plan.robots), *plan.one_of)
-            for node in group
-        ),
+        may_miss=frozenset(it.name for it in plan.nodes if may_miss(it)),
     )
 
 
@@ -100,11 +105,11 @@ class _EndpointIndex(NamedTuple):
     unplanned: dict[str, list[End]]
     types: dict[EndpointKey, str]
     published: set[str]
-    missing: dict[EndpointKey, PlannedEndpoint]
+    missing: dict[EndpointKey, End]
 
 
 def _index_endpoints(
-    endpoints: Iterable[End], planned: Mapping[EndpointKey, PlannedEndpoint]
+    endpoints: Iterable[End], planned: Mapping[EndpointKey, End]
 ) -> _EndpointIndex:
     index = _EndpointIndex(
         defaultdict(list), defaultdict(list), defaultdict(list), {}, set(), dict(planned)

@@ -7,12 +7,11 @@ from collections.abc import Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.graph.expectation import PlannedTopic
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import graph_rule
 from multibot_rewrite.rules.pair.causes import DOES
 from multibot_rewrite.rules.pair.comparison import View
-from multibot_rewrite.system.records import PUBLISHES, TOPIC, End
+from multibot_rewrite.system.records import PUBLISHES, TOPIC, End, Topic, alternatives
 
 # How the nodes of ros_gz_bridge are called.
 _BRIDGES = ("bridge", "parameter_bridge")
@@ -53,16 +52,16 @@ def sender_not_planned(view: View) -> Iterator[Finding]:
                 yield sender_not_planned.finding(message, hint, **_about(view, topic, node))
 
 
-def _may_send(topic: PlannedTopic, node: str) -> bool:
+def _may_send(topic: Topic, node: str) -> bool:
     return any(fnmatchcase(node, pattern) for pattern in topic.senders)
 
 
-def _publishers(view: View, topic: PlannedTopic) -> Iterator[End]:
+def _publishers(view: View, topic: Topic) -> Iterator[End]:
     ends = view.by_name.get(topic.name, ())
     return (it for it in ends if (it.kind, it.role) == (TOPIC, PUBLISHES))
 
 
-def _about(view: View, topic: PlannedTopic, node: str) -> dict[str, object]:
+def _about(view: View, topic: Topic, node: str) -> dict[str, object]:
     robot = view.ownership.robot(topic.name) or view.robot_of.get(node, "")
     return {"robot": robot, "node": node, "names": (topic.name,)}
 
@@ -132,7 +131,7 @@ def other_qos_offered(view: View) -> Iterator[Finding]:
                 yield other_qos_offered.finding(message, hint, **_about(view, topic, end.node))
 
 
-def _different(topic: PlannedTopic, end: End) -> Iterator[str]:
+def _different(topic: Topic, end: End) -> Iterator[str]:
     """Each policy that is not as planned; one whose word is not known is none."""
     for policy, word in topic.qos if end.qos else ():
         offered = getattr(end.qos, policy)
@@ -164,7 +163,7 @@ as planned: /robot1/slam_toolbox
 )
 def no_alternative_runs(view: View) -> Iterator[Finding]:
     """A robot of which nothing runs has a finding of its own."""
-    for group in view.plan.one_of:
+    for group in alternatives(view.plan):
         robot = _robot_of(view, group)
         if not (robot and _absent(view, robot)) and view.seen.keys().isdisjoint(group):
             message = f"none of {shorten(group, SEVERAL)} is in the graph; the plan has one of them"
@@ -194,7 +193,7 @@ planned: /robot1/slam_toolbox
 )
 def several_alternatives_run(view: View) -> Iterator[Finding]:
     """One finding a group."""
-    for group in view.plan.one_of:
+    for group in alternatives(view.plan):
         running = [node for node in group if node in view.seen]
         if len(running) > 1:
             message = f"{shorten(running, SEVERAL)} run at once; the plan has one of them"
@@ -238,7 +237,7 @@ def bridged_topic_missing(view: View) -> Iterator[Finding]:
         running = not all(_absent(view, it.name) for it in view.plan.robots)
         yield from [_not_carried(view, "", missing, WARNING)] * running
         return
-    by_robot: dict[str, list[tuple[PlannedTopic, str]]] = defaultdict(list)
+    by_robot: dict[str, list[tuple[Topic, str]]] = defaultdict(list)
     for topic, role in missing:
         by_robot[view.ownership.robot(topic.name)].append((topic, role))
     for robot, own in by_robot.items():
@@ -248,18 +247,16 @@ def bridged_topic_missing(view: View) -> Iterator[Finding]:
 
 def _absent(view: View, robot: str) -> bool:
     """A robot of which nothing runs has a finding of its own."""
-    return view.seen.keys().isdisjoint(view.robots[robot].nodes)
+    return view.seen.keys().isdisjoint(view.own[robot])
 
 
-def _is_carried(view: View, topic: PlannedTopic, role: str) -> bool:
+def _is_carried(view: View, topic: Topic, role: str) -> bool:
     """Whether anything does with a topic what a bridge has to do."""
     ends = (it for it in view.by_name.get(topic.name, ()) if (it.kind, it.role) == (TOPIC, role))
     return any(topic.type in ("", it.type) for it in ends)
 
 
-def _not_carried(
-    view: View, robot: str, rows: Sequence[tuple[PlannedTopic, str]], level: str
-) -> Finding:
+def _not_carried(view: View, robot: str, rows: Sequence[tuple[Topic, str]], level: str) -> Finding:
     topic, role = rows[0]
     more = f"; so it is with {len(rows) - 1} more of the bridge" if len(rows) > 1 else ""
     type_ = f" with the type {topic.type}" if topic.type else ""

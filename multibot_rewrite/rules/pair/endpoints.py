@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from multibot_rewrite.findings.finding import ERROR, Finding
-from multibot_rewrite.graph.expectation import PlannedEndpoint
 from multibot_rewrite.rules.declaration import graph_rule
 from multibot_rewrite.rules.pair.causes import (
     DOES,
@@ -18,7 +17,15 @@ from multibot_rewrite.rules.pair.causes import (
 )
 from multibot_rewrite.rules.pair.comparison import View
 from multibot_rewrite.rules.pair.similar_names import similar
-from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.records import (
+    CALLS,
+    PUBLISHES,
+    SERVES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+    End,
+)
 
 TO_DO = {
     PUBLISHES: "publish",
@@ -60,7 +67,7 @@ def missing_endpoint(view: View) -> Iterator[Finding]:
         )
 
 
-def _why_missing(view: View, planned: PlannedEndpoint) -> Cause:
+def _why_missing(view: View, planned: End) -> Cause:
     """Answers the most common question: why do we never get the topic /robot1/cmd_vel?"""
     used = _used_instead(view, planned)
     if not used:
@@ -74,7 +81,7 @@ def _why_missing(view: View, planned: PlannedEndpoint) -> Cause:
     return Cause(f"{instead}{_why_remapped(view, planned, used)}")
 
 
-def _why_remapped(view: View, planned: PlannedEndpoint, used: str) -> str:
+def _why_remapped(view: View, planned: End, used: str) -> str:
     """Why an endpoint has a name that comes from a rule or parameter."""
     if not view.ownership.robot(planned.name):
         return f": a rule remaps it, but the plan has one {planned.name} for all robots"
@@ -86,7 +93,7 @@ def _why_remapped(view: View, planned: PlannedEndpoint, used: str) -> str:
     return ": is the name misspelled in a remap rule or parameter?"
 
 
-def _used_instead(view: View, planned: PlannedEndpoint) -> str:
+def _used_instead(view: View, planned: End) -> str:
     """The name that the node probably uses in place of a planned one, or an empty string."""
     unplanned = _unplanned_names(view, planned)
     likely = [name for name in names_without_rules(view, planned) if name in unplanned]
@@ -106,7 +113,7 @@ def _used_instead(view: View, planned: PlannedEndpoint) -> str:
     return similar(planned.name, unplanned)
 
 
-def _moved_down(view: View, planned: PlannedEndpoint) -> list[str]:
+def _moved_down(view: View, planned: End) -> list[str]:
     """The unplanned names that are a relative name resolved below the node's own namespace."""
     return [
         name
@@ -115,7 +122,7 @@ def _moved_down(view: View, planned: PlannedEndpoint) -> list[str]:
     ]
 
 
-def _unplanned_names(view: View, planned: PlannedEndpoint) -> list[str]:
+def _unplanned_names(view: View, planned: End) -> list[str]:
     """The names that the node uses in the role of a planned endpoint without being planned."""
     node, kind, role = planned.node, planned.kind, planned.role
     return [

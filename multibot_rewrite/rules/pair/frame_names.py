@@ -6,7 +6,6 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.rules.declaration import graph_rule
 from multibot_rewrite.rules.ownership import SEPARATORS, without_tag_once
@@ -16,7 +15,7 @@ from multibot_rewrite.rules.pair.frame_prefixes import added_prefixes, robot_beh
 from multibot_rewrite.rules.pair.similar_names import similar
 from multibot_rewrite.rules.pair.tf_senders import sent_by_robot, state_publisher, where_set
 from multibot_rewrite.rules.pair.tf_trees import TfTree, frames_in
-from multibot_rewrite.system.records import Edge
+from multibot_rewrite.system.records import Edge, Robot
 
 
 @graph_rule(
@@ -60,7 +59,7 @@ def _why_colliding(view: View, tree: TfTree, robots: Sequence[str]) -> str:
     senders = shorten(node for robot in robots for node in tree.senders.get(robot, ()))
     first = view.robots[robots[0]]
     if _has_plain_frames(view, first):
-        rules = f"{tf_rule(first, 'tf')} and {tf_rule(first, 'tf_static')}"
+        rules = f"{tf_rule(view, first, 'tf')} and {tf_rule(view, first, 'tf_static')}"
         return (
             "frames without a robot's name need a tf topic for each robot: pass the rules"
             f" {rules} to {senders}"
@@ -102,7 +101,7 @@ def frame_without_robot_name(view: View) -> Iterator[Finding]:
             )
 
 
-def _why_bare(view: View, tree: TfTree, robot: PlannedRobot, names: Sequence[str]) -> Cause:
+def _why_bare(view: View, tree: TfTree, robot: Robot, names: Sequence[str]) -> Cause:
     """The node that sends all of them by the plan, besides the description; else the description."""
     by_name = _by_plain_name(view, robot)
     expected = {by_name[name] for name in names}
@@ -132,13 +131,13 @@ def _frames_without_robot(view: View, tree: TfTree) -> dict[str, list[str]]:
     return found
 
 
-def _has_plain_frames(view: View, robot: PlannedRobot) -> bool:
+def _has_plain_frames(view: View, robot: Robot) -> bool:
     """Whether the layout has the same frames for every robot; one of them may hold its name."""
     ownership = view.frame_ownership
     return any(ownership.without_robot(frame, robot.name) == frame for frame in robot.frames)
 
 
-def _by_plain_name(view: View, robot: PlannedRobot) -> dict[str, str]:
+def _by_plain_name(view: View, robot: Robot) -> dict[str, str]:
     """The robot's frames by their name without the robot's."""
     if _has_plain_frames(view, robot):
         return {frame: frame for frame in robot.frames}
@@ -179,7 +178,7 @@ def undeclared_frame(view: View) -> Iterator[Finding]:
                 yield _undeclared(view, view.robots[robot], found)
 
 
-def _undeclared(view: View, robot: PlannedRobot, names: Sequence[str]) -> Finding:
+def _undeclared(view: View, robot: Robot, names: Sequence[str]) -> Finding:
     verb = "is" if len(names) == 1 else "are"
     message = f"{_frames(names).rpartition(' ')[0]} {verb} not in the description of {robot.name}"
     declared = _by_plain_name(view, robot)
@@ -244,7 +243,7 @@ def robot_name_twice(view: View) -> Iterator[Finding]:
             prefixed = added_prefixes(robot, names)
             others = [it for it in prefixed if it not in twice]
             if others:
-                yield _prefixed(robot, others, prefixed[others[0]])
+                yield _prefixed(view, robot, others, prefixed[others[0]])
 
 
 def _behind_prefixes(view: View, tree: TfTree) -> Iterator[tuple[str, str]]:
@@ -269,18 +268,18 @@ def _not_in_a_description(
     return found
 
 
-def _prefixed(robot: PlannedRobot, names: Sequence[str], prefix: str) -> Finding:
+def _prefixed(view: View, robot: Robot, names: Sequence[str], prefix: str) -> Finding:
     verb = "is" if len(names) == 1 else "are"
     what = f"{_frames(names).rpartition(' ')[0]} {verb}"
     message = f"{what} planned without {prefix!r} in front"
-    sender = state_publisher(robot) or f"the robot_state_publisher of {robot.name}"
+    sender = state_publisher(view, robot) or f"the robot_state_publisher of {robot.name}"
     cause = (
         f"frame_prefix of {sender} is {prefix!r}, on top of a rewritten description: set it to ''"
     )
     return robot_name_twice.finding(message, cause, robot=robot.name, names=tuple(names))
 
 
-def _doubled(view: View, robot: PlannedRobot, names: Sequence[str]) -> Finding:
+def _doubled(view: View, robot: Robot, names: Sequence[str]) -> Finding:
     cause = (
         "frame_prefix of robot_state_publisher or tf_frame_prefix_enable of a controller (on by "
     )
@@ -297,7 +296,7 @@ def _frames(names: Sequence[str]) -> str:
     return f"frame {names[0]} has" if len(names) == 1 else f"frames {shorten(names)} have"
 
 
-def _has_name_twice(view: View, robot: PlannedRobot, name: str) -> bool:
+def _has_name_twice(view: View, robot: Robot, name: str) -> bool:
     ownership = view.frame_ownership
     tag = ownership.tag(robot.name)
     if not view.frames_of[robot.name].isdisjoint(without_tag_once(name, tag)):

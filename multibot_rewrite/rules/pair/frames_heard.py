@@ -6,7 +6,6 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence, Set
 
 from multibot_rewrite.findings.finding import ERROR, Finding
-from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.rules.declaration import graph_rule
@@ -18,7 +17,7 @@ from multibot_rewrite.rules.pair.tf_causes import JOINT_STATES
 from multibot_rewrite.rules.pair.tf_senders import described_robots, sent_by_robot, state_publisher
 from multibot_rewrite.rules.pair.tf_trees import frames_in
 from multibot_rewrite.system.conventions import USUAL_FRAMES
-from multibot_rewrite.system.records import PUBLISHES, TOPIC
+from multibot_rewrite.system.records import PUBLISHES, TOPIC, Robot
 
 
 @graph_rule(
@@ -72,8 +71,10 @@ def _senders(view: View) -> Mapping[str, set[str]]:
     return found
 
 
-def _tf_topics(robot: PlannedRobot) -> tuple[str, str]:
-    return robot.tf, "/".join("tf_static" if it == "tf" else it for it in robot.tf.split("/"))
+def _tf_topics(robot: Robot) -> tuple[str, str]:
+    return robot.tf_topic, "/".join(
+        "tf_static" if it == "tf" else it for it in robot.tf_topic.split("/")
+    )
 
 
 def _trees_of(view: View) -> Mapping[str, list[Set[str]]]:
@@ -102,7 +103,7 @@ def _strays(view: View) -> Mapping[str, list[str]]:
 
 def _is_heard(
     view: View,
-    robot: PlannedRobot,
+    robot: Robot,
     frame: str,
     heard: Sequence[Set[str]],
     prefixes: Set[str],
@@ -116,7 +117,7 @@ def _is_heard(
     return any(not frames.isdisjoint(variants) for frames in heard)
 
 
-def _not_received(view: View, robot: PlannedRobot, missing: Sequence[str]) -> Finding:
+def _not_received(view: View, robot: Robot, missing: Sequence[str]) -> Finding:
     several = f"{len(missing)} of the {len(robot.frames)} frames of {robot.name} are"
     what = several if len(missing) > 1 else f"frame {missing[0]} of {robot.name} is"
     message = f"{what} in no transform: {shorten(missing)}"
@@ -124,11 +125,11 @@ def _not_received(view: View, robot: PlannedRobot, missing: Sequence[str]) -> Fi
     return frame_not_received.finding(message, hint, robot=robot.name, names=tuple(missing))
 
 
-def _plain(view: View, robot: PlannedRobot, frame: str) -> str:
+def _plain(view: View, robot: Robot, frame: str) -> str:
     return view.frame_ownership.without_robot(frame, robot.name)
 
 
-def _why_not_received(view: View, robot: PlannedRobot, missing: Sequence[str]) -> str:
+def _why_not_received(view: View, robot: Robot, missing: Sequence[str]) -> str:
     silent = min(silent_topics(view, robot, JOINT_STATES), default="")
     if silent:
         source = "joint_state_publisher, joint_state_broadcaster or the bridge"
@@ -138,7 +139,7 @@ def _why_not_received(view: View, robot: PlannedRobot, missing: Sequence[str]) -
     # The root of a description comes with the odometry, too.
     described = {it for it in described if _plain(view, robot, it) not in USUAL_FRAMES}
     if described and described.issubset(missing):
-        publisher = state_publisher(robot) or STATE_PUBLISHER
+        publisher = state_publisher(view, robot) or STATE_PUBLISHER
         whose = next(described_robots(view, robot), "")
         if whose:
             return f"{publisher} has the description of {whose}, whose transforms it sends"

@@ -6,7 +6,6 @@ from collections import Counter, defaultdict
 from collections.abc import Iterator
 
 from multibot_rewrite.findings.finding import ERROR, Finding
-from multibot_rewrite.graph.expectation import PlannedEndpoint
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import graph_rule
 from multibot_rewrite.rules.pair.causes import (
@@ -21,7 +20,7 @@ from multibot_rewrite.rules.pair.causes import (
 from multibot_rewrite.rules.pair.comparison import View
 from multibot_rewrite.rules.pair.tf_copies import copying_nodes
 from multibot_rewrite.system.conventions import EVERYBODYS, LISTENER
-from multibot_rewrite.system.records import SUBSCRIBES, TOPIC
+from multibot_rewrite.system.records import SUBSCRIBES, TOPIC, End
 
 
 @graph_rule(
@@ -69,7 +68,7 @@ def _unplanned_leaks(view: View) -> Iterator[Finding]:
             )
 
 
-def _missing_by_name_without_rules(view: View) -> dict[tuple[str, str], PlannedEndpoint]:
+def _missing_by_name_without_rules(view: View) -> dict[tuple[str, str], End]:
     """The planned endpoints that are missing, by node and the name they have without a rule."""
     return {
         (planned.node, name): planned
@@ -79,7 +78,7 @@ def _missing_by_name_without_rules(view: View) -> dict[tuple[str, str], PlannedE
     }
 
 
-def _why_leaked(view: View, node: str, name: str, planned: PlannedEndpoint | None) -> Cause:
+def _why_leaked(view: View, node: str, name: str, planned: End | None) -> Cause:
     if planned:
         return why_not_remapped(view, planned)
     plugin, place = plugin_of(view, node)
@@ -115,13 +114,13 @@ def _planned_leaks(view: View) -> Iterator[Finding]:
 
 def _shared_tf(view: View) -> set[str]:
     """The tf topics that robots share in their layout."""
-    times = Counter(robot.tf for robot in view.plan.robots)
+    times = Counter(robot.tf_topic for robot in view.plan.robots)
     return {f"{tf}{end}" for tf, count in times.items() if count > 1 for end in ("", "_static")}
 
 
 def _wrong_tf_listeners(view: View) -> Iterator[Finding]:
     """A tf listener in a robot's namespace that subscribes to /tf, which is not the robot's."""
-    home = {robot.name: robot.tf for robot in view.plan.robots}
+    home = {robot.name: robot.tf_topic for robot in view.plan.robots}
     for node in view.seen:
         robot = view.ownership.robot(node) if f"/{LISTENER}" in node else ""
         if robot and home[robot] != "/tf" and (node, TOPIC, SUBSCRIBES, "/tf") in view.types:

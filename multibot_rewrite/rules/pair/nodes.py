@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding
-from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.graph.reach import hidden_from_here, why_not_seen
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.wording import shorten
@@ -13,6 +12,7 @@ from multibot_rewrite.rules.declaration import graph_rule
 from multibot_rewrite.rules.pair.causes import Cause, caused, plugin_of, why_other_name
 from multibot_rewrite.rules.pair.comparison import View
 from multibot_rewrite.system.conventions import EVERYBODYS
+from multibot_rewrite.system.records import Robot
 
 
 @graph_rule(
@@ -46,23 +46,23 @@ def missing_node(view: View) -> Iterator[Finding]:
             cause = why_other_name(view, node, match) if match else _not_started(view, node)
             message = f"node {node} is in the plan, but not in the graph"
             yield missing_node.finding(message, **cause._asdict(), robot=robot.name, node=node)
-    for node in dict.fromkeys(view.plan.shared_nodes):
+    for node in view.own[""]:
         if node not in view.seen and node not in view.may_miss:
             message = f"node {node} for all robots is in the plan, but not in the graph"
             yield missing_node.finding(message, "is it started?", level=WARNING, node=node)
 
 
-def _missing(view: View, robot: PlannedRobot) -> list[str]:
+def _missing(view: View, robot: Robot) -> list[str]:
     """An optional node is missing only where it runs under another name."""
     return [
         node
-        for node in robot.nodes
+        for node in view.own[robot.name]
         if node not in view.seen and (node not in view.may_miss or node in view.probable_matches)
     ]
 
 
-def _is_absent(view: View, robot: PlannedRobot) -> bool:
-    return view.seen.keys().isdisjoint(robot.nodes) and bool(_missing(view, robot))
+def _is_absent(view: View, robot: Robot) -> bool:
+    return view.seen.keys().isdisjoint(view.own[robot.name]) and bool(_missing(view, robot))
 
 
 def _not_started(view: View, node: str) -> Cause:
@@ -129,7 +129,7 @@ def unplanned_node(view: View) -> Iterator[Finding]:
     if not view.unplanned:
         return
     matches = set(view.probable_matches.values())
-    planned = {robot.name for robot in view.plan.robots if robot.nodes}
+    planned = {robot.name for robot in view.plan.robots if view.own[robot.name]}
     without_robot = view.ownership.without_robot
     originals = {without_robot(node, robot): node for node, robot in view.robot_of.items()}
     for node in view.unplanned if planned else ():
@@ -182,20 +182,22 @@ def missing_robot(view: View) -> Iterator[Finding]:
     """One finding in place of one for each node."""
     for robot in view.plan.robots:
         if _is_absent(view, robot):
-            message = f"none of the {len(robot.nodes)} nodes of {robot.name} is in the graph"
+            message = (
+                f"none of the {len(view.own[robot.name])} nodes of {robot.name} is in the graph"
+            )
             cause = _why_absent(view, robot)
             hidden = not _matches(view, robot) and hidden_from_here(view.graph)
             level = INCONCLUSIVE if hidden else ERROR
             yield missing_robot.finding(message, **cause._asdict(), robot=robot.name, level=level)
 
 
-def _matches(view: View, robot: PlannedRobot) -> list[tuple[str, str]]:
+def _matches(view: View, robot: Robot) -> list[tuple[str, str]]:
     """Its nodes, and those that probably run in their place."""
     matches = view.probable_matches
-    return [(node, matches[node]) for node in robot.nodes if node in matches]
+    return [(node, matches[node]) for node in view.own[robot.name] if node in matches]
 
 
-def _why_absent(view: View, robot: PlannedRobot) -> Cause:
+def _why_absent(view: View, robot: Robot) -> Cause:
     matches = _matches(view, robot)
     if not matches:
         return Cause(why_not_seen(view.graph, robot.name))

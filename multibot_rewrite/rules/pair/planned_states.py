@@ -6,17 +6,16 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.graph.expectation import PlannedParameter, PlannedState
 from multibot_rewrite.graph.reach import machines
 from multibot_rewrite.graph.wording import FEW, SEVERAL, shorten
 from multibot_rewrite.rules.declaration import graph_rule
 from multibot_rewrite.rules.pair.comparison import View
 from multibot_rewrite.system.conventions import CLOCK
 from multibot_rewrite.system.parameters import parameter_text, parameter_value
-from multibot_rewrite.system.records import SIM_TIME, SUBSCRIBES, clocks
+from multibot_rewrite.system.records import SIM_TIME, SUBSCRIBES, Parameter, System, clocks
 
 # A planned parameter, and its value there.
-Difference = tuple[PlannedParameter, str]
+Difference = tuple[Parameter, str]
 
 
 @graph_rule(
@@ -43,14 +42,14 @@ running: /robot1/amcl is active
 def state_not_planned(view: View) -> Iterator[Finding]:
     """A node that did not answer is not known."""
     states = {it.name: it.lifecycle for it in view.graph.nodes if it.lifecycle}
-    for planned in view.plan.states:
-        seen = states.get(planned.node, planned.lifecycle)
+    for planned in view.plan.nodes:
+        seen = states.get(planned.name, planned.lifecycle)
         if planned.lifecycle and seen != planned.lifecycle:
             yield state_not_planned.finding(
                 f"is {seen}, planned is {planned.lifecycle}",
-                f"ros2 lifecycle get {planned.node}; see the log of its lifecycle manager",
-                robot=view.robot_of.get(planned.node, ""),
-                node=planned.node,
+                f"ros2 lifecycle get {planned.name}; see the log of its lifecycle manager",
+                robot=planned.robot,
+                node=planned.name,
             )
 
 
@@ -80,19 +79,26 @@ running: /robot1/amcl has base_frame_id robot1/base_link
 def parameter_not_planned(view: View) -> Iterator[Finding]:
     """One finding a node; a parameter that it does not have is not known."""
     values = {(it.node, it.name): it.value for it in view.graph.parameters}
-    for planned in view.plan.states:
+    for node, planned in _by_node(view.plan.parameters).items():
         found = [*_differences(planned, values)]
         # What makes it an error comes first.
-        found.sort(key=lambda it: not _is_serious(view, planned.node, it[0]))
+        found.sort(key=lambda it: not _is_serious(view, it[0]))
         if found:
-            yield _differs(view, planned.node, found)
+            yield _differs(view, node, found)
+
+
+def _by_node(parameters: Iterable[Parameter]) -> dict[str, list[Parameter]]:
+    found: dict[str, list[Parameter]] = defaultdict(list)
+    for it in parameters:
+        found[it.node].append(it)
+    return found
 
 
 def _differences(
-    planned: PlannedState, values: Mapping[tuple[str, str], str]
+    planned: Iterable[Parameter], values: Mapping[tuple[str, str], str]
 ) -> Iterator[Difference]:
-    for it in planned.parameters:
-        value = values.get((planned.node, it.name))
+    for it in planned:
+        value = values.get((it.node, it.name))
         if value is not None and not _is_same(it.value, value):
             yield it, value
 
@@ -106,10 +112,10 @@ def _is_same(planned: str, value: str) -> bool:
     return bool(parameter_value(planned) == parameter_value(value))
 
 
-def _is_serious(view: View, node: str, it: PlannedParameter) -> bool:
+def _is_serious(view: View, it: Parameter) -> bool:
     """Whether the plan itself says it, or it is a frame of a robot."""
-    frames = view.frames_of.get(view.robot_of.get(node, ""), frozenset())
-    return not it.place or parameter_value(it.value) in [
+    frames = view.frames_of.get(view.robot_of.get(it.node, ""), frozenset())
+    return not it.place.file or parameter_value(it.value) in [
         *frames,
         *(f"/{frame}" for frame in frames),
     ]
@@ -118,11 +124,11 @@ def _is_serious(view: View, node: str, it: PlannedParameter) -> bool:
 def _differs(view: View, node: str, found: Sequence[Difference]) -> Finding:
     listed = [f"{it.name} is {value}, planned is {it.value}{_at(it)}" for it, value in found]
     robot, (first, _) = view.robot_of.get(node, ""), found[0]
-    file = first.place.rpartition(":")[0]
+    file = first.place.file
     start = f"start it with {file}" if file else "change it, or states of the plan"
     other = _whose(view, node, found)
     hint = f"has it the parameters of {other}? {start}" if other else start
-    serious = _is_serious(view, node, first)
+    serious = _is_serious(view, first)
     level = ERROR if serious else WARNING
     names = tuple(it.name for it, _ in found)
     message = "; ".join(listed[:FEW]) + (f"; {len(found) - FEW} more" if len(found) > FEW else "")
@@ -131,8 +137,8 @@ def _differs(view: View, node: str, found: Sequence[Difference]) -> Finding:
     )
 
 
-def _at(it: PlannedParameter) -> str:
-    return f" ({it.place})" if it.place else ""
+def _at(it: Parameter) -> str:
+    return f" ({it.place})" if it.place.file else ""
 
 
 def _whose(view: View, node: str, found: Sequence[Difference]) -> str:
@@ -141,11 +147,11 @@ def _whose(view: View, node: str, found: Sequence[Difference]) -> str:
     robot = view.robot_of.get(node, "")
     plain = whose.without_robot(node, robot)
     wanted = {(it.name, value) for it, value in found}
-    for other in view.plan.states:
-        theirs = view.robot_of.get(other.node, "")
-        if not theirs or whose.without_robot(other.node, theirs) != plain:
+    for other, planned in _by_node(view.plan.parameters).items():
+        theirs = view.robot_of.get(other, "")
+        if not theirs or whose.without_robot(other, theirs) != plain:
             continue
-        if wanted <= {(it.name, it.value) for it in other.parameters}:
+        if wanted <= {(it.name, it.value) for it in planned}:
             return theirs
     return ""
 
@@ -178,7 +184,7 @@ def clock_not_planned(view: View) -> Iterator[Finding]:
     timed = {it.node for it in view.by_name.get(CLOCK, ()) if it.role == SUBSCRIBES}
     asked = clocks(view.graph)
     differing: dict[tuple[str, str], list[str]] = defaultdict(list)
-    for node, wanted in planned_clocks(view.plan.states):
+    for node, wanted in planned_clocks(view.plan):
         if node in view.seen and node not in asked and wanted != parameter_text(node in timed):
             differing[view.robot_of.get(node, ""), wanted].append(node)
     for (robot, wanted), nodes in differing.items():
@@ -193,10 +199,9 @@ def clock_not_planned(view: View) -> Iterator[Finding]:
         )
 
 
-def planned_clocks(states: Iterable[PlannedState]) -> Iterator[tuple[str, str]]:
+def planned_clocks(plan: System) -> Iterator[tuple[str, str]]:
     """By node: the clock that it is planned to have."""
-    for state in states:
-        yield from ((state.node, it.value) for it in state.parameters if it.name == SIM_TIME)
+    return ((it.node, it.value) for it in plan.parameters if it.name == SIM_TIME)
 
 
 @graph_rule(
@@ -248,9 +253,9 @@ def host_not_planned(view: View) -> Iterator[Finding]:
 def _hosts(view: View, machine_of: Mapping[str, str]) -> Mapping[str, dict[str, list[str]]]:
     """Host of the plan -> machine -> the nodes that run there."""
     found: dict[str, dict[str, list[str]]] = defaultdict(lambda: defaultdict(list))
-    for it in view.plan.states:
-        if it.host and it.node in machine_of:
-            found[it.host][machine_of[it.node]].append(it.node)
+    for it in view.plan.nodes:
+        if it.host and it.name in machine_of:
+            found[it.host][machine_of[it.name]].append(it.name)
     return found
 
 

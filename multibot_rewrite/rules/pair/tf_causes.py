@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence, Set
 
-from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.rules.index import tree_topic
 from multibot_rewrite.rules.pair.causes import Cause, caused
@@ -19,12 +18,12 @@ from multibot_rewrite.rules.pair.tf_senders import (
     where_set,
 )
 from multibot_rewrite.rules.pair.tf_trees import TfTree
-from multibot_rewrite.system.records import PUBLISHES, Edge
+from multibot_rewrite.system.records import PUBLISHES, Edge, Robot
 
 JOINT_STATES, TF = "sensor_msgs/msg/JointState", "tf2_msgs/msg/TFMessage"
 
 
-def why_disconnected(view: View, robot: PlannedRobot, roots: Sequence[str]) -> Cause:
+def why_disconnected(view: View, robot: Robot, roots: Sequence[str]) -> Cause:
     """The node that sends a frame under another name, or does not send what it should."""
     edges = [edge for tree in _trees(view, robot) for edge in tree.edges]
     unsent = [it for it in sent_by_robot(view, robot) if not _is_sent(it, edges)]
@@ -38,8 +37,8 @@ def why_disconnected(view: View, robot: PlannedRobot, roots: Sequence[str]) -> C
     return next(filter(None, causes), Cause(f"{general} localization"))
 
 
-def _trees(view: View, robot: PlannedRobot) -> Iterator[TfTree]:
-    return (tree for tree in view.trees if tree.topic == tree_topic(robot.tf))
+def _trees(view: View, robot: Robot) -> Iterator[TfTree]:
+    return (tree for tree in view.trees if tree.topic == tree_topic(robot.tf_topic))
 
 
 def _is_sent(planned: Sent, edges: Sequence[Edge]) -> bool:
@@ -47,7 +46,7 @@ def _is_sent(planned: Sent, edges: Sequence[Edge]) -> bool:
 
 
 def _two_names(
-    view: View, robot: PlannedRobot, roots: Sequence[str], edges: Sequence[Edge]
+    view: View, robot: Robot, roots: Sequence[str], edges: Sequence[Edge]
 ) -> Cause | None:
     """A root that is in the tree under another name, with the robot's or without."""
     children = {edge.child for edge in edges}
@@ -61,7 +60,7 @@ def _two_names(
     return None
 
 
-def _wrongly_named(view: View, robot: PlannedRobot, right: str, wrong: str) -> Cause:
+def _wrongly_named(view: View, robot: Robot, right: str, wrong: str) -> Cause:
     names = f"{wrong} and {right} are one frame with two names"
     node = sender_of(view, robot, right)
     if not node:
@@ -71,7 +70,7 @@ def _wrongly_named(view: View, robot: PlannedRobot, right: str, wrong: str) -> C
     return caused(f"{names}: by the plan {node} sends the second, {right}{see}", place)
 
 
-def _not_sent(view: View, robot: PlannedRobot, planned: Sent) -> Cause:
+def _not_sent(view: View, robot: Robot, planned: Sent) -> Cause:
     place = where_set(view, planned.node)
     see = f" (see {place})" if place else ""
     if planned.node not in view.seen:
@@ -84,7 +83,7 @@ def _not_sent(view: View, robot: PlannedRobot, planned: Sent) -> Cause:
     )
 
 
-def _whose(view: View, robot: PlannedRobot, planned: Sent) -> Iterator[str]:
+def _whose(view: View, robot: Robot, planned: Sent) -> Iterator[str]:
     """The robots of whom this transform is, and is sent for this one."""
     plain = _plain(view, planned.parent, planned.child, robot.name)
     for other, edge in foreign(view, robot):
@@ -96,10 +95,10 @@ def _plain(view: View, parent: str, child: str, robot: str) -> tuple[str, ...]:
     return tuple(view.frame_ownership.without_robot(it, robot) for it in (parent, child))
 
 
-def _bridged(view: View, robot: PlannedRobot) -> Cause | None:
+def _bridged(view: View, robot: Robot) -> Cause | None:
     """The odometry of a simulated robot, which a bridge carries beside the transforms of others."""
-    carried = [it for it in view.plan.topics if it.bridge and it.name == robot.tf]
-    ends = view.by_name.get(robot.tf, ()) if carried else ()
+    carried = [it for it in view.plan.topics if it.bridge and it.name == robot.tf_topic]
+    ends = view.by_name.get(robot.tf_topic, ()) if carried else ()
     bridges = sorted({it.node for it in ends if it.role == PUBLISHES and "bridge" in it.node})
     if not bridges:
         return None
@@ -109,7 +108,7 @@ def _bridged(view: View, robot: PlannedRobot) -> Cause | None:
     )
 
 
-def _silent(view: View, robot: PlannedRobot, type_: str) -> Cause | None:
+def _silent(view: View, robot: Robot, type_: str) -> Cause | None:
     silent: Set[str] = silent_topics(view, robot, type_)
     if not silent:
         return None

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from multibot_rewrite.graph.expectation import Expectation, PlannedRobot
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules.index import tree_topic
 from multibot_rewrite.rules.pair.comparison import View
 from multibot_rewrite.rules.pair.tf_trees import TfTree
-from multibot_rewrite.system.records import Edge
+from multibot_rewrite.system.records import Edge, Robot, System
 
 
 class Sent(NamedTuple):
@@ -24,26 +23,23 @@ class Sent(NamedTuple):
         return f"{self.parent} -> {self.child}"
 
 
-def planned_transforms(plan: Expectation) -> Iterator[Sent]:
+def planned_transforms(plan: System) -> Iterator[Sent]:
     """What nodes send besides the description's transforms, as ``sends`` of the plan has it."""
-    for node, text in plan.sends:
-        for edge in text.split(", "):
-            parent, arrow, child = edge.partition(" -> ")
-            if arrow:
-                yield Sent(node, parent, child)
+    for edge in plan.edges:
+        yield from (Sent(node, edge.parent, edge.child) for node in edge.publishers)
 
 
-def sent_by_robot(view: View, robot: PlannedRobot) -> list[Sent]:
+def sent_by_robot(view: View, robot: Robot) -> list[Sent]:
     """Those of one robot's nodes."""
     own = (it for it in planned_transforms(view.plan) if view.robot_of.get(it.node) == robot.name)
     return list(own)
 
 
-def foreign(view: View, robot: PlannedRobot) -> Iterator[tuple[str, Edge]]:
+def foreign(view: View, robot: Robot) -> Iterator[tuple[str, Edge]]:
     """Transforms of other robots, each with its robot, that a node of this one may send: all on a tf
     topic of its own, else what several nodes send."""
     for tree in view.trees:
-        if tree.topic != tree_topic(robot.tf):
+        if tree.topic != tree_topic(robot.tf_topic):
             continue
         for edge in tree.edges:
             other = view.frame_ownership.robot(edge.child)
@@ -51,20 +47,20 @@ def foreign(view: View, robot: PlannedRobot) -> Iterator[tuple[str, Edge]]:
                 yield other, edge
 
 
-def described_robots(view: View, robot: PlannedRobot) -> Iterator[str]:
+def described_robots(view: View, robot: Robot) -> Iterator[str]:
     """The robots whose description a node of this one seems to have, by fixed transforms of theirs."""
     return (other for other, edge in foreign(view, robot) if edge.static)
 
 
-def sender_of(view: View, robot: PlannedRobot, frame: str) -> str:
+def sender_of(view: View, robot: Robot, frame: str) -> str:
     """The node that sends a planned frame of the robot: a node of its own, else the description's."""
     found = (it.node for it in sent_by_robot(view, robot) if frame in (it.parent, it.child))
-    return next(found, "") or state_publisher(robot)
+    return next(found, "") or state_publisher(view, robot)
 
 
-def state_publisher(robot: PlannedRobot) -> str:
+def state_publisher(view: View, robot: Robot) -> str:
     """The robot's robot_state_publisher by the plan; empty where it has none."""
-    return next((it for it in robot.nodes if STATE_PUBLISHER in it), "")
+    return next((it for it in view.own[robot.name] if STATE_PUBLISHER in it), "")
 
 
 def senders_there(tree: TfTree, robot: str, first: Mapping[str, None]) -> list[str]:
@@ -76,6 +72,5 @@ def senders_there(tree: TfTree, robot: str, first: Mapping[str, None]) -> list[s
 
 def where_set(view: View, node: str) -> str:
     """The file that holds a node's frames: its plugin's line, or that of its parameters; or empty."""
-    place = view.places.get(node, "")
-    origin = dict(view.plan.origins).get(node, "")
-    return place or ("" if origin.startswith("stack ") else origin)
+    planned = view.nodes.get(node)
+    return str(planned.plugin) or str(planned.place) if planned else ""

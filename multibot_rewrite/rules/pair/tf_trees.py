@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 
-from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules.index import tree_topic
 from multibot_rewrite.rules.ownership import NameOwnership
-from multibot_rewrite.system.records import Edge
+from multibot_rewrite.system.records import Edge, Robot
 
 
 class TfTree(NamedTuple):
@@ -28,12 +27,12 @@ class TfTree(NamedTuple):
 
 
 def tf_trees(
-    frames: Iterable[Edge], robots: Iterable[PlannedRobot], ownership: NameOwnership
+    frames: Iterable[Edge], robots: Iterable[Robot], ownership: NameOwnership
 ) -> tuple[TfTree, ...]:
     """One tree for each tf topic with transforms."""
     home: dict[str, list[str]] = defaultdict(list)
     for robot in robots:
-        home[tree_topic(robot.tf)].append(robot.name)
+        home[tree_topic(robot.tf_topic)].append(robot.name)
     edges: dict[str, list[Edge]] = defaultdict(list)
     # The same for all transforms on a topic.
     senders: dict[str, tuple[str, ...]] = {}

@@ -6,7 +6,6 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 
 from multibot_rewrite.findings.finding import ERROR, Finding
-from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.rules.declaration import graph_rule
 from multibot_rewrite.rules.index import tree_topic
@@ -15,7 +14,7 @@ from multibot_rewrite.rules.pair.comparison import View
 from multibot_rewrite.rules.pair.tf_causes import why_disconnected
 from multibot_rewrite.rules.pair.tf_senders import planned_transforms, senders_there
 from multibot_rewrite.rules.pair.tf_trees import TfTree
-from multibot_rewrite.system.records import PUBLISHES, Edge
+from multibot_rewrite.system.records import PUBLISHES, Edge, Robot
 
 
 @graph_rule(
@@ -129,10 +128,10 @@ def _robot_at_home(view: View, tree: TfTree, frame: str) -> str:
     if len(tree.home) == 1:
         return tree.home[0] if frame in view.frames_of[tree.home[0]] else ""
     robot = view.frame_ownership.exact.get(frame, "")
-    return robot if robot and tree_topic(view.robots[robot].tf) == tree.topic else ""
+    return robot if robot and tree_topic(view.robots[robot].tf_topic) == tree.topic else ""
 
 
-def _disconnected(view: View, robot: PlannedRobot, roots: Sequence[str]) -> Finding:
+def _disconnected(view: View, robot: Robot, roots: Sequence[str]) -> Finding:
     message = f"the tf tree of {robot.name} has {len(roots)} roots: {', '.join(roots)}"
     cause = why_disconnected(view, robot, roots)
     return disconnected_tf_tree.finding(
@@ -165,10 +164,10 @@ def wrong_tf_topic(view: View) -> Iterator[Finding]:
         misplaced: dict[str, list[Edge]] = defaultdict(list)
         for edge in tree.edges:
             robot = _sending_robot(view, tree, edge.child)
-            if robot and tree_topic(view.robots[robot].tf) != tree.topic:
+            if robot and tree_topic(view.robots[robot].tf_topic) != tree.topic:
                 misplaced[robot].append(edge)
         for robot, edges in misplaced.items():
-            home = tree_topic(view.robots[robot].tf)
+            home = tree_topic(view.robots[robot].tf_topic)
             # A copy that a relay or another node makes, for RViz for example: the robot is as planned.
             copied = all(edge.child in children.get(home, ()) for edge in edges)
             if not (copied and tree.senders and _only_planned(view, tree, robot, edges)):
@@ -184,9 +183,11 @@ def _only_planned(view: View, tree: TfTree, robot: str, edges: Iterable[Edge]) -
     return planned.issuperset(tree.senders.get(robot, ()))
 
 
-def _wrong_topic(view: View, tree: TfTree, robot: PlannedRobot, edges: Sequence[Edge]) -> Finding:
+def _wrong_topic(view: View, tree: TfTree, robot: Robot, edges: Sequence[Edge]) -> Finding:
     frames = tuple(dict.fromkeys(edge.child for edge in edges))
-    message = f"frame {frames[0]} of {robot.name} is on {edges[0].topic}, expected on {robot.tf}"
+    message = (
+        f"frame {frames[0]} of {robot.name} is on {edges[0].topic}, expected on {robot.tf_topic}"
+    )
     if len(frames) > 1:
         message += f"; so are {len(frames) - 1} more of its frames"
     cause = _why_wrong_topic(view, tree, robot, edges)
@@ -202,13 +203,13 @@ def _sending_robot(view: View, tree: TfTree, frame: str) -> str:
     return only if frame in view.robots[only].frames else ""
 
 
-def _why_wrong_topic(view: View, tree: TfTree, robot: PlannedRobot, edges: Iterable[Edge]) -> Cause:
+def _why_wrong_topic(view: View, tree: TfTree, robot: Robot, edges: Iterable[Edge]) -> Cause:
     senders = tree.senders.get(robot.name) or tuple(_senders(tree))
     who = shorten(senders) or "its publisher"
     places = [place for _, place in (plugin_of(view, node) for node in senders) if place]
     see = f", see {shorten(places)}" if places else ""
-    rule = tf_rule(robot, "tf_static" if all(edge.static for edge in edges) else "tf")
+    rule = tf_rule(view, robot, "tf_static" if all(edge.static for edge in edges) else "tf")
     hint = f"the remap rule {rule} is missing for {who}{see}"
-    if robot.tf == "/tf":
+    if robot.tf_topic == "/tf":
         hint = f"the layout has one /tf for all robots: remove the rule /tf:=... from {who}{see}"
     return caused(hint, next(iter(places), ""))

@@ -8,7 +8,6 @@ from functools import lru_cache
 from math import inf
 
 from multibot_rewrite.findings.finding import ERROR, Finding
-from multibot_rewrite.graph.expectation import PlannedEndpoint
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.rules.declaration import graph_rule
 from multibot_rewrite.rules.pair.causes import DOES, caused, plugin_of
@@ -127,7 +126,7 @@ def _finding(view: View, end: End, message: str, cause: str) -> Finding:
     return type_mismatch.finding(message, cause, robot=robot, node=end.node, names=(end.name,))
 
 
-def _not_as_planned(view: View, planned: PlannedEndpoint, seen: str) -> Finding:
+def _not_as_planned(view: View, planned: End, seen: str) -> Finding:
     what = f"{DOES[planned.role]} {planned.kind} {planned.name}"
     message = f"{what} with type {seen}, but the plan has {planned.type}"
     plugin, place = plugin_of(view, planned.node)
