@@ -45,7 +45,7 @@ FILES = {
     ),
     "bridge": (ROW.format("topic_name", "scan"), "topic_name: /robot1/scan"),
     "bridge of a model": (ROW.format("topic_name", "/model/x/odometry"), "/model/robot1/odometry"),
-    "rviz": (VIEW.format("base_scan"), 'Reference Frame: "robot1/base_scan"'),
+    "rviz": (VIEW.format("base_scan"), "Reference Frame: robot1/base_scan"),
     "tree": (TREE.format('robot_base_frame="base_link"'), 'robot_base_frame="robot1/base_link"'),
     "lua": (
         'options = {\n  tracking_frame = "base_link",\n}\n',
