@@ -62,7 +62,7 @@ HOMES: tuple[Home, ...] = (
     Home(
         "MF6",
         "what was built",
-        ("fleets.consistency", "fleets.value_checks", "fleets.tf_conflicts"),
+        ("fleets.consistency", "fleets.value_checks"),
     ),
     Home(
         "MF7",
@@ -98,7 +98,6 @@ HOMES: tuple[Home, ...] = (
             "fleets.apart",
             "fleets.cell_outputs",
             "fleets.moveit_frames",
-            "fleets.closing_topics",
         ),
     ),
     Home(
@@ -130,6 +129,7 @@ HOMES: tuple[Home, ...] = (
             "rules.system.commands",
             "rules.system.relays",
             "rules.system.sharing",
+            "rules.system.unsent",
         ),
     ),
     Home(

@@ -103,3 +103,8 @@ def _lacks(row: Row) -> str:
     if not any(text_in(row, it) for it in (BOTH, ROS, GZ)):
         return ROS
     return " and ".join(it for it in TYPES if not text_in(row, it))
+
+
+def below(name: str, above: str) -> str:
+    """A ROS name of a bridge that runs in a namespace below the robot's."""
+    return f"/{above}/{name}" if above and not name.startswith("/") else name

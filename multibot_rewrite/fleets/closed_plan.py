@@ -15,9 +15,9 @@ from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.output_file import OutputFile
 from multibot_rewrite.fleets.output_values import OutputText
 from multibot_rewrite.fleets.robot_groups import group_robots
-from multibot_rewrite.fleets.systems import BRIDGE_FILE, bridge_ends
 from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
 from multibot_rewrite.gc_pause import gc_paused
+from multibot_rewrite.producers.ends import BRIDGE_FILE, bridge_ends
 from multibot_rewrite.system.records import Topic
 
 # Rules about a file that names what the robot does not have.

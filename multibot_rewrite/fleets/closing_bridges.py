@@ -15,7 +15,7 @@ from multibot_rewrite.fleets.gap_findings import at_gap, in_source, meant
 from multibot_rewrite.fleets.member import line_of
 from multibot_rewrite.fleets.output_values import OutputText
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
-from multibot_rewrite.fleets.systems import BRIDGE_FILE
+from multibot_rewrite.producers.ends import BRIDGE_FILE
 from multibot_rewrite.remap.bridged_topics import bridged_topics
 from multibot_rewrite.rewriters.text import text_at
 from multibot_rewrite.system.records import Place

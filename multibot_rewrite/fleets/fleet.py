@@ -245,6 +245,16 @@ def merge(fleets: Sequence[Fleet]) -> Fleet:
 
 def expected(fleet: Fleet) -> System:
     """The graph that the fleet should have; UsageError where any graph would be as planned."""
+    plan = planned(fleet)
+    nothing = vacuous(plan)
+    if nothing:
+        hint = f"name a stack of its nodes, or leave out {NO_STATE_PUBLISHER}"
+        raise UsageError(f"{nothing}, so every graph would be as planned; {hint}")
+    return plan
+
+
+def planned(fleet: Fleet) -> System:
+    """The graph that the fleet should have, be it one that any graph is like."""
     sent: dict[str, list[SentEdge]] = {robot: [] for robot in fleet.inventories}
     for (robot, _), edges in fleet.edges.items():
         sent[robot] += edges
@@ -261,10 +271,6 @@ def expected(fleet: Fleet) -> System:
         nodes=tuple(from_text(it, fleet.origins.get(it.name, "")) for it in plan.nodes),
         edges=tuple(_sends(fleet)),
     )
-    nothing = vacuous(plan)
-    if nothing:
-        hint = f"name a stack of its nodes, or leave out {NO_STATE_PUBLISHER}"
-        raise UsageError(f"{nothing}, so every graph would be as planned; {hint}")
     return plan._replace(
         release=fleet.table.release,
         gaps=fleet.gaps,

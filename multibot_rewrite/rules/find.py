@@ -21,6 +21,7 @@ from multibot_rewrite.rules.system import (
     sharing,
     tf_topics,
     transforms,
+    unsent,
 )
 from multibot_rewrite.rules.system import (
     states as states_,
@@ -28,7 +29,7 @@ from multibot_rewrite.rules.system import (
 
 _MODULES = (
     nodes, names, matching, commands, relays, sharing, transforms, tf_topics, frame_ids, clocks,
-    states_,
+    states_, unsent,
 )  # fmt: skip
 _FOUND = [it for module in _MODULES for it in vars(module).values() if isinstance(it, Rule)]
 DANGERS = {it.code: it for it in sorted(_FOUND, key=lambda it: it.code)}
@@ -41,6 +42,18 @@ def judge(seen: Index) -> list[Finding]:
         # A recording has no nodes.
         rules = TF_DANGERS if is_recorded(seen.system) else DANGERS
         return [it for rule in rules.values() for it in _ask(rule, seen)]
+
+
+def contradictions(seen: Index) -> list[Finding]:
+    """What two ends, senders or nodes do to each other: true whatever else runs."""
+    rules = (it for it in DANGERS.values() if not it.options["absence"])
+    return [it for rule in rules for it in _ask(rule, seen)]
+
+
+def absences(seen: Index) -> list[Finding]:
+    """What is missing, as far as the system is known."""
+    rules = (it for it in DANGERS.values() if it.options["absence"])
+    return [it for rule in rules for it in _ask(rule, seen)]
 
 
 def _ask(rule: Rule, seen: Index) -> Iterator[Finding]:

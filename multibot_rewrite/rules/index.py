@@ -12,6 +12,7 @@ from multibot_rewrite.rules.ownership import Whose
 from multibot_rewrite.system.conventions import EVERYBODYS, only_looks
 from multibot_rewrite.system.records import (
     CALLS,
+    OFF,
     PUBLISHES,
     SERVES,
     SUBSCRIBES,
@@ -128,7 +129,7 @@ def _trees(system: System, names: Iterable[Ends]) -> Iterator[Tree]:
     for ends in names:
         if ends.type == TF:
             topics[tree_topic(ends.name)].append(ends)
-    for frame in system.edges:
+    for frame in (it for it in system.edges if it.sure != OFF):
         edges[tree_topic(frame.topic)].append(frame)
     for topic in dict.fromkeys((*edges, *topics)):
         own = topics.get(topic, ())

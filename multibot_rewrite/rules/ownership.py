@@ -26,6 +26,10 @@ class Whose(NamedTuple):
     plain_frame: Callable[[str], str]
 
 
+# Of a robot alone, which has no name in what it is called.
+ALONE = Whose((), lambda _: "", lambda name: name, lambda _: "", lambda frame: frame)
+
+
 class NameOwnership(NamedTuple):
     """How the names of one sort, graph names or frames, show their robot.
 

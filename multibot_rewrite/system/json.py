@@ -33,6 +33,7 @@ from multibot_rewrite.system.records import (
     EXPECTED,
     KINDS,
     MAY,
+    OFF,
     QUIET,
     ROLES,
     RUNS,
@@ -59,7 +60,7 @@ _EMPTY: tuple[object, ...] = ("", ())
 ALLOWED_WORDS: Mapping[tuple[type, str], tuple[str, ...]] = {
     (End, "kind"): KINDS,
     (End, "role"): ROLES,
-    (Sure, "word"): tuple(it.word for it in (RUNS, MAY, UNKNOWN)),
+    (Sure, "word"): tuple(it.word for it in (RUNS, MAY, UNKNOWN, OFF)),
     (Environment, "settled"): (EXPECTED, QUIET, TIMEOUT, CHANGING),
 }
 FULL_NAMES = {

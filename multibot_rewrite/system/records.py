@@ -51,7 +51,8 @@ def place_of(text: str) -> Place:
 
 
 class Sure(NamedTuple):
-    """Whether something is there: ``runs`` always, ``may`` on a condition, or it is ``unknown``.
+    """Whether something is there: ``runs`` always, ``may`` on a condition, is told not to and
+    ``off``, or it is ``unknown``.
 
     ``why`` is the condition, or why it is not known, for people. Of the nodes ``instead`` exactly one
     runs.
@@ -62,7 +63,9 @@ class Sure(NamedTuple):
     instead: tuple[str, ...] = ()
 
 
-RUNS, MAY, UNKNOWN = Sure("runs"), Sure("may"), Sure("unknown")
+RUNS, MAY, UNKNOWN, OFF = Sure("runs"), Sure("may"), Sure("unknown"), Sure("off")
+# The code of a caveat: nodes that no source names may run, such as the driver of a robot.
+UNKNOWN_NODES = "unknown-nodes"
 
 
 class Qos(NamedTuple):
@@ -105,7 +108,7 @@ class Node(NamedTuple):
     ``host`` is any word: nodes of one host run on one machine, those of two on two. ``way`` is how it
     gets its remap rules if not by --ros-args of its own (``remap.ways``), ``taker`` the node that takes
     them for it. ``plugin`` is where a description has the plugin that starts it, ``place`` what else
-    names it, ``stack`` the stack that it is from.
+    names it, ``stack`` the stack that it is from. ``known`` is what its stack or file calls it.
     """
 
     name: str
@@ -120,6 +123,7 @@ class Node(NamedTuple):
     sure: Sure = RUNS
     place: Place = NOWHERE
     plugin: Place = NOWHERE
+    known: str = ""
 
 
 class End(NamedTuple):
@@ -128,7 +132,8 @@ class End(NamedTuple):
     ``kind`` and ``role`` are words of ``KINDS`` and ``ROLES``. ``type`` is empty where it is not known;
     ``also`` are other types that it may have, by parameter or release. ``type_hash``, ``qos`` and the
     end's own ``process`` are known only where the topic was queried; otherwise they are empty, None
-    and the process of the node. ``code_name`` is the name in the node's code, before any remap rule.
+    and the process of the node. ``code_name`` is the name in the node's code, before any remap rule,
+    ``place`` is where a file names it, or its node.
     """
 
     kind: str
@@ -141,6 +146,8 @@ class End(NamedTuple):
     process: str
     code_name: str = ""
     also: tuple[str, ...] = ()
+    sure: Sure = RUNS
+    place: Place = NOWHERE
 
 
 class Edge(NamedTuple):
@@ -149,6 +156,7 @@ class Edge(NamedTuple):
 
     tf messages do not say which node sent them; ``several`` is whether more than one did.
     ``transform`` is the last one: x, y, z in metres and a quaternion x, y, z, w; empty if not known.
+    One that is ``OFF`` a node would send if a parameter, at its ``place``, let it.
     """
 
     child: str
@@ -158,6 +166,8 @@ class Edge(NamedTuple):
     publishers: tuple[str, ...]
     several: bool = False
     transform: tuple[float, ...] = ()
+    sure: Sure = RUNS
+    place: Place = NOWHERE
 
 
 class Heard(NamedTuple):

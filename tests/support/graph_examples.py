@@ -4,7 +4,8 @@ Each line begins with ``planned:`` (it is in the plan), ``running:`` (it is in t
 ``as planned:`` (it is in both). Behind it comes one of:
 
     NODE                                a node; a second such line is a second node of that name
-    NODE ROLE NAME [TYPE] [QOS ...]     the node publishes, subscribes, serves or calls NAME
+    NODE ROLE NAME [TYPE] [as CODE_NAME] [QOS ...]     the node publishes, subscribes, serves or calls
+                                        NAME, which is CODE_NAME in its code
     frames of ROBOT on TOPIC: FRAMES    the frames of a robot's description, and its tf topic
     shared topic NAME, shared frame NAME    what all robots use
     topic NAME from NODES [QOS ...]     who may publish a topic, and what they offer
@@ -60,7 +61,7 @@ from multibot_rewrite.system.records import (
 
 LINE = re.compile(r"(planned|running|as planned): (.+)")
 NODE = re.compile(
-    r"(/\S+)(?: (publishes|subscribes|serves|calls) (\S+)(?: (\w+/\w+/\w+))?((?: \w+)*))?"
+    r"(/\S+)(?: (publishes|subscribes|serves|calls) (\S+)(?: (\w+/\w+/\w+))?(?: as (\S+))?((?: \w+)*))?"
 )
 FRAMES = re.compile(r"frames of (\w+) on (\S+): (.+)")
 SHARED = re.compile(r"shared (topic|frame) (\S+)")
@@ -234,8 +235,8 @@ def read_graph(lines: list[str]) -> System:
     return with_answers(seen, read_states(lines))
 
 
-def _endpoint(node: str, role: str, name: str, type_: str, words: str) -> End:
-    return End(_kind(role, type_), role, name, type_, "", node, _qos(words.split()), "")
+def _endpoint(node: str, role: str, name: str, type_: str, code: str, words: str) -> End:
+    return End(_kind(role, type_), role, name, type_, "", node, _qos(words.split()), "", code)
 
 
 def _qos(words: list[str]) -> Qos | None:

@@ -56,6 +56,7 @@ def plan(stacks: tuple[str, ...], layout: str = "L1", robots: tuple[str, ...] = 
         return from_yaml(Path(file).read_bytes(), file)
 
 
+@cache
 def started(stacks: tuple[str, ...], layout: str = "L1", robots: tuple[str, ...] = TWO) -> System:
     """The graph of such a plan, each robot with its tree of frames."""
     planned = plan(stacks, layout, robots)
@@ -128,10 +129,12 @@ def _rviz(space: str) -> Iterator[Row]:
     yield CALLS, f"{space}/lifecycle_manager_slam/is_active", TRIGGER
 
 
+@cache
 def nav2_with_tools(layout: str = "L1") -> System:
     return with_tools(started(("nav2",), layout), TWO)
 
 
+@cache
 def simulated(*robots: str) -> System:
     """All nodes of the robots on the time of one Gazebo, whose bridge sends all sensors."""
     graph = started(("nav2",), "L1", robots)
@@ -157,6 +160,7 @@ def respelled(graph: System, spelled: Callable[[str], str]) -> System:
     return sent(graph._replace(nodes=tuple(nodes), ends=tuple(ends), edges=tuple(frames)))
 
 
+@cache
 def two_levels() -> System:
     """Robots of two fleets; one name is there in both."""
     spaces = {"/robot1": "/fleet_a/robot1", "/robot2": "/fleet_b/robot1"}

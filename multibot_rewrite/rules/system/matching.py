@@ -9,6 +9,7 @@ from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.rules.declaration import danger_rule
 from multibot_rewrite.rules.index import Ends, Index, is_viewer, nodes_of
 from multibot_rewrite.rules.pair.type_and_qos import STAMPED, qos_conflicts
+from multibot_rewrite.rules.places import see, where
 from multibot_rewrite.system.conventions import EVERYBODYS
 from multibot_rewrite.system.records import TOPIC, ZENOH, End
 
@@ -40,17 +41,27 @@ def types_differ(seen: Index) -> Iterator[Finding]:
             givers, takers = ends.servers, ends.clients
         if len({(end.type, end.type_hash) for end in (*givers, *takers)}) < 2:
             continue
-        given = {(end.type, end.type_hash) for end in givers if end.type}
-        for node in nodes_of(takers) if given else ():
-            asked = {(end.type, end.type_hash) for end in takers if end.node == node}
-            if not all(type_ for type_, _ in asked) or _meet(asked, given):
+        given = {it for end in givers for it in _types(end)}
+        for node in nodes_of(takers) if given and all(end.type for end in givers) else ():
+            own = [end for end in takers if end.node == node]
+            asked = {it for end in own for it in _types(end)}
+            if not all(end.type for end in own) or _meet(asked, given):
                 continue
             message, cause = _difference(ends.name, nodes_of(givers)[0], dict(asked), dict(given))
             level = WARNING if is_viewer(node) else ERROR
             robot = seen.robot(node) or seen.robot(ends.name)
+            both = (*givers, *own)
             yield types_differ.finding(
-                message, cause, level=level, robot=robot, node=node, names=(ends.name,)
-            )
+                message, cause + see(both),
+                level=level, robot=robot, node=node, names=(ends.name,), **where(both),
+            )  # fmt: skip
+
+
+def _types(end: End) -> Iterator[tuple[str, str]]:
+    """The type of an end with its hash, and the others that it may have."""
+    if end.type:
+        yield end.type, end.type_hash
+    yield from ((it, "") for it in end.also)
 
 
 def _meet(asked: Iterable[tuple[str, str]], given: set[tuple[str, str]]) -> bool:
