@@ -46,6 +46,7 @@ running: /robot1/arm claims command elbo/position
 running: /robot1/controller_manager exports command elbow/position
 running: /robot1/arm claims command elbow/position
 """,
+    line=2,
 )
 def interface_not_exported(seen: Index) -> Iterator[Finding]:
     """Nothing is said where no hardware is known: another description may have it."""
