@@ -11,6 +11,16 @@ if TYPE_CHECKING:
     from multibot_rewrite.findings.finding import Finding, RewriteRefused
     from multibot_rewrite.fleets.loaded_robot import LoadedRobot
     from multibot_rewrite.fleets.scripts import LoadedFleet, load_fleet
+    from multibot_rewrite.fleets.system_sources import (
+        compare,
+        judge,
+        system_of_bag,
+        system_of_description,
+        system_of_files,
+        system_of_fleet,
+        system_of_graph,
+        system_of_launch,
+    )
     from multibot_rewrite.library import Rewrite, explain, rewrite, rewrite_all, strip
     from multibot_rewrite.model import (
         Change,
@@ -20,6 +30,7 @@ if TYPE_CHECKING:
         UsageError,
         VocabularyError,
     )
+    from multibot_rewrite.system.records import System
 
 __all__ = [
     "Change",
@@ -31,19 +42,34 @@ __all__ = [
     "ProofError",
     "Rewrite",
     "RewriteRefused",
+    "System",
     "UsageError",
     "VocabularyError",
+    "compare",
     "explain",
+    "judge",
     "load_fleet",
     "rewrite",
     "rewrite_all",
     "strip",
+    "system_of_bag",
+    "system_of_description",
+    "system_of_files",
+    "system_of_fleet",
+    "system_of_graph",
+    "system_of_launch",
 ]
 _HOMES = {
     **dict.fromkeys(("Rewrite", "explain", "rewrite", "rewrite_all", "strip"), "library"),
     **dict.fromkeys(("Finding", "RewriteRefused"), "findings.finding"),
     **dict.fromkeys(("LoadedFleet", "load_fleet"), "fleets.scripts"),
     "LoadedRobot": "fleets.loaded_robot",
+    "System": "system.records",
+    **dict.fromkeys(("compare", "judge"), "fleets.system_sources"),
+    **dict.fromkeys(
+        (f"system_of_{it}" for it in ("bag", "description", "files", "fleet", "graph", "launch")),
+        "fleets.system_sources",
+    ),
 }
 
 
