@@ -10,6 +10,7 @@ from multibot_rewrite.version import __version__ as __version__
 if TYPE_CHECKING:
     from multibot_rewrite.findings.finding import Finding, RewriteRefused
     from multibot_rewrite.fleets.loaded_robot import LoadedRobot
+    from multibot_rewrite.fleets.one_file import RewrittenFile, rewrite_file, rewrite_files
     from multibot_rewrite.fleets.scripts import LoadedFleet, load_fleet
     from multibot_rewrite.fleets.system_sources import (
         compare,
@@ -42,6 +43,7 @@ __all__ = [
     "ProofError",
     "Rewrite",
     "RewriteRefused",
+    "RewrittenFile",
     "System",
     "UsageError",
     "VocabularyError",
@@ -51,6 +53,8 @@ __all__ = [
     "load_fleet",
     "rewrite",
     "rewrite_all",
+    "rewrite_file",
+    "rewrite_files",
     "strip",
     "system_of_bag",
     "system_of_description",
@@ -63,6 +67,7 @@ _HOMES = {
     **dict.fromkeys(("Rewrite", "explain", "rewrite", "rewrite_all", "strip"), "library"),
     **dict.fromkeys(("Finding", "RewriteRefused"), "findings.finding"),
     **dict.fromkeys(("LoadedFleet", "load_fleet"), "fleets.scripts"),
+    **dict.fromkeys(("RewrittenFile", "rewrite_file", "rewrite_files"), "fleets.one_file"),
     "LoadedRobot": "fleets.loaded_robot",
     "System": "system.records",
     **dict.fromkeys(("compare", "judge"), "fleets.system_sources"),
