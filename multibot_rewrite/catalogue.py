@@ -140,7 +140,7 @@ HOMES: tuple[Home, ...] = (
     Home(
         "MG5",
         "dangers of any system: time and states",
-        ("rules.system.clocks", "rules.system.states"),
+        ("rules.system.clocks", "rules.system.states", "rules.system.interfaces"),
     ),
     Home("MG6", "recordings", ("rules.recording",)),
     Home("MR1", "remap tables", ("remap.table_checks", "remap.way_checks")),

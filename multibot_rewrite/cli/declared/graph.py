@@ -64,7 +64,7 @@ CHECK = Command(
     "check",
     "check",
     "%(prog)s [PLAN] [options]",
-    "Compare the running system with its plan; without one, say what is wrong with it.",
+    "Is the running system as planned? No plan: what is wrong?",
     (
         Example("multibot check", "what is wrong with the robots that run now?"),
         Example("multibot check plan.yaml", "are they as planned?"),
@@ -116,7 +116,7 @@ CHECK_LAUNCH = Command(
     "check-launch",
     "check_launch",
     "%(prog)s [PACKAGE] FILE [NAME:=VALUE...] [options]",
-    "Say what would be wrong with the robots that a launch file starts; starts nothing.",
+    "Say what would be wrong with what a launch file starts.",
     (
         Example("multibot check-launch fleet.launch.py", "as ros2 launch takes it"),
         Example("multibot check-launch my_bringup two.launch.py sim:=false"),
@@ -160,7 +160,7 @@ LEARN = Command(
     "learn",
     "learn",
     "%(prog)s [options]",
-    "Make a file of nodes and stacks, for multibot plan, from nodes that are running now.",
+    "Describe nodes that run now, in a file for multibot plan.",
     (
         Example("multibot learn --node /my_driver,/my_planner --stack mine -o mine.yaml"),
         Example("multibot learn --namespace /robot1 --stack mine -o mine.yaml", "a whole robot"),
@@ -216,7 +216,7 @@ SNAPSHOT = Command(
     "snapshot",
     "snapshot",
     "%(prog)s [options]",
-    "Show what runs in the ROS graph now: nodes, endpoints, tf, environment.",
+    "Show what runs in the ROS graph now, or save it.",
     (
         Example("multibot snapshot", "a table"),
         Example(
@@ -259,58 +259,4 @@ SNAPSHOT = Command(
     "0 done; 2 wrong use; 3 something may be missing in the view, which is written all the same;"
     " 4 rclpy or its RMW, or zenoh, is missing or does not start",
     more="The graph is settled when all of --expect are seen, or nothing changed for 3.5 s.",
-)
-ZENOH_FILES = Command(
-    "zenoh",
-    "zenoh",
-    "%(prog)s PLAN --router ENDPOINT -o FOLDER [options]",
-    "Write configurations of Zenoh's router and sessions that keep each robot to its own names.",
-    (
-        Example("multibot zenoh fleet.yaml --router tcp/localhost:7447 -o zenoh/"),
-        Example(
-            "multibot zenoh plan.yaml --router tls/10.0.0.1:7447 --keystore /opt/keys -o zenoh/",
-            "robots are told apart by their certificates",
-        ),
-    ),
-    (
-        OptionGroup(
-            "input",
-            (
-                argument("plan", "PLAN", "what multibot plan wrote, or a fleet file"),
-                value(
-                    "--router",
-                    metavar="ENDPOINT",
-                    about="where the fleet's router is, such as tcp/10.0.0.1:7447",
-                    type=values.zenoh_endpoint,
-                    required=True,
-                ),
-                value(
-                    "--keystore",
-                    metavar="FOLDER",
-                    about="the sros2 keystore, by its full path on the machines that use it: links are"
-                    " TLS, and the router tells robots apart by their enclaves (/robot1)",
-                    type=values.full_path,
-                ),
-                several(
-                    "--operator",
-                    "/NAME",
-                    "enclaves that may do anything: a fleet manager, RViz, multibot itself",
-                    [],
-                    values.full_names,
-                ),
-                switch(
-                    "--own-routers",
-                    about="each robot has a router of its own, which connects to --router",
-                ),
-                *(it for it in LIVE.options if "--domain" in it.names),
-                DISTRO,
-                TRUST,
-            ),
-        ),
-        output_group(output("write the configurations into that folder", required=True)),
-        GENERAL,
-    ),
-    "0 done; 2 wrong use or unreadable input",
-    more="Start the router with ZENOH_ROUTER_CONFIG_URI and each robot's nodes with"
-    " ZENOH_SESSION_CONFIG_URI: see docs/zenoh.md.",
 )

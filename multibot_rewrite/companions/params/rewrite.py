@@ -1,6 +1,6 @@
 """ROS 2 parameter files and controllers' files for any number of robots.
 
-``known_nodes`` knows which parameters hold names (``params.yaml``). One step each: ``sections`` finds
+``knowledge.parameters`` knows which parameters hold names. One step each: ``sections`` finds
 and renames sections, ``name_sites`` finds names, ``values`` renames them, ``shared_defaults`` inserts
 what is missing. Checks that need the rewrite: ``section_checks``,
 ``name_checks``, ``robot_names``, ``unknown_parameters``; ``rules.files`` asks what needs no rewrite.
