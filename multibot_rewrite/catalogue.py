@@ -23,12 +23,12 @@ An *error* stops the job, a *warning* does so with `--fail-on warning`, a *note*
 are tested: the first has the finding, the last does not. The rules that `urdf-lint` has as well are on
 [their own page](lint-rules.md).
 """
-GRAPH_INTRO = """\
-`multibot check` and `multibot rehearse` compare a plan with the running graph. A line of an example
-begins with `planned:` (in the plan), `running:` (in the graph) or `as planned:` (in both). Whole fleets
-with a fault each, and the lines that are printed, are in `fixtures/graphs`.
+PAIR_INTRO = """\
+`multibot check` and `multibot rehearse` find these: they compare a plan with what runs or was recorded.
+A line of an example begins with `planned:` (in the plan), `running:` (in the system) or `as planned:`
+(in both). Whole fleets with a fault each, and the lines that are printed, are in `fixtures/graphs`.
 
-Where the view of the graph may be incomplete, a finding about something missing is *inconclusive*
+Where the view of the system may be incomplete, a finding about something missing is *inconclusive*
 instead of an error.
 
 Not reported: further topics of a node below its robot's name; operator topics without a publisher;
@@ -36,9 +36,11 @@ tools (RViz, rqt, ros2 CLI, rosbag2, bridges, teleop, containers, Gazebo's own n
 declared link whose names begin like the link's (`camera_link` has `camera_depth_frame`).
 """
 
-DANGERS_INTRO = """\
-`multibot doctor` finds these in a running system without a plan. All lines of an example begin with
-`running:`; the robots are `robot1`, `robot2`.
+SYSTEM_INTRO = """\
+All commands find these, with a plan and without: `multibot doctor`, `check`, `check-launch` and
+`rehearse`, of a running system, a launch file or a recording. With a plan more of them are found, each
+with its cause; what the plan has is meant. All lines of an example begin with `running:`; the robots
+are `robot1`, `robot2`.
 """
 BUILT_INTRO = """\
 `multibot build` checks all files once more before it writes them. Each kind of mistake is reported once
@@ -148,27 +150,20 @@ HOMES: tuple[Home, ...] = (
     ),
     Home(
         "MG1",
-        "nodes, topics and services",
+        "not as planned: nodes, names, states",
         (
             "rules.pair.nodes",
             "rules.pair.endpoints",
-            "rules.pair.leaks",
-            "rules.pair.type_and_qos",
-            "rules.pair.publishers",
             "rules.pair.demands",
-            "rules.pair.planned_states",
             "rules.pair.in_enclaves",
+            "rules.pair.planned_states",
         ),
-        GRAPH_INTRO,
+        PAIR_INTRO,
     ),
-    Home(
-        "MG2",
-        "tf",
-        ("rules.pair.transforms", "rules.pair.frame_names", "rules.pair.frames_heard"),
-    ),
+    Home("MG2", "not as planned: frames", ("rules.pair.frame_names", "rules.pair.frames_heard")),
     Home(
         "MG3",
-        "dangers of any system: nodes, names, commands, data",
+        "any system: nodes, names, commands, data",
         (
             "rules.system.nodes",
             "rules.system.names",
@@ -176,20 +171,16 @@ HOMES: tuple[Home, ...] = (
             "rules.system.commands",
             "rules.system.relays",
             "rules.system.sharing",
+            "rules.system.equal_robots",
         ),
-        DANGERS_INTRO,
+        SYSTEM_INTRO,
     ),
     Home(
         "MG4",
-        "dangers of any system: tf",
+        "any system: tf",
         ("rules.system.transforms", "rules.system.tf_topics", "rules.system.frame_ids"),
     ),
-    Home(
-        "MG5",
-        "dangers of any system: time and states",
-        ("rules.system.clocks", "rules.system.states"),
-    ),
-    Home("MG6", "recordings", ("rules.recording",)),
+    Home("MG5", "any system: time and states", ("rules.system.clocks", "rules.system.states")),
     Home("MR1", "remap tables", ("remap.table_checks", "remap.way_checks")),
 )
 
@@ -208,7 +199,8 @@ def rules() -> Mapping[str, Rule]:
 def _declared(home: Home) -> Iterator[Rule]:
     for name in home.modules:
         module = import_module(f"{__package__}.{name}")
-        yield from (it for it in vars(module).values() if isinstance(it, Rule))
+        found = (it for it in vars(module).values() if isinstance(it, Rule))
+        yield from (it for it in found if it.code.startswith(home.start))
 
 
 def findings_page() -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from multibot_rewrite.bounded import MAX_FLEET_BYTES
 from multibot_rewrite.cli import live, pictures
@@ -17,7 +17,7 @@ from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, NOTE, Finding
 from multibot_rewrite.findings.selection import fails
 from multibot_rewrite.fleets.fleet_or_plan import is_fleet
 from multibot_rewrite.graph.bags.read import BagsUnusable, read_bag
-from multibot_rewrite.graph.bags.recording import as_snapshot
+from multibot_rewrite.graph.bags.recording import as_snapshot, counted
 from multibot_rewrite.graph.expectation import Expectation, robot_words
 from multibot_rewrite.graph.live.request import RosUnusable
 from multibot_rewrite.graph.plan_file import is_json, read_plan
@@ -27,7 +27,7 @@ from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
 from multibot_rewrite.releases import facts_of_release
 from multibot_rewrite.rules.check import check, doubts
-from multibot_rewrite.rules.recording import compare
+from multibot_rewrite.rules.index import NO_COUNTS
 from multibot_rewrite.sources.read import read_file
 
 CODES = {Verdict.PLANNED: DONE, Verdict.WRONG: STOPPED, Verdict.INCONCLUSIVE: live.INCONCLUSIVE}
@@ -65,8 +65,7 @@ def _parameters(plan: Expectation) -> dict[str, list[str]]:
 
 def _recorded(options: argparse.Namespace, plan: Expectation) -> int:
     recording = read_bag(options.bag)
-    topics = chosen(options, compare(plan, recording))
-    return conclude(options, plan, as_snapshot(recording, plan), topics)
+    return conclude(options, plan, as_snapshot(recording, plan), messages=counted(recording))
 
 
 def _check_use(options: argparse.Namespace) -> None:
@@ -123,12 +122,13 @@ def conclude(
     plan: Expectation,
     graph: Snapshot,
     before: Sequence[Finding] = (),
+    messages: Mapping[str, int] = NO_COUNTS,
 ) -> int:
     """Compare, report the findings, draw what is asked for; the exit code.
 
-    ``before`` are findings from before there was a graph.
+    ``before`` are findings from before there was a graph, ``messages`` are counted for each topic.
     """
-    found = chosen(options, check(plan, graph))
+    found = chosen(options, check(plan, graph, messages))
     of_graph, gaps = [*before, *found], _gaps(options, plan)
     findings = [*of_graph, *gaps]
     about = About([plan_name(options)], robot_words(plan), plan.release)

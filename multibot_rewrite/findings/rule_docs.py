@@ -11,7 +11,8 @@ from multibot_rewrite.record import NamedTuple
 _LANGUAGES = {
     **dict.fromkeys(("params", "rviz", "moveit", "bridge", "fleet", "remap"), "yaml"),
     **dict.fromkeys(("params file", "rviz file", "moveit file", "bridge file"), "yaml"),
-    "graph": "text",
+    "system": "text",
+    "pair": "text",
     "lua": "lua",
 }
 

@@ -9,9 +9,10 @@ from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.pages.states import CLASH, MISSING, OK, States
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.rules.check import ALL_RULES
-from multibot_rewrite.rules.index import tree_topic
-from multibot_rewrite.rules.pair.comparison import View
+from multibot_rewrite.rules.check import RULES
+from multibot_rewrite.rules.index import Index, tree_topic
+from multibot_rewrite.rules.pair.tf_trees import tf_trees
+from multibot_rewrite.rules.planned import Planned
 
 
 class FrameRow(NamedTuple):
@@ -42,17 +43,17 @@ class FrameTree(NamedTuple):
     rows: tuple[FrameRow, ...]
 
 
-def make_frame_trees(view: View, states: States) -> tuple[FrameTree, ...]:
+def make_frame_trees(plan: Planned, seen: Index, states: States) -> tuple[FrameTree, ...]:
     """The trees on each topic in the order of the robots, then the frames missing there."""
-    if not (view.trees or states.frames):
+    if not (tf_trees(plan, seen) or states.frames):
         return ()
-    order = {robot: at for at, robot in enumerate(view.robots)}
-    edges = {tree.topic: tree.edges for tree in view.trees}
+    order = {robot: at for at, robot in enumerate(plan.robots)}
+    edges = {tree.topic: tree.edges for tree in tf_trees(plan, seen)}
     found: list[FrameTree] = []
-    home_topics = (tree_topic(robot.tf) for robot in view.plan.robots)
+    home_topics = (tree_topic(robot.tf) for robot in plan.system.robots)
     for topic in dict.fromkeys((*home_topics, *sorted(edges))):
-        home = [robot for robot in view.plan.robots if tree_topic(robot.tf) == topic]
-        forest = _forest(view, topic, edges.get(topic, ()), home)
+        home = [robot for robot in plan.system.robots if tree_topic(robot.tf) == topic]
+        forest = _forest(plan, topic, edges.get(topic, ()), home)
         trees = [FrameTree(topic, _robot(rows), True, rows) for rows in _trees(forest, states)]
         found += sorted(trees, key=lambda tree: order.get(tree.robot, len(order)))
         found += _not_received(forest, home, states)
@@ -74,7 +75,7 @@ class _Forest(NamedTuple):
 
 
 def _forest(
-    view: View, topic: str, edges: Sequence[GraphFrame], home: Sequence[PlannedRobot]
+    plan: Planned, topic: str, edges: Sequence[GraphFrame], home: Sequence[PlannedRobot]
 ) -> _Forest:
     static = {(edge.parent, edge.child): edge.static for edge in edges}
     children: dict[str, list[str]] = defaultdict(list)
@@ -82,7 +83,7 @@ def _forest(
         children[parent].append(child)
     only = home[0].name if len(home) == 1 else ""
     frames = sorted({frame for edge in static for frame in edge})
-    robots = {frame: view.frame_ownership.robot(frame) or only for frame in frames}
+    robots = {frame: plan.frames.robot(frame) or only for frame in frames}
     return _Forest(topic, static, children, robots)
 
 
@@ -146,4 +147,4 @@ def _not_received(
 
 
 def _in_words(codes: Iterable[str]) -> tuple[str, ...]:
-    return tuple(ALL_RULES[code].name.replace("-", " ") for code in codes)
+    return tuple(RULES[code].name.replace("-", " ") for code in codes)

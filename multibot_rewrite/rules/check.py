@@ -1,21 +1,26 @@
-"""Expectation and snapshot -> findings: every declared rule in the order of the codes.
+"""A system, alone or with its plan -> findings, in the order of the codes.
 
-Where the view of the graph may be incomplete, a finding about something missing is *inconclusive*.
+All that is found without a plan is found with one, but for what the plan means. Where the view may be
+incomplete, a finding about something missing is *inconclusive*.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from typing import cast
+from collections.abc import Iterator, Mapping, Sequence
+from fnmatch import fnmatchcase
+from types import ModuleType
 
 from multibot_rewrite.findings.finding import INCONCLUSIVE, Finding
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.graph.bags.recording import is_recorded
-from multibot_rewrite.graph.expectation import Expectation
+from multibot_rewrite.graph.expectation import Expectation, PlannedState
 from multibot_rewrite.graph.patterns import fitted
-from multibot_rewrite.graph.snapshot import Caveat, Snapshot, incomplete
-from multibot_rewrite.rules.find import DANGERS
+from multibot_rewrite.graph.questions import SIM_TIME
+from multibot_rewrite.graph.snapshot import Caveat, GraphEndpoint, Snapshot, incomplete
+from multibot_rewrite.graph.states import NodeState
+from multibot_rewrite.rules.declaration import PAIR, SYSTEM, Finder
+from multibot_rewrite.rules.index import NO_COUNTS, Index, ends_of
 from multibot_rewrite.rules.pair import (
     demands,
     endpoints,
@@ -27,49 +32,126 @@ from multibot_rewrite.rules.pair import (
     planned_states,
     publishers,
     transforms,
-    type_and_qos,
+    types,
 )
-from multibot_rewrite.rules.pair.beside_plan import dangers_beside
-from multibot_rewrite.rules.pair.comparison import View, make_view
+from multibot_rewrite.rules.pair.tf_copies import without_bridged
+from multibot_rewrite.rules.planned import Planned, beside, planned
+from multibot_rewrite.rules.system import (
+    clocks,
+    commands,
+    equal_robots,
+    frame_ids,
+    matching,
+    names,
+    relays,
+    sharing,
+    states,
+    tf_topics,
+)
+from multibot_rewrite.rules.system import nodes as running_nodes
+from multibot_rewrite.rules.system import transforms as any_transforms
+from multibot_rewrite.system.records import PUBLISHES
 
-_MODULES = (
-    nodes,
-    endpoints,
-    leaks,
-    type_and_qos,
-    publishers,
-    demands,
-    in_enclaves,
-    planned_states,
-    transforms,
-    frame_names,
-    frames_heard,
+_SYSTEM = (
+    *(running_nodes, names, matching, commands, relays, sharing, any_transforms, tf_topics),
+    *(frame_ids, clocks, states, equal_robots),
 )
-_FOUND = [it for module in _MODULES for it in vars(module).values() if isinstance(it, Rule)]
-RULES = {it.code: it for it in sorted(_FOUND, key=lambda it: it.code)}
-# What can be asked of a recording, which has no nodes.
-_ABOUT_FRAMES = (*vars(transforms).values(), *vars(frame_names).values())
-FRAME_RULES = {it.code: it for it in RULES.values() if it in _ABOUT_FRAMES}
+_PAIR = (
+    *(nodes, endpoints, leaks, types, publishers, demands, in_enclaves, planned_states),
+    *(transforms, frame_names, frames_heard),
+)
+
+
+def _declared(modules: Sequence[ModuleType], kind: str) -> Iterator[Rule]:
+    for module in modules:
+        found = (it for it in vars(module).values() if isinstance(it, Rule))
+        yield from (it for it in found if it.formats == (kind,))
+
+
+def _finders() -> Iterator[Finder]:
+    for module in _PAIR:
+        yield from (it for it in vars(module).values() if isinstance(it, Finder))
+    for rule in _declared(_PAIR, PAIR):
+        if rule.check:
+            yield Finder(rule, rule.check, bool(rule.options["nodes"]))
+
+
+SYSTEM_RULES = {it.code: it for it in sorted(_declared(_SYSTEM, SYSTEM), key=lambda it: it.code)}
+FINDERS = tuple(sorted(_finders(), key=lambda it: it.rule.code))
+RULES = {**{it.code: it for it in _declared(_PAIR, PAIR)}, **SYSTEM_RULES}
 WAITED_FOR = "expected-not-seen"
 # Findings about something missing: an incomplete view cannot prove them.
-# With a plan and without one.
-ALL_RULES = {**RULES, **DANGERS}
-ABSENCE = frozenset(it.code for it in ALL_RULES.values() if it.options["absence"])
+ABSENCE = frozenset(it.code for it in RULES.values() if it.options["absence"])
 
 
-def check(plan: Expectation, graph: Snapshot) -> list[Finding]:
-    """All findings in the order of the rules; empty for a fleet as planned."""
+def judge(seen: Index) -> list[Finding]:
+    """What is wrong with a system; empty for one that is as it should be."""
     with gc_paused():
-        view = make_view(*fitted(plan, graph))
-        rules = FRAME_RULES if is_recorded(graph) else RULES
-        found = [finding for rule in rules.values() for finding in _ask(rule, view)]
-        if not is_recorded(graph):
-            found += dangers_beside(view, found)
-    return inconclusive_where_in_doubt(found, graph)
+        return [it for rule in SYSTEM_RULES.values() if rule.check for it in rule.check(seen)]
 
 
-def _ask(rule: Rule, view: View) -> Iterator[Finding]:
-    return cast(Callable[[View], Iterator[Finding]], rule.check)(view)
+def check(
+    plan: Expectation, graph: Snapshot, messages: Mapping[str, int] = NO_COUNTS
+) -> list[Finding]:
+    """What is wrong with a system, and other than planned; empty for a fleet as planned. ``messages``
+    counts those of each topic, where they were counted."""
+    with gc_paused():
+        by_plan, seen = side_by_side(plan, graph, messages)
+        finders = [it for it in FINDERS if not (it.nodes and is_recorded(graph))]
+        found = [finding for it in finders for finding in it.find(by_plan, seen)]
+        found += _besides(by_plan, seen, found)
+    return inconclusive_where_in_doubt(sorted(found, key=lambda it: it.code), graph)
+
+
+def side_by_side(
+    plan: Expectation, graph: Snapshot, messages: Mapping[str, int] = NO_COUNTS
+) -> tuple[Planned, Index]:
+    """The look-ups of a plan and a system, with the same words for what is made at run time."""
+    fitting, there = fitted(plan, graph)
+    by_plan = planned(fitting)
+    frames = without_bridged(fitting, there.frames)
+    return by_plan, beside(by_plan, there._replace(frames=frames), messages)
+
+
+def _besides(plan: Planned, seen: Index, found: Sequence[Finding]) -> Iterator[Finding]:
+    """What is wrong with the system, without what is meant, or found with its cause by the plan."""
+    said = {(it.code, about) for it in found for about in (*it.names, it.node) if about}
+    for it in judge(seen._replace(system=_without_planned(plan, seen.system))):
+        abouts = {(it.code, about) for about in (*it.names, it.node)}
+        if said.isdisjoint(abouts) and not _is_meant(plan, seen, it):
+            yield it
+
+
+def _is_meant(plan: Planned, seen: Index, finding: Finding) -> bool:
+    """Whether all who do with its names what it is about are planned to."""
+    roles = RULES[finding.code].options["meant"]
+    ends = [end for name in finding.names for end in ends_of(seen, name)]
+    about = [end for end in ends if isinstance(roles, tuple) and end.role in roles]
+    return bool(about) and all(_is_planned(plan, end) for end in about)
+
+
+def _is_planned(plan: Planned, end: GraphEndpoint) -> bool:
+    if (end.node, end.kind, end.role, end.name) in plan.ends:
+        return True
+    topics = (it for it in plan.system.topics if it.name == end.name and end.role == PUBLISHES)
+    return any(fnmatchcase(end.node, pattern) for it in topics for pattern in it.senders)
+
+
+def _without_planned(plan: Planned, graph: Snapshot) -> Snapshot:
+    """The graph without the states that the plan has: they are compared with it."""
+    wanted = {it.node: it for it in plan.system.states}
+    states_ = (_not_planned(it, wanted.get(it.node)) for it in graph.states)
+    return graph._replace(states=tuple(states_))
+
+
+def _not_planned(seen: NodeState, wanted: PlannedState | None) -> NodeState:
+    if wanted is None:
+        return seen
+    timed = any(it.name == SIM_TIME for it in wanted.parameters)
+    return seen._replace(
+        lifecycle="" if wanted.lifecycle else seen.lifecycle,
+        sim_time=None if timed else seen.sim_time,
+    )
 
 
 def inconclusive_where_in_doubt(found: list[Finding], graph: Snapshot) -> list[Finding]:

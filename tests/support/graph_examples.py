@@ -18,6 +18,7 @@ Each line begins with ``planned:`` (it is in the plan), ``running:`` (it is in t
     NODE is STATE, NODE has PARAMETER VALUE          what it answers when it is asked for its state
     state of NODE: STATE, parameter NAME of NODE: VALUE     what it is planned to answer
     host of NODE: WORD, NODE on machine NUMBER       where it is planned to run, and where it runs
+    TOPIC came NUMBER times             how many messages of it came in a minute
     NODE controls INTERFACE by CONTROLLER, NODE keeps CONTROLLER STATE    a controller manager's answer
 
 QOS are words of DDS in small letters: reliable, best_effort, volatile, transient_local. A robot is
@@ -51,7 +52,7 @@ from multibot_rewrite.graph.snapshot import (
 )
 from multibot_rewrite.graph.states import Controller, NodeState, Parameter
 from multibot_rewrite.rules.guess import GuessedRobot, whose_by_guess, with_frames
-from multibot_rewrite.rules.index import Index, index
+from multibot_rewrite.rules.index import Index, Known, index
 from multibot_rewrite.system.conventions import SENT_BY_EVERY_NODE
 from multibot_rewrite.system.records import ACTION, PUBLISHES, SERVICE, SUBSCRIBES, TOPIC
 
@@ -74,6 +75,7 @@ PLANNED_PARAMETER = re.compile(r"parameter (\w+) of (/\S+): ([\w/]+)")
 HOST = re.compile(r"host of (/\S+): (\w+)")
 MACHINE = re.compile(r"(/\S+) on machine (\d)")
 CONTROLS = re.compile(r"(/\S+) controls (\S+) by (\w+)")
+CAME = re.compile(r"(/\S+) came (\d+) times")
 FRAME_ID = re.compile(r"frame_id (\S+) on (/\S+)")
 KEEPS = re.compile(r"(/\S+) keeps (\w+) (\w+)")
 ANSWERS = (STATE, SIM_TIME, CONTROLS, KEEPS, HAS, MACHINE)
@@ -100,14 +102,16 @@ def read_example(text: str) -> tuple[Expectation, Snapshot]:
     return read_plan(planned), read_graph(running)
 
 
-def read_danger(text: str) -> Index:
+def read_system(text: str) -> Index:
     """The graph of an example without a plan."""
     plan, graph = read_example(text)
     assert not plan.endpoints, "a danger needs no plan: begin its lines with running:"
     robots = sorted({*ROBOT.findall(text)})
     frames = [name for frame in graph.frames for name in (frame.child, frame.parent)]
     guessed = (with_frames(GuessedRobot(it, f"/{it}"), frames) for it in robots)
-    return index(graph, whose_by_guess(guessed))
+    running = [line.removeprefix("running: ") for line in text.splitlines()]
+    messages = {name: int(count) for name, count in _words(CAME, running)}
+    return index(graph, whose_by_guess(guessed), Known(messages=messages, seconds=60.0))
 
 
 def read_states(lines: list[str]) -> tuple[NodeState, ...]:
@@ -149,7 +153,7 @@ def planned_states(lines: list[str]) -> tuple[PlannedState, ...]:
 def _is_known(line: str) -> bool:
     states = (PLANNED_STATE, PLANNED_PARAMETER, HOST)
     planned = (FRAMES, SHARED, TOPIC_OF, BRIDGED, ONE_OF, ENCLAVE, *states)
-    return any(it.fullmatch(line) for it in (NODE, TRANSFORM, FRAME_ID, *planned, *ANSWERS))
+    return any(it.fullmatch(line) for it in (NODE, TRANSFORM, FRAME_ID, CAME, *planned, *ANSWERS))
 
 
 def _words(pattern: re.Pattern[str], lines: Iterable[str]) -> Iterator[tuple[str, ...]]:

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 
 from multibot_rewrite.graph.expectation import PlannedEndpoint, PlannedRobot
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.ways import COMPONENT, HOST, PLUGIN, SPAWNER
 from multibot_rewrite.rosnames import check_topic_name, expand
-from multibot_rewrite.rules.pair.comparison import View
+from multibot_rewrite.rules.planned import Planned
 from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SERVES, SUBSCRIBES
 
 # What a node does with a name, by the role of its endpoint.
@@ -40,12 +39,12 @@ def caused(hint: str, place: str) -> Cause:
     return Cause(hint, found[1], int(found[2])) if found else Cause(hint)
 
 
-def plugin_of(view: View, node: str) -> tuple[str, str]:
+def plugin_of(plan: Planned, node: str) -> tuple[str, str]:
     """The plugin that starts a node, and its place in the description; both empty without one."""
-    place = view.places.get(node, "")
+    place = plan.places.get(node, "")
     if not place:
         return "", ""
-    plain = view.ownership.without_robot(node, view.robot_of.get(node, ""))
+    plain = plan.names.without_robot(node, plan.robot_of.get(node, ""))
     return f"plugin {plain.rpartition('/')[2]}", place
 
 
@@ -65,23 +64,13 @@ def name_without_rules(planned: PlannedEndpoint) -> str:
     return expand(planned.code_name, namespace or "/", node)
 
 
-def names_without_rules(view: View, planned: PlannedEndpoint) -> tuple[str, ...]:
+def names_without_rules(plan: Planned, planned: PlannedEndpoint) -> tuple[str, ...]:
     """The names an endpoint may have where no remap rule and no namespace is applied."""
     in_root = f"/{planned.code_name.strip('/').removeprefix('~/')}"
-    robot = view.robot_of.get(planned.node) or view.ownership.robot(planned.name)
-    plain = view.ownership.without_robot(planned.name, robot)
+    robot = plan.robot_of.get(planned.node) or plan.names.robot(planned.name)
+    plain = plan.names.without_robot(planned.name, robot)
     names = (name_without_rules(planned), in_root, plain)
     return tuple(name for name in names if name not in ("", "/", planned.name))
-
-
-def in_namespaces_above(node: str, name: str) -> Iterator[str]:
-    """A name directly in a node's namespace, moved to each of the namespaces above."""
-    namespace = node.rpartition("/")[0]
-    while namespace and name.startswith(f"{namespace}/"):
-        rest = name.removeprefix(namespace)
-        namespace = namespace.rpartition("/")[0]
-        yield namespace + rest
-        name = namespace + rest
 
 
 def use_absolute(name: str) -> str:
@@ -89,10 +78,10 @@ def use_absolute(name: str) -> str:
     return f"the node resolves a relative name in its own namespace: write {name} in its parameters"
 
 
-def why_not_remapped(view: View, planned: PlannedEndpoint) -> Cause:
+def why_not_remapped(plan: Planned, planned: PlannedEndpoint) -> Cause:
     """Why a name is still the one in the code, although a rule should remap it."""
     rule = remap_rule(planned)
-    plugin, place = plugin_of(view, planned.node)
+    plugin, place = plugin_of(plan, planned.node)
     if plugin:
         # It may have the rule: what it loads is not given it in every release.
         missing = f"no remap rule {rule} of {plugin} is applied"
@@ -103,18 +92,18 @@ def why_not_remapped(view: View, planned: PlannedEndpoint) -> Cause:
     return Cause(f"the remap rule {rule} is not applied")
 
 
-def how_to_remap(view: View, planned: PlannedEndpoint) -> str:
+def how_to_remap(plan: Planned, planned: PlannedEndpoint) -> str:
     """How to pass the rule to a node of the stack; empty for a plugin's node, which has a file."""
     rule = remap_rule(planned)
-    if not rule or planned.node in view.places:
+    if not rule or planned.node in plan.places:
         return ""
     parts = ", and one rule for each of its _action/ names" if planned.kind == ACTION else ""
-    return f"; pass {how_to_pass(view, planned.node, rule, 'it')}{parts}"
+    return f"; pass {how_to_pass(plan, planned.node, rule, 'it')}{parts}"
 
 
-def how_to_pass(view: View, node: str, rule: str, what: str = "") -> str:
+def how_to_pass(plan: Planned, node: str, rule: str, what: str = "") -> str:
     """Where a rule for a node stands, and how it is written there; ``what`` is what to call it."""
-    ways = dict(view.plan.ways)
+    ways = dict(plan.system.ways)
     way, _, taker = ways.get(node, "").partition(" ")
     what = what or rule
     if way == PLUGIN:
@@ -147,18 +136,18 @@ def tf_rule(robot: PlannedRobot, topic: str) -> str:
     return f"/{topic}:={'/'.join(topic if it == 'tf' else it for it in place.split('/'))}"
 
 
-def why_other_name(view: View, node: str, match: str) -> Cause:
+def why_other_name(plan: Planned, node: str, match: str) -> Cause:
     """Why a planned node runs under another name, which is ``match``."""
-    robot = view.robot_of[node]
-    plugin, place = plugin_of(view, node)
-    plain = view.ownership.without_robot(node, robot)
+    robot = plan.robot_of[node]
+    plugin, place = plugin_of(plan, node)
+    plain = plan.names.without_robot(node, robot)
     namespaced = node == f"/{robot}{plain}"
     if match not in (plain, f"/{plain.rpartition('/')[2]}"):
         return Cause(f"{match} is running; is it this node under another name?")
     if plugin:
         missing = "namespace" if namespaced else "separate name for each robot"
         return caused(f"{match} is running: {plugin} has no {missing}, see {place}", place)
-    way, _, taker = dict(view.plan.ways).get(node, "").partition(" ")
+    way, _, taker = dict(plan.system.ways).get(node, "").partition(" ")
     if way == HOST:
         return Cause(f"{match} is running: {taker} makes it; start that as the plan says")
     if namespaced and way == COMPONENT:

@@ -2,63 +2,41 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
-from multibot_rewrite.graph.expectation import Expectation, PlannedRobot
+from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.rules.index import tree_topic
-from multibot_rewrite.rules.pair.comparison import View
-from multibot_rewrite.rules.pair.tf_trees import TfTree
+from multibot_rewrite.rules.index import Index, tree_topic
+from multibot_rewrite.rules.pair.tf_trees import tf_trees
+from multibot_rewrite.rules.planned import Planned, Sent
 
 
-class Sent(NamedTuple):
-    """A transform that a node sends by the plan."""
-
-    node: str
-    parent: str
-    child: str
-
-    def __str__(self) -> str:
-        return f"{self.parent} -> {self.child}"
-
-
-def planned_transforms(plan: Expectation) -> Iterator[Sent]:
-    """What nodes send besides the description's transforms, as ``sends`` of the plan has it."""
-    for node, text in plan.sends:
-        for edge in text.split(", "):
-            parent, arrow, child = edge.partition(" -> ")
-            if arrow:
-                yield Sent(node, parent, child)
-
-
-def sent_by_robot(view: View, robot: PlannedRobot) -> list[Sent]:
+def sent_by_robot(plan: Planned, robot: PlannedRobot) -> list[Sent]:
     """Those of one robot's nodes."""
-    own = (it for it in planned_transforms(view.plan) if view.robot_of.get(it.node) == robot.name)
-    return list(own)
+    return [it for it in plan.sent if plan.robot_of.get(it.node) == robot.name]
 
 
-def foreign(view: View, robot: PlannedRobot) -> Iterator[tuple[str, GraphFrame]]:
+def foreign(plan: Planned, seen: Index, robot: PlannedRobot) -> Iterator[tuple[str, GraphFrame]]:
     """Transforms of other robots, each with its robot, that a node of this one may send: all on a tf
     topic of its own, else what several nodes send."""
-    for tree in view.trees:
+    for tree in tf_trees(plan, seen):
         if tree.topic != tree_topic(robot.tf):
             continue
         for edge in tree.edges:
-            other = view.frame_ownership.robot(edge.child)
+            other = plan.frames.robot(edge.child)
             if other not in ("", robot.name) and (len(tree.home) == 1 or edge.several):
                 yield other, edge
 
 
-def described_robots(view: View, robot: PlannedRobot) -> Iterator[str]:
+def described_robots(plan: Planned, seen: Index, robot: PlannedRobot) -> Iterator[str]:
     """The robots whose description a node of this one seems to have, by fixed transforms of theirs."""
-    return (other for other, edge in foreign(view, robot) if edge.static)
+    return (other for other, edge in foreign(plan, seen, robot) if edge.static)
 
 
-def sender_of(view: View, robot: PlannedRobot, frame: str) -> str:
+def sender_of(plan: Planned, robot: PlannedRobot, frame: str) -> str:
     """The node that sends a planned frame of the robot: a node of its own, else the description's."""
-    found = (it.node for it in sent_by_robot(view, robot) if frame in (it.parent, it.child))
+    found = (it.node for it in sent_by_robot(plan, robot) if frame in (it.parent, it.child))
     return next(found, "") or state_publisher(robot)
 
 
@@ -67,15 +45,8 @@ def state_publisher(robot: PlannedRobot) -> str:
     return next((it for it in robot.nodes if STATE_PUBLISHER in it), "")
 
 
-def senders_there(tree: TfTree, robot: str, first: Mapping[str, None]) -> list[str]:
-    """Who publishes on a tree's topics: ``first``, then the robot's nodes, then all others."""
-    others = [node for nodes in tree.senders.values() for node in nodes]
-    every = dict.fromkeys((*first, *tree.senders.get(robot, ()), *others))
-    return [node for node in every if node in others]
-
-
-def where_set(view: View, node: str) -> str:
+def where_set(plan: Planned, node: str) -> str:
     """The file that holds a node's frames: its plugin's line, or that of its parameters; or empty."""
-    place = view.places.get(node, "")
-    origin = dict(view.plan.origins).get(node, "")
+    place = plan.places.get(node, "")
+    origin = dict(plan.system.origins).get(node, "")
     return place or ("" if origin.startswith("stack ") else origin)

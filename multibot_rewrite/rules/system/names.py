@@ -10,22 +10,22 @@ from itertools import islice, zip_longest
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.graph.snapshot import GraphEndpoint
 from multibot_rewrite.nearest import CHOICE, COMPARED, MISTYPED, nearest
-from multibot_rewrite.rules.declaration import danger_rule
+from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.index import (
     TF,
     Ends,
     Index,
     and_then,
     at_work,
+    in_namespaces_above,
     is_spawner,
     is_viewer,
     last_word,
     nodes_of,
     robots_of,
 )
-from multibot_rewrite.rules.pair.causes import in_namespaces_above
 from multibot_rewrite.system.conventions import EVERYBODYS, chooses
-from multibot_rewrite.system.records import ACTION, SERVICE, TOPIC
+from multibot_rewrite.system.records import ACTION, SERVES, SERVICE, TOPIC
 
 ABSENT = "is that robot started, and is its name right?"
 _DIGITS = re.compile(r"_?\d+")
@@ -39,12 +39,11 @@ _COMMON = (
 )
 
 
-@danger_rule(
+@system_rule(
     "MG303",
     "topic-names-miss",
     ERROR,
     absence=True,
-    planned="MG111",
     what="A node subscribes to a topic that nobody publishes, while nearly the same name is published:"
     " with or without the robot's namespace, below another namespace or the node's own name, or"
     " misspelled.",
@@ -204,7 +203,7 @@ def _missed_topic(seen: Index, end: GraphEndpoint, other: Ends) -> Finding:
     )
 
 
-@danger_rule(
+@system_rule(
     "MG304",
     "server-names-miss",
     ERROR,
@@ -281,10 +280,11 @@ def nobody_in(seen: Index, name: str, known: Iterable[str]) -> str:
     return ""
 
 
-@danger_rule(
+@system_rule(
     "MG305",
     "service-of-two-nodes",
     ERROR,
+    meant=(SERVES,),
     what="Nodes of several robots serve a service of the same name, or several nodes the same action.",
     why="A request is answered by any of them, and a goal reaches all: two robots drive to it.",
     fix="Use a relative name, or a remap rule, so that each robot has its own.",

@@ -9,14 +9,14 @@ from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.questions import SIM_TIME
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.wording import SEVERAL, shorten
-from multibot_rewrite.rules.declaration import danger_rule
+from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.index import Index, is_viewer
 from multibot_rewrite.system.records import SERVICE
 
 ACTIVE = "active"
 
 
-@danger_rule(
+@system_rule(
     "MG511",
     "not-active",
     ERROR,
@@ -63,7 +63,7 @@ def _manager(seen: Index, node: str) -> str:
     return min((it for it in clients if not is_viewer(it) and not is_tool(it)), default="")
 
 
-@danger_rule(
+@system_rule(
     "MG512",
     "interface-commanded-twice",
     ERROR,
@@ -99,7 +99,7 @@ def interface_commanded_twice(seen: Index) -> Iterator[Finding]:
             )
 
 
-@danger_rule(
+@system_rule(
     "MG513",
     "no-controller-active",
     WARNING,
@@ -121,7 +121,7 @@ def no_controller_active(seen: Index) -> Iterator[Finding]:
             )
 
 
-@danger_rule(
+@system_rule(
     "MG514",
     "use-sim-time-differs",
     WARNING,

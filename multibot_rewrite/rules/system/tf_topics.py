@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.graph.wording import shorten
-from multibot_rewrite.rules.declaration import danger_rule
+from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.index import (
     Index,
     is_viewer,
@@ -17,15 +17,17 @@ from multibot_rewrite.rules.index import (
     unique,
 )
 from multibot_rewrite.system.conventions import BODY_FRAMES
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
 
 TF = "tf"
+_REMAP = "/tf:=tf and /tf_static:=tf_static"
 
 
-@danger_rule(
+@system_rule(
     "MG405",
     "tf-on-two-topics",
     ERROR,
-    planned="MG205",
+    meant=(PUBLISHES, SUBSCRIBES),
     what="Of one robot's nodes some send or hear tf on `/tf`, some on the robot's own topic.",
     why="A listener hears one half of the tree: `Could not find a connection between 'odom' and"
     " 'base_link'`.",
@@ -50,7 +52,9 @@ def tf_on_two_topics(seen: Index) -> Iterator[Finding]:
         for found, nodes in ((senders, tree.senders), (listeners, tree.listeners)):
             for node in (it for it in nodes if seen.robot(it) and not is_viewer(it)):
                 found[seen.robot(node)].setdefault(tree.topic, []).append(node)
-    for robot, topics in senders.items():
+    known = (it for it in listeners if it in seen.known.home)
+    for robot in unique((*senders, *known)):
+        topics = senders.get(robot, {})
         home = _home(seen, robot, topics)
         odd = [it for it in topics if it != home]
         yield from (_sends_elsewhere(seen, robot, home, it, topics[it]) for it in odd)
@@ -60,10 +64,32 @@ def tf_on_two_topics(seen: Index) -> Iterator[Finding]:
             deaf = [it for it in heard[topic] if it not in heard.get(home, ())]
             if deaf:
                 yield _hears_elsewhere(seen, robot, home, topic, deaf)
+    yield from _frames_of_another(seen)
+
+
+def _frames_of_another(seen: Index) -> Iterator[Finding]:
+    """One robot's frames on another one's topic, where it is not known who sends them."""
+    for tree in seen.trees:
+        owner = seen.robot(tree.topic)
+        if not owner or any(map(seen.robot, tree.senders)):
+            continue
+        found: dict[str, list[str]] = defaultdict(list)
+        for edge in tree.edges:
+            found[seen.frame_robot(edge.child)].append(edge.child)
+        for robot, frames in found.items():
+            if robot not in ("", owner):
+                yield tf_on_two_topics.finding(
+                    f"{shorten(frames)} of {robot} on {tree.topic}, which is of {owner}",
+                    f"start its nodes in its own namespace, with the rules {_REMAP}",
+                    robot=robot,
+                    names=(*unique(frames), tree.topic),
+                )
 
 
 def _home(seen: Index, robot: str, topics: Mapping[str, Sequence[str]]) -> str:
-    """The tf topic of a robot: its own one if it has one, else where most of its nodes send."""
+    """The tf topic of a robot: the known one, its own one, or where most of its nodes send."""
+    if robot in seen.known.home:
+        return seen.known.home[robot]
     own = [it for it in topics if seen.robot(it) == robot]
     return next(iter(own), "") or max(topics, key=lambda it: len(topics[it]))
 
@@ -98,7 +124,7 @@ def _remap(seen: Index, robot: str, home: str, topic: str) -> str:
     return f"pass {rules}: to the whole process, where the node shares one"
 
 
-@danger_rule(
+@system_rule(
     "MG406",
     "tf-tree-in-pieces",
     ERROR,
@@ -136,15 +162,18 @@ def tf_tree_in_pieces(seen: Index) -> Iterator[Finding]:
             if not own or root_of(odom, above) in {*roots, *above}:
                 continue
             found = next(iter(roots))
-            message = (
-                f"{odom} and {own[0]} are not connected on {tree.topic}: one hangs below"
-                f" {root_of(odom, above)}, the other below {found}"
-            )
+            robot = robot or only(robots_of(seen, tree.senders))
+            message = in_pieces(robot, tree.topic, sorted({root_of(odom, above), found}))
             cause = f"nobody sends {odom} -> {found}: is odometry started, are its frames the same?"
             yield tf_tree_in_pieces.finding(
-                message, cause, robot=robot or only(robots_of(seen, tree.senders)),
-                names=(odom, own[0]),
+                message, cause, robot=robot, names=(odom, own[0], found),
             )  # fmt: skip
+
+
+def in_pieces(robot: str, topic: str, roots: Sequence[str]) -> str:
+    """The sentence for a tree of several roots."""
+    whose = f"the tf tree of {robot}" if robot else "the tf tree"
+    return f"{whose} on {topic} has {len(roots)} roots: {', '.join(roots)}"
 
 
 def root_of(frame: str, above: Mapping[str, str]) -> str:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import pairwise
 
 from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.graph.wording import SEVERAL, shorten
-from multibot_rewrite.rules.declaration import danger_rule
+from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.index import (
     Index,
     Tree,
@@ -22,11 +23,10 @@ from multibot_rewrite.system.conventions import WORLD_FRAMES
 _STATIC = "static_transform_publisher"
 
 
-@danger_rule(
+@system_rule(
     "MG401",
     "frame-with-two-parents",
     ERROR,
-    planned="MG201",
     what="A tf frame has two parents on one tf topic: two nodes send it.",
     why="For listeners it jumps between two places.",
     fix="Stop one of the two: `publish_tf: false` of the EKF, `enable_odom_tf: false` of"
@@ -50,7 +50,10 @@ def frame_with_two_parents(seen: Index) -> Iterator[Finding]:
             message = f"frame {child} has {len(parents)} parents on {tree.topic}: {both}"
             robot = seen.frame_robot(child) or only(robots_of(seen, tree.senders))
             yield frame_with_two_parents.finding(
-                message, _who_sends(seen, tree, child), robot=robot, names=(child, *sorted(parents))
+                message,
+                _who_sends(seen, tree, [(it, child) for it in sorted(parents)]),
+                robot=robot,
+                names=(child, *sorted(parents)),
             )
 
 
@@ -61,12 +64,19 @@ def _parents(tree: Tree) -> dict[str, set[str]]:
     return found
 
 
-def _who_sends(seen: Index, tree: Tree, frame: str) -> str:
-    """The nodes that may have sent it: those of the frame's robot first."""
+def _who_sends(seen: Index, tree: Tree, edges: Sequence[tuple[str, str]]) -> str:
+    """The nodes that may have sent these: who is known to first, then those of the frame's robot."""
+    frame = edges[0][1]
     robots = robots_of(seen, tree.senders)
-    owner = seen.frame_robot(frame)
-    nodes = sorted(tree.senders, key=lambda it: seen.robot(it) != owner)
+    owner = seen.frame_robot(frame) or seen.robot(tree.topic)
+    planned = [(node, it) for it in edges for node in seen.known.senders.get(it, ())]
+    there = [it for it in planned if it[0] in tree.senders] or planned[:1]
+    known = [node for node, _ in there]
+    nodes = sorted(tree.senders, key=lambda it: (it not in known, seen.robot(it) != owner))
     sent = f"two of the nodes that send on {tree.topic}: {shorten(nodes, SEVERAL)}" if nodes else ""
+    if there:
+        by_plan = " and ".join(f"{node} sends {above} -> {it}" for node, (above, it) in there)
+        return f"by the plan {by_plan}; {sent}"
     if len(robots) > 1 and not owner:
         return f"{and_then(robots)} need frames of their own, or tf topics of their own; {sent}"
     if len(robots) > 1:
@@ -74,11 +84,10 @@ def _who_sends(seen: Index, tree: Tree, frame: str) -> str:
     return sent or "two nodes send it: stop one"
 
 
-@danger_rule(
+@system_rule(
     "MG402",
     "robots-frames-collide",
     ERROR,
-    planned="MG202",
     what="Several robots send frames on one tf topic whose names do not say which robot's they are:"
     " `base_link` of both.",
     why="Every listener sees one robot that jumps between the places of all: Nav2 drives by the"
@@ -143,7 +152,7 @@ def _either(tree: Tree, robots: Sequence[str]) -> str:
     return f"{own}, or put its name into its frames (urdf-postfix); the senders are {senders}"
 
 
-@danger_rule(
+@system_rule(
     "MG403",
     "tf-cycle",
     ERROR,
@@ -170,7 +179,10 @@ def tf_cycle(seen: Index) -> Iterator[Finding]:
             robots = unique(filter(None, (seen.frame_robot(it) for it in circle)))
             robot = only(robots) or only(robots_of(seen, tree.senders))
             yield tf_cycle.finding(
-                message, _who_sends(seen, tree, circle[0]), robot=robot, names=circle
+                message,
+                _who_sends(seen, tree, [*pairwise((*circle, circle[0]))]),
+                robot=robot,
+                names=circle,
             )
 
 
@@ -196,7 +208,7 @@ def _that_end_nowhere(parents: Mapping[str, set[str]]) -> dict[str, set[str]]:
         left = kept
 
 
-@danger_rule(
+@system_rule(
     "MG404",
     "static-and-moving",
     ERROR,
@@ -228,7 +240,7 @@ def static_and_moving(seen: Index) -> Iterator[Finding]:
             )
 
 
-@danger_rule(
+@system_rule(
     "MG408",
     "transform-of-two-senders",
     ERROR,
@@ -252,6 +264,8 @@ def transform_of_two_senders(seen: Index) -> Iterator[Finding]:
             message = f"several nodes send {listed} on {tree.topic}"
             who = robot or only(robots_of(seen, tree.senders))
             nodes = [it for it in tree.senders if seen.robot(it) in ("", who)] or tree.senders
+            right = {it for edge in own for it in seen.known.senders.get(edge[1::-1], ())}
+            nodes = sorted(nodes, key=lambda it: it not in right)
             listed_nodes = shorten(nodes, SEVERAL)
             cause = f"stop one, or its tf (publish_tf, enable_odom_tf): two of {listed_nodes}"
             others = [it for it in tree.senders if it not in nodes]
@@ -261,11 +275,10 @@ def transform_of_two_senders(seen: Index) -> Iterator[Finding]:
             yield transform_of_two_senders.finding(message, cause, robot=who, names=names)
 
 
-@danger_rule(
+@system_rule(
     "MG407",
     "robots-name-twice",
     ERROR,
-    planned="MG206",
     what="A frame has the robot's name twice: `robot1/robot1/base_link`.",
     why="No other node uses that frame: every lookup fails.",
     fix="Leave `frame_prefix` of robot_state_publisher empty and set `tf_frame_prefix_enable: false`"
