@@ -34,6 +34,7 @@ from multibot_rewrite.rules.pair import (
     transforms,
     types,
 )
+from multibot_rewrite.rules.pair.meeting import missing
 from multibot_rewrite.rules.pair.tf_copies import without_bridged
 from multibot_rewrite.rules.planned import Planned, beside, planned
 from multibot_rewrite.rules.system import (
@@ -114,11 +115,17 @@ def side_by_side(
 
 
 def _besides(plan: Planned, seen: Index, found: Sequence[Finding]) -> Iterator[Finding]:
-    """What is wrong with the system, without what is meant, or found with its cause by the plan."""
+    """What is wrong with the system, without what is meant, and what is found with its cause by the
+    plan: under the same code, or as an end that is missing."""
     said = {(it.code, about) for it in found for about in (*it.names, it.node) if about}
+    said |= {(it.code, f"of {it.robot}") for it in found if it.robot}
+    lost = {name for node, *_, name in missing(plan, seen) if node not in plan.may_miss}
     for it in judge(seen._replace(system=_without_planned(plan, seen.system))):
-        abouts = {(it.code, about) for about in (*it.names, it.node)}
-        if said.isdisjoint(abouts) and not _is_meant(plan, seen, it):
+        options = RULES[it.code].options
+        abouts = (*it.names, it.node, *[f"of {it.robot}"] * bool(options["robot_wide"]))
+        by_plan = any((it.code, about) in said for about in abouts)
+        absent = options["absence"] and not lost.isdisjoint(it.names)
+        if not (by_plan or absent or _is_meant(plan, seen, it)):
             yield it
 
 

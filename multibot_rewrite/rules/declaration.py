@@ -39,6 +39,7 @@ def system_rule(
     drawn: Drawn = "",
     all_ends: bool = False,
     meant: tuple[str, ...] = (),
+    robot_wide: bool = False,
     **words: str | int,
 ) -> Callable[[_Check], Rule]:
     """Makes a function a rule about any system: it gets an ``Index`` and yields what its own
@@ -46,11 +47,13 @@ def system_rule(
 
     ``absence``: the rule finds that something is missing, which an incomplete view cannot prove.
     ``all_ends``: a finding names one node, and is about all nodes that use the names. ``meant`` are
-    roles: where all who have them at the names of a finding are planned to, it is no fault. The
-    other ``words`` are those of ``findings.rule.declare``; the examples are lines of
-    ``tests/support/graph_examples.py`` that begin with ``running:``.
+    roles: where all who have them at the names of a finding are planned to, it is no fault.
+    ``robot_wide``: what a plan finds of a robot is all that there is of it. The other ``words`` are
+    those of ``findings.rule.declare``; the examples are lines of ``tests/support/graph_examples.py``
+    that begin with ``running:``.
     """
-    options = {"absence": absence, "drawn": drawn, "all_ends": all_ends, "meant": meant}
+    options: dict[str, object] = {"absence": absence, "drawn": drawn, "all_ends": all_ends}
+    options |= {"meant": meant, "robot_wide": robot_wide}
     return rule(code, name, level, formats=(SYSTEM,), options=options, **words)
 
 

@@ -60,8 +60,9 @@ class Known(NamedTuple):
 
     ``home`` has the tf topic of each robot, ``senders`` the nodes that are known to send a transform
     (parent, child). ``parts`` are nodes of robots whatever they are called, ``tools`` patterns of
-    nodes that are none. ``clocks`` are nodes of which a plan says on which clock they
-    are. ``messages`` counts those that came on each topic in ``seconds``, where they were counted.
+    nodes that are none. ``clocks`` are nodes of which a plan says on which clock they are, ``relays``
+    nodes that are to send their robot's tf elsewhere as well. ``messages`` counts those that came on
+    each topic in ``seconds``, where they were counted.
     """
 
     home: Mapping[str, str] = NO_NAMES
@@ -69,6 +70,7 @@ class Known(NamedTuple):
     parts: Container[str] = ()
     tools: tuple[str, ...] = ()
     clocks: Container[str] = ()
+    relays: Container[str] = ()
     messages: Mapping[str, int] = NO_COUNTS
     seconds: float = 0.0
 

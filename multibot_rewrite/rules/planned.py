@@ -16,6 +16,7 @@ from multibot_rewrite.rules.ownership import (
     name_ownership,
     whose_by_plan,
 )
+from multibot_rewrite.rules.pair.tf_copies import copying_nodes
 
 
 class Sent(NamedTuple):
@@ -88,6 +89,7 @@ def beside(plan: Planned, graph: Snapshot, messages: Mapping[str, int] = NO_COUN
         plan.robot_of,
         plan.system.ignored_nodes,
         clocks,
+        copying_nodes(plan.system),
         messages,
         graph.environment.seconds,
     )

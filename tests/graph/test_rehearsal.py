@@ -237,7 +237,7 @@ def _without_endpoints(graph: Snapshot) -> Snapshot:
         (_without_endpoints, 2),
         (lambda full: full._replace(frames=full.frames[1:]), 2),
         # What is seen and is wrong does not go away.
-        (lambda _: _graph("MG103.json"), 1),
+        (lambda _: _graph("MG320.json"), 1),
     ],
 )
 def test_a_look_that_only_lacks_something_is_taken_again(

@@ -22,7 +22,7 @@ def plan(release: str, stack: str) -> Expectation:
 
 
 def hint(of: Expectation, node: str) -> str:
-    view: Any = SimpleNamespace(plan=of, places={})
+    view: Any = SimpleNamespace(system=of, places={})
     end = PlannedEndpoint(f"/robot1/{node}", "topic", "publishes", "/robot1/tf", "", "/tf")
     return how_to_remap(view, end)
 
@@ -82,6 +82,6 @@ def test_a_node_under_another_name_is_told_where_its_name_is_given(
     of = plan("lyrical", stack)
     ownership = SimpleNamespace(without_robot=lambda name, robot: name.removeprefix(f"/{robot}"))
     view: Any = SimpleNamespace(
-        plan=of, places={}, robot_of={f"/robot1/{node}": "robot1"}, ownership=ownership
+        system=of, places={}, robot_of={f"/robot1/{node}": "robot1"}, names=ownership
     )
     assert words in why_other_name(view, f"/robot1/{node}", f"/{node}").hint

@@ -8,7 +8,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.graph.expectation import PlannedEndpoint
-from multibot_rewrite.graph.snapshot import GraphEndpoint
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import found_by_plan
 from multibot_rewrite.rules.index import TF, Index, ends_of, types
@@ -55,7 +54,7 @@ def _unplanned_leaks(plan: Planned, seen: Index) -> Iterator[Finding]:
             if name in shared or plan.names.robot(name) or end.type == TF:
                 continue
             cause = _why_leaked(plan, node, name, not_remapped.get((node, name)))
-            message = f"uses {name}, which is not a name of {robot}{_who_else(seen, end, robot)}"
+            message = f"uses {name}, which is not a name of {robot}{_how_many(seen, name)}"
             rule = _rule_of(seen, end.kind, name, end.type)
             yield rule.finding(message, **cause._asdict(), robot=robot, node=node, names=(name,))
 
@@ -67,12 +66,11 @@ def _rule_of(seen: Index, kind: str, name: str, type_: str) -> Rule:
     return command_for_several_robots if is_order(name, type_) else topic_of_several_robots
 
 
-def _who_else(seen: Index, end: GraphEndpoint, robot: str) -> str:
-    """The other robots that use the name, as far as they are there."""
-    users = dict.fromkeys(seen.robot(it.node) for it in ends_of(seen, end.name))
-    others = [it for it in users if it not in ("", robot)]
-    if others:
-        return f": {shorten(others, SEVERAL)} {'uses' if len(others) == 1 else 'use'} it too"
+def _how_many(seen: Index, name: str) -> str:
+    """How many robots use the name, as far as they are there."""
+    robots = {seen.robot(it.node) for it in ends_of(seen, name)} - {""}
+    if len(robots) > 1:
+        return f": {len(robots)} robots use it"
     return ", and is not in shared_topics: robots that do the same meet there"
 
 

@@ -79,7 +79,12 @@ def wrong_tf_topic(plan: Planned, seen: Index) -> Iterator[Finding]:
             home = tree_topic(plan.robots[robot].tf)
             # A copy that a relay or another node makes, for RViz for example: the robot is as planned.
             copied = all(edge.child in children.get(home, ()) for edge in edges)
-            if not (copied and tree.senders and _only_planned(plan, tree, robot, edges)):
+            if not (
+                copied
+                and not tree.home
+                and tree.senders
+                and _only_planned(plan, tree, robot, edges)
+            ):
                 yield _wrong_topic(plan, tree, plan.robots[robot], edges)
 
 
@@ -98,9 +103,7 @@ def _wrong_topic(
     if len(frames) > 1:
         message += f"; so are {len(frames) - 1} more of its frames"
     cause = _why_wrong_topic(plan, tree, robot, edges)
-    return tf_on_two_topics.finding(
-        message, **cause._asdict(), robot=robot.name, names=(*frames, tree.topic)
-    )
+    return tf_on_two_topics.finding(message, **cause._asdict(), robot=robot.name, names=frames)
 
 
 def _sending_robot(plan: Planned, tree: TfTree, frame: str) -> str:

@@ -16,6 +16,7 @@ from multibot_rewrite.rules.index import (
     robots_of,
     unique,
 )
+from multibot_rewrite.rules.system.transforms import collide
 from multibot_rewrite.system.conventions import BODY_FRAMES
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
 
@@ -27,7 +28,9 @@ _REMAP = "/tf:=tf and /tf_static:=tf_static"
     "MG405",
     "tf-on-two-topics",
     ERROR,
+    drawn="leak",
     meant=(PUBLISHES, SUBSCRIBES),
+    robot_wide=True,
     what="Of one robot's nodes some send or hear tf on `/tf`, some on the robot's own topic.",
     why="A listener hears one half of the tree: `Could not find a connection between 'odom' and"
     " 'base_link'`.",
@@ -50,13 +53,16 @@ def tf_on_two_topics(seen: Index) -> Iterator[Finding]:
     listeners: dict[str, dict[str, list[str]]] = defaultdict(dict)
     for tree in (it for it in seen.trees if last_word(seen.plain(it.topic)) == TF):
         for found, nodes in ((senders, tree.senders), (listeners, tree.listeners)):
-            for node in (it for it in nodes if seen.robot(it) and not is_viewer(it)):
+            for node in (it for it in nodes if seen.robot(it) and not _looks(seen, it)):
                 found[seen.robot(node)].setdefault(tree.topic, []).append(node)
+    # Where robots' frames collide, that is the finding, unless it is known where they belong.
+    mixed = {tree.topic for tree in seen.trees if collide(seen, tree)}
     known = (it for it in listeners if it in seen.known.home)
     for robot in unique((*senders, *known)):
         topics = senders.get(robot, {})
         home = _home(seen, robot, topics)
-        odd = [it for it in topics if it != home]
+        planned = robot in seen.known.home
+        odd = [it for it in topics if it != home and (planned or it not in mixed)]
         yield from (_sends_elsewhere(seen, robot, home, it, topics[it]) for it in odd)
         heard = listeners.get(robot, {})
         lost = [it for it in heard if it not in topics and it != home]
@@ -86,6 +92,10 @@ def _frames_of_another(seen: Index) -> Iterator[Finding]:
                 )
 
 
+def _looks(seen: Index, node: str) -> bool:
+    return is_viewer(node) or node in seen.known.relays
+
+
 def _home(seen: Index, robot: str, topics: Mapping[str, Sequence[str]]) -> str:
     """The tf topic of a robot: the known one, its own one, or where most of its nodes send."""
     if robot in seen.known.home:
@@ -98,7 +108,7 @@ def _sends_elsewhere(
     seen: Index, robot: str, home: str, topic: str, nodes: Sequence[str]
 ) -> Finding:
     verb = "sends" if len(nodes) == 1 else "send"
-    message = f"{shorten(nodes)} {verb} tf on {topic}, the other nodes of {robot} on {home}"
+    message = f"{shorten(nodes)} {verb} tf on {topic}, but the tf of {robot} is on {home}"
     return tf_on_two_topics.finding(
         message, _remap(seen, robot, home, topic), robot=robot, node=nodes[0], names=(topic, home)
     )
@@ -108,7 +118,7 @@ def _hears_elsewhere(
     seen: Index, robot: str, home: str, topic: str, nodes: Sequence[str]
 ) -> Finding:
     verb = "hears" if len(nodes) == 1 else "hear"
-    message = f"{shorten(nodes)} {verb} tf on {topic}, but {robot} sends it on {home}"
+    message = f"{shorten(nodes)} {verb} tf on {topic}, but the tf of {robot} is on {home}"
     return tf_on_two_topics.finding(
         message, _remap(seen, robot, home, topic), robot=robot, node=nodes[0], names=(topic, home)
     )
@@ -129,6 +139,7 @@ def _remap(seen: Index, robot: str, home: str, topic: str) -> str:
     "tf-tree-in-pieces",
     ERROR,
     absence=True,
+    robot_wide=True,
     what="The odometry frame and the robot's base are on one tf topic and not connected.",
     why="Nothing that needs the robot's place works: costmaps, AMCL, RViz with the fixed frame `odom`.",
     fix="Start what sends odometry (a driver, a controller, an EKF), with the frames that the others"

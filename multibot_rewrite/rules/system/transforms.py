@@ -25,7 +25,7 @@ _STATIC = "static_transform_publisher"
 
 @system_rule(
     "MG401",
-    "frame-with-two-parents",
+    "two-parents",
     ERROR,
     what="A tf frame has two parents on one tf topic: two nodes send it.",
     why="For listeners it jumps between two places.",
@@ -53,7 +53,7 @@ def frame_with_two_parents(seen: Index) -> Iterator[Finding]:
                 message,
                 _who_sends(seen, tree, [(it, child) for it in sorted(parents)]),
                 robot=robot,
-                names=(child, *sorted(parents)),
+                names=(child,),
             )
 
 
@@ -105,7 +105,7 @@ running: transform odom -> base_link on /robot2/tf by /robot2/driver
 def robots_frames_collide(seen: Index) -> Iterator[Finding]:
     """One robot may have no name in its frames, if all others have."""
     for tree in seen.trees:
-        who = _collide(seen, tree)
+        who = collide(seen, tree)
         if who:
             bare = _bare_frames(seen, tree)
             message = f"{who} on {tree.topic}: {shorten(bare, SEVERAL)}"
@@ -113,17 +113,20 @@ def robots_frames_collide(seen: Index) -> Iterator[Finding]:
             yield robots_frames_collide.finding(message, cause, names=tuple(bare))
 
 
-def _collide(seen: Index, tree: Tree) -> str:
+def collide(seen: Index, tree: Tree) -> str:
     """Who sends frames that do not say whose they are; empty where nothing collides."""
-    robots, bare = robots_of(seen, tree.senders), set(_bare_frames(seen, tree))
+    senders = [it for it in tree.senders if it not in seen.known.relays]
+    robots, bare = robots_of(seen, senders), set(_bare_frames(seen, tree))
     # Who sends on another robot's topic is a finding of its own.
     if bare and not seen.robot(tree.topic):
-        named = {seen.frame_robot(edge.child) for edge in tree.edges}
-        nameless = [robot for robot in robots if robot not in named]
-        doubled = {seen.plain_frame(it) for it in _named_frames(seen, tree)}
-        if len(nameless) > 1 or (not nameless and doubled & bare):
-            return f"{and_then(nameless or robots)} send frames without a robot's name"
-    if bare and _twice(seen, tree.senders):
+        named = {(seen.frame_robot(it.child), seen.plain_frame(it.child)) for it in tree.edges}
+        nameless = [it for it in robots if any((it, frame) not in named for frame in bare)]
+        of_all = {seen.plain_frame(it) for it in _named_frames(seen, tree)}
+        without = {robot for robot in robots if robot not in {it for it, _ in named}}
+        who = nameless or robots
+        if len(who) > 1 and (len(without) > 1 or (not without and of_all & bare)):
+            return f"{and_then(who)} send frames without a robot's name"
+    if bare and _twice(seen, senders):
         return "two nodes of one name send the same frames"
     return ""
 
@@ -255,7 +258,7 @@ def static_and_moving(seen: Index) -> Iterator[Finding]:
 def transform_of_two_senders(seen: Index) -> Iterator[Finding]:
     """Where robots' frames collide, that is the finding; all transforms of a tree are one."""
     for tree in seen.trees:
-        if _collide(seen, tree):
+        if collide(seen, tree):
             continue
         edges = [it for it in tree.edges if it.several]
         for robot in unique(seen.frame_robot(it.child) for it in edges):
@@ -279,6 +282,7 @@ def transform_of_two_senders(seen: Index) -> Iterator[Finding]:
     "MG407",
     "robots-name-twice",
     ERROR,
+    robot_wide=True,
     what="A frame has the robot's name twice: `robot1/robot1/base_link`.",
     why="No other node uses that frame: every lookup fails.",
     fix="Leave `frame_prefix` of robot_state_publisher empty and set `tf_frame_prefix_enable: false`"
