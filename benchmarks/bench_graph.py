@@ -31,21 +31,22 @@ from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, Pla
 from multibot_rewrite.graph.plan_file import from_json as plan_from_json
 from multibot_rewrite.graph.plan_file import from_yaml, to_yaml
 from multibot_rewrite.graph.plan_file import to_json as plan_to_json
-from multibot_rewrite.graph.snapshot import (
-    Environment,
-    GraphEndpoint,
-    GraphNode,
-    Snapshot,
-    from_json,
-    to_json,
-)
 from multibot_rewrite.knowledge.node_library import stack_of
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.table import build_table
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.json import from_json, to_json
+from multibot_rewrite.system.records import (
+    PUBLISHES,
+    SUBSCRIBES,
+    TOPIC,
+    End,
+    Environment,
+    Node,
+    System,
+)
 
 PAGE = Path(__file__).parent.parent / "docs" / "benchmark-graph.md"
 COMMAND = [sys.executable, "-m", "multibot_rewrite.cli.multibot", "check"]
@@ -126,14 +127,12 @@ def plan_of(size: Size) -> Expectation:
     return Expectation("both", robots, (), ("/clock",), ("map",), ends_, ignored_nodes=("/early*",))
 
 
-def graph_of(plan: Expectation) -> Snapshot:
+def graph_of(plan: Expectation) -> System:
     """The graph exactly as planned."""
     around = Environment(0, "LOCALHOST", (), "rmw_fastrtps_cpp", "", False, 5, "quiet", 3.5, ())
-    nodes = tuple(GraphNode(node, "") for robot in plan.robots for node in robot.nodes)
-    found = (
-        GraphEndpoint(w.kind, w.role, w.name, w.type, "", w.node, None, "") for w in plan.endpoints
-    )
-    return Snapshot(nodes, tuple(found), (), around)
+    nodes = tuple(Node(node, "") for robot in plan.robots for node in robot.nodes)
+    found = (End(w.kind, w.role, w.name, w.type, "", w.node, None, "") for w in plan.endpoints)
+    return System(nodes, tuple(found), (), around)
 
 
 def specs(size: Size) -> list[list[dict[str, Any]]]:

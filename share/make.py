@@ -1,4 +1,4 @@
-"""Makes shell completions and manual pages here, and docs/commands.md: ``python share/make.py``.
+"""Makes shell completions and manual pages here: ``python share/make.py``.
 
 Needs shtab and argparse-manpage, which the extra ``test`` brings. The files are kept in the
 repository, so that no build needs either; a test reports when they are out of date.
@@ -14,7 +14,6 @@ from pathlib import Path
 import shtab
 from argparse_manpage.manpage import Manpage
 
-from multibot_rewrite.cli.__main__ import commands_page
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
 from multibot_rewrite.cli.parser import Parser, declare, make_parser
 from multibot_rewrite.version import __version__
@@ -89,5 +88,4 @@ if __name__ == "__main__":
         target = HERE / path
         target.parent.mkdir(parents=True, exist_ok=True)
         target.write_text(text)
-    (HERE.parent / "docs" / "commands.md").write_text(commands_page())
     sys.exit()

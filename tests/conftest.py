@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import signal
 from collections import Counter
 from collections.abc import Iterator
@@ -37,6 +38,9 @@ settings.register_profile(
     suppress_health_check=[HealthCheck.too_slow],
 )
 settings.load_profile("repeatable")
+# Thousands of tests and the syntax trees of the package live to the end: without this every second
+# of four goes into looking through them for what could be thrown away.
+gc.set_threshold(100_000, 50, 100)
 # A shell that starts the tests with & has it ignored, and so would every process that they interrupt.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
@@ -47,6 +51,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if item.get_closest_marker("deep"):
             item.add_marker("slow")
+
+
+def pytest_collection_finish() -> None:
+    """What was collected is looked through no more."""
+    gc.collect()
+    gc.freeze()
 
 
 # Files whose tests start nodes.

@@ -1,13 +1,15 @@
-"""Pages of the repository that are not in docs/, and links that lead out of it.
+"""Pages that are made of what the package knows, pages that are not in docs/, and where links lead.
 
-On GitHub all links are to files of the repository. On the site a page that is linked is a page, too;
-any other file is shown by the repository's host.
+On GitHub all links are to files of the repository, and to a section of reference.md in place of a made
+page. On the site a page that is linked is a page, too; the repository's host shows any other file.
 """
 
 from __future__ import annotations
 
 import posixpath
 import re
+import sys
+from functools import cache
 from pathlib import Path
 
 from mkdocs.config.defaults import MkDocsConfig
@@ -15,15 +17,22 @@ from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
 
 ROOT = Path(__file__).parents[2]
+sys.path.insert(0, str(ROOT))
+
+from tools.pages.every import STANDS_FOR, every_page, meant  # noqa: E402
+
 # Where they are in the repository, and in the site's folder of pages.
 OUTSIDE = ("CONTRIBUTING.md", "SECURITY.md", "examples/*/README.md")
 EARLY, LATE = {"Tutorials", "How-to"}, {"Measurements", "Contributing"}
-LINK = re.compile(r"(\]\()([^)\s:#]+)((?:#[^)\s]*)?\))")
+# Its text is needed where it is one word, as a code is.
+LINK = re.compile(r"((?:\[(\w+))?\]\()([^)\s:#]+)((?:#[^)\s]*)?)\)")
 FENCED = re.compile(r"(^```.*?^```$)", re.MULTILINE | re.DOTALL)
 
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
-    """Add the pages that are outside docs/."""
+    """Add the pages that are made, and those outside docs/."""
+    for name, text in made().items():
+        files.append(File.generated(config, name, content=text))
     for pattern in OUTSIDE:
         for path in sorted(ROOT.glob(pattern)):
             name = path.relative_to(ROOT).as_posix()
@@ -31,6 +40,12 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     changes = (ROOT / "CHANGELOG.rst").read_text()
     files.append(File.generated(config, "CHANGELOG.md", content=as_markdown(changes)))
     return files
+
+
+@cache
+def made() -> dict[str, str]:
+    """The made pages, once for all builds of this process."""
+    return every_page()
 
 
 def as_markdown(text: str) -> str:
@@ -52,8 +67,11 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
     there = place(page.file.src_uri)
 
     def lead(found: re.Match[str]) -> str:
-        path = posixpath.normpath(posixpath.join(posixpath.dirname(there), found[2]))
-        return f"{found[1]}{target(path, page, config, files)}{found[3]}"
+        start, words, link, anchor = found.groups()
+        path = posixpath.normpath(posixpath.join(posixpath.dirname(there), link))
+        own = meant(words or "", anchor[1:], made()) if path == f"docs/{STANDS_FOR}" else ""
+        path, anchor = (f"docs/{own}", "") if own else (path, anchor)
+        return f"{start}{target(path, page, config, files)}{anchor})"
 
     parts = FENCED.split(markdown)
     return "".join(it if it.startswith("```") else LINK.sub(lead, it) for it in parts)

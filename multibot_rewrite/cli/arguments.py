@@ -1,26 +1,20 @@
-"""``multibot arguments``: which argument of a xacro goes into which names."""
+"""Which argument of a xacro goes into which names, and the command that uses them."""
 
 from __future__ import annotations
 
 import argparse
 import shlex
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
-from multibot_rewrite.cli.output import deliver
-from multibot_rewrite.cli.process import DONE
-from multibot_rewrite.cli.tables import JSON, Grid, clip, deliver_report, json_bytes
-from multibot_rewrite.cli.usage import plain_words, xacro_args
+from multibot_rewrite.cli.tables import Grid, clip
+from multibot_rewrite.cli.usage import xacro_args
 from multibot_rewrite.cli.walk import check_target
-from multibot_rewrite.config import configured_vocabulary
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.releases import release_here
 from multibot_rewrite.reports.xacro_arguments import (
     Argument,
     XacroArguments,
-    as_json,
     find_arguments,
 )
-from multibot_rewrite.rewriters.builtin import builtin_tree
+from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.sources.access import Reach
 from multibot_rewrite.sources.own_names import filled
 from multibot_rewrite.sources.read import is_xacro
@@ -28,36 +22,22 @@ from multibot_rewrite.sources.read import is_xacro
 COLUMNS = ("argument", "default", "goes into", "as", "count", "example")
 
 
-def run(options: argparse.Namespace) -> int:
-    """Expand, compare, report; returns the exit code."""
-    path = _path(options)
-    if options.output:
-        check_target(options.output, [path, *options.vocabulary])
-    tree = builtin_tree(
-        (*configured_vocabulary(path), *options.vocabulary), release_here(options.distro)
-    )
+def arguments_of(
+    options: argparse.Namespace, paths: Sequence[str], tree: Tree
+) -> XacroArguments | None:
+    """The arguments of a xacro that is looked at alone."""
+    if len(paths) != 1 or not is_xacro(paths[0]):
+        return None
     found = find_arguments(
-        path, filled(xacro_args(options)), tree, reach=Reach(trust=options.trust)
+        paths[0], filled(xacro_args(options)), tree, reach=Reach(trust=options.trust)
     )
     if options.output:
         check_target(options.output, found.read)
-    if options.form == JSON:
-        deliver(options, json_bytes(as_json(found)))
-    else:
-        deliver_report(options, _parts(found))
-    return DONE
+    return found
 
 
-def _path(options: argparse.Namespace) -> str:
-    words = plain_words(options)
-    if len(words) != 1:
-        raise UsageError("give one FILE.xacro; for example: multibot arguments arm.urdf.xacro")
-    if not is_xacro(words[0]):
-        raise UsageError(f"{words[0]}: only xacro has arguments; give a xacro")
-    return words[0]
-
-
-def _parts(found: XacroArguments) -> Iterator[str | Grid]:
+def xacro_parts(found: XacroArguments) -> Iterator[str | Grid]:
+    """What is printed of them."""
     rows = [row for it in found.arguments for row in _rows(it)]
     if rows:
         yield Grid(COLUMNS, rows)

@@ -21,7 +21,6 @@ from multibot_rewrite.graph.bags.recording import as_snapshot, counted
 from multibot_rewrite.graph.expectation import Expectation, robot_words
 from multibot_rewrite.graph.live.request import RosUnusable
 from multibot_rewrite.graph.plan_file import is_json, read_plan
-from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.live.watching import WORDS, Outcome, Verdict, final
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
@@ -29,6 +28,7 @@ from multibot_rewrite.releases import facts_of_release
 from multibot_rewrite.rules.check import check, doubts
 from multibot_rewrite.rules.index import NO_COUNTS
 from multibot_rewrite.sources.read import read_file
+from multibot_rewrite.system.records import System, answering
 
 CODES = {Verdict.PLANNED: DONE, Verdict.WRONG: STOPPED, Verdict.INCONCLUSIVE: live.INCONCLUSIVE}
 
@@ -43,7 +43,7 @@ def run(options: argparse.Namespace) -> int:
         if options.bag:
             return _recorded(options, plan)
         graph = live.graph(options)
-        if options.state or graph.states:
+        if options.state or answering(graph):
             plan = _with_files(options, plan)
         return conclude(options, plan, live.with_states(options, graph, _parameters(plan)))
     except (RosUnusable, BagsUnusable) as error:
@@ -120,7 +120,7 @@ def _of_release(options: argparse.Namespace, plan: Expectation) -> Expectation:
 def conclude(
     options: argparse.Namespace,
     plan: Expectation,
-    graph: Snapshot,
+    graph: System,
     before: Sequence[Finding] = (),
     messages: Mapping[str, int] = NO_COUNTS,
 ) -> int:

@@ -7,17 +7,18 @@ import shlex
 from collections.abc import Sequence
 
 from multibot_rewrite.cli import check, doctor, pictures
+from multibot_rewrite.cli.output import note
 from multibot_rewrite.cli.report import check_report
 from multibot_rewrite.cli.walk import check_target
-from multibot_rewrite.companions.params.known_nodes import load_known_nodes
-from multibot_rewrite.evidence.launch_child import launch_graph
-from multibot_rewrite.evidence.launch_records import LaunchOrder, order_in_words
-from multibot_rewrite.evidence.launch_snapshot import would_run
-from multibot_rewrite.evidence.running import Knowledge
 from multibot_rewrite.fleets.fleet import known_nodes
-from multibot_rewrite.graph.snapshot import Snapshot
+from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.live.diagnose import diagnose
+from multibot_rewrite.producers.launch.child import launch_graph
+from multibot_rewrite.producers.launch.records import LaunchOrder, order_in_words
+from multibot_rewrite.producers.launch.running import Knowledge
+from multibot_rewrite.producers.launch.snapshot import would_run
 from multibot_rewrite.releases import release_here
+from multibot_rewrite.system.records import System
 
 
 def run(options: argparse.Namespace) -> int:
@@ -26,6 +27,9 @@ def run(options: argparse.Namespace) -> int:
     _check_use(options, order)
     plan = check.plan_of(options) if options.plan else None
     made = graph_of(options, order)
+    for it in made.environment.caveats:
+        if not it.incomplete:
+            note(options, it.message)
     if plan is not None:
         return check.conclude(options, plan, made)
     # What doctor is told besides: there is no snapshot, and nothing to begin.
@@ -39,7 +43,7 @@ def order_of(options: argparse.Namespace, words: Sequence[str]) -> LaunchOrder:
     return order._replace(trusted=True)
 
 
-def graph_of(options: argparse.Namespace, order: LaunchOrder) -> Snapshot:
+def graph_of(options: argparse.Namespace, order: LaunchOrder) -> System:
     """What the launch file would start; raises InputError for one that cannot be read."""
     release = release_here(options.distro)
     library = known_nodes(options.nodes, release, options.nodl).library

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 
-from multibot_rewrite.cli.declared.commands import COMMANDS
+from multibot_rewrite.cli.declared.commands import COMMANDS, INSTEAD
 from multibot_rewrite.cli.options import Command
 from multibot_rewrite.cli.output import print_bytes
 from multibot_rewrite.cli.parser import painted
@@ -15,6 +15,8 @@ from multibot_rewrite.model import UsageError
 from multibot_rewrite.nearest import did_you_mean_one_of
 from multibot_rewrite.version import __version__
 
+# The same as --help behind the next word.
+HELP_WORD = "help"
 HELP, VERSION = ("-h", "--help"), ("-V", "--version")
 
 
@@ -29,6 +31,8 @@ def run(words: Sequence[str]) -> int:
     if first in VERSION:
         print_bytes(f"{PROGRAM} {__version__}\n".encode())
         return DONE
+    if first == HELP_WORD:
+        return run([*others[:1], HELP[-1], *others[1:]])
     command = find_command(first)
     return start(command, others, f"{PROGRAM} {command.name}")
 
@@ -39,6 +43,8 @@ def find_command(word: str) -> Command:
         return COMMANDS[word]
     if word.startswith("-"):
         raise UsageError(f"{word}: write the command first, for example: multibot check {word}")
+    if word in INSTEAD:
+        raise UsageError(f"there is no command {word!r}; use {INSTEAD[word]}")
     near = did_you_mean_one_of(word, COMMANDS)
     raise UsageError(f"unknown command {word!r}; {near or 'see multibot --help'}")
 
@@ -61,8 +67,8 @@ def overview(colour: str) -> str:
             "commands:",
             *rows,
             "",
-            "multibot help COMMAND shows the options of each; urdf-postfix and urdf-lint are",
-            "commands of their own.",
+            "multibot COMMAND -h shows each in short, --help all of it; urdf-postfix and urdf-lint",
+            "are commands of their own.",
             "",
         )
     )

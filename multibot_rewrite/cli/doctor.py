@@ -25,7 +25,6 @@ from multibot_rewrite.graph.bags.read import BagsUnusable, read_bag
 from multibot_rewrite.graph.bags.recording import as_snapshot, counted, is_recorded
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.live.request import RosUnusable
-from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.live.diagnose import Diagnosis, diagnose, survey
@@ -36,6 +35,7 @@ from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
 from multibot_rewrite.releases import release_here
 from multibot_rewrite.rules.check import doubts
+from multibot_rewrite.system.records import System
 
 WORDS = {
     Verdict.PLANNED: "nothing wrong seen",
@@ -103,7 +103,7 @@ def _outcome(verdict: Verdict, reasons: Sequence[str] = ()) -> Outcome:
     return Outcome(verdict, words, "multibot doctor", planned=False, reasons=tuple(reasons))
 
 
-def _nothing_seen(graph: Snapshot) -> Iterator[str]:
+def _nothing_seen(graph: System) -> Iterator[str]:
     """A graph in which nothing runs is not a healthy one; a recording never has nodes."""
     if not is_recorded(graph) and all(is_tool(node.name) for node in graph.nodes):
         yield "no node of a robot is in this graph, so there is nothing to judge"
@@ -112,8 +112,8 @@ def _nothing_seen(graph: Snapshot) -> Iterator[str]:
 def _write(
     options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Finding], outcome: Outcome
 ) -> None:
-    """The pictures and the files that the options ask for."""
-    if any(vars(options)[name] for name in pictures.NAMES):
+    """The report and the files that the options ask for."""
+    if options.report:
         pictures.deliver(options, seen_plan(seen), seen.graph, findings, outcome)
     if options.suggest:
         files = suggestion(seen, built_in(release_here(None)))
@@ -144,6 +144,6 @@ def _watch(options: argparse.Namespace) -> int:
     return _sum_up(options, len(last.findings), final(last))
 
 
-def _look(graph: Snapshot) -> tuple[Expectation, Sequence[Finding]]:
+def _look(graph: System) -> tuple[Expectation, Sequence[Finding]]:
     seen = diagnose(graph)
     return seen_plan(seen), seen.findings

@@ -11,15 +11,15 @@ from multibot_rewrite.cli.report import About, check_report, chosen, report_besi
 from multibot_rewrite.cli.usage import check_xacro, given_options, policy, robots, xacro_args
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.config import configured_vocabulary
-from multibot_rewrite.evidence.launch_records import launch_order
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.fleet import Fleet, make_fleet
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.producers.launch.records import launch_order
 from multibot_rewrite.releases import release_here
 
 # Options that name files to write.
-WRITTEN = ("output", "sros2", "save_snapshot", "report", "dot", "mermaid")
+WRITTEN = ("output", "sros2", "save_snapshot", "report")
 FLEET_FILES = (".yaml", ".yml")
 # What a fleet file says itself, and how the option is written.
 OF_FLEET_FILE = {

@@ -15,7 +15,6 @@ from multibot_rewrite.graph.learning.learn import LearnedNode, learn
 from multibot_rewrite.graph.learning.nodes_file import to_yaml
 from multibot_rewrite.graph.learning.nodl_file import to_nodl
 from multibot_rewrite.graph.live.request import RosUnusable
-from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.knowledge.node_library import NodeLibrary
 from multibot_rewrite.knowledge.nodl.lookup import SUFFIXES
 from multibot_rewrite.knowledge.nodl.writing import NodlFile, file_name
@@ -24,6 +23,7 @@ from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
 from multibot_rewrite.releases import facts_of_release, release_here
 from multibot_rewrite.rules.check import doubts
+from multibot_rewrite.system.records import System
 
 NODES, NODL = "nodes", "nodl"
 
@@ -75,7 +75,7 @@ def _is_nodl(options: argparse.Namespace) -> bool:
 
 def _as_nodl(
     options: argparse.Namespace,
-    graph: Snapshot,
+    graph: System,
     learned: Sequence[LearnedNode],
     library: NodeLibrary,
 ) -> list[NodlFile]:
@@ -99,7 +99,7 @@ def _write_nodl(options: argparse.Namespace, found: Sequence[NodlFile]) -> Itera
 
 
 def _notes(
-    graph: Snapshot, learned: Sequence[LearnedNode], namespace: str | None, named: bool
+    graph: System, learned: Sequence[LearnedNode], namespace: str | None, named: bool
 ) -> Iterator[str]:
     for node in learned:
         yield from (f"{node.seen}: {remark}" for remark in node.remarks)

@@ -16,9 +16,10 @@ from multibot_rewrite.cli.output import note
 from multibot_rewrite.graph.environment import settings
 from multibot_rewrite.graph.live.request import Request
 from multibot_rewrite.graph.questions import ANSWER_SECONDS, NO_MORE, questions
-from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
+from multibot_rewrite.system.answers import with_answers
+from multibot_rewrite.system.records import System, answering
 
 if TYPE_CHECKING:
     from multibot_rewrite.graph.zenoh.observe import Router
@@ -43,12 +44,12 @@ def check_source(options: argparse.Namespace) -> None:
 
 def _check_bag(options: argparse.Namespace) -> None:
     given = vars(options)
-    for name in ("snapshot", "zenoh", "watch", "state", "suggest", "report", "mermaid", "dot"):
+    for name in ("snapshot", "zenoh", "watch", "state", "suggest", "report"):
         if given.get(name):
             raise UsageError(f"--bag is a recording, which has no nodes: leave out --{name}")
 
 
-def graph(options: argparse.Namespace, request: Request | None = None) -> Snapshot:
+def graph(options: argparse.Namespace, request: Request | None = None) -> System:
     """The graph that the options name; raises RosUnusable, UsageError, InputError.
 
     A live one is looked at until it is quiet, unless ``request`` says otherwise: a second node of a
@@ -76,9 +77,9 @@ def graph(options: argparse.Namespace, request: Request | None = None) -> Snapsh
 
 def with_states(
     options: argparse.Namespace,
-    seen: Snapshot,
+    seen: System,
     parameters: Mapping[str, Collection[str]] = NO_MORE,
-) -> Snapshot:
+) -> System:
     """The live graph with what its nodes answer to ``--state``, and a line of how many did; without it
     the graph as it is. ``parameters`` are asked of the nodes besides."""
     if not options.state:
@@ -87,21 +88,21 @@ def with_states(
 
     asked = list(questions(seen, parameters))
     found = ask(asked, ANSWER_SECONDS, environ(options.domain))
-    seen = seen._replace(states=found)
+    seen = with_answers(seen, found)
     note_answers(options, seen)
     return seen
 
 
-def note_answers(options: argparse.Namespace, seen: Snapshot) -> None:
+def note_answers(options: argparse.Namespace, seen: System) -> None:
     """A line of how many nodes answered ``--state``."""
     if options.state:
         nodes = plural(len({it.node for it in questions(seen)}), "node")
-        note(options, f"{len(seen.states)} of {nodes} answered --state")
+        note(options, f"{len(answering(seen))} of {nodes} answered --state")
 
 
 def watched(
     options: argparse.Namespace, parameters: Mapping[str, Collection[str]] = NO_MORE
-) -> Generator[Snapshot, None, None]:
+) -> Generator[System, None, None]:
     """Snapshots of the live graph that the options name, one after each change; with ``--state`` also
     with what its nodes answer, who are asked for ``parameters`` besides."""
     asks = dict(parameters) if options.state else None

@@ -25,12 +25,13 @@ from multibot_rewrite.graph.rehearsal import (
     to_order,
     with_substitutes,
 )
-from multibot_rewrite.graph.snapshot import Snapshot, to_json
 from multibot_rewrite.graph.transforms import Edges, with_odometry
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.plural import plural
 from multibot_rewrite.remap.ways import WAYS
 from multibot_rewrite.rules.check import check
+from multibot_rewrite.system.json import to_json
+from multibot_rewrite.system.records import System
 
 # Below the ports that a system gives away by itself.
 _DOMAINS = 100
@@ -82,7 +83,7 @@ def _check_use(options: argparse.Namespace) -> None:
         check_folder(options.save_snapshot)
 
 
-def _look(request: Request, environ: dict[str, str], plan: Expectation) -> Snapshot:
+def _look(request: Request, environ: dict[str, str], plan: Expectation) -> System:
     """What is on the graph. The nodes do run: a look that only lacks something was too early, as on a
     busy machine where messages of the discovery were lost. So there is a second one."""
     graph = observe(request, environ)
@@ -90,9 +91,9 @@ def _look(request: Request, environ: dict[str, str], plan: Expectation) -> Snaps
     return observe(request, environ) if codes and codes <= _ABSENT else graph
 
 
-def _without_places(graph: Snapshot) -> Snapshot:
+def _without_places(graph: System) -> System:
     """Stubs send which frame hangs on which, not where."""
-    return graph._replace(frames=tuple(it._replace(transform=()) for it in graph.frames))
+    return graph._replace(edges=tuple(it._replace(transform=()) for it in graph.edges))
 
 
 def _edges(made: Fleet) -> tuple[Edges, list[str]]:

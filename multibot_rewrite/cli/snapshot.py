@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from multibot_rewrite.cli import live
 from multibot_rewrite.cli.output import STANDARD, deliver, note, say
@@ -14,26 +14,25 @@ from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.graph.live.request import Request, RosUnusable
 from multibot_rewrite.graph.reach import machines
 from multibot_rewrite.graph.rosgraph.writing import to_yaml
-from multibot_rewrite.graph.snapshot import (
-    QUIET,
-    ZENOH,
-    Caveat,
-    Environment,
-    Snapshot,
-    incomplete,
-    to_json,
-)
-from multibot_rewrite.graph.states import NodeState
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
+from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
     PUBLISHES,
+    QUIET,
     SERVES,
     SERVICE,
     SUBSCRIBES,
     TOPIC,
+    ZENOH,
+    Caveat,
+    Environment,
+    System,
+    answering,
+    clocks,
+    incomplete,
 )
 
 ROSGRAPH = "rosgraph"
@@ -83,16 +82,16 @@ def _remark(options: argparse.Namespace, caveat: Caveat) -> None:
         note(options, f"note: {caveat.message}")
 
 
-def report(snapshot: Snapshot) -> Iterator[str | Grid]:
+def report(snapshot: System) -> Iterator[str | Grid]:
     """What is printed: how it was looked, a row a node, a tf topic, a header, a node's answer."""
     yield _headline(snapshot)
     short = _short_processes(snapshot)
-    counts = Counter((end.node, end.role, end.kind) for end in snapshot.endpoints)
+    counts = Counter((end.node, end.role, end.kind) for end in snapshot.ends)
     rows = [(node.name, short[node.process], *_cells(counts, node.name)) for node in snapshot.nodes]
     if rows:
         yield ""
         yield Grid(("node", "process", *(column for column, _, _ in COLUMNS)), rows)
-    heard = Counter((frame.topic, frame.publishers) for frame in snapshot.frames)
+    heard = Counter((frame.topic, frame.publishers) for frame in snapshot.edges)
     if heard:
         yield ""
         tf = [(topic, str(times), ", ".join(who)) for (topic, who), times in sorted(heard.items())]
@@ -100,16 +99,20 @@ def report(snapshot: Snapshot) -> Iterator[str | Grid]:
     if snapshot.heard:
         yield ""
         yield Grid(("message on", "frame_id"), snapshot.heard)
-    if snapshot.states:
+    said = answering(snapshot)
+    if said:
         yield ""
-        answers = [_state_cells(it) for it in snapshot.states]
+        answers = [*_state_rows(snapshot, said)]
         yield Grid(("node", "state", "use_sim_time", "controllers"), answers)
 
 
-def _state_cells(state: NodeState) -> tuple[str, ...]:
-    timed = "" if state.sim_time is None else str(state.sim_time).lower()
-    controllers = ", ".join(f"{it.name} ({it.state})" for it in state.controllers)
-    return state.node, state.lifecycle, timed, controllers
+def _state_rows(snapshot: System, nodes: Iterable[str]) -> Iterator[tuple[str, ...]]:
+    states = {it.name: it.lifecycle for it in snapshot.nodes}
+    timed = {node: str(it).lower() for node, it in clocks(snapshot).items()}
+    for node in sorted(nodes):
+        own = (it for it in snapshot.controllers if it.manager == node)
+        listed = ", ".join(f"{it.name} ({it.state})" for it in own)
+        yield node, states.get(node, ""), timed.get(node, ""), listed
 
 
 def _cells(counts: Counter[tuple[str, str, str]], node: str) -> Iterator[str]:
@@ -117,13 +120,13 @@ def _cells(counts: Counter[tuple[str, str, str]], node: str) -> Iterator[str]:
         yield str(counts[node, role, kind])
 
 
-def _short_processes(snapshot: Snapshot) -> dict[str, str]:
+def _short_processes(snapshot: System) -> dict[str, str]:
     """Small numbers in place of the process groups; nothing where the group is not known."""
     groups = sorted({node.process for node in snapshot.nodes} - {""})
     return {"": "", **{group: str(number) for number, group in enumerate(groups, 1)}}
 
 
-def _headline(snapshot: Snapshot) -> str:
+def _headline(snapshot: System) -> str:
     around = snapshot.environment
     nodes, many = len(snapshot.nodes), around.participants
     seen = len(machines(snapshot))

@@ -17,13 +17,13 @@ from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.fleets.manifest import hash_of, inputs_of
 from multibot_rewrite.graph.bags.read import BagsUnusable, read_bag
 from multibot_rewrite.graph.bags.recording import as_snapshot
-from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.snapshot_file import read_snapshots
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.model import MultibotError, UsageError
 from multibot_rewrite.pages.page import Framed
 from multibot_rewrite.plural import plural
 from multibot_rewrite.sources.read import read_file
+from multibot_rewrite.system.records import System
 from multibot_rewrite.view.heard import moved
 from multibot_rewrite.view.models import ViewUnusable
 from multibot_rewrite.view.page import Meshes, meshes_of, title_of, to_frame, to_html
@@ -55,7 +55,7 @@ def run(options: argparse.Namespace) -> int:
     return DONE
 
 
-def _graph(options: argparse.Namespace) -> Snapshot | None:
+def _graph(options: argparse.Namespace) -> System | None:
     """What was seen or recorded of tf, if that is asked for."""
     if options.bag and options.snapshot:
         raise UsageError("--bag is a recording: leave out --snapshot")
@@ -80,7 +80,7 @@ def _notes(robots: Sequence[ViewedRobot], meshes: Meshes) -> Iterator[str]:
             )
 
 
-def framed(options: argparse.Namespace, graph: Snapshot) -> Framed | None:
+def framed(options: argparse.Namespace, graph: System) -> Framed | None:
     """The robots for the head of a report, their frames as the graph has them.
 
     None, with a note, where they cannot be shown, and where the command knows no description.

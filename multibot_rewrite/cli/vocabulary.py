@@ -1,4 +1,4 @@
-"""``multibot vocabulary``: what is known of a plugin, and a first vocabulary for what is not."""
+"""``multibot inspect NAME``: what is known of a plugin, and a first vocabulary for what is not."""
 
 from __future__ import annotations
 
@@ -29,30 +29,20 @@ from multibot_rewrite.steps.collect import collect
 from multibot_rewrite.steps.document import read_document
 
 
-def run(options: argparse.Namespace) -> int:
-    """List, show or suggest; returns the exit code."""
-    if options.suggest is not None:
-        return _suggest(options)
-    name = _name(options)
+def show(options: argparse.Namespace, name: str | None) -> int:
+    """List all sections, or show those of a name; returns the exit code."""
     files = (*configured_vocabulary("-"), *options.vocabulary)
     if options.output:
         check_target(options.output, files)
     builtin_tree(files, release_here(options.distro))
     # Without a release the rows of all are shown, each with its own.
     vocabulary = load_vocabulary(files, options.distro or "")
-    types = [options.type] if options.type else list(TYPES)
-    found = vocabulary.sections(*types) if name is None else _found(vocabulary, name, types)
+    found = vocabulary.sections(*TYPES) if name is None else _found(vocabulary, name, TYPES)
     if options.form == JSON:
         deliver(options, json_bytes({"sections": [as_json(it) for it in found]}))
     else:
         deliver_report(options, _list(found) if name is None else _details(found))
     return DONE
-
-
-def _name(options: argparse.Namespace) -> str | None:
-    if len(options.words) > 1:
-        raise UsageError(f"{' '.join(options.words)}: give one NAME")
-    return next(iter(options.words), None)
 
 
 def _found(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> list[VocabularySection]:
@@ -64,9 +54,9 @@ def _found(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> list[Voca
         where = f"is not in {vocabulary.release}, only in {', '.join(dict.fromkeys(others))}"
         raise UsageError(f"{name!r} {where}; name one of them with --distro")
     near = near_names(vocabulary, name, types)
-    hint = f"the nearest known: {', '.join(near)}" if near else "multibot vocabulary lists all"
-    what = types[0] if len(types) == 1 else "plugin, class, element, sensor type or block"
-    raise UsageError(f"{name!r} is no {what} of the vocabulary; {hint}")
+    hint = f"the nearest known: {', '.join(near)}" if near else "multibot inspect lists all"
+    what = "plugin, class, element, sensor type or block of the vocabulary"
+    raise UsageError(f"{name!r} is no {what}, and no file or folder; {hint}")
 
 
 def _list(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
@@ -108,7 +98,7 @@ def _row(site: Site, section: VocabularySection) -> tuple[str, ...]:
 
 
 def as_json(section: VocabularySection) -> dict[str, object]:
-    """A section as ``--form json`` writes it; docs/coverage.md describes it."""
+    """A section as ``--form json`` writes it; docs/inspect.md describes it."""
     return {
         "type": section.type,
         "names": section.names,
@@ -143,9 +133,10 @@ def _row_json(site: Site, section: VocabularySection) -> dict[str, object]:
     }
 
 
-def _suggest(options: argparse.Namespace) -> int:
-    if plain_words(options) or options.type or options.form == JSON:
-        raise UsageError("--suggest goes with --vocabulary only: leave out NAME, --type and --form")
+def draft(options: argparse.Namespace) -> int:
+    """Write a vocabulary for what a description loads and nothing knows; returns the exit code."""
+    if plain_words(options) or options.form == JSON:
+        raise UsageError("--suggest goes with --vocabulary only: leave out NAME and --form")
     check_xacro(options, [options.suggest])
     if options.output:
         check_target(options.output, [options.suggest, *options.vocabulary])

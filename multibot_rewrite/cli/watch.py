@@ -11,20 +11,20 @@ from multibot_rewrite.cli.output import print_lines
 from multibot_rewrite.cli.tables import Grid, render
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.graph.expectation import Expectation
-from multibot_rewrite.graph.snapshot import CHANGING, Snapshot
 from multibot_rewrite.live.watching import WORDS, Verdict, WatchState, with_found
 from multibot_rewrite.plural import plural
+from multibot_rewrite.system.records import CHANGING, System
 
 # As many findings as a screen holds beside the robots.
 _SHOWN = 15
 Show = Callable[[WatchState], None]
 # The plan of a graph, and what is found in it.
-Look = Callable[[Snapshot], tuple[Expectation, Sequence[Finding]]]
+Look = Callable[[System], tuple[Expectation, Sequence[Finding]]]
 
 
 def follow(
     look: Look,
-    snapshots: Generator[Snapshot, None, None],
+    snapshots: Generator[System, None, None],
     words: Mapping[Verdict, str] = WORDS,
 ) -> WatchState | None:
     """Show every change until the snapshots end or the user ends it; the last state."""
@@ -43,7 +43,7 @@ def follow(
     return state
 
 
-def _looked(look: Look, graph: Snapshot) -> tuple[Expectation, Snapshot, Sequence[Finding]]:
+def _looked(look: Look, graph: System) -> tuple[Expectation, System, Sequence[Finding]]:
     plan, found = look(graph)
     return plan, graph, found
 

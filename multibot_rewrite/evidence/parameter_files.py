@@ -14,7 +14,6 @@ from contextlib import suppress
 import yaml
 
 from multibot_rewrite.companions.names.placeholders import of_one_robot, without_robot
-from multibot_rewrite.companions.params.known_nodes import KnownNodes
 from multibot_rewrite.companions.params.rcl_parameters import Value, value_of
 from multibot_rewrite.companions.params.sections import (
     ANY,
@@ -26,6 +25,7 @@ from multibot_rewrite.companions.params.sections import (
 )
 from multibot_rewrite.companions.yaml_text import YamlText, line_of, pairs
 from multibot_rewrite.evidence.records import Given, GivenNode, Place
+from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.model import InputError
 from multibot_rewrite.nearest import nearest
 from multibot_rewrite.record import NamedTuple

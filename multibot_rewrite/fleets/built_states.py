@@ -17,8 +17,8 @@ from multibot_rewrite.graph.expectation import (
     PlannedRobot,
     PlannedState,
 )
-from multibot_rewrite.graph.states import parameter_text
 from multibot_rewrite.sources.read import read_file
+from multibot_rewrite.system.parameters import parameter_text
 
 # A launch file replaces these; the last ones stand alone (nav2_bringup bringup_launch.py, kilted+).
 _PLACEHOLDERS = ("$(", "${", "<", *ZONES)

@@ -6,8 +6,6 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from multibot_rewrite.closure.frames import Sender, frame_gaps, tree_gaps, unsent_gaps
 from multibot_rewrite.closure.gap import Gap
-from multibot_rewrite.companions.params.known_nodes import load_known_nodes
-from multibot_rewrite.evidence.spawners import active
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.closing_bridges import bridge_findings
@@ -24,6 +22,8 @@ from multibot_rewrite.fleets.robot_nodes import node_sources
 from multibot_rewrite.fleets.systems import system_after, system_before
 from multibot_rewrite.fleets.tf_conflicts import tf_conflicts
 from multibot_rewrite.graph.transforms import edges_in
+from multibot_rewrite.knowledge.parameters import load_known_nodes
+from multibot_rewrite.producers.launch.spawners import active
 
 NOBODY_SENDS = declare(
     "MF813",
@@ -109,7 +109,7 @@ def closing(plan: FleetPlan, fleet: Fleet, texts: Sequence[OutputText]) -> Itera
     ``fleet`` has all nodes that are started, ``texts`` are the files that were made.
     """
     yield from tf_conflicts(plan, fleet, texts)
-    known = load_known_nodes(plan.file.parameters, plan.file.distro)
+    known = load_known_nodes(plan.file.nodes, plan.file.distro)
     for group in group_robots(plan):
         robot = group.robots[0]
         evidence = plan.evidence[node_sources(robot.spec)]

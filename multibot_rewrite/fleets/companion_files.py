@@ -8,7 +8,6 @@ from multibot_rewrite.companions.behavior_tree.rewrite import rewrite_behavior_t
 from multibot_rewrite.companions.context import Companion
 from multibot_rewrite.companions.lua import rewrite_lua
 from multibot_rewrite.companions.moveit.rewrite import rewrite_moveit
-from multibot_rewrite.companions.params.known_nodes import load_known_nodes
 from multibot_rewrite.companions.params.rewrite import nodes_without_section, rewrite_params
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT, fill_template
 from multibot_rewrite.evidence.nodes import children_of
@@ -25,6 +24,7 @@ from multibot_rewrite.fleets.prefix_parameters import at_run_time
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_groups import RobotGroup, group_robots
 from multibot_rewrite.fleets.robot_nodes import node_sources
+from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.model import InputError
 from multibot_rewrite.sources.read import read_file
 
@@ -56,7 +56,7 @@ def _params(plan: FleetPlan, group: RobotGroup, path: str) -> Companion:
     """A ROS parameter file; what the robot's other parameter files set is not inserted in it."""
     read = params_of(group.robots[0].spec)
     others = [document for it, document in read.items() if it != path]
-    known = load_known_nodes(plan.file.parameters, plan.file.distro)
+    known = load_known_nodes(plan.file.nodes, plan.file.distro)
     evidence = plan.evidence[node_sources(group.robots[0].spec)]
     nodes = evidence.nodes
     bare = at_run_time(plan.fleet.naming, evidence.given, known)

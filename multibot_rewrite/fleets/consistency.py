@@ -10,7 +10,6 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.companions.names.rename_map import spell
-from multibot_rewrite.companions.params.known_nodes import load_known_nodes
 from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
@@ -33,6 +32,7 @@ from multibot_rewrite.fleets.value_checks import (
     check_value,
     holds_twice,
 )
+from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.system.conventions import USUAL_FRAMES
 
@@ -179,7 +179,7 @@ def _in_files(
 ) -> Iterator[Finding]:
     """Every robot's own files; of files that differ only in names the first."""
     by_name = {it.robot.spec.name: it for it in robots}
-    known = load_known_nodes(plan.file.parameters, plan.file.distro)
+    known = load_known_nodes(plan.file.nodes, plan.file.distro)
     words: dict[str, str] = {}
     for it in robots:
         words.update(dict.fromkeys(it.words, it.robot.spec.name))

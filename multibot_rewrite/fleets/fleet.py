@@ -5,9 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.companions.params.known_nodes import load_known_nodes
 from multibot_rewrite.evidence.hardware import with_hardware
-from multibot_rewrite.evidence.launch_records import LaunchOrder
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.bridged import bridged_as
 from multibot_rewrite.fleets.launched_robot import (
@@ -28,18 +26,18 @@ from multibot_rewrite.graph.expectation import (
     named_frames,
     vacuous,
 )
-from multibot_rewrite.graph.questions import SIM_TIME
-from multibot_rewrite.graph.states import parameter_text
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER, Edge, Edges, edges_of, frames_of
 from multibot_rewrite.knowledge.node_library import with_included
 from multibot_rewrite.knowledge.nodl.facts import KnownNodes, nodes_of
 from multibot_rewrite.knowledge.nodl.lookup import find_interfaces
+from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in, user_stack
 from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import Naming, make_naming
 from multibot_rewrite.policy import Policy
+from multibot_rewrite.producers.launch.records import LaunchOrder
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.bridged_topics import bridged_topics
 from multibot_rewrite.remap.plugin_nodes import plugin_nodes
@@ -48,6 +46,8 @@ from multibot_rewrite.remap.table import build_table, joined
 from multibot_rewrite.remap.ways import merged
 from multibot_rewrite.sources.read import Source
 from multibot_rewrite.steps.collect import Inventory
+from multibot_rewrite.system.parameters import parameter_text
+from multibot_rewrite.system.records import SIM_TIME
 
 NOTHING: Mapping[str, str] = {}
 ALIKE: Mapping[str, Inventory] = {}

@@ -8,7 +8,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, cast
 
 from multibot_rewrite.companions.rviz.colours import read_colour
-from multibot_rewrite.evidence.launch_records import LaunchOrder, launch_order
 from multibot_rewrite.fleets.cell_file import Cell, cell_of, with_cell
 from multibot_rewrite.fleets.checked_yaml import Path
 from multibot_rewrite.fleets.fleet import facts_of
@@ -19,6 +18,7 @@ from multibot_rewrite.fleets.robot_choice import ALL, Choice, with_robots
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.naming import NAMESPACE, Naming, make_naming
 from multibot_rewrite.policy import Policy
+from multibot_rewrite.producers.launch.records import LaunchOrder, launch_order
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import chosen_release
 from multibot_rewrite.sources.own_names import filled, name_robot
@@ -116,7 +116,6 @@ class FleetFile(NamedTuple):
     installed: str
     nodes: str
     nodl: tuple[str, ...]
-    parameters: str
     vocabulary: tuple[str, ...]
     robots: tuple[RobotSpec, ...]
     files: tuple[str, ...] = ()
@@ -157,7 +156,6 @@ def read_fleet(
         data.get("installed", ""),
         data.get("nodes", ""),
         tuple(listed(data.get("nodl", []))),
-        data.get("parameters", ""),
         tuple(listed(data.get("vocabulary", []))),
         robots,
         files,
@@ -180,7 +178,7 @@ def _files(read: FleetData) -> Iterator[str]:
     """The files of a fleet that are no robot's own."""
     data = read.data
     described = nodl_files(tuple(listed(data.get("nodl", []))), read.places)
-    given = (data.get("nodes", ""), *described, data.get("parameters", ""))
+    given = (data.get("nodes", ""), *described)
     yield from filter(None, (*read.files, *given, *listed(data.get("vocabulary", []))))
 
 

@@ -10,7 +10,7 @@ from multibot_rewrite.fleets.checked_yaml import Path
 from multibot_rewrite.knowledge.nodl.lookup import NO_DOCUMENTS, find_interfaces
 from multibot_rewrite.model import InputError, UsageError
 
-PATHS = ("include", "description", "simulated", "srdf", "nodes", "parameters", "vocabulary")
+PATHS = ("include", "description", "simulated", "srdf", "nodes", "vocabulary")
 Places = Mapping[Path, tuple[str, int]]
 
 

@@ -10,9 +10,9 @@ import os
 from collections.abc import Collection, Iterator
 
 from multibot_rewrite.bounded import load_yaml
-from multibot_rewrite.evidence.launch_records import LaunchedNode
 from multibot_rewrite.fleets.fleet_file import FleetFile, RobotSpec
 from multibot_rewrite.fleets.launched_robot import launch_of
+from multibot_rewrite.producers.launch.records import LaunchedNode
 
 _PACKAGES = ("ros_gz_bridge", "ros_ign_bridge")
 # The parameter that names a bridge's file (ros_gz_bridge/src/ros_gz_bridge.cpp).

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
-from multibot_rewrite.companions.params.known_nodes import KnownNodes
-from multibot_rewrite.evidence.launch_child import launch_graph
-from multibot_rewrite.evidence.launch_records import LaunchGraph, LaunchOrder
-from multibot_rewrite.evidence.launched import Launched, as_launched, with_launched
 from multibot_rewrite.evidence.nodes import RobotNodes, nodes_of
 from multibot_rewrite.evidence.records import GivenNode
 from multibot_rewrite.evidence.remapped import under_plugin
+from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
+from multibot_rewrite.producers.launch.child import launch_graph
+from multibot_rewrite.producers.launch.of_robot import Launched, as_launched, with_launched
+from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder
 from multibot_rewrite.rosnames import RemapRule
 from multibot_rewrite.sources.own_names import filled
 
@@ -46,6 +46,7 @@ def launch_of(orders: Sequence[LaunchOrder], robot: str) -> LaunchGraph:
         tuple(node for it in graphs for node in it.nodes),
         tuple(note for it in graphs for note in it.notes),
         tuple(file for it in graphs for file in it.files),
+        any(it.stood_in for it in graphs),
     )
 
 

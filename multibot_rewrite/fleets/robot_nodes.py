@@ -7,13 +7,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from lxml.etree import _Element
 
-from multibot_rewrite.companions.params.known_nodes import load_known_nodes
 from multibot_rewrite.evidence.hardware import with_hardware
-from multibot_rewrite.evidence.launch_records import LaunchOrder
-from multibot_rewrite.evidence.launched import without_robot
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import GivenNode
-from multibot_rewrite.evidence.spawners import Spawned
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.fleet import facts_of, known_nodes
 from multibot_rewrite.fleets.fleet_file import FleetFile, RobotSpec, Sources
@@ -27,7 +23,11 @@ from multibot_rewrite.fleets.member import Member
 from multibot_rewrite.fleets.output_file import params_of
 from multibot_rewrite.fleets.shared_nodes import apart
 from multibot_rewrite.knowledge.nodl.facts import declared
+from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
+from multibot_rewrite.producers.launch.of_robot import without_robot
+from multibot_rewrite.producers.launch.records import LaunchOrder
+from multibot_rewrite.producers.launch.spawners import Spawned
 from multibot_rewrite.record import NamedTuple
 
 MOVE_GROUP, WORLD = "move_group", "world"
@@ -62,7 +62,7 @@ def robot_nodes(
 
     Raises InputError for a parameter file that cannot be read.
     """
-    parameters = load_known_nodes(file.parameters, file.distro)
+    parameters = load_known_nodes(file.nodes, file.distro)
     read = given_nodes(params_of(spec).values(), parameters)
     own = tuple(without_robot(it, spec.words) for it in read)
     known, stack = _known(own, file), stack_nodes(spec, file)

@@ -7,7 +7,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from multibot_rewrite.closure.frames import Sender
 from multibot_rewrite.closure.topics import End
 from multibot_rewrite.companions.bridge_entry import BOTH, ROS
-from multibot_rewrite.companions.params.known_nodes import KnownNodes
 from multibot_rewrite.companions.params.sections import PARAMETERS
 from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, pairs, read_yaml
 from multibot_rewrite.evidence.hardware import Exported, exported
@@ -23,6 +22,7 @@ from multibot_rewrite.fleets.output_values import OutputText
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_nodes import RobotEvidence
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER, sent_by
+from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.readback.nodes import ReadNode
 from multibot_rewrite.readback.reading import FRAME, read

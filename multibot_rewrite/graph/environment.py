@@ -11,17 +11,10 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from math import inf
 
-from multibot_rewrite.graph.snapshot import (
-    CHANGING,
-    TIMEOUT,
-    UNKNOWN_NODE,
-    Caveat,
-    GraphEndpoint,
-    GraphNode,
-)
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.records import CHANGING, TIMEOUT, UNKNOWN_NODE, Caveat, End, Node
 
 MAX_DOMAIN = 232
 RANGES = ("OFF", "LOCALHOST", "SUBNET", "SYSTEM_DEFAULT")
@@ -140,8 +133,8 @@ def setting_caveats(environ: Mapping[str, str]) -> Iterator[Caveat]:
 
 
 def view_caveats(
-    nodes: Collection[GraphNode],
-    endpoints: Collection[GraphEndpoint],
+    nodes: Collection[Node],
+    endpoints: Collection[End],
     asked: DiscoverySettings,
     settled: str,
     expected: Iterable[str] = (),
@@ -188,7 +181,7 @@ def _nothing(asked: DiscoverySettings) -> str:
     return f"no node was seen ({where}); {remedy}"
 
 
-def _cut_off(endpoints: Iterable[GraphEndpoint], asked: DiscoverySettings) -> Iterator[Caveat]:
+def _cut_off(endpoints: Iterable[End], asked: DiscoverySettings) -> Iterator[Caveat]:
     """Where Fast DDS may have found too few participants, without multicast and without a server."""
     machines = Counter(map(machine, _processes(endpoints)))
     if asked.discovery_server or not machines:
@@ -217,7 +210,7 @@ def machine(process: str) -> str:
 
 
 def unfinished(
-    nodes: Iterable[GraphNode], endpoints: Collection[GraphEndpoint], discovery_server: str
+    nodes: Iterable[Node], endpoints: Collection[End], discovery_server: str
 ) -> Iterator[Caveat]:
     """Nodes without endpoints, and endpoints without a known node: discovery is not finished."""
     bare = sorted({node.name for node in nodes} - {endpoint.node for endpoint in endpoints})
@@ -231,10 +224,10 @@ def unfinished(
         yield Caveat("node-name-unknown", True, text)
 
 
-def participants(endpoints: Iterable[GraphEndpoint]) -> int:
+def participants(endpoints: Iterable[End]) -> int:
     """How many DDS participants the endpoints belong to."""
     return len(_processes(endpoints))
 
 
-def _processes(endpoints: Iterable[GraphEndpoint]) -> set[str]:
+def _processes(endpoints: Iterable[End]) -> set[str]:
     return {endpoint.process for endpoint in endpoints} - {""}

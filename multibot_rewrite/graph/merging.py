@@ -10,22 +10,21 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 
 from multibot_rewrite.graph.environment import UNFINISHED, participants, unfinished
-from multibot_rewrite.graph.snapshot import (
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.records import (
     CHANGING,
     EXPECTED,
     QUIET,
     TIMEOUT,
     ZENOH,
     Caveat,
+    Edge,
+    End,
     Environment,
-    GraphEndpoint,
-    GraphFrame,
-    GraphNode,
-    Snapshot,
+    Node,
+    System,
 )
-from multibot_rewrite.graph.states import NodeState
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.record import NamedTuple
 
 _FROM_GOOD_TO_BAD = (EXPECTED, QUIET, TIMEOUT, CHANGING)
 _MANY = 4
@@ -35,10 +34,10 @@ class Look(NamedTuple):
     """A snapshot and the file that it is in."""
 
     file: str
-    snapshot: Snapshot
+    snapshot: System
 
 
-def merged(looks: Sequence[Look]) -> Snapshot:
+def merged(looks: Sequence[Look]) -> System:
     """All that any look has seen; a single look is left as it is.
 
     Raises UsageError for looks that no single system can explain: of two domains, or of DDS and
@@ -48,12 +47,21 @@ def merged(looks: Sequence[Look]) -> Snapshot:
         return looks[0].snapshot
     _refuse_strangers(looks)
     nodes = tuple(_nodes([look.snapshot.nodes for look in looks]))
-    endpoints = tuple(_endpoints([look.snapshot.endpoints for look in looks]))
-    frames = tuple(_frames(frame for look in looks for frame in look.snapshot.frames))
+    endpoints = tuple(_endpoints([look.snapshot.ends for look in looks]))
+    frames = tuple(_frames(frame for look in looks for frame in look.snapshot.edges))
     heard = tuple(sorted({it for look in looks for it in look.snapshot.heard}))
-    states = tuple(_states(state for look in looks for state in look.snapshot.states))
     around = _environment(looks, nodes, endpoints)
-    return Snapshot(nodes, endpoints, frames, around, heard, states)
+    parameters = {(it.node, it.name): it for look in looks for it in look.snapshot.parameters}
+    controllers = {(it.manager, it.name): it for look in looks for it in look.snapshot.controllers}
+    return System(
+        nodes,
+        endpoints,
+        frames,
+        around,
+        heard,
+        tuple(parameters[it] for it in sorted(parameters)),
+        tuple(controllers[it] for it in sorted(controllers)),
+    )
 
 
 def _refuse_strangers(looks: Sequence[Look]) -> None:
@@ -69,10 +77,9 @@ def _refuse_strangers(looks: Sequence[Look]) -> None:
             raise UsageError(f"{where}: their nodes never meet; merge those of one middleware")
 
 
-def _nodes(looks: Sequence[Sequence[GraphNode]]) -> Iterator[GraphNode]:
+def _nodes(looks: Sequence[Sequence[Node]]) -> Iterator[Node]:
     """Each node once; two processes with a node of one name are two nodes."""
-    # Of two records of a node the greater has what the other leaves empty.
-    best: dict[tuple[str, str], GraphNode] = {}
+    best: dict[tuple[str, str], Node] = {}
     most: Counter[tuple[str, str]] = Counter()
     totals: Counter[str] = Counter()
     for nodes in looks:
@@ -80,7 +87,7 @@ def _nodes(looks: Sequence[Sequence[GraphNode]]) -> Iterator[GraphNode]:
         totals |= Counter(node.name for node in nodes)
         for node in nodes:
             key = node.name, node.process
-            best[key] = max(best.get(key, node), node)
+            best[key] = _fuller(best.get(key, node), node)
     known = Counter(name for name, process in most.elements() if process)
     for (name, process), times in sorted(most.items()):
         # The process was not known to one look, and is to another.
@@ -88,9 +95,14 @@ def _nodes(looks: Sequence[Sequence[GraphNode]]) -> Iterator[GraphNode]:
         yield from [best[name, process]] * new
 
 
-def _endpoints(looks: Sequence[Sequence[GraphEndpoint]]) -> list[GraphEndpoint]:
+def _fuller(one: Node, other: Node) -> Node:
+    """With what the other look knows and this one leaves empty."""
+    return Node._make(mine or theirs for mine, theirs in zip(one, other, strict=True))
+
+
+def _endpoints(looks: Sequence[Sequence[End]]) -> list[End]:
     """Each endpoint once, from the look that knows most of it."""
-    best: dict[tuple[str, ...], list[GraphEndpoint]] = {}
+    best: dict[tuple[str, ...], list[End]] = {}
     for endpoints in looks:
         for key, ends in _by_owner(endpoints).items():
             if key not in best or _detail(ends) > _detail(best[key]):
@@ -100,21 +112,21 @@ def _endpoints(looks: Sequence[Sequence[GraphEndpoint]]) -> list[GraphEndpoint]:
     return sorted((end for ends in kept for end in ends), key=repr)
 
 
-def _by_owner(endpoints: Iterable[GraphEndpoint]) -> dict[tuple[str, ...], list[GraphEndpoint]]:
-    found: dict[tuple[str, ...], list[GraphEndpoint]] = defaultdict(list)
+def _by_owner(endpoints: Iterable[End]) -> dict[tuple[str, ...], list[End]]:
+    found: dict[tuple[str, ...], list[End]] = defaultdict(list)
     for end in endpoints:
         found[end.kind, end.name, end.role, end.node, end.process].append(end)
     return found
 
 
-def _detail(ends: Sequence[GraphEndpoint]) -> tuple[int, int, int]:
+def _detail(ends: Sequence[End]) -> tuple[int, int, int]:
     known = sum(end.qos is not None for end in ends)
     return known, sum(bool(end.type_hash) for end in ends), len(ends)
 
 
-def _frames(frames: Iterable[GraphFrame]) -> Iterator[GraphFrame]:
+def _frames(frames: Iterable[Edge]) -> Iterator[Edge]:
     """Each transform once a topic, with the publishers that any look has seen."""
-    found: dict[tuple[str, str, str], list[GraphFrame]] = defaultdict(list)
+    found: dict[tuple[str, str, str], list[Edge]] = defaultdict(list)
     for frame in frames:
         found[frame.topic, frame.parent, frame.child].append(frame)
     for (topic, parent, child), same in sorted(found.items()):
@@ -122,27 +134,11 @@ def _frames(frames: Iterable[GraphFrame]) -> Iterator[GraphFrame]:
         static = any(frame.static for frame in same)
         several = any(frame.several for frame in same)
         transform = next((frame.transform for frame in same if frame.transform), ())
-        yield GraphFrame(
-            child, parent, topic, static, tuple(sorted(publishers)), several, transform
-        )
-
-
-def _states(states: Iterable[NodeState]) -> Iterator[NodeState]:
-    """Of each node the answer that says most."""
-    best: dict[str, NodeState] = {}
-    for state in states:
-        before = best.setdefault(state.node, state)
-        best[state.node] = max(before, state, key=_answered)
-    return iter(sorted(best.values(), key=lambda it: it.node))
-
-
-def _answered(state: NodeState) -> int:
-    known = (state.lifecycle != "", state.sim_time is not None, bool(state.controllers))
-    return sum(known) + len(state.parameters)
+        yield Edge(child, parent, topic, static, tuple(sorted(publishers)), several, transform)
 
 
 def _environment(
-    looks: Sequence[Look], nodes: Sequence[GraphNode], endpoints: Sequence[GraphEndpoint]
+    looks: Sequence[Look], nodes: Sequence[Node], endpoints: Sequence[End]
 ) -> Environment:
     around = [look.snapshot.environment for look in looks]
     asked = around[0]

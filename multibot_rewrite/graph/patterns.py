@@ -7,18 +7,18 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint
-from multibot_rewrite.graph.snapshot import GraphEndpoint, Snapshot
+from multibot_rewrite.system.records import End, System
 
 ANY = "*"
 
 
-def fitted(plan: Expectation, graph: Snapshot) -> tuple[Expectation, Snapshot]:
+def fitted(plan: Expectation, graph: System) -> tuple[Expectation, System]:
     """Plan and graph with the same words for what is made at run time."""
     known = with_patterns(plan, graph)
     return with_names(plan, known), known
 
 
-def with_patterns(plan: Expectation, graph: Snapshot) -> Snapshot:
+def with_patterns(plan: Expectation, graph: System) -> System:
     """The graph, with a pattern of the plan in place of each node name that it stands for.
 
     Two nodes of one process that a pattern stands for are one node of the plan.
@@ -35,26 +35,26 @@ def with_patterns(plan: Expectation, graph: Snapshot) -> Snapshot:
     }
     nodes = (it._replace(name=names[it.name]) for it in graph.nodes if it.name in names)
     others = (it for it in graph.nodes if it.name not in names)
-    endpoints = (it._replace(node=names.get(it.node, it.node)) for it in graph.endpoints)
+    endpoints = (it._replace(node=names.get(it.node, it.node)) for it in graph.ends)
     return graph._replace(
-        nodes=(*others, *dict.fromkeys(nodes)), endpoints=tuple(dict.fromkeys(endpoints))
+        nodes=(*others, *dict.fromkeys(nodes)), ends=tuple(dict.fromkeys(endpoints))
     )
 
 
-def with_names(plan: Expectation, graph: Snapshot) -> Expectation:
+def with_names(plan: Expectation, graph: System) -> Expectation:
     """The plan, with what runs in place of each pattern of an endpoint's name; a pattern that nothing
     fits stays, and is missing. ``graph`` has its nodes as the plan calls them."""
     if not any(ANY in it.name for it in plan.endpoints):
         return plan
-    by_node: dict[str, list[GraphEndpoint]] = defaultdict(list)
-    for end in graph.endpoints:
+    by_node: dict[str, list[End]] = defaultdict(list)
+    for end in graph.ends:
         by_node[end.node].append(end)
     found = (end for it in plan.endpoints for end in _there(it, by_node))
     return plan._replace(endpoints=tuple(dict.fromkeys(found)))
 
 
 def _there(
-    planned: PlannedEndpoint, by_node: Mapping[str, Sequence[GraphEndpoint]]
+    planned: PlannedEndpoint, by_node: Mapping[str, Sequence[End]]
 ) -> Iterator[PlannedEndpoint]:
     if ANY not in planned.name:
         yield planned

@@ -6,9 +6,9 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from multibot_rewrite.graph.expectation import PlannedParameter, PlannedState
-from multibot_rewrite.graph.states import parameter_text, parameter_value
 from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.model import InputError
+from multibot_rewrite.system.parameters import parameter_text, parameter_value
 
 KEYS = ("lifecycle", "host", "parameters")
 # lifecycle_msgs/msg/State, the primary ones.

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping
 
-from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.system.records import SERVES, SERVICE
+from multibot_rewrite.system.records import SERVES, SERVICE, System
 
 GET_STATE = "lifecycle_msgs/srv/GetState"
 GET_PARAMETERS = "rcl_interfaces/srv/GetParameters"
@@ -29,14 +28,14 @@ class Question(NamedTuple):
 
 
 def questions(
-    graph: Snapshot, parameters: Mapping[str, Collection[str]] = NO_MORE
+    graph: System, parameters: Mapping[str, Collection[str]] = NO_MORE
 ) -> Iterator[Question]:
     """Whom to ask for what; of two nodes with one name, one would answer for the other.
 
     ``parameters`` are those that are wanted of a node besides ``use_sim_time``.
     """
     times = Counter(node.name for node in graph.nodes)
-    for end in graph.endpoints:
+    for end in graph.ends:
         known = (end.kind, end.role) == (SERVICE, SERVES) and end.type in ASKED
         if known and end.name.startswith(f"{end.node}/") and times[end.node] == 1:
             wanted = {SIM_TIME, *parameters.get(end.node, ())} if end.type == GET_PARAMETERS else ()

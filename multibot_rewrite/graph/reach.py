@@ -8,15 +8,15 @@ from __future__ import annotations
 from collections import defaultdict
 
 from multibot_rewrite.graph.environment import machine
-from multibot_rewrite.graph.snapshot import ZENOH, Snapshot
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.plural import plural
+from multibot_rewrite.system.records import ZENOH, System
 
 LOCALHOST = "LOCALHOST"
 MERGED = "looks-merged"
 
 
-def machines(graph: Snapshot) -> dict[str, list[str]]:
+def machines(graph: System) -> dict[str, list[str]]:
     """The nodes of each machine, by what Fast DDS calls it; a Zenoh router does not say which."""
     found: dict[str, list[str]] = defaultdict(list)
     for node in graph.nodes if graph.environment.rmw != ZENOH else ():
@@ -25,7 +25,7 @@ def machines(graph: Snapshot) -> dict[str, list[str]]:
     return dict(found)
 
 
-def hidden_from_here(graph: Snapshot) -> bool:
+def hidden_from_here(graph: System) -> bool:
     """Whether a robot on another machine may run unseen: nothing but one machine was seen.
 
     Then multicast may be lost, or the other machine keeps to itself. Under LOCALHOST without peers
@@ -37,7 +37,7 @@ def hidden_from_here(graph: Snapshot) -> bool:
     return asked_for_all and one_look and not around.discovery_server and len(machines(graph)) == 1
 
 
-def why_not_seen(graph: Snapshot, robot: str) -> str:
+def why_not_seen(graph: System, robot: str) -> str:
     """What is known of where ``robot`` may be, and what to do, in one sentence."""
     around = graph.environment
     if around.rmw == ZENOH:

@@ -8,15 +8,16 @@ from collections.abc import Sequence
 from multibot_rewrite.bounded import MAX_FLEET_BYTES
 from multibot_rewrite.graph.merging import Look, merged
 from multibot_rewrite.graph.rosgraph.reading import from_message, from_yaml, is_message
-from multibot_rewrite.graph.snapshot import Snapshot, from_value, json_value
 from multibot_rewrite.model import InputError
 from multibot_rewrite.sources.read import read_file
+from multibot_rewrite.system.json import from_value, json_value
+from multibot_rewrite.system.records import System
 
 # A message in YAML starts with its only field; JSON has the name in quotes.
 _MESSAGE = re.compile(rb"\A(?:\xef\xbb\xbf)?(?:\s|#[^\n]*\n|---\s*\n)*nodes:")
 
 
-def read_snapshot(path: str) -> Snapshot:
+def read_snapshot(path: str) -> System:
     """The snapshot in a file; raises InputError with file, what is wrong and what to do."""
     data = read_file(path, MAX_FLEET_BYTES)
     if _MESSAGE.match(data):
@@ -27,7 +28,7 @@ def read_snapshot(path: str) -> Snapshot:
     return from_value(value, path)
 
 
-def read_snapshots(paths: Sequence[str]) -> Snapshot:
+def read_snapshots(paths: Sequence[str]) -> System:
     """What any of these files has seen; raises InputError, and UsageError for two domains."""
     return merged([Look(path, read_snapshot(path)) for path in paths])
 

@@ -16,12 +16,12 @@ def in_release(library: NodeLibrary, release: str) -> NodeLibrary:
     installed older version lacks nothing.
     """
     parts = {name: _endpoints(it, "", release) for name, it in library.parts.items()}
-    return NodeLibrary(
-        parts,
-        {it.name: it for it in _nodes(library.nodes.values(), release)},
-        _stacks(library, release),
-        release,
-        dict(_elsewhere(library, release)),
+    return library._replace(
+        parts=parts,
+        nodes={it.name: it for it in _nodes(library.nodes.values(), release)},
+        stacks=_stacks(library, release),
+        release=release,
+        elsewhere=dict(_elsewhere(library, release)),
     )
 
 

@@ -1,4 +1,4 @@
-"""Conditions on a node's parameters, as ``nodes.yaml`` writes them: ``publish_tf != false``.
+"""Conditions on a node's parameters, as entries of nodes write them: ``publish_tf != false``.
 
 A condition is a parameter (it is true), or ``PARAMETER = VALUE``, ``!= VALUE``, ``has VALUE`` (a list
 that holds it); ``VALUE | VALUE`` are alternatives, ``and`` joins conditions. ``$other`` stands for the

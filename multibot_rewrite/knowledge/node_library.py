@@ -3,30 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import TypeVar
 
 from multibot_rewrite.knowledge.endpoint_entries import checked_endpoint, endpoints_of
-from multibot_rewrite.knowledge.fact_words import (
-    FACT_KEYS,
-    check_apart,
-    condition_of,
-    releases_of,
-    source_of,
-    text_and_words,
-    variants,
+from multibot_rewrite.knowledge.fact_words import releases_of
+from multibot_rewrite.knowledge.node_entries import (
+    GRAPH_KEYS,
+    NODE_KEYS,
+    check_name,
+    read_node,
+    taken_over,
 )
-from multibot_rewrite.knowledge.records import (
-    Claim,
-    Endpoint,
-    FrameParameter,
-    NodeFacts,
-    SentTransform,
+from multibot_rewrite.knowledge.parameter_entries import (
+    PARAMETER_KEYS,
+    read_guesses,
+    read_parameters,
 )
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts, NodeParameters
 from multibot_rewrite.knowledge.yaml_with_lines import (
     YamlItem,
     entries,
     entries_of,
     flag_of,
+    known_word,
     read_yaml_with_lines,
     table,
     table_of,
@@ -39,23 +37,15 @@ from multibot_rewrite.knowledge.yaml_with_lines import (
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import share_release
-from multibot_rewrite.rosnames import check_node_name
 from multibot_rewrite.system.records import ROLES
 
-NODE_WORDS = (
-    *("package", "host", "plugin", "shared", "note", "when"),
-    *("with", "frames", "sends", "ids", "claims", "fixed"),
-    *("nodl", "apart"),
-)
-SENT_KEYS = ("child", "if")
-CLAIM_KINDS = ("command", "state")
-CLAIM_KEYS = (*CLAIM_KINDS, "if", "releases")
-NODE_KEYS = (*NODE_WORDS, *FACT_KEYS, *ROLES)
 STACK_KEYS = ("about", "include", "container", "nodes", "releases")
 ENTRY_KEYS = ("node", "as", "plugin", "shared", "when", "with", "names", "remaps", "releases")
-FILE_KEYS = ("parts", "nodes", "stacks")
+ENTRY_OF_NODE = tuple(dict.fromkeys((*NODE_KEYS, *PARAMETER_KEYS)))
+FILE_KEYS = ("parts", "nodes", "stacks", "guesses", "sent")
 NOTHING: Mapping[str, str] = {}
-Known = TypeVar("Known")
+NO_PARAMETERS: Mapping[str, NodeParameters] = {}
+NO_GUESSES: Mapping[str, tuple[str, ...]] = {}
 
 
 class Stack(NamedTuple):
@@ -76,7 +66,9 @@ class NodeLibrary(NamedTuple):
     """Known parts (endpoints that many nodes have), nodes and stacks.
 
     It is of one release, or of all of them, with ``release`` empty. ``elsewhere`` says of nodes and
-    stacks that this release lacks which releases have them.
+    stacks that this release lacks which releases have them. ``parameters`` are those of nodes, by the
+    last name of each, in all releases; ``guesses`` the last words of other parameters by the kind that
+    they suggest, ``sent`` frames that nodes send.
     """
 
     parts: Mapping[str, tuple[Endpoint, ...]]
@@ -84,6 +76,9 @@ class NodeLibrary(NamedTuple):
     stacks: Mapping[str, Stack]
     release: str = ""
     elsewhere: Mapping[str, str] = NOTHING
+    parameters: Mapping[str, NodeParameters] = NO_PARAMETERS
+    guesses: Mapping[str, tuple[str, ...]] = NO_GUESSES
+    sent: frozenset[str] = frozenset()
 
 
 def stack_of(library: NodeLibrary, name: str) -> tuple[NodeFacts, ...]:
@@ -139,16 +134,34 @@ def _loaded(node: NodeFacts, stack: Stack) -> NodeFacts:
     return node if kept else node._replace(container=stack.container)
 
 
-def extend(library: NodeLibrary, text: str, file: str) -> NodeLibrary:
-    """``library`` with what a YAML text adds or changes."""
-    top = table(read_yaml_with_lines(text, file), "the file", FILE_KEYS)
-    new = {key: table(item, key) for key, item in top.items()}
-    parts = dict(library.parts)
-    parts |= {name: _part(item) for name, item in new.get("parts", {}).items()}
-    nodes = dict(library.nodes)
-    nodes |= {name: _node(name, item, parts) for name, item in new.get("nodes", {}).items()}
+def extend(library: NodeLibrary, text: str, file: str, own: bool = False) -> NodeLibrary:
+    """``library`` with what a YAML text adds or changes.
+
+    What an entry says of a known node's endpoints replaces what was known, what it says of its
+    parameters is added. ``own`` says that the text is of this package.
+    """
+    top = table(read_yaml_with_lines(text, file, own), "the file", FILE_KEYS)
+    new = {key: table(top[key], key) for key in ("parts", "nodes", "stacks") if key in top}
+    parts = {**library.parts, **{name: _part(it) for name, it in new.get("parts", {}).items()}}
+    nodes, parameters = dict(library.nodes), dict(library.parameters)
+    for name, item in new.get("nodes", {}).items():
+        keys = table(item, f"node {name!r}", ENTRY_OF_NODE)
+        # A node in its own namespace is known by its last name in parameter files.
+        last = name.rpartition("/")[2]
+        found = read_parameters(last, keys, parameters.get(last))
+        in_files = not keys.keys().isdisjoint(PARAMETER_KEYS)
+        if in_files:
+            parameters[last] = found
+        if not (in_files and keys.keys().isdisjoint(GRAPH_KEYS)):
+            nodes[name] = read_node(name, item, keys, parts, found.params)
     known = {*library.stacks, *new.get("stacks", {})}
-    grown = library._replace(parts=parts, nodes=nodes)
+    grown = library._replace(
+        parts=parts,
+        nodes=nodes,
+        parameters=parameters,
+        guesses={**library.guesses, **dict(read_guesses(top))},
+        sent=library.sent | frozenset(words_of(top, "sent")),
+    )
     stacks = {name: _stack(item, grown, known) for name, item in new.get("stacks", {}).items()}
     whole = grown._replace(stacks={**library.stacks, **stacks})
     for name, item in new.get("stacks", {}).items():
@@ -168,97 +181,12 @@ def _part(item: YamlItem) -> tuple[Endpoint, ...]:
     return tuple(endpoints_of(table(item, "a part", ROLES)))
 
 
-def _node(name: str, item: YamlItem, parts: Mapping[str, tuple[Endpoint, ...]]) -> NodeFacts:
-    keys = table(item, f"node {name!r}", NODE_KEYS)
-    _check_node_name(item, name)
-    frames = tuple(_frames(keys))
-    return NodeFacts(
-        name,
-        word_of(keys, "package"),
-        (*endpoints_of(keys), *_taken_over(keys, parts)),
-        flag_of(keys, "shared"),
-        word_of(keys, "note"),
-        host=word_of(keys, "host"),
-        when=word_of(keys, "when"),
-        frames=frames,
-        fixed=words_of(keys, "fixed"),
-        sends=tuple(_sends(keys, frames)),
-        claims=tuple(read_claims(keys)),
-        nodl=words_of(keys, "nodl"),
-        ids=tuple((name, word(it, f"ids {name}")) for name, it in table_of(keys, "ids").items()),
-        releases=releases_of(keys),
-        source=source_of(keys),
-        plugin=word_of(keys, "plugin"),
-        apart=flag_of(keys, "apart"),
-    )
-
-
-def _frames(keys: Mapping[str, YamlItem]) -> Iterator[FrameParameter]:
-    for name, item in table_of(keys, "frames").items():
-        found = []
-        for it in variants(item):
-            words = text_and_words(it, f"frame {name}", "default")
-            default = word_of(words, "default")
-            found.append(FrameParameter(name, default, releases_of(words), source_of(words)))
-        check_apart(item, f"frame {name}", [it.releases for it in found])
-        yield from found
-
-
-def _sends(
-    keys: Mapping[str, YamlItem], frames: Iterable[FrameParameter]
-) -> Iterator[SentTransform]:
-    """The transforms that a node publishes, as the parameters that hold their frames."""
-    known = {frame.parameter: frame.parameter for frame in frames}
-    for parent, item in table_of(keys, "sends").items():
-        if parent not in known:
-            wrong(item, unknown("frame", parent, known))
-        if isinstance(item.value, str):
-            yield SentTransform(parent, _known(item, "frame", known))
-            continue
-        sent = table(item, f"sends {parent}", SENT_KEYS)
-        if "child" not in sent:
-            wrong(item, f"sends {parent} has no child; write {{child: ..., if: ...}}")
-        yield SentTransform(parent, _known(sent["child"], "frame", known), condition_of(sent))
-
-
-def read_claims(keys: Mapping[str, YamlItem]) -> Iterator[Claim]:
-    """The interfaces under ``claims``: ``{command: TEMPLATE}`` or ``{state: TEMPLATE}``."""
-    for item in entries_of(keys, "claims"):
-        claim = table(item, "a claim", CLAIM_KEYS)
-        kinds = [it for it in CLAIM_KINDS if it in claim]
-        if len(kinds) != 1:
-            wrong(item, "a claim is of one kind; write {command: ...} or {state: ...}")
-        for template in words_of(claim, kinds[0]):
-            yield Claim(kinds[0], template, condition_of(claim), releases_of(claim))
-
-
-def _taken_over(
-    keys: Mapping[str, YamlItem], parts: Mapping[str, tuple[Endpoint, ...]]
-) -> Iterator[Endpoint]:
-    for entry in entries_of(keys, "with"):
-        yield from _known(entry, "part", parts)
-
-
-def _known(item: YamlItem, what: str, known: Mapping[str, Known]) -> Known:
-    name = word(item, what)
-    if name not in known:
-        wrong(item, unknown(what, name, known))
-    return known[name]
-
-
-def _check_node_name(item: YamlItem, name: str) -> None:
-    for token in name.split("/"):
-        fault = check_node_name(token)
-        if fault:
-            wrong(item, f"node name {name!r}: {fault.reason}")
-
-
 def _stack(item: YamlItem, library: NodeLibrary, stacks: Iterable[str]) -> Stack:
     keys = table(item, "a stack", STACK_KEYS)
     known = {name: name for name in stacks}
     return Stack(
         word_of(keys, "about"),
-        tuple(_known(entry, "stack", known) for entry in entries_of(keys, "include")),
+        tuple(known_word(entry, "stack", known) for entry in entries_of(keys, "include")),
         tuple(_placed(entry, library) for entry in entries_of(keys, "nodes")),
         releases_of(keys),
         word_of(keys, "container"),
@@ -268,14 +196,14 @@ def _stack(item: YamlItem, library: NodeLibrary, stacks: Iterable[str]) -> Stack
 def _placed(item: YamlItem, library: NodeLibrary) -> NodeFacts:
     """A node with the changes that a stack makes to it."""
     if isinstance(item.value, str):
-        return _known(item, "node", library.nodes)
+        return known_word(item, "node", library.nodes)
     keys = table(item, "an entry", ENTRY_KEYS)
     if "node" not in keys:
         wrong(item, "the entry has no node; write {node: ...}")
-    node = _known(keys["node"], "node", library.nodes)
-    endpoints = (*node.endpoints, *_taken_over(keys, library.parts))
+    node = known_word(keys["node"], "node", library.nodes)
+    endpoints = (*node.endpoints, *taken_over(keys, library.parts))
     name = word_of(keys, "as", node.name)
-    _check_node_name(keys.get("as", item), name)
+    check_name(keys.get("as", item), name)
     return node._replace(
         name=name,
         known=node.name,

@@ -1,6 +1,6 @@
 """The programs of known nodes: what ``ros2 run`` and launch start.
 
-By a node's name in ``nodes.yaml``; one without a row has a program of its own name in its package.
+By a node's name in its entry; one without a row has a program of its own name in its package.
 Sources: the launch files and CMakeLists.txt of each package on its jazzy branch; nav2_bringup
 launch/*.py of humble (1.1.20), jazzy (1.3.13), kilted (1.4.2), lyrical (1.5.1) and rolling (a3a97043e);
 slam_toolbox launch/online_sync_launch.py.

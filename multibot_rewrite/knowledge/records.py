@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from multibot_rewrite.record import NamedTuple
 
 MANAGER = "controller_manager"
 # Topics that image_transport's plugins derive from a base name.
 TRANSPORTS = ("compressed", "compressedDepth", "theora", "zstd")
+
+
+NO_TYPES: Mapping[str, str] = {}
 
 
 class Endpoint(NamedTuple):
@@ -20,7 +25,7 @@ class Endpoint(NamedTuple):
     not. ``remapped`` is its name after the remap rule of the stack's usual launch file: the table's
     rule must lead there, since only the first match counts. ``condition`` is what its node's parameters
     must hold for it to exist (``remap.conditions``), for where these are known. ``named_from`` is what
-    nodes.yaml calls it, if a stack gives it another name. ``above`` are the releases in which its node
+    its entry calls it, if a stack gives it another name. ``above`` are the releases in which its node
     resolves a relative name from its parameter in the namespace above its own.
     ``releases`` are release words (see ``multibot_rewrite.releases``), ``source`` the places where it
     can be read. ``by`` names the helper node, as what follows the name of its node, with a ``*`` for
@@ -63,6 +68,47 @@ class FrameParameter(NamedTuple):
     given: bool = False
 
 
+class Param(NamedTuple):
+    """A parameter by its dotted path: what its value is, and its default.
+
+    ``releases`` are release words (``multibot_rewrite.releases``), ``absolute`` those in which a
+    relative topic in it is not resolved in the robot's namespace, ``deprecated`` those that warn of
+    it, both empty for none; ``source`` are the places where it can be read. ``own`` is true for a
+    frame that the node itself makes, so no description has it.
+    """
+
+    path: str
+    kind: str
+    default: str = ""
+    is_list: bool = False
+    releases: str = ""
+    absolute: str = ""
+    note: str = ""
+    source: tuple[str, ...] = ()
+    deprecated: str = ""
+    own: bool = False
+
+
+class NodeParameters(NamedTuple):
+    """A node in parameter files: ``params`` in each of their forms, ``types`` are controller types,
+    ``known_by`` parameters that identify the node if its section has another name. ``strips`` are the
+    releases in which the node takes off a slash that a frame starts with, empty for none;
+    ``deprecated_types`` has those of types. ``declared_in`` are packages besides its own whose classes
+    declare parameters on it: plugins, helpers, libraries."""
+
+    name: str
+    package: str
+    params: tuple[Param, ...] = ()
+    aliases: tuple[str, ...] = ()
+    types: tuple[str, ...] = ()
+    known_by: tuple[str, ...] = ()
+    releases: str = ""
+    source: tuple[str, ...] = ()
+    strips: str = ""
+    deprecated_types: Mapping[str, str] = NO_TYPES
+    declared_in: tuple[str, ...] = ()
+
+
 class SentTransform(NamedTuple):
     """A transform that a node publishes, as the parameters that hold its frames; ``condition`` as in
     ``Endpoint``."""
@@ -90,7 +136,7 @@ class NodeFacts(NamedTuple):
     whose process it always runs in. ``when`` is the condition under which it is started, empty for
     always. No rule reaches ``frames`` and ``fixed``. ``sends`` are the transforms it publishes. ``ids``
     are words in <> of its names, with the parameter that lists what they stand for. ``claims`` are the
-    interfaces that a controller needs. ``known`` is its name in nodes.yaml if it has another one.
+    interfaces that a controller needs. ``known`` is its name in its entry if it has another one.
     ``origin`` is where a robot's own files name it (``file:line``), or its stack. ``releases`` and
     ``source`` as in ``Endpoint``. ``nodl`` are further names of its NoDL document, such as its
     executable; ``interface`` is the NoDL file that its endpoints are from, empty for the library.

@@ -1,22 +1,20 @@
-"""Known nodes and stacks of nodes, from ``nodes.yaml``, ``controllers.yaml``, ``arms.yaml``,
-``stacks.yaml`` and files of users.
-
-``python -m multibot_rewrite.knowledge.stacks`` prints their reference page.
-"""
+"""Known nodes and stacks of nodes, from ``nodes/*.yaml``, ``stacks.yaml`` and files of users."""
 
 from __future__ import annotations
 
-import sys
+import os
 from functools import lru_cache
-from importlib.resources import files
 
 from multibot_rewrite.bounded import read_text
 from multibot_rewrite.knowledge.by_release import in_release
 from multibot_rewrite.knowledge.node_library import NodeLibrary, extend, stack_of
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.system.conventions import SENT_FRAMES
 
-BUILT_IN = ("nodes.yaml", "controllers.yaml", "arms.yaml", "stacks.yaml")
+HERE = os.path.dirname(__file__)
+# What the others refer to is read first.
+PARTS, STACKS = "parts.yaml", "stacks.yaml"
 
 
 def load_nodes(release: str) -> dict[str, NodeFacts]:
@@ -45,13 +43,18 @@ def user_stack(path: str, release: str) -> NodeLibrary:
     A built-in node that the file changes is changed in the file's own stacks only. Raises UsageError
     with file and line for errors in the file.
     """
+    return in_release(with_file(path), release)
+
+
+def with_file(path: str) -> NodeLibrary:
+    """The built-in nodes and stacks of all releases and those of a file; raises as ``user_stack``."""
     try:
         text = read_text(path)
     except OSError as error:
         raise UsageError(f"{path}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
         raise UsageError(f"{path}: cannot be read: it is not UTF-8; save it as UTF-8") from None
-    return in_release(extend(every_release(), text, path), release)
+    return extend(every_release(), text, path)
 
 
 def is_apart(node: str, release: str) -> bool:
@@ -77,14 +80,13 @@ def apart_nodes(release: str) -> frozenset[str]:
 @lru_cache
 def every_release() -> NodeLibrary:
     """The nodes and stacks that this package knows, of all releases."""
-    library = NodeLibrary({}, {}, {})
-    for name in BUILT_IN:
-        text = files("multibot_rewrite.knowledge").joinpath(name).read_text(encoding="utf-8")
-        library = extend(library, text, name)
+    library = NodeLibrary({}, {}, {}, sent=frozenset(SENT_FRAMES))
+    for path in _files():
+        library = extend(library, read_text(path), os.path.basename(path), own=True)
     return library
 
 
-if __name__ == "__main__":
-    from multibot_rewrite.knowledge.stacks_page import page
-
-    sys.stdout.write(page(every_release()))
+def _files() -> list[str]:
+    folder = os.path.join(HERE, "nodes")
+    names = sorted(os.listdir(folder), key=lambda it: (it != PARTS, it))
+    return [*(os.path.join(folder, it) for it in names), os.path.join(HERE, STACKS)]

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, NoReturn, TypeAlias
+from typing import TYPE_CHECKING, NoReturn, TypeAlias, TypeVar
 
-from multibot_rewrite.bounded import compose_yaml
+from multibot_rewrite.bounded import compose_own_yaml, compose_yaml
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.nearest import did_you_mean_one_of
 from multibot_rewrite.record import NamedTuple
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 _BOOLEAN = "tag:yaml.org,2002:bool"
 _NULL = "tag:yaml.org,2002:null"
 _LINE = "\n"
+Known = TypeVar("Known")
 Value: TypeAlias = "str | bool | Mapping[str, YamlItem] | tuple[YamlItem, ...] | None"
 
 
@@ -26,13 +27,16 @@ class YamlItem(NamedTuple):
     value: Value
 
 
-def read_yaml_with_lines(text: str, file: str) -> YamlItem:
-    """The one document of a YAML text; raises UsageError naming ``file`` and the line."""
+def read_yaml_with_lines(text: str, file: str, own: bool = False) -> YamlItem:
+    """The one document of a YAML text; raises UsageError naming ``file`` and the line.
+
+    ``own`` says that it is of this package, so that it needs no bounds.
+    """
     import yaml  # slow to import; only stacks need it
 
     try:
-        node = compose_yaml(text)
-        return YamlItem(f"{file}:1", None) if node is None else _item(node, file)
+        node = compose_own_yaml(text) if own else compose_yaml(text)
+        return YamlItem(f"{file}:1", None) if node is None else _item(node, f"{file}:1", file)
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         # If a document ends too early, the error is after its last line.
@@ -41,24 +45,24 @@ def read_yaml_with_lines(text: str, file: str) -> YamlItem:
         raise UsageError(f"{place}: not valid YAML: {reason}") from None
 
 
-def _item(node: yaml.Node, file: str) -> YamlItem:
+def _item(node: yaml.Node, where: str, file: str) -> YamlItem:
+    if isinstance(node.value, str):
+        if node.tag == _NULL:
+            return YamlItem(where, None)
+        return YamlItem(where, _truth(node.value) if node.tag == _BOOLEAN else node.value)
     import yaml
 
-    where = f"{file}:{node.start_mark.line + 1}"
     if isinstance(node, yaml.MappingNode):
         return YamlItem(where, _mapping(node, file))
-    if isinstance(node, yaml.SequenceNode):
-        return YamlItem(where, tuple(_item(child, file) for child in node.value))
-    if node.tag == _NULL:
-        return YamlItem(where, None)
-    return YamlItem(where, _truth(node.value) if node.tag == _BOOLEAN else str(node.value))
+    inner = (_item(it, f"{file}:{it.start_mark.line + 1}", file) for it in node.value)
+    return YamlItem(where, tuple(inner))
 
 
 def _truth(word: str) -> bool:
     return word.lower() in ("true", "yes", "on")
 
 
-def _mapping(node: yaml.MappingNode, file: str) -> dict[str, YamlItem]:
+def _mapping(node: yaml.Node, file: str) -> dict[str, YamlItem]:
     found: dict[str, YamlItem] = {}
     for key, value in node.value:
         where = f"{file}:{key.start_mark.line + 1}"
@@ -67,7 +71,7 @@ def _mapping(node: yaml.MappingNode, file: str) -> dict[str, YamlItem]:
         if key.value in found:
             raise UsageError(f"{where}: the key {key.value!r} is repeated; remove one of them")
         # A block value starts a line below its key; a reader looks for the key.
-        found[key.value] = _item(value, file)._replace(where=where)
+        found[key.value] = _item(value, where, file)
     return found
 
 
@@ -126,6 +130,21 @@ def flag_of(keys: Mapping[str, YamlItem], key: str, otherwise: bool = False) -> 
     value = keys[key].value
     if not isinstance(value, bool):
         wrong(keys[key], f"{key} is {_shape(keys[key])}; write true or false")
+    return value
+
+
+def known_word(item: YamlItem, what: str, known: Mapping[str, Known]) -> Known:
+    """What a word stands for; one that is not known is an error."""
+    name = word(item, what)
+    if name not in known:
+        wrong(item, unknown(what, name, known))
+    return known[name]
+
+
+def one_of(item: YamlItem, what: str, value: str, allowed: Sequence[str]) -> str:
+    """The value, which has to be one of those."""
+    if value not in allowed:
+        wrong(item, unknown(what, value, allowed))
     return value
 
 

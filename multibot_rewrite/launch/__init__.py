@@ -21,7 +21,6 @@ from multibot_rewrite.launch.context import file_of as file_of
 from multibot_rewrite.launch.context import fleet_of as fleet_of
 from multibot_rewrite.launch.context import perform as perform
 from multibot_rewrite.launch.context import robot_of as robot_of
-from multibot_rewrite.launch.door import missing as missing
 from multibot_rewrite.launch.robot_words import WORDS as WORDS
 from multibot_rewrite.launch.substitutions import FILE as FILE
 from multibot_rewrite.launch.substitutions import bridge_config as bridge_config
@@ -29,3 +28,4 @@ from multibot_rewrite.launch.substitutions import description as description
 from multibot_rewrite.launch.substitutions import params_file as params_file
 from multibot_rewrite.launch.substitutions import rviz_config as rviz_config
 from multibot_rewrite.launch.substitutions import value as value
+from multibot_rewrite.producers.launch.door import missing as missing

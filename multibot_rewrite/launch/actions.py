@@ -31,10 +31,10 @@ from multibot_rewrite.launch.context import (
     sim_time,
     written,
 )
-from multibot_rewrite.launch.door import of_launch, of_launch_ros
 from multibot_rewrite.launch.node_options import check_options, node_options
 from multibot_rewrite.launch.node_options import listed as option_list
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 
 Make = Callable[[LoadedRobot], Iterable[Action]]
 SPAWNERS = MappingProxyType({"gz": spawning.GZ, "classic": spawning.CLASSIC})

@@ -17,8 +17,8 @@ from typing import Any
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.loaded_robot import LoadedRobot
 from multibot_rewrite.fleets.scripts import LoadedFleet, load_fleet
-from multibot_rewrite.launch.door import of_launch
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.producers.launch.door import of_launch
 from multibot_rewrite.record import NamedTuple
 
 # launch's SomeSubstitutionsType: a string, a substitution, or several of both.

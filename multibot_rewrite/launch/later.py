@@ -11,7 +11,7 @@ from functools import cache
 from typing import Any
 
 from multibot_rewrite.launch.context import Action, Context
-from multibot_rewrite.launch.door import of_launch
+from multibot_rewrite.producers.launch.door import of_launch
 
 Options = dict[str, Any]
 # The options of an action, or the actions that run in its place.
@@ -52,13 +52,6 @@ def _action(base: Any) -> Any:
             return super().execute(context) if instead is None else instead
 
     return OfRobot
-
-
-def resolved(action: Action, context: Context) -> list[Action] | None:
-    """The actions that run in the place of one for a robot; None for itself, which has its options
-    from now on."""
-    resolve = getattr(action, "resolve", None)
-    return resolve(context) if type(action).__name__ == "OfRobot" and resolve else None
 
 
 @cache

@@ -31,8 +31,8 @@ from multibot_rewrite.launch.actions import (
     place,
 )
 from multibot_rewrite.launch.context import Action, Context, fleet_of, sim_time, written
-from multibot_rewrite.launch.door import is_installed, of_launch, of_launch_ros
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.producers.launch.door import is_installed, of_launch, of_launch_ros
 from multibot_rewrite.releases import has_release
 
 NONE, ONE, EACH = "none", "one", "each"

@@ -17,9 +17,9 @@ from multibot_rewrite.launch.context import (
     reference,
     robot_of,
 )
-from multibot_rewrite.launch.door import of_launch, of_launch_ros
 from multibot_rewrite.launch.robot_words import NUMBERS, WORDS
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 
 FILE = "file"
 

@@ -7,7 +7,6 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.graph.bags.recording import RECORDER, is_recorded
-from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.naming import LAYOUTS, Layout
 from multibot_rewrite.plural import plural
@@ -15,7 +14,7 @@ from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules.check import inconclusive_where_in_doubt, judge
 from multibot_rewrite.rules.guess import GuessedRobot, guess_robots, whose_by_guess
 from multibot_rewrite.rules.index import NO_COUNTS, TF, Index, Known, index, tree_topic
-from multibot_rewrite.system.records import PUBLISHES, TOPIC
+from multibot_rewrite.system.records import PUBLISHES, TOPIC, System
 
 
 class Diagnosis(NamedTuple):
@@ -26,7 +25,7 @@ class Diagnosis(NamedTuple):
     that send on each tf topic.
     """
 
-    graph: Snapshot
+    graph: System
     robots: tuple[GuessedRobot, ...]
     whose: Index
     layout: Layout | None
@@ -34,7 +33,7 @@ class Diagnosis(NamedTuple):
     findings: tuple[Finding, ...]
 
 
-def diagnose(graph: Snapshot, messages: Mapping[str, int] = NO_COUNTS) -> Diagnosis:
+def diagnose(graph: System, messages: Mapping[str, int] = NO_COUNTS) -> Diagnosis:
     """Look at a graph without a plan; ``messages`` counts those of each topic, if they were counted."""
     robots = guess_robots(graph)
     known = Known(messages=messages, seconds=graph.environment.seconds)
@@ -44,10 +43,10 @@ def diagnose(graph: Snapshot, messages: Mapping[str, int] = NO_COUNTS) -> Diagno
     return Diagnosis(graph, robots, seen, _layout(robots, seen, tf), tf, tuple(found))
 
 
-def _tf_senders(graph: Snapshot) -> Iterator[tuple[str, tuple[str, ...]]]:
+def _tf_senders(graph: System) -> Iterator[tuple[str, tuple[str, ...]]]:
     """The nodes that publish on each tf topic or its tf_static."""
     nodes: dict[str, set[str]] = {}
-    for end in graph.endpoints:
+    for end in graph.ends:
         if (end.kind, end.role, end.type) == (TOPIC, PUBLISHES, TF):
             nodes.setdefault(tree_topic(end.name), set()).add(end.node)
     return ((topic, tuple(sorted(nodes[topic]))) for topic in sorted(nodes))

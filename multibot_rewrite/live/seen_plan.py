@@ -24,7 +24,7 @@ def seen_plan(seen: Diagnosis) -> Expectation:
     planned = tuple(robot for robot in planned if robot.nodes)
     owned = {node for robot in planned for node in robot.nodes}
     shared = tuple(node for node in nodes if node not in owned)
-    topics = unique(end.name for end in seen.graph.endpoints if end.kind == "topic")
+    topics = unique(end.name for end in seen.graph.ends if end.kind == "topic")
     bare = (it for it in topics if not seen.whose.robot(it) and "/_" not in it)
     return Expectation(
         seen.layout.name if seen.layout else DEFAULT_LAYOUT,
@@ -50,7 +50,7 @@ def _robot(seen: Diagnosis, robot: GuessedRobot, nodes: Iterable[str]) -> Planne
     tf = next(iter(topics), shared)
     own = {
         it
-        for edge in seen.graph.frames
+        for edge in seen.graph.edges
         for it in (edge.child, edge.parent)
         if whose.frame_robot(it) == robot.name
         or not mine
@@ -65,7 +65,7 @@ def _robot(seen: Diagnosis, robot: GuessedRobot, nodes: Iterable[str]) -> Planne
 
 
 def _endpoints(seen: Diagnosis, nodes: Iterable[str]) -> Iterator[PlannedEndpoint]:
-    for end in seen.graph.endpoints:
+    for end in seen.graph.ends:
         common = (
             end.name in SENT_BY_EVERY_NODE or end.type.startswith(_PARAMETERS) or "/_" in end.name
         )

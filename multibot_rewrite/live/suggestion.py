@@ -12,7 +12,6 @@ from xml.sax.saxutils import quoteattr
 from multibot_rewrite.graph.learning.learn import learn
 from multibot_rewrite.graph.learning.nodes_file import to_yaml as nodes_to_yaml
 from multibot_rewrite.graph.plan_file import to_yaml as plan_to_yaml
-from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER
 from multibot_rewrite.knowledge.node_library import NodeLibrary
@@ -22,6 +21,7 @@ from multibot_rewrite.naming import LAYOUTS
 from multibot_rewrite.rules.guess import GuessedRobot
 from multibot_rewrite.rules.system.tf_topics import root_of
 from multibot_rewrite.system.conventions import BODY_FRAMES, WORLD_FRAMES
+from multibot_rewrite.system.records import Edge
 
 STACK = "seen"
 FLEET_FILE, NODES_FILE, DESCRIPTION, PLAN_FILE = (
@@ -34,7 +34,7 @@ FILES = (FLEET_FILE, NODES_FILE, DESCRIPTION, PLAN_FILE)
 HEAD = """\
 # A first fleet file, from what was seen in the running graph. Before you use it:
 # - put your robot's own URDF or xacro in place of robot.urdf, which has only the frames heard
-# - see whether these are the robots and the layout that you want: multibot help build
+# - see whether these are the robots and the layout that you want: multibot build --help
 # Then: multibot build fleet.yaml -o out/, and multibot check fleet.yaml while it runs
 """
 
@@ -112,11 +112,11 @@ def _description(seen: Diagnosis, robot: GuessedRobot) -> Iterator[str]:
     yield "</robot>"
 
 
-def _edges(seen: Diagnosis, robot: GuessedRobot) -> list[GraphFrame]:
+def _edges(seen: Diagnosis, robot: GuessedRobot) -> list[Edge]:
     """Those with the robot's name; where frames have none, those on its topic or on all."""
     whose = seen.whose
-    named = [it for it in seen.graph.frames if whose.frame_robot(it.child) == robot.name]
-    bare = [it for it in seen.graph.frames if not whose.frame_robot(it.child)]
+    named = [it for it in seen.graph.edges if whose.frame_robot(it.child) == robot.name]
+    bare = [it for it in seen.graph.edges if not whose.frame_robot(it.child)]
     own = [it for it in bare if whose.robot(it.topic) == robot.name]
     return named or own or bare
 

@@ -7,9 +7,9 @@ from enum import IntEnum
 
 from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, Finding
 from multibot_rewrite.graph.expectation import Expectation
-from multibot_rewrite.graph.snapshot import CHANGING, Snapshot
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules.check import ABSENCE, doubts
+from multibot_rewrite.system.records import CHANGING, System
 
 
 class Verdict(IntEnum):
@@ -56,7 +56,7 @@ class WatchState(NamedTuple):
     before that counts as not started yet. ``worst`` is the worst verdict so far.
     """
 
-    graph: Snapshot
+    graph: System
     findings: tuple[Finding, ...]
     appeared: tuple[Finding, ...]
     solved: tuple[Finding, ...]
@@ -66,7 +66,7 @@ class WatchState(NamedTuple):
     worst: Verdict
 
 
-def judge(found: Iterable[Finding], graph: Snapshot) -> Verdict:
+def judge(found: Iterable[Finding], graph: System) -> Verdict:
     """As planned, not as planned, or inconclusive because the view may be incomplete."""
     levels = {finding.level for finding in found}
     if ERROR in levels:
@@ -75,7 +75,7 @@ def judge(found: Iterable[Finding], graph: Snapshot) -> Verdict:
 
 
 def with_found(
-    plan: Expectation, graph: Snapshot, findings: Iterable[Finding], before: WatchState | None
+    plan: Expectation, graph: System, findings: Iterable[Finding], before: WatchState | None
 ) -> WatchState:
     """The state of the graph in which these are the findings, after the state before.
 
@@ -109,7 +109,7 @@ def _without_cause(finding: Finding) -> Finding:
     return finding._replace(hint="", file="", line=0)
 
 
-def _to_remember(found: Iterable[Finding], graph: Snapshot, complete: bool) -> Verdict:
+def _to_remember(found: Iterable[Finding], graph: System, complete: bool) -> Verdict:
     """The verdict that counts for the worst so far.
 
     What is not started yet does not count, nor that the graph is still changing.
@@ -124,10 +124,10 @@ def final(state: WatchState) -> Verdict:
     return max(state.worst, state.verdict)
 
 
-def progress(plan: Expectation, graph: Snapshot) -> list[Progress]:
+def progress(plan: Expectation, graph: System) -> list[Progress]:
     """How much of each robot's plan is in the graph."""
     nodes = {node.name for node in graph.nodes}
-    ends = {(end.node, end.kind, end.role, end.name) for end in graph.endpoints}
+    ends = {(end.node, end.kind, end.role, end.name) for end in graph.ends}
     planned: dict[str, list[bool]] = {}
     for end in plan.endpoints:
         seen = (end.node, end.kind, end.role, end.name) in ends

@@ -11,7 +11,6 @@ from html import escape
 from importlib.resources import files
 
 from multibot_rewrite.findings.rule import Rule
-from multibot_rewrite.graph.snapshot import QUIET, ZENOH
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.live.watching import Verdict
 from multibot_rewrite.naming import LAYOUTS
@@ -32,6 +31,7 @@ from multibot_rewrite.pages.svg import Ids, safe
 from multibot_rewrite.pages.text import counted
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules.check import RULES
+from multibot_rewrite.system.records import QUIET, ZENOH
 
 # The CSS class of a verdict; a good one with findings is not drawn as good.
 LOOKS = {Verdict.PLANNED: "good", Verdict.INCONCLUSIVE: "unsure", Verdict.WRONG: "bad"}

@@ -8,7 +8,6 @@ from collections.abc import Collection, Container, Iterable, Iterator, Mapping, 
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.grouping import with_members
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, robot_words
-from multibot_rewrite.graph.snapshot import Environment, GraphEndpoint, Snapshot
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.live.watching import WORDS, Outcome, judge
 from multibot_rewrite.pages.states import (
@@ -31,7 +30,7 @@ from multibot_rewrite.rules.check import side_by_side
 from multibot_rewrite.rules.index import EndKey, Index, by_node, types
 from multibot_rewrite.rules.pair.meeting import matches
 from multibot_rewrite.rules.planned import Planned
-from multibot_rewrite.system.records import ACTION, SERVICE, TOPIC
+from multibot_rewrite.system.records import ACTION, SERVICE, TOPIC, End, Environment, System
 
 # Packages with the types of endpoints that every node has: logging, parameters, life cycle; and
 # tf, which has its own picture.
@@ -148,7 +147,7 @@ class _RobotOf(NamedTuple):
 
 def make_scene(
     plan: Expectation,
-    graph: Snapshot,
+    graph: System,
     found: Sequence[Finding],
     outcome: Outcome | None = None,
 ) -> Scene:
@@ -188,10 +187,10 @@ def _rows(plan: Planned, targets: Mapping[Finding, Targets]) -> Iterator[Finding
 
 def _edges(plan: Planned, seen: Index, states: States) -> Iterator[DrawnEdge]:
     """The endpoints in the graph, and those that a finding reports as missing."""
-    common_names = _common_names((*seen.system.endpoints, *plan.system.endpoints))
+    common_names = _common_names((*seen.system.ends, *plan.system.endpoints))
     bridged = {(role, it.name): it.type for it in plan.system.topics for role in it.bridge}
     for key, type_ in dict.fromkeys(
-        ((e.node, e.kind, e.role, e.name), e.type) for e in seen.system.endpoints
+        ((e.node, e.kind, e.role, e.name), e.type) for e in seen.system.ends
     ):
         node, *_, name = key
         common = name in common_names
@@ -224,7 +223,7 @@ def _is_expected(plan: Planned, key: EndKey, bridged: Container[tuple[str, str]]
     return is_tool(node) and bool(plan.names.robot(node))
 
 
-def _common_names(ends: Iterable[GraphEndpoint | PlannedEndpoint]) -> set[str]:
+def _common_names(ends: Iterable[End | PlannedEndpoint]) -> set[str]:
     """The names that every node has; one endpoint with a known type is enough."""
     return {
         end.name

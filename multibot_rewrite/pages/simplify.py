@@ -42,24 +42,6 @@ def has_faults(group: DrawnGroup) -> bool:
     return not states.isdisjoint(FAULTY)
 
 
-def only_faults(group: DrawnGroup) -> DrawnGroup:
-    """Keep what is missing or wrong, and all endpoints of those names."""
-    names = {(edge.kind, edge.name) for edge in group.edges if edge.state in FAULTY}
-    smaller = _with_edges(group, [e for e in group.edges if (e.kind, e.name) in names])
-    nodes = {edge.node for edge in smaller.edges}
-    kept = (node for node in smaller.nodes if node.state in FAULTY or node.name in nodes)
-    return smaller._replace(nodes=tuple(kept))
-
-
-def without_single_endpoints(group: DrawnGroup) -> DrawnGroup:
-    """Drop the names with only one endpoint unless it is faulty."""
-    ends: dict[tuple[str, str], list[DrawnEdge]] = defaultdict(list)
-    for edge in group.edges:
-        ends[edge.kind, edge.name].append(edge)
-    kept = {key for key, own in ends.items() if len(own) > 1 or own[0].state in FAULTY}
-    return _with_edges(group, [e for e in group.edges if (e.kind, e.name) in kept])
-
-
 def _with_edges(group: DrawnGroup, edges: Iterable[DrawnEdge]) -> DrawnGroup:
     """The group with only these edges; robots and tools without an edge are dropped."""
     kept = tuple(edges)

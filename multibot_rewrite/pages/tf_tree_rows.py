@@ -6,13 +6,13 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.graph.expectation import PlannedRobot
-from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.pages.states import CLASH, MISSING, OK, States
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules.check import RULES
 from multibot_rewrite.rules.index import Index, tree_topic
 from multibot_rewrite.rules.pair.tf_trees import tf_trees
 from multibot_rewrite.rules.planned import Planned
+from multibot_rewrite.system.records import Edge
 
 
 class FrameRow(NamedTuple):
@@ -75,7 +75,7 @@ class _Forest(NamedTuple):
 
 
 def _forest(
-    plan: Planned, topic: str, edges: Sequence[GraphFrame], home: Sequence[PlannedRobot]
+    plan: Planned, topic: str, edges: Sequence[Edge], home: Sequence[PlannedRobot]
 ) -> _Forest:
     static = {(edge.parent, edge.child): edge.static for edge in edges}
     children: dict[str, list[str]] = defaultdict(list)

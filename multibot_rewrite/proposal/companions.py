@@ -9,9 +9,9 @@ import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.companions.params.known_nodes import load_known_nodes
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.evidence.parameter_files import given_nodes
+from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.model import InputError
 from multibot_rewrite.proposal.belonging import moveit_of_others, of_others
 from multibot_rewrite.proposal.looking import CLASSIC, GZ, NO_SIMULATOR, Looked

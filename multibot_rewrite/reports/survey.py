@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from fnmatch import fnmatchcase
 from typing import TypeVar
 
 from multibot_rewrite.checks.audit import is_unknown
 from multibot_rewrite.checks.mentions import MENTIONED, unclaimed_mentions
 from multibot_rewrite.findings.place import locate
-from multibot_rewrite.model import Claim, InputError
+from multibot_rewrite.model import Claim
 from multibot_rewrite.naming import DECLARED_KINDS
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.reports.paths import plugin_name, tag_path
@@ -62,25 +61,6 @@ class Survey(NamedTuple):
     loaded: Mapping[Loaded, Tally]
     claims: Mapping[str, int]
     mentions: Mapping[MentionPlace, Tally]
-
-
-class Reason(NamedTuple):
-    """A line of a list of explained mentions: ``path`` may hold ``*`` for any text."""
-
-    path: str
-    text: str
-    line: int
-
-
-class Explained(NamedTuple):
-    """The exact mentions of a survey, sorted by whether a reason holds for them.
-
-    ``stale`` are the reasons that hold for none.
-    """
-
-    explained: Sequence[tuple[MentionPlace, Tally, Reason]]
-    left: Sequence[tuple[MentionPlace, Tally]]
-    stale: Sequence[Reason]
 
 
 def survey(inventory: Inventory, tree: Tree) -> Survey:
@@ -173,38 +153,3 @@ def share(total: Survey, type_: str) -> tuple[int, int]:
     """How many occurrences of that type there are, and how many of them are known."""
     counts = [(tally.times, it.known) for it, tally in total.loaded.items() if it.type == type_]
     return sum(count for count, _ in counts), sum(count for count, known in counts if known)
-
-
-def read_reasons(text: str, file: str) -> list[Reason]:
-    """Lines of ``tag path TAB reason``; empty ones and those starting with ``#`` are skipped.
-
-    Raises InputError naming file and line.
-    """
-    reasons = []
-    for number, row in enumerate(text.splitlines(), 1):
-        if not row.strip() or row.startswith("#"):
-            continue
-        path, _, reason = (word.strip() for word in row.partition("\t"))
-        if not path or not reason:
-            raise InputError(f"{file}:{number}: write the tag path, a tab, and the reason")
-        reasons.append(Reason(path, reason, number))
-    return reasons
-
-
-def explain(total: Survey, reasons: Sequence[Reason]) -> Explained:
-    """Sort the exact mentions by the first reason that holds for each."""
-    explained, left = [], []
-    used: set[Reason] = set()
-    for mention, tally in total.mentions.items():
-        holding = [it for it in reasons if mention.exact and _holds(it, mention)]
-        used.update(holding)
-        if holding:
-            explained.append((mention, tally, holding[0]))
-        elif mention.exact:
-            left.append((mention, tally))
-    return Explained(explained, left, [it for it in reasons if it not in used])
-
-
-def _holds(reason: Reason, mention: MentionPlace) -> bool:
-    # Only * is a wildcard: brackets are part of a path.
-    return fnmatchcase(mention.path, reason.path.replace("[", "[[]").replace("?", "[?]"))

@@ -14,11 +14,9 @@ from multibot_rewrite.findings.finding import INCONCLUSIVE, Finding
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.graph.bags.recording import is_recorded
-from multibot_rewrite.graph.expectation import Expectation, PlannedState
+from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.patterns import fitted
 from multibot_rewrite.graph.questions import SIM_TIME
-from multibot_rewrite.graph.snapshot import Caveat, GraphEndpoint, Snapshot, incomplete
-from multibot_rewrite.graph.states import NodeState
 from multibot_rewrite.rules.declaration import PAIR, SYSTEM, Finder
 from multibot_rewrite.rules.index import NO_COUNTS, Index, ends_of
 from multibot_rewrite.rules.pair import (
@@ -51,7 +49,7 @@ from multibot_rewrite.rules.system import (
 )
 from multibot_rewrite.rules.system import nodes as running_nodes
 from multibot_rewrite.rules.system import transforms as any_transforms
-from multibot_rewrite.system.records import PUBLISHES
+from multibot_rewrite.system.records import PUBLISHES, Caveat, End, System, incomplete
 
 _SYSTEM = (
     *(running_nodes, names, matching, commands, relays, sharing, any_transforms, tf_topics),
@@ -92,7 +90,7 @@ def judge(seen: Index) -> list[Finding]:
 
 
 def check(
-    plan: Expectation, graph: Snapshot, messages: Mapping[str, int] = NO_COUNTS
+    plan: Expectation, graph: System, messages: Mapping[str, int] = NO_COUNTS
 ) -> list[Finding]:
     """What is wrong with a system, and other than planned; empty for a fleet as planned. ``messages``
     counts those of each topic, where they were counted."""
@@ -105,13 +103,13 @@ def check(
 
 
 def side_by_side(
-    plan: Expectation, graph: Snapshot, messages: Mapping[str, int] = NO_COUNTS
+    plan: Expectation, graph: System, messages: Mapping[str, int] = NO_COUNTS
 ) -> tuple[Planned, Index]:
     """The look-ups of a plan and a system, with the same words for what is made at run time."""
     fitting, there = fitted(plan, graph)
     by_plan = planned(fitting)
-    frames = without_bridged(fitting, there.frames)
-    return by_plan, beside(by_plan, there._replace(frames=frames), messages)
+    edges = without_bridged(fitting, there.edges)
+    return by_plan, beside(by_plan, there._replace(edges=edges), messages)
 
 
 def _besides(plan: Planned, seen: Index, found: Sequence[Finding]) -> Iterator[Finding]:
@@ -137,38 +135,30 @@ def _is_meant(plan: Planned, seen: Index, finding: Finding) -> bool:
     return bool(about) and all(_is_planned(plan, end) for end in about)
 
 
-def _is_planned(plan: Planned, end: GraphEndpoint) -> bool:
+def _is_planned(plan: Planned, end: End) -> bool:
     if (end.node, end.kind, end.role, end.name) in plan.ends:
         return True
     topics = (it for it in plan.system.topics if it.name == end.name and end.role == PUBLISHES)
     return any(fnmatchcase(end.node, pattern) for it in topics for pattern in it.senders)
 
 
-def _without_planned(plan: Planned, graph: Snapshot) -> Snapshot:
+def _without_planned(plan: Planned, graph: System) -> System:
     """The graph without the states that the plan has: they are compared with it."""
-    wanted = {it.node: it for it in plan.system.states}
-    states_ = (_not_planned(it, wanted.get(it.node)) for it in graph.states)
-    return graph._replace(states=tuple(states_))
+    states_ = {it.node for it in plan.system.states if it.lifecycle}
+    timed = dict(planned_states.planned_clocks(plan.system.states))
+    nodes_ = (it._replace(lifecycle="") if it.name in states_ else it for it in graph.nodes)
+    parameters = (it for it in graph.parameters if it.name != SIM_TIME or it.node not in timed)
+    return graph._replace(nodes=tuple(nodes_), parameters=tuple(parameters))
 
 
-def _not_planned(seen: NodeState, wanted: PlannedState | None) -> NodeState:
-    if wanted is None:
-        return seen
-    timed = any(it.name == SIM_TIME for it in wanted.parameters)
-    return seen._replace(
-        lifecycle="" if wanted.lifecycle else seen.lifecycle,
-        sim_time=None if timed else seen.sim_time,
-    )
-
-
-def inconclusive_where_in_doubt(found: list[Finding], graph: Snapshot) -> list[Finding]:
+def inconclusive_where_in_doubt(found: list[Finding], graph: System) -> list[Finding]:
     """The findings; those about something missing are inconclusive in an incomplete view."""
     if not doubts(graph):
         return found
     return [_inconclusive(finding) if finding.code in ABSENCE else finding for finding in found]
 
 
-def doubts(graph: Snapshot) -> tuple[Caveat, ...]:
+def doubts(graph: System) -> tuple[Caveat, ...]:
     """The caveats that make a view incomplete.
 
     That an expected node did not come is not one of them: once the graph is quiet it is missing.

@@ -12,12 +12,11 @@ from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from functools import cache
 
-from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules.ownership import SEPARATORS, Whose
 from multibot_rewrite.system.conventions import USUAL_FRAMES
-from multibot_rewrite.system.records import TOPIC
+from multibot_rewrite.system.records import TOPIC, System
 
 # Topics of a robot's body: two of them are enough, or one of tf.
 BODY = (
@@ -53,10 +52,10 @@ class GuessedRobot(NamedTuple):
     only_frames: bool = False
 
 
-def guess_robots(graph: Snapshot) -> tuple[GuessedRobot, ...]:
+def guess_robots(graph: System) -> tuple[GuessedRobot, ...]:
     """The robots of a graph, in the order of their names; empty where none has a name."""
     namespaces = _namespaces(graph)
-    frames = {it for edge in graph.frames for it in (edge.child, edge.parent)}
+    frames = {it for edge in graph.edges for it in (edge.child, edge.parent)}
     if namespaces:
         found = [GuessedRobot(_name(it, namespaces), it) for it in namespaces]
         return tuple(with_frames(it, frames) for it in found)
@@ -73,11 +72,11 @@ def _name(namespace: str, all_of_them: Iterable[str]) -> str:
     return last if len(alike) == 1 else namespace.strip("/")
 
 
-def _namespaces(graph: Snapshot) -> list[str]:
+def _namespaces(graph: System) -> list[str]:
     """The namespaces of robots, in order."""
     nodes = {node.name for node in graph.nodes}
     found: dict[str, set[str]] = defaultdict(set)
-    for end in graph.endpoints:
+    for end in graph.ends:
         space, _, word = end.name.rpartition("/")
         # Below a node's own name are its private names.
         if end.kind == TOPIC and word in BODY and space and space not in nodes:
@@ -109,10 +108,10 @@ def _numbered_alike(spaces: Collection[str], nodes: Iterable[str]) -> Iterator[s
             space = space.rpartition("/")[0]
 
 
-def _last_words(graph: Snapshot) -> list[str]:
+def _last_words(graph: System) -> list[str]:
     """Words behind topics of a body: ``robot1`` of ``/cmd_vel/robot1`` and ``/odom/robot1``."""
     found: dict[str, set[str]] = defaultdict(set)
-    for end in graph.endpoints:
+    for end in graph.ends:
         *_, before, last = ("", *end.name.split("/"))
         if end.kind == TOPIC and before in BODY and last not in BODY:
             found[last].add(before)

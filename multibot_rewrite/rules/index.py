@@ -7,13 +7,22 @@ from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Se
 from functools import wraps
 from typing import Any, TypeVar, cast
 
-from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphFrame, Snapshot
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules import words
 from multibot_rewrite.rules.ownership import Whose
 from multibot_rewrite.system.conventions import EVERYBODYS, only_looks
-from multibot_rewrite.system.records import CALLS, KINDS, PUBLISHES, SERVES, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.records import (
+    CALLS,
+    KINDS,
+    PUBLISHES,
+    SERVES,
+    SUBSCRIBES,
+    TOPIC,
+    Edge,
+    End,
+    System,
+)
 
 # In the order of the fields of Ends.
 _PLACE = {role: at for at, role in enumerate((PUBLISHES, SUBSCRIBES, SERVES, CALLS))}
@@ -36,10 +45,10 @@ class Ends(NamedTuple):
     kind: str
     name: str
     type: str
-    publishers: tuple[GraphEndpoint, ...]
-    subscribers: tuple[GraphEndpoint, ...]
-    servers: tuple[GraphEndpoint, ...]
-    clients: tuple[GraphEndpoint, ...]
+    publishers: tuple[End, ...]
+    subscribers: tuple[End, ...]
+    servers: tuple[End, ...]
+    clients: tuple[End, ...]
 
 
 class Tree(NamedTuple):
@@ -50,7 +59,7 @@ class Tree(NamedTuple):
     """
 
     topic: str
-    edges: tuple[GraphFrame, ...]
+    edges: tuple[Edge, ...]
     senders: tuple[str, ...]
     listeners: tuple[str, ...]
 
@@ -88,7 +97,7 @@ class Index(NamedTuple):
     rules look at it (``once``).
     """
 
-    system: Snapshot
+    system: System
     robots: tuple[str, ...]
     robot: Callable[[str], str]
     plain: Callable[[str], str]
@@ -124,9 +133,9 @@ def once(make: _Look) -> _Look:
     return cast(_Look, found)
 
 
-def index(system: Snapshot, whose: Whose, known: Known = NOTHING_KNOWN) -> Index:
+def index(system: System, whose: Whose, known: Known = NOTHING_KNOWN) -> Index:
     """The look-ups, made once."""
-    names = {(it.kind, it.name): it for it in _ends(system.endpoints)}
+    names = {(it.kind, it.name): it for it in _ends(system.ends)}
     topics = [it for it in names.values() if it.kind == TOPIC]
     return Index(
         system,
@@ -147,10 +156,10 @@ def _by_robot(it: Index) -> Mapping[tuple[str, str, str], Ends]:
 
 
 @once
-def by_node(it: Index) -> Mapping[str, Sequence[GraphEndpoint]]:
+def by_node(it: Index) -> Mapping[str, Sequence[End]]:
     """The ends of each node, hidden ones as well."""
-    found: dict[str, list[GraphEndpoint]] = defaultdict(list)
-    for end in it.system.endpoints:
+    found: dict[str, list[End]] = defaultdict(list)
+    for end in it.system.ends:
         found[end.node].append(end)
     return found
 
@@ -158,7 +167,7 @@ def by_node(it: Index) -> Mapping[str, Sequence[GraphEndpoint]]:
 @once
 def types(it: Index) -> Mapping[EndKey, str]:
     """The type of each end, hidden ones as well."""
-    return {(end.node, end.kind, end.role, end.name): end.type for end in it.system.endpoints}
+    return {(end.node, end.kind, end.role, end.name): end.type for end in it.system.ends}
 
 
 @once
@@ -167,7 +176,7 @@ def published(it: Index) -> Set[str]:
     return {name for (kind, name), ends in it.names.items() if kind == TOPIC and ends.publishers}
 
 
-def ends_of(it: Index, name: str) -> Iterator[GraphEndpoint]:
+def ends_of(it: Index, name: str) -> Iterator[End]:
     """All ends of a name, whatever their kind."""
     for kind in KINDS:
         found = it.names.get((kind, name))
@@ -175,8 +184,8 @@ def ends_of(it: Index, name: str) -> Iterator[GraphEndpoint]:
             yield from (end for side in found[3:] for end in side)
 
 
-def _ends(endpoints: Iterable[GraphEndpoint]) -> Iterator[Ends]:
-    found: dict[tuple[str, str], tuple[list[GraphEndpoint], ...]] = {}
+def _ends(endpoints: Iterable[End]) -> Iterator[Ends]:
+    found: dict[tuple[str, str], tuple[list[End], ...]] = {}
     for end in endpoints:
         key = (end.kind, end.name)
         if "/_" in end.name:
@@ -190,13 +199,13 @@ def _ends(endpoints: Iterable[GraphEndpoint]) -> Iterator[Ends]:
         yield Ends(kind, name, first.type, *map(tuple, sides))
 
 
-def _trees(system: Snapshot, names: Iterable[Ends]) -> Iterator[Tree]:
+def _trees(system: System, names: Iterable[Ends]) -> Iterator[Tree]:
     topics: dict[str, list[Ends]] = defaultdict(list)
-    edges: dict[str, list[GraphFrame]] = defaultdict(list)
+    edges: dict[str, list[Edge]] = defaultdict(list)
     for ends in names:
         if ends.type == TF:
             topics[tree_topic(ends.name)].append(ends)
-    for frame in system.frames:
+    for frame in system.edges:
         if "/_" not in frame.topic:
             edges[tree_topic(frame.topic)].append(_without_slash(frame))
     for topic in dict.fromkeys((*edges, *topics)):
@@ -207,7 +216,7 @@ def _trees(system: Snapshot, names: Iterable[Ends]) -> Iterator[Tree]:
         yield Tree(topic, tuple(edges.get(topic, ())), unique(senders), unique(listeners))
 
 
-def _without_slash(frame: GraphFrame) -> GraphFrame:
+def _without_slash(frame: Edge) -> Edge:
     """tf2 takes a frame with a slash in front as one without (buffer_core.cpp stripSlash)."""
     if not (frame.child.startswith("/") or frame.parent.startswith("/")):
         return frame
@@ -220,7 +229,7 @@ def unique(names: Iterable[str]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(names))
 
 
-def nodes_of(ends: Iterable[GraphEndpoint]) -> tuple[str, ...]:
+def nodes_of(ends: Iterable[End]) -> tuple[str, ...]:
     """The nodes of some endpoints, each once, in the order of their names."""
     return tuple(sorted({end.node for end in ends}))
 
@@ -240,7 +249,7 @@ def is_spawner(node: str) -> bool:
     return last_word(node).startswith("spawner_")
 
 
-def at_work(ends: Iterable[GraphEndpoint]) -> list[GraphEndpoint]:
+def at_work(ends: Iterable[End]) -> list[End]:
     """The endpoints of nodes that do more than look."""
     return [end for end in ends if not is_viewer(end.node)]
 

@@ -7,7 +7,6 @@ from collections.abc import Iterator, Mapping
 
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
 from multibot_rewrite.graph.questions import SIM_TIME
-from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules.index import NO_COUNTS, EndKey, Index, Known, index, tree_topic
 from multibot_rewrite.rules.ownership import (
@@ -17,6 +16,7 @@ from multibot_rewrite.rules.ownership import (
     whose_by_plan,
 )
 from multibot_rewrite.rules.pair.tf_copies import copying_nodes
+from multibot_rewrite.system.records import System
 
 
 class Sent(NamedTuple):
@@ -77,7 +77,7 @@ def _sent(plan: Expectation) -> Iterator[Sent]:
                 yield Sent(node, parent, child)
 
 
-def beside(plan: Planned, graph: Snapshot, messages: Mapping[str, int] = NO_COUNTS) -> Index:
+def beside(plan: Planned, graph: System, messages: Mapping[str, int] = NO_COUNTS) -> Index:
     """A system with what its plan says of names, tf topics, senders and tools."""
     senders: dict[tuple[str, str], tuple[str, ...]] = defaultdict(tuple)
     for it in plan.sent:

@@ -85,11 +85,13 @@ class ToolNode(NamedTuple):
     source: str
 
 
+# How the names of tf2's listener nodes start; the rest is an address.
+LISTENER = "transform_listener_impl_"
 TOOLS = (
     ToolNode("_*", False, "rcl: a name with _ in front is hidden"),
     ToolNode("_ros2cli_*", True, "ros2cli node/__init__.py NODE_NAME_PREFIX"),
     ToolNode("launch_ros_*", True, "launch_ros ros_adapters.py"),
-    ToolNode("transform_listener_impl_*", False, "tf2_ros transform_listener.cpp"),
+    ToolNode(f"{LISTENER}*", False, "tf2_ros transform_listener.cpp"),
     ToolNode("spawner_*", True, "controller_manager spawner.py"),
     ToolNode("spawn_entity*", False, "gazebo_ros spawn_entity.py"),
     ToolNode("*_container", False, "nav2_bringup navigation_launch.py, rclcpp_components"),

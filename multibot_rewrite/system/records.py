@@ -14,6 +14,15 @@ PUBLISHES, SUBSCRIBES, SERVES, CALLS = "publishes", "subscribes", "serves", "cal
 ROLES = (PUBLISHES, SUBSCRIBES, SERVES, CALLS)
 # Roles of an interface of the hardware: the hardware exports it, a controller claims it.
 EXPORTS, CLAIMS = "exports", "claims"
+# Why an observation ended: all expected nodes are there, the graph no longer changes, the timeout
+# is over. CHANGING: it has not ended, the graph is being watched.
+EXPECTED, QUIET, TIMEOUT, CHANGING = "expected", "quiet", "timeout", "changing"
+# The node name in rmw of an end whose participant has not announced its nodes yet.
+UNKNOWN_NODE = "_NODE_NAME_UNKNOWN_"
+# The RMW of a view from a Zenoh router.
+ZENOH = "rmw_zenoh_cpp"
+# The parameter of every node that says which clock it goes by.
+SIM_TIME = "use_sim_time"
 
 
 class Place(NamedTuple):
@@ -172,6 +181,16 @@ class Parameter(NamedTuple):
     place: Place = NOWHERE
 
 
+class Controller(NamedTuple):
+    """A controller of the controller manager ``manager``, a node; ``claims`` are command interfaces,
+    while it is active."""
+
+    manager: str
+    name: str
+    state: str
+    claims: tuple[str, ...] = ()
+
+
 class Interface(NamedTuple):
     """An interface of the hardware, ``kind`` is command or state: its ``node`` ``exports`` it, or, a
     controller, ``claims`` it."""
@@ -208,3 +227,56 @@ class Caveat(NamedTuple):
     code: str
     incomplete: bool
     message: str
+
+
+class Environment(NamedTuple):
+    """How a running system was observed, and how complete the view is; all is empty for other sources.
+
+    ``participants`` counts the DDS participants without the observer's own. ``settled`` is
+    ``EXPECTED``, ``QUIET``, ``TIMEOUT`` or ``CHANGING``, reached after ``seconds``.
+    """
+
+    domain: int = 0
+    range: str = ""
+    static_peers: tuple[str, ...] = ()
+    rmw: str = ""
+    discovery_server: str = ""
+    super_client: bool = False
+    participants: int = 0
+    settled: str = EXPECTED
+    seconds: float = 0.0
+    caveats: tuple[Caveat, ...] = ()
+
+
+class System(NamedTuple):
+    """What runs, or would run, on some robots; what no source tells is empty.
+
+    ``heard`` are frames that messages name, one message a topic. ``parameters`` and ``controllers`` are
+    what nodes answered, or what files set.
+    """
+
+    nodes: tuple[Node, ...] = ()
+    ends: tuple[End, ...] = ()
+    edges: tuple[Edge, ...] = ()
+    environment: Environment = Environment()
+    heard: tuple[Heard, ...] = ()
+    parameters: tuple[Parameter, ...] = ()
+    controllers: tuple[Controller, ...] = ()
+    robots: tuple[Robot, ...] = ()
+
+
+def incomplete(system: System) -> tuple[Caveat, ...]:
+    """Why something may be missing in the view; empty for a complete one."""
+    return tuple(caveat for caveat in system.environment.caveats if caveat.incomplete)
+
+
+def clocks(system: System) -> dict[str, bool]:
+    """By node: whether it goes by simulated time, where that is known."""
+    return {it.node: it.value == "true" for it in system.parameters if it.name == SIM_TIME}
+
+
+def answering(system: System) -> frozenset[str]:
+    """The nodes of which a state, parameter or controller is known."""
+    states = (it.name for it in system.nodes if it.lifecycle)
+    parameters = (it.node for it in system.parameters)
+    return frozenset((*states, *parameters, *(it.manager for it in system.controllers)))

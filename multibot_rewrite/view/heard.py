@@ -8,10 +8,10 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import acos, degrees, dist
 
 from multibot_rewrite.checks.rotation import inverse, matrix_of_quaternion, product
-from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules.index import tree_topic
 from multibot_rewrite.system.conventions import WORLD_FRAMES
+from multibot_rewrite.system.records import Edge
 from multibot_rewrite.view.models import Joint
 
 # Frames that are where the world is, whoever has them (REP 105).
@@ -46,10 +46,10 @@ class LinkFrames(NamedTuple):
 
 
 def heard_trees(
-    heard: Iterable[GraphFrame], robots: Sequence[LinkFrames], shared: frozenset[str]
+    heard: Iterable[Edge], robots: Sequence[LinkFrames], shared: frozenset[str]
 ) -> tuple[HeardTree, ...]:
     """The trees of a snapshot; a frame whose place was not heard is left out with those below it."""
-    by_topic: dict[str, dict[str, GraphFrame]] = defaultdict(dict)
+    by_topic: dict[str, dict[str, Edge]] = defaultdict(dict)
     for it in heard:
         by_topic[tree_topic(it.topic)].setdefault(it.child, it)
     return tuple(
@@ -62,8 +62,8 @@ def heard_trees(
     )
 
 
-def _below(root: str, above: Mapping[str, GraphFrame]) -> Iterator[HeardFrame]:
-    children: dict[str, list[GraphFrame]] = defaultdict(list)
+def _below(root: str, above: Mapping[str, Edge]) -> Iterator[HeardFrame]:
+    children: dict[str, list[Edge]] = defaultdict(list)
     for it in above.values():
         children[it.parent].append(it)
     todo = [root]

@@ -10,13 +10,13 @@ from multibot_rewrite.fleets.fleet_file import Sources
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.rewritten_robots import GRAPH_KINDS, RewrittenRobot
 from multibot_rewrite.graph.expectation import tf_topic
-from multibot_rewrite.graph.snapshot import GraphFrame, Snapshot
 from multibot_rewrite.library import Prepared
 from multibot_rewrite.model import Change
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.reports.changes import list_changes
 from multibot_rewrite.rules.index import tree_topic
 from multibot_rewrite.steps.document import Document
+from multibot_rewrite.system.records import Edge, System
 from multibot_rewrite.view.heard import HeardTree, LinkFrames, heard_trees
 from multibot_rewrite.view.models import Model, load_model
 from multibot_rewrite.view.sdf_model import declared, line_of, load_sdf
@@ -69,7 +69,7 @@ class Scene(NamedTuple):
     trees: tuple[HeardTree, ...]
 
 
-def scene_of(plan: FleetPlan, graph: Snapshot | None = None) -> Scene:
+def scene_of(plan: FleetPlan, graph: System | None = None) -> Scene:
     """The robots; raises as ``load_model`` and ``load_sdf``."""
     changes = {sources: _changes(plan, sources) for sources in plan.jobs}
     robots = tuple(_robot(it, changes[it.spec.sources], graph) for it in plan.robots)
@@ -79,7 +79,7 @@ def scene_of(plan: FleetPlan, graph: Snapshot | None = None) -> Scene:
         LinkFrames(it.name, it.topic, frozenset(f"{it.prefix}{link}" for link in it.model.links))
         for it in robots
     ]
-    return Scene(robots, heard_trees(graph.frames, frames, plan.fleet.naming.shared_frames))
+    return Scene(robots, heard_trees(graph.edges, frames, plan.fleet.naming.shared_frames))
 
 
 def _changes(plan: FleetPlan, sources: Sources) -> _Changes:
@@ -87,14 +87,14 @@ def _changes(plan: FleetPlan, sources: Sources) -> _Changes:
     return lambda robot: list_changes(template, robot)
 
 
-def _robot(it: RewrittenRobot, changes: _Changes, graph: Snapshot | None) -> ViewedRobot:
+def _robot(it: RewrittenRobot, changes: _Changes, graph: System | None) -> ViewedRobot:
     spec = it.spec
     model = _model(it)
     # Frames have the tag of a robot, its topics the namespace.
     made = [*_of(changes(spec.tag), False), *_of(changes(spec.namespace), True)]
     names = tuple(_names(it, model))
     prefix, topic = it.frame_prefix, tf_topic(spec.namespace, it.names.naming)
-    sent = graph.frames if graph else ()
+    sent = graph.edges if graph else ()
     edges = {one.child: one for one in sent if tree_topic(one.topic) == topic}
     heard = _heard(model, edges, prefix) if graph else {}
     links = [one.child for one in model.joints if heard.get(one.child) == HEARD]
@@ -154,7 +154,7 @@ def _before(it: RewrittenRobot, model: Model) -> dict[tuple[str, str], tuple[str
     }
 
 
-def _heard(model: Model, edges: Mapping[str, GraphFrame], prefix: str) -> dict[str, str]:
+def _heard(model: Model, edges: Mapping[str, Edge], prefix: str) -> dict[str, str]:
     """Each link: is it a frame of the robot's tf, below the parent that it has here?"""
     parents = {child: edge.parent for child, edge in edges.items()}
     known = {*parents, *parents.values()}

@@ -98,7 +98,7 @@ def test_a_vocabulary_is_checked_for_its_release(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (folder / "my.vocab").write_text("[element arm]\nat: nowhere\nreleases: humble\n")
-    words = ["vocabulary", "robot", "--vocabulary", "my.vocab", "--distro"]
+    words = ["inspect", "robot", "--vocabulary", "my.vocab", "--distro"]
     assert multibot.main([*words, "humble"]) == 2
     assert "there is no [element nowhere]" in capsys.readouterr().err
     assert multibot.main([*words, "jazzy"]) == 0
@@ -108,7 +108,7 @@ def test_a_section_of_another_release_is_named(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (folder / "lamp.vocab").write_text("[plugin lamp]\nreleases: <=jazzy\nlink uses link\n")
-    words = ["vocabulary", "lamp", "--vocabulary", "lamp.vocab", "--distro"]
+    words = ["inspect", "lamp", "--vocabulary", "lamp.vocab", "--distro"]
     assert multibot.main([*words, "lyrical"]) == 2
     said = "'lamp' is not in lyrical, only in humble, jazzy; name one of them with --distro"
     assert said in capsys.readouterr().err

@@ -43,9 +43,8 @@ WRITERS: dict[str, Command] = {
     "remap": (MULTIBOT, "remap r.urdf.xacro robot1 robot2 -o"),
     "check": (MULTIBOT, "check fleet.yaml --snapshot graph.json -o"),
     "rehearse": (MULTIBOT, "rehearse fleet.yaml --save-snapshot"),
-    "arguments": (MULTIBOT, "arguments r.urdf.xacro -o"),
-    "coverage": (MULTIBOT, "coverage r.urdf.xacro -o"),
-    "vocabulary": (MULTIBOT, "vocabulary --suggest r.urdf.xacro -o"),
+    "inspect": (MULTIBOT, "inspect r.urdf.xacro -o"),
+    "inspect --suggest": (MULTIBOT, "inspect --suggest r.urdf.xacro -o"),
 }
 
 

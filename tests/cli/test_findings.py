@@ -15,7 +15,7 @@ from paths import FIXTURES
 from multibot_rewrite.cli import multibot, urdf_lint, urdf_postfix
 from multibot_rewrite.findings.formats import FORMATS
 from multibot_rewrite.graph.plan_file import from_yaml
-from multibot_rewrite.graph.snapshot import to_json
+from multibot_rewrite.system.json import to_json
 
 ROVER = str(FIXTURES / "robots" / "rover.urdf")
 SIBLINGS = str(FIXTURES / "robots" / "siblings.urdf")

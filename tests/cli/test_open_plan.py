@@ -11,8 +11,8 @@ from graph_cases import as_planned
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.graph.plan_file import from_yaml
 from multibot_rewrite.graph.plan_file import to_json as to_json_plan
-from multibot_rewrite.graph.snapshot import to_json
 from multibot_rewrite.model import InputError
+from multibot_rewrite.system.json import to_json
 
 CLOSED = FILES["ekf.yaml"]
 OPEN = CLOSED.replace("imu0: imu/data", "imu0: imu_0/data")

@@ -17,7 +17,6 @@ from multibot_rewrite.catalogue import rules
 from multibot_rewrite.cli import multibot, urdf_lint, urdf_postfix
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
 from multibot_rewrite.cli.declared.fleet import REMAP_FORMS
-from multibot_rewrite.cli.declared.knowledge import SECTION_TYPES
 from multibot_rewrite.cli.options import Command
 from multibot_rewrite.cli.parser import make_parser, parsed
 from multibot_rewrite.cli.usage import policy, robots, separators
@@ -27,7 +26,6 @@ from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import DEFAULT_LAYOUT, LAYOUTS
 from multibot_rewrite.plural import plural
 from multibot_rewrite.remap.table_formats import FORMS
-from multibot_rewrite.rewriters.vocabulary.grammar import TYPES
 
 ROVER = str(FIXTURES / "robots" / "rover.urdf")
 ALL = {**COMMANDS, **{it.name: it for it in PROGRAMS}}
@@ -79,7 +77,6 @@ def test_an_option_has_one_help_wherever_it_is() -> None:
 
 def test_the_choices_are_those_of_the_modules_that_know_them() -> None:
     assert ("table", *FORMS, "bridge") == REMAP_FORMS
-    assert SECTION_TYPES == TYPES
     assert MAX_DOMAIN == environment.MAX_DOMAIN
     layouts = {name for it in LAYOUTS for name in (it.name, it.short)}
     for name in DESCRIPTION:
@@ -193,8 +190,8 @@ def test_an_unknown_layout_is_refused_by_the_library_too() -> None:
         ("urdf-lint", ROVER),
         ("multibot", "plan", ROVER, "r1"),
         ("multibot", "remap", ROVER, "r1"),
-        ("multibot", "coverage", ROVER),
-        ("multibot", "vocabulary", "--suggest", ROVER),
+        ("multibot", "inspect", ROVER),
+        ("multibot", "inspect", "--suggest", ROVER),
         ("multibot", "explain", "MB202"),
     ],
     ids=" ".join,
@@ -238,7 +235,7 @@ def test_a_vocabulary_reaches_every_command_that_reads_a_description(
 ) -> None:
     more = tmp_path / "bad.vocab"
     more.write_text("[plugin acme]\nx uses wheel\n")
-    for words in (["plan", ROVER, "r"], ["remap", ROVER, "r"], ["coverage", ROVER]):
+    for words in (["plan", ROVER, "r"], ["remap", ROVER, "r"], ["inspect", ROVER]):
         code, _, err = said(capsys, "multibot", *words, "--vocabulary", str(more))
         assert (code, "bad.vocab:2: unknown kind 'wheel'" in err) == (2, True), words
 
@@ -366,7 +363,7 @@ def test_colour_is_asked_for_or_not(
     lines = (
         ("urdf-postfix", ROVER, "r", "--diff"),
         ("urdf-lint", ROVER),
-        ("multibot", "vocabulary", "--type", "block"),
+        ("multibot", "inspect", "gazebo"),
     )
     for words in lines:
         assert ("\033[" in said(capsys, *words, *option)[1]) == coloured, words

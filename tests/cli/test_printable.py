@@ -17,8 +17,8 @@ from multibot_rewrite.cli.declared.commands import COMMANDS
 from multibot_rewrite.cli.output import print_bytes
 from multibot_rewrite.findings.formats import FORMATS
 from multibot_rewrite.graph.plan_file import to_yaml
-from multibot_rewrite.graph.snapshot import to_json
 from multibot_rewrite.printable import for_terminal, one_line
+from multibot_rewrite.system.json import to_json
 
 FAKED = "FAKE: all is well"
 # ESC ] 0 ; ... BEL names a window, U+009B 2 J clears it, U+202E turns the text.
@@ -73,10 +73,10 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     plan, graph = read_plan(LAYOUT), healthy(LAYOUT)
     (tmp_path / "plan.yaml").write_text(to_yaml(plan))
     (tmp_path / f"{EVIL}.plan").write_text(to_yaml(plan))
-    frames = tuple(it._replace(child=f"{it.child}{EVIL}") for it in graph.frames)
+    frames = tuple(it._replace(child=f"{it.child}{EVIL}") for it in graph.edges)
     nodes = tuple(it._replace(name=f"{it.name}{EVIL}") for it in graph.nodes)
-    ends = tuple(it._replace(node=f"{it.node}{EVIL}", type=EVIL) for it in graph.endpoints)
-    evil = graph._replace(frames=(*graph.frames, *frames), nodes=nodes, endpoints=ends)
+    ends = tuple(it._replace(node=f"{it.node}{EVIL}", type=EVIL) for it in graph.ends)
+    evil = graph._replace(edges=(*graph.edges, *frames), nodes=nodes, ends=ends)
     (tmp_path / "graph.json").write_bytes(to_json(evil))
     (tmp_path / f"{EVIL}.json").write_bytes(to_json(graph)[:-9])
     return tmp_path
@@ -103,14 +103,13 @@ LINES = (
         ["urdf-lint", f"{EVIL}.lint.urdf", "--fix", "--diff"],
         ["urdf-lint", f"{EVIL}.xacro"],
         ["urdf-postfix", f"{EVIL}.xacro", "robot1", f"{EVIL}:={EVIL}"],
-        ["arguments", f"{EVIL}.xacro"],
-        ["coverage", "."],
-        ["coverage", ".", "--form", "json"],
-        ["coverage", FILE, "--explained", f"{EVIL}.yaml"],
+        ["inspect", f"{EVIL}.xacro"],
+        ["inspect", "."],
+        ["inspect", ".", "--form", "json"],
     ),
-    *(["vocabulary", "--suggest", FILE], ["vocabulary", EVIL], ["vocabulary", "--type", EVIL]),
-    *(["arguments", f"{EVIL}.xacro"], ["arguments", f"{EVIL}.xacro", f"a:={EVIL}"]),
-    *(["arguments", EVIL], ["urdf-postfix", f"{EVIL}.xacro", "r", f"a:={EVIL}{{robot}}"]),
+    *(["inspect", "--suggest", FILE], ["inspect", EVIL]),
+    *(["inspect", f"{EVIL}.xacro"], ["inspect", f"{EVIL}.xacro", f"a:={EVIL}"]),
+    *(["urdf-postfix", f"{EVIL}.xacro", "r", f"a:={EVIL}{{robot}}"]),
     *(["explain", EVIL], ["help", EVIL], [EVIL], ["remap", FILE, "robot1", "--stack", EVIL]),
     *(["remap", FILE, "robot1", "robot2", "--stack", "nav2", "--form", it] for it in ("table",)),
     *(["remap", FILE, "robot1", "--nodes", f"{EVIL}.yaml", "--stack", "nav2"],),
@@ -152,7 +151,7 @@ def test_a_name_does_not_steer_the_terminal(
     out, err = capfdbinary.readouterr()
     text = err.decode("utf-8", "surrogateescape")
     # What is made of a description holds its names as they are, for programs.
-    if not (out.startswith(b"<robot") or words[0] in ("vocabulary", "learn")):
+    if not (out.startswith(b"<robot") or "--suggest" in words or words[0] == "learn"):
         text += out.decode("utf-8", "surrogateescape")
     assert text or out
     assert STEERING.findall(text) == []

@@ -25,11 +25,10 @@ COMMAND_LINES: dict[str, tuple[Callable[[Sequence[str]], int], list[str], int]] 
     "urdf-postfix": (urdf_postfix.main, [PATH, "robot1", "-o", "out.urdf"], 2),
     "urdf-postfix --why": (urdf_postfix.main, ["--why", f"{PATH}:10"], 2),
     "urdf-lint": (urdf_lint.main, [PATH, "--select", "MB103"], 1),
-    "arguments": (multibot.main, ["arguments", PATH], 2),
+    "inspect": (multibot.main, ["inspect", PATH], 2),
     "build": (multibot.main, ["build", "fleet.yaml", "-o", "out"], 2),
     "check": (multibot.main, ["check", "fleet.yaml", "--snapshot", "graph.json"], 2),
     "check-launch": (multibot.main, ["check-launch", "r.launch.py", "--plan", "fleet.yaml"], 2),
-    "coverage": (multibot.main, ["coverage", PATH], 2),
     "init": (multibot.main, ["init", PATH, "-o", "-"], 2),
     "plan": (multibot.main, ["plan", PATH, "robot1", "--stack", "nav2"], 2),
     "plan of a fleet": (multibot.main, ["plan", "fleet.yaml"], 2),
@@ -38,10 +37,10 @@ COMMAND_LINES: dict[str, tuple[Callable[[Sequence[str]], int], list[str], int]] 
     "rehearse": (multibot.main, ["rehearse", PATH, "robot1", "--stack", "nav2"], 2),
     "zenoh": (multibot.main, ["zenoh", "fleet.yaml", "--router", "tcp/h:1", "-o", "out"], 2),
     "view": (multibot.main, ["view", PATH, "-o", "-"], 2),
-    "vocabulary": (multibot.main, ["vocabulary", "--suggest", PATH], 2),
+    "inspect --suggest": (multibot.main, ["inspect", "--suggest", PATH], 2),
 }
 # Those that read no description.
-OTHERS = {"doctor", "explain", "help", "learn", "snapshot"}
+OTHERS = {"doctor", "explain", "learn", "snapshot"}
 
 
 @pytest.fixture

@@ -7,10 +7,10 @@ from closed_robot import FILES
 from multibot_rewrite.closure.lists import list_gaps
 from multibot_rewrite.closure.topics import End, type_gaps
 from multibot_rewrite.closure.undeclared import undeclared_gaps
-from multibot_rewrite.companions.params.known_nodes import load_known_nodes
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import GivenNode
+from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.releases import NEWEST_LTS
 

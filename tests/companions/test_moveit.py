@@ -13,11 +13,11 @@ from multibot_rewrite.companions.moveit.name_sites import kinds
 from multibot_rewrite.companions.moveit.rewrite import rewrite_moveit
 from multibot_rewrite.companions.names.rename_map import with_srdf
 from multibot_rewrite.companions.names.undeclared import is_undeclared
-from multibot_rewrite.companions.params.known_nodes import built_in_nodes
 from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.knowledge.node_library import stack_of
+from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import make_naming

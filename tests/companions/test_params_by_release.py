@@ -11,7 +11,7 @@ import re
 import pytest
 from made_params import codes, made, section
 
-from multibot_rewrite.companions.params.known_nodes import built_in_nodes
+from multibot_rewrite.knowledge.parameters import built_in_nodes
 
 DRIVES = ("diff_drive_controller", "mecanum_drive_controller", "omni_wheel_drive_controller")
 
@@ -202,7 +202,8 @@ def test_an_unknown_parameter_is_of_no_release() -> None:
 
 def test_a_node_that_only_another_release_has_is_told_once() -> None:
     known = built_in_nodes("humble")
-    later = known.nodes["amcl"]._replace(releases="rolling")
+    amcl = known.nodes["amcl"]
+    later = amcl._replace(facts=amcl.facts._replace(releases="rolling"))
     known = known._replace(nodes={**known.nodes, "amcl": later})
     text = section("amcl", "saved_pose_filepath: /tmp/x")
     _, found = made(text, distro="humble", known=known)

@@ -17,7 +17,6 @@ from paths import SUPPORT
 from real_robots import spread
 
 from multibot_rewrite.companions.context import Context, make_context
-from multibot_rewrite.companions.params.known_nodes import built_in_nodes
 from multibot_rewrite.companions.params.rewrite import rewrite_params
 from multibot_rewrite.companions.params.sections import (
     ParamSection,
@@ -27,6 +26,7 @@ from multibot_rewrite.companions.params.sections import (
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, fill_template
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.findings.finding import ERROR
+from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.releases import NEWEST_LTS

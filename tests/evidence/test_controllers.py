@@ -12,7 +12,6 @@ import pytest
 import yaml
 from lxml import etree
 
-from multibot_rewrite.companions.params.known_nodes import built_in_nodes
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.evidence.hardware import exported
 from multibot_rewrite.evidence.nodes import nodes_of
@@ -21,6 +20,7 @@ from multibot_rewrite.fleets.build import Outputs, make_outputs
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import plan_fleet
 from multibot_rewrite.graph.transforms import sent_by
+from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.stacks import load_nodes, load_stack
 from multibot_rewrite.model import InputError
 from multibot_rewrite.remap.records import Table

@@ -5,12 +5,12 @@ from __future__ import annotations
 
 import pytest
 
-from multibot_rewrite.companions.params.known_nodes import built_in_nodes
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.evidence.filling import filled
 from multibot_rewrite.evidence.nodes import nodes_of
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import GivenNode
+from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import load_nodes, load_stack
 from multibot_rewrite.model import InputError

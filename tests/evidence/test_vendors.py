@@ -14,10 +14,10 @@ import pytest
 from controller_types import registered
 from vendor_sources import VARIABLE, WITHOUT, install, packages_below, sources_folder
 
-from multibot_rewrite.companions.params.known_nodes import built_in_nodes
 from multibot_rewrite.fleets.build import make_outputs
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import plan_fleet
+from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.releases import RELEASES
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")

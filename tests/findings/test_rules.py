@@ -12,7 +12,6 @@ from rule_examples import WITHOUT_FILE, found, whole
 
 from multibot_rewrite import catalogue
 from multibot_rewrite.findings.finding import LEVELS
-from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.fix import fix
 
@@ -25,10 +24,14 @@ EXAMPLES = [code for code in RULES if code not in WITHOUT_EXAMPLES]
 
 
 @pytest.mark.parametrize("code", EXAMPLES)
-def test_the_bad_example_is_found_once(code: str, tmp_path: Path) -> None:
+def test_the_examples_of_a_rule(code: str, tmp_path: Path) -> None:
+    """The bad one is found once, in its line, with edits where a fix is shown; the good one never."""
     rule = RULES[code]
     (finding,) = found(rule, rule.bad, tmp_path)
     assert finding.message
+    assert bool(finding.edits) == bool(rule.fixed)
+    (tmp_path / "good").mkdir()
+    assert found(rule, rule.good, tmp_path / "good") == []
     if set(WITHOUT_FILE) & set(rule.formats):
         # The line names the node or one of the topics or frames, else the robot.
         about = [it for it in (finding.node, *finding.names) if it] or [finding.robot]
@@ -36,17 +39,6 @@ def test_the_bad_example_is_found_once(code: str, tmp_path: Path) -> None:
         return
     assert finding.line == rule.line
     assert Path(finding.file).parent == tmp_path if finding.file else finding.place != "graph"
-
-
-@pytest.mark.parametrize("code", EXAMPLES)
-def test_the_good_example_is_left_alone(code: str, tmp_path: Path) -> None:
-    assert found(RULES[code], RULES[code].good, tmp_path) == []
-
-
-@pytest.mark.parametrize("code", EXAMPLES)
-def test_the_bad_example_has_edits_where_its_fix_is_shown(code: str, tmp_path: Path) -> None:
-    (finding,) = found(RULES[code], RULES[code].bad, tmp_path)
-    assert bool(finding.edits) == bool(RULES[code].fixed)
 
 
 @pytest.mark.parametrize("code", [code for code in EXAMPLES if RULES[code].fixed])
@@ -75,11 +67,12 @@ def test_the_codes_with_a_fix() -> None:
     }
 
 
-@pytest.mark.parametrize("rule", RULES.values(), ids=RULES)
-def test_the_words_of_a_rule_are_all_there(rule: Rule) -> None:
-    assert rule.level in LEVELS
-    assert all(text.endswith(".") for text in (rule.what, rule.why, rule.fix))
-    assert re.fullmatch(r"[a-z]+(-[a-z0-9]+)*", rule.name)
+def test_the_words_of_a_rule_are_all_there() -> None:
+    assert {code: it.level for code, it in RULES.items() if it.level not in LEVELS} == {}
+    texts = {code: (it.what, it.why, it.fix) for code, it in RULES.items()}
+    assert [code for code, it in texts.items() if not all(text.endswith(".") for text in it)] == []
+    named = re.compile(r"[a-z]+(-[a-z0-9]+)*")
+    assert [code for code, it in RULES.items() if not named.fullmatch(it.name)] == []
 
 
 def test_names_are_no_two_rules() -> None:

@@ -716,7 +716,7 @@ def test_any_words_in_a_plan_read_back(word: str, other: str, frames: list[str])
 
 
 def test_parameters_of_a_node_of_your_own(tmp_path: Path) -> None:
-    fleet_folder(tmp_path, f"parameters: facts.yaml\n{SMALL}")
+    fleet_folder(tmp_path, f"nodes: facts.yaml\n{SMALL}")
     facts = "nodes:\n  mast:\n    package: acme\n    params:\n      eye: {kind: frame}\n"
     (tmp_path / "facts.yaml").write_text(facts)
     own = "mast:\n  ros__parameters:\n    eye: base_link\n    note: base\n"

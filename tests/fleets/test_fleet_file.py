@@ -17,16 +17,16 @@ from fleet_folder import fleet_folder
 from paths import ROOT
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleets.__main__ import keys_page
 from multibot_rewrite.fleets.checked_yaml import TYPES
 from multibot_rewrite.fleets.fleet_data import SCHEMA, schema
 from multibot_rewrite.fleets.fleet_file import KINDS, FleetFile, Pose, RobotSpec, read_fleet
 from multibot_rewrite.fleets.fleet_or_plan import is_fleet
 from multibot_rewrite.model import InputError
+from tools.pages import fleet_keys
 
 ONE = "robots:\n  - {name: a, description: rover.urdf}\n"
 PAGE = (ROOT / "docs" / "fleet-file.md").read_text()
-KEYS = (ROOT / "docs" / "fleet-keys.md").read_text()
+KEYS = fleet_keys.page()
 
 
 def read(folder: Path, text: str, **files: str) -> FleetFile:
@@ -407,10 +407,6 @@ def test_an_old_jsonschema_is_one_line(
     )
     assert (out, err.count("\n")) == ("", 1)
     assert not (tmp_path / "out").exists()
-
-
-def test_the_page_of_keys_is_current() -> None:
-    assert keys_page() == KEYS, "run python -m multibot_rewrite.fleets > docs/fleet-keys.md"
 
 
 @pytest.mark.parametrize("part", [(), ("$defs", "robot"), ("$defs", "companions")])

@@ -7,18 +7,18 @@ from pathlib import Path
 import pytest
 from rule_examples import DESCRIPTION
 
-from multibot_rewrite.evidence.launch_records import (
-    LaunchedNode,
-    LaunchGraph,
-    LaunchOrder,
-    ParameterText,
-)
 from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets import launched_robot
 from multibot_rewrite.fleets.build import make_outputs
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import plan_fleet
+from multibot_rewrite.producers.launch.records import (
+    LaunchedNode,
+    LaunchGraph,
+    LaunchOrder,
+    ParameterText,
+)
 
 FLEET = """\
 layout: frames-per-robot

@@ -13,11 +13,11 @@ from paths import FIXTURES
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleets.fleet import NO_STATE_PUBLISHER, expected, facts_of, make_fleet
 from multibot_rewrite.graph.plan_file import from_yaml, to_yaml
-from multibot_rewrite.graph.snapshot import from_json, to_json
 from multibot_rewrite.library import rewrite
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.rules.check import check
+from multibot_rewrite.system.json import from_json, to_json
 
 COLLISION = FIXTURES / "graphs" / "MG402.json"
 PUBLISHER = "robot_state_publisher"

@@ -11,7 +11,6 @@ from pathlib import Path
 import pytest
 from random_parameters import LAYOUTS, RELEASE, STACKS, is_plain, planned, random_file
 
-from multibot_rewrite.companions.params.known_nodes import built_in_nodes
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.evidence.filling import filled
 from multibot_rewrite.evidence.parameter_files import given_nodes
@@ -19,6 +18,7 @@ from multibot_rewrite.evidence.records import GivenNode
 from multibot_rewrite.fleets.fleet import expected
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.graph.expectation import PlannedRobot
+from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.remap.records import NodeTable
 from multibot_rewrite.rosnames import bind, parse_remap, resolve_bound

@@ -19,10 +19,9 @@ from multibot_rewrite.findings.finding import NOTE
 from multibot_rewrite.fleets.fleet import expected
 from multibot_rewrite.fleets.scripts import LoadedFleet
 from multibot_rewrite.graph.expectation import Expectation
-from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphFrame, Snapshot
 from multibot_rewrite.remap.bridged_topics import TF_TYPE
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Edge, End, System
 
 RVIZ = "Visualization Manager:\n  Displays: []\n  Global Options: {Fixed Frame: map}\n"
 
@@ -45,11 +44,11 @@ def fleet(folder: Path, layout: str) -> LoadedFleet:
     return load_fleet(folder / "fleet.yaml")
 
 
-def relayed(plan: Expectation) -> Snapshot:
+def relayed(plan: Expectation) -> System:
     """The graph as planned, with what the relays send."""
     graph = as_planned(plan)
-    copies = (it._replace(topic="/tf_static" if it.static else "/tf") for it in graph.frames)
-    return sent(graph._replace(frames=(*graph.frames, *copies)))
+    copies = (it._replace(topic="/tf_static" if it.static else "/tf") for it in graph.edges)
+    return sent(graph._replace(edges=(*graph.edges, *copies)))
 
 
 @pytest.mark.parametrize(
@@ -80,8 +79,8 @@ def test_a_relayed_graph_is_as_planned_and_a_leak_is_none(tmp_path: Path, layout
     graph = relayed(plan)
     assert [it for it in check(plan, graph) if it.level != NOTE] == []
     state = next(it for it in plan.robots[0].nodes if "robot_state" in it)
-    leak = GraphEndpoint(TOPIC, PUBLISHES, "/tf", TF_TYPE, "", state, None, "")
-    spoiled = sent(graph._replace(endpoints=(*graph.endpoints, leak)))
+    leak = End(TOPIC, PUBLISHES, "/tf", TF_TYPE, "", state, None, "")
+    spoiled = sent(graph._replace(ends=(*graph.ends, leak)))
     assert {"MG405"} <= {it.code for it in check(plan, spoiled)}
 
 
@@ -126,16 +125,16 @@ def test_bare_frames_are_bridged(tmp_path: Path) -> None:
     assert world.arguments == ("--frame-id", "map", "--child-frame-id", "robot2/map")
 
 
-def bridged(plan: Expectation) -> Snapshot:
+def bridged(plan: Expectation) -> System:
     """The graph as planned, with what the bridges and the transforms beside them send."""
     graph = as_planned(plan)
     copies = [
-        GraphFrame(f"{robot}/{it.child}", f"{robot}/{it.parent}", f"/{topic}", it.static, ())
-        for it in graph.frames
+        Edge(f"{robot}/{it.child}", f"{robot}/{it.parent}", f"/{topic}", it.static, ())
+        for it in graph.edges
         for _, robot, topic in [it.topic.split("/")]
     ]
-    worlds = [GraphFrame(f"{it.name}/map", "map", "/tf_static", True, ()) for it in plan.robots]
-    return sent(graph._replace(frames=(*graph.frames, *copies, *worlds)))
+    worlds = [Edge(f"{it.name}/map", "map", "/tf_static", True, ()) for it in plan.robots]
+    return sent(graph._replace(edges=(*graph.edges, *copies, *worlds)))
 
 
 def test_a_bridged_graph_is_as_planned_and_a_leak_is_none(tmp_path: Path) -> None:
@@ -144,9 +143,9 @@ def test_a_bridged_graph_is_as_planned_and_a_leak_is_none(tmp_path: Path) -> Non
     assert [it for it in check(plan, graph) if it.level != NOTE] == []
     # Without the remap rule a robot's frames are on /tf, with bare names.
     state = next(it for it in plan.robots[0].nodes if "robot_state" in it)
-    leak = GraphEndpoint(TOPIC, PUBLISHES, "/tf", TF_TYPE, "", state, None, "")
-    bare = GraphFrame("base_link", "odom", "/tf", False, ())
-    spoiled = graph._replace(endpoints=(*graph.endpoints, leak), frames=(*graph.frames, bare))
+    leak = End(TOPIC, PUBLISHES, "/tf", TF_TYPE, "", state, None, "")
+    bare = Edge("base_link", "odom", "/tf", False, ())
+    spoiled = graph._replace(ends=(*graph.ends, leak), frames=(*graph.edges, bare))
     (said,) = (it for it in check(plan, sent(spoiled)) if it.code == "MG405")
     assert (said.node, said.names[0]) == (state, "/tf")
 

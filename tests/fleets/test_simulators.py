@@ -15,8 +15,8 @@ from multibot_rewrite.fleets.fleet import expected
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.graph.expectation import Expectation
-from multibot_rewrite.graph.snapshot import GraphNode, Snapshot
 from multibot_rewrite.rules.check import check
+from multibot_rewrite.system.records import Node, System
 
 # A drive that is a ROS node, and a sensor whose topic a bridge has to carry.
 DESCRIPTION = """\
@@ -143,7 +143,7 @@ def test_build_spawns_and_bridges_simulated_robots_only(tmp_path: Path) -> None:
 
 def test_no_bridge_is_missing_for_a_real_robot(tmp_path: Path) -> None:
     state = [f"/{robot}/robot_state_publisher" for robot in ("r1", "r2")]
-    seen = Snapshot(tuple(GraphNode(it, it) for it in state), (), (), environment())
+    seen = System(tuple(Node(it, it) for it in state), (), (), environment())
 
     def codes(more: str) -> set[str]:
         return {it.code for it in check(expectation(tmp_path, more), seen)}

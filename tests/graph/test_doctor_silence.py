@@ -21,21 +21,20 @@ from healthy_systems import (
     nav2_with_tools,
 )
 
-from multibot_rewrite.graph.snapshot import GraphFrame, GraphNode, Snapshot
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.live.seen_plan import seen_plan
 from multibot_rewrite.rules.guess import guess_robots
-from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
+from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES, Edge, Node, System
 
 IMU = "sensor_msgs/msg/Imu"
-EMPTY = Snapshot((), (), (), environment())
+EMPTY = System((), (), (), environment())
 
 
-def two_windows(graph: Snapshot) -> Snapshot:
-    return graph._replace(nodes=(*graph.nodes, *(GraphNode("/robot1/rviz2", it) for it in "ab")))
+def two_windows(graph: System) -> System:
+    return graph._replace(nodes=(*graph.nodes, *(Node("/robot1/rviz2", it) for it in "ab")))
 
 
-SILENT: dict[str, Callable[[Snapshot], Snapshot]] = {
+SILENT: dict[str, Callable[[System], System]] = {
     "the ground truth of a simulator is no tree of the robot": added(
         "/robot1/gz_bridge", (PUBLISHES, "/tf_ground_truth", TF)
     ),
@@ -107,9 +106,8 @@ SILENT: dict[str, Callable[[Snapshot], Snapshot]] = {
         added("/fleet_manager", (CALLS, "/carrier/navigate_to_pose", NAVIGATE)),
     ),
     "a side whose version of the message is not known": lambda graph: graph._replace(
-        endpoints=tuple(
-            it._replace(type_hash="RIHS01_a") if it.role == PUBLISHES else it
-            for it in graph.endpoints
+        ends=tuple(
+            it._replace(type_hash="RIHS01_a") if it.role == PUBLISHES else it for it in graph.ends
         )
     ),
 }
@@ -139,8 +137,8 @@ def test_both_robots_may_send_the_world_above_them() -> None:
         odometry = (PUBLISHES, f"/{robot}/odom", ODOMETRY)
         velocity = (SUBSCRIBES, f"/{robot}/cmd_vel", TWIST)
         graph = added(f"/{robot}/localizer", ends, odometry, velocity)(graph)
-    world = GraphFrame("map", "world", "/tf_static", True, ())
-    graph = sent(graph._replace(frames=(world,)))
+    world = Edge("map", "world", "/tf_static", True, ())
+    graph = sent(graph._replace(edges=(world,)))
     assert [it.name for it in guess_robots(graph)] == ["robot1", "robot2"]
     assert diagnose(graph).findings == ()
 

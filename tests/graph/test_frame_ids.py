@@ -9,26 +9,30 @@ import pytest
 from fault_changes import nav, shared_tf
 from graph_examples import read_example, read_system
 from healthy_systems import SYSTEMS, plan
+from node_answers import told
 
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.live.headers import HeaderSamples, sensor_topics
 from multibot_rewrite.graph.merging import Look, merged
-from multibot_rewrite.graph.snapshot import (
-    GraphEndpoint,
-    HeardFrame,
-    Snapshot,
-    from_json,
-    to_json,
-)
-from multibot_rewrite.graph.states import Controller, NodeState, Parameter
 from multibot_rewrite.graph.zenoh.cdr import read_header_frame
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.model import InputError
 from multibot_rewrite.rules.check import check, judge
 from multibot_rewrite.rules.index import index
 from multibot_rewrite.rules.ownership import Whose
-from multibot_rewrite.system.records import PUBLISHES, TOPIC
+from multibot_rewrite.system.answers import with_answers
+from multibot_rewrite.system.json import from_json, to_json
+from multibot_rewrite.system.records import (
+    PUBLISHES,
+    TOPIC,
+    End,
+    Heard,
+    Node,
+    System,
+    answering,
+    clocks,
+)
 
 SCAN, JOINTS = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/JointState"
 TWO_ROBOTS = """\
@@ -53,8 +57,8 @@ def found(*lines: str) -> list[Finding]:
     return judge(read_system(TWO_ROBOTS + "".join(f"running: {it}\n" for it in lines)))
 
 
-def heard(graph: Snapshot, topic: str, frame: str) -> Snapshot:
-    return graph._replace(heard=(HeardFrame(topic, frame),))
+def heard(graph: System, topic: str, frame: str) -> System:
+    return graph._replace(heard=(Heard(topic, frame),))
 
 
 def codes(text: str, topic: str, frame: str) -> list[str]:
@@ -111,9 +115,9 @@ def test_systems_whose_headers_are_right(name: str) -> None:
     """Every sensor topic in a frame of its robot's tree: a leaf, where there is one."""
     graph = SYSTEMS[name]()
     seen = diagnose(graph).whose
-    own = {seen.frame_robot(it.child): it.child for it in graph.frames}
-    topics = [it.name for it in sensor_topics(graph.endpoints)]
-    names = [HeardFrame(it, own.get(seen.robot(it), "")) for it in topics]
+    own = {seen.frame_robot(it.child): it.child for it in graph.edges}
+    topics = [it.name for it in sensor_topics(graph.ends)]
+    names = [Heard(it, own.get(seen.robot(it), "")) for it in topics]
     findings = diagnose(graph._replace(heard=tuple(names))).findings
     assert [str(it) for it in findings] == []
 
@@ -134,7 +138,7 @@ def test_check_says_it_as_well() -> None:
     bare = heard(shared_tf(), "/robot1/scan", "base_link")
     assert "MG412" in {it.code for it in check(plan(("nav2",), "L2"), bare)}
     graph = nav()
-    frames = sorted({it.child for it in graph.frames if "robot1" in it.topic})
+    frames = sorted({it.child for it in graph.edges if "robot1" in it.topic})
     right = heard(graph, "/robot1/scan", frames[0])
     assert {it.code for it in check(plan(("nav2",), "L1"), right)} <= {"MG108"}
     other = heard(graph, "/robot1/scan", "no_such_frame")
@@ -168,8 +172,8 @@ def test_what_is_no_header_has_no_frame(data: bytes) -> None:
     assert read_header_frame(data) is None
 
 
-def end(topic: str, type_: str = SCAN, node: str = "/a") -> GraphEndpoint:
-    return GraphEndpoint(TOPIC, PUBLISHES, topic, type_, "", node, None, "")
+def end(topic: str, type_: str = SCAN, node: str = "/a") -> End:
+    return End(TOPIC, PUBLISHES, topic, type_, "", node, None, "")
 
 
 def test_one_message_of_one_publisher_ends_its_subscription() -> None:
@@ -203,15 +207,18 @@ def test_one_message_of_one_publisher_ends_its_subscription() -> None:
 
 
 def test_a_snapshot_keeps_what_was_heard_and_answered() -> None:
-    own = (Controller("arm", "active", ("joint1/position",)), Controller("spare", "inactive"))
+    own = (("arm", "active", ("joint1/position",)), ("spare", "inactive", ()))
     states = (
-        NodeState("/a", "inactive", True, (), (Parameter("rate", "5.0"),)),
-        NodeState("/b", "", None, own),
-        NodeState("/c"),
+        told("/a", "inactive", True, (), (("rate", "5.0"),)),
+        told("/b", "", None, own),
+        told("/c"),
     )
-    graph = nav()._replace(heard=(HeardFrame("/scan", "/laser"),), states=states)
+    nodes = (*nav().nodes, Node("/a"))
+    graph = with_answers(nav()._replace(nodes=nodes, heard=(Heard("/scan", "/laser"),)), states)
     assert from_json(to_json(graph), "g") == graph
-    assert b'"heard"' not in to_json(nav()) and b'"states"' not in to_json(nav())
+    assert graph.nodes[-1].lifecycle == "inactive"
+    assert answering(graph) == {"/a", "/b"}
+    assert not any(it in to_json(nav()) for it in (b'"heard"', b'"parameters"', b'"lifecycle"'))
 
 
 @pytest.mark.parametrize(
@@ -220,10 +227,10 @@ def test_a_snapshot_keeps_what_was_heard_and_answered() -> None:
         ('"heard": 3, ', "heard: expected a list, not 3"),
         ('"heard": [{"topic": "scan", "frame": ""}], ', "heard[0].topic: expected a full name"),
         (
-            '"states": [{"node": "/a", "sim_time": "no"}], ',
-            "states[0].sim_time: expected true or false",
+            '"parameters": [{"node": "/a", "name": "rate", "value": 5}], ',
+            "parameters[0].value: expected text",
         ),
-        ('"states": [{"lifecycle": "active"}], ', "states[0].node: missing"),
+        ('"controllers": [{"name": "arm"}], ', "controllers[0].manager: missing"),
     ],
 )
 def test_wrong_records_are_said_with_their_place(text: str, said: str) -> None:
@@ -234,26 +241,26 @@ def test_wrong_records_are_said_with_their_place(text: str, said: str) -> None:
 
 
 def test_looks_from_two_machines_are_joined() -> None:
-    first = nav()._replace(
-        heard=(HeardFrame("/b", "x"), HeardFrame("/a", "x")),
-        states=(NodeState("/n"), NodeState("/m", "active")),
-    )
-    second = nav()._replace(
-        heard=(HeardFrame("/a", "x"), HeardFrame("/a", "y")), states=(NodeState("/n", "inactive"),)
-    )
+    there = nav()._replace(nodes=(Node("/m"), Node("/n")))
+    first = there._replace(heard=(Heard("/b", "x"), Heard("/a", "x")))
+    second = there._replace(heard=(Heard("/a", "x"), Heard("/a", "y")))
+    first = with_answers(first, [told("/n", sim_time=True), told("/m", "active")])
+    second = with_answers(second, [told("/n", "inactive")])
     both = merged([Look("1", first), Look("2", second)])
     assert both.heard == (("/a", "x"), ("/a", "y"), ("/b", "x"))
-    assert both.states == (NodeState("/m", "active"), NodeState("/n", "inactive"))
+    assert [(it.name, it.lifecycle) for it in both.nodes] == [("/m", "active"), ("/n", "inactive")]
+    assert clocks(both) == {"/n": True}
 
 
 def test_the_table_shows_what_was_heard_and_answered(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     states = (
-        NodeState("/m", "", False, (Controller("arm", "active"),)),
-        NodeState("/n", "inactive"),
+        told("/m", "", False, (("arm", "active", ()),)),
+        told("/n", "inactive"),
     )
-    graph = nav()._replace(heard=(HeardFrame("/scan", "laser"),), states=states)
+    nodes = (*nav().nodes, Node("/n"))
+    graph = with_answers(nav()._replace(nodes=nodes, heard=(Heard("/scan", "laser"),)), states)
     (tmp_path / "g.json").write_bytes(to_json(graph))
     assert multibot.main(["snapshot", "--merge", str(tmp_path / "g.json")]) == 0
     lines = [line.split() for line in capsys.readouterr().out.splitlines()]

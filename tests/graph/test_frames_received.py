@@ -6,27 +6,27 @@ import pytest
 from graph_cases import healthy, read_plan
 
 from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.graph.snapshot import Caveat, Snapshot
 from multibot_rewrite.rules.check import check
+from multibot_rewrite.system.records import Caveat, System
 
 LAYOUTS = ("frames-per-robot", "tf-per-robot", "both", "postfix")
 
 
-def found(layout: str, graph: Snapshot) -> list[Finding]:
+def found(layout: str, graph: System) -> list[Finding]:
     return [it for it in check(read_plan(layout), graph) if it.code == "MG208"]
 
 
-def without(graph: Snapshot, layout: str, names: tuple[str, ...]) -> Snapshot:
+def without(graph: System, layout: str, names: tuple[str, ...]) -> System:
     """The graph without robot2's frames of these bare names; all of them for no names."""
     kept = tuple(
         it
-        for it in graph.frames
+        for it in graph.edges
         if not (
             ("robot2" in it.topic or "robot2" in it.child)
             and (not names or any(name in it.child for name in names))
         )
     )
-    return graph._replace(frames=kept)
+    return graph._replace(edges=kept)
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
@@ -49,7 +49,7 @@ def test_a_robot_whose_publisher_has_another_description(layout: str) -> None:
 
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_nothing_is_said_where_tf_was_not_looked_at(layout: str) -> None:
-    assert found(layout, healthy(layout)._replace(frames=())) == []
+    assert found(layout, healthy(layout)._replace(edges=())) == []
 
 
 def test_in_an_incomplete_view_it_is_inconclusive() -> None:

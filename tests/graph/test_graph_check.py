@@ -27,26 +27,30 @@ from small_fleet import LINKS, NODES, ROBOTS, healthy, plan
 
 from multibot_rewrite.findings.finding import INCONCLUSIVE
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, expect
-from multibot_rewrite.graph.snapshot import (
-    Caveat,
-    GraphEndpoint,
-    GraphFrame,
-    GraphNode,
-    Qos,
-    Snapshot,
-)
 from multibot_rewrite.naming import make_naming, spelled
 from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.table import build_table
 from multibot_rewrite.rules.check import ABSENCE, RULES, check, side_by_side
 from multibot_rewrite.rules.ownership import name_ownership
 from multibot_rewrite.rules.pair.in_enclaves import without_enclave
-from multibot_rewrite.system.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.records import (
+    PUBLISHES,
+    SERVES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+    Caveat,
+    Edge,
+    End,
+    Node,
+    Qos,
+    System,
+)
 
 LAYOUTS = ("L1", "L2", "L3", "L4")
 
 
-def codes(graph: Snapshot, layout: str = "L2") -> list[str]:
+def codes(graph: System, layout: str = "L2") -> list[str]:
     return sorted({finding.code for finding in check(plan(layout), graph)})
 
 
@@ -65,7 +69,7 @@ def test_a_node_that_is_not_there() -> None:
 
 def test_a_node_started_without_its_namespace_has_that_cause() -> None:
     graph = without_node(healthy(), "/robot1/driver")
-    graph = graph._replace(nodes=(*graph.nodes, GraphNode("/driver", "x")))
+    graph = graph._replace(nodes=(*graph.nodes, Node("/driver", "x")))
     (found,) = check(plan(), graph)
     assert found.code == "MG101"
     assert found.hint == (
@@ -76,7 +80,7 @@ def test_a_node_started_without_its_namespace_has_that_cause() -> None:
 
 def test_a_node_started_without_its_name_has_that_cause() -> None:
     graph = without_node(healthy("L4"), "/driver_robot1")
-    graph = graph._replace(nodes=(*graph.nodes, GraphNode("/driver", "x")))
+    graph = graph._replace(nodes=(*graph.nodes, Node("/driver", "x")))
     (found,) = check(plan("L4"), graph)
     assert found.hint == (
         "/driver is running: it was started without the robot's name; "
@@ -124,10 +128,8 @@ def test_a_name_that_the_plan_has_for_two_robots_is_a_leak_too() -> None:
     wanted = plan()._replace(endpoints=(*plan().endpoints, *ends))
     graph = healthy()
     for robot in ROBOTS:
-        end = GraphEndpoint(
-            TOPIC, PUBLISHES, "/alarm", "std_msgs/msg/Bool", "", f"/{robot}/driver", None, ""
-        )
-        graph = graph._replace(endpoints=(*graph.endpoints, end))
+        end = End(TOPIC, PUBLISHES, "/alarm", "std_msgs/msg/Bool", "", f"/{robot}/driver", None, "")
+        graph = graph._replace(ends=(*graph.ends, end))
     found = check(wanted, graph)
     assert [(f.code, f.node) for f in found] == [
         ("MG320", "/robot1/driver"),
@@ -147,16 +149,16 @@ def test_an_endpoint_with_a_condition_is_not_planned() -> None:
 
 def test_two_nodes_of_one_name() -> None:
     graph = healthy()
-    twice = graph._replace(nodes=(*graph.nodes, GraphNode("/robot1/driver", "other")))
+    twice = graph._replace(nodes=(*graph.nodes, Node("/robot1/driver", "other")))
     (found,) = check(plan(), twice)
     assert (found.code, found.robot) == ("MG301", "robot1")
 
 
 def test_two_types_of_one_topic() -> None:
     graph = healthy()
-    first = next(e for e in graph.endpoints if e.name == "/robot1/joint_states")
+    first = next(e for e in graph.ends if e.name == "/robot1/joint_states")
     other = first._replace(type="std_msgs/msg/String", node="/robot1/driver")
-    (found,) = check(plan(), graph._replace(endpoints=(*graph.endpoints, other)))
+    (found,) = check(plan(), graph._replace(ends=(*graph.ends, other)))
     assert found.code == "MG306"
     assert (found.node, "as std_msgs/msg/String" in found.message) == ("/robot1/driver", True)
 
@@ -177,19 +179,17 @@ def test_qos_that_cannot_connect(offered: Qos | None, wanted: Qos | None, clash:
         e._replace(qos=offered if e.role == PUBLISHES else wanted)
         if e.name == "/robot1/joint_states"
         else e
-        for e in healthy().endpoints
+        for e in healthy().ends
     )
-    assert codes(healthy()._replace(endpoints=ends)) == (["MG307"] if clash else [])
+    assert codes(healthy()._replace(ends=ends)) == (["MG307"] if clash else [])
 
 
 # ---------------------------------------------------------------- tf
 
 
-def edges(
-    change: Callable[[Sequence[GraphFrame]], Sequence[GraphFrame]], layout: str = "L2"
-) -> list[str]:
+def edges(change: Callable[[Sequence[Edge]], Sequence[Edge]], layout: str = "L2") -> list[str]:
     graph = healthy(layout)
-    return codes(graph._replace(frames=tuple(change(graph.frames))), layout)
+    return codes(graph._replace(edges=tuple(change(graph.edges))), layout)
 
 
 def test_a_frame_with_two_parents() -> None:
@@ -199,7 +199,7 @@ def test_a_frame_with_two_parents() -> None:
 def test_a_chain_through_frames_of_nobody_is_one_tree() -> None:
     """TurtleBot 4: static transforms between the frames of the controller and the bare ones."""
 
-    def relayed(frames: Sequence[GraphFrame]) -> Sequence[GraphFrame]:
+    def relayed(frames: Sequence[Edge]) -> Sequence[Edge]:
         odom, *rest = frames
         names = (odom.parent, "own/odom", "own/base", odom.child)
         return [
@@ -221,8 +221,8 @@ def test_an_undeclared_frame() -> None:
 
 def test_a_doubled_prefix_is_called_that() -> None:
     graph = healthy()
-    doubled = graph.frames[1]._replace(child="robot1/laser/robot1")
-    found = check(plan(), graph._replace(frames=(*graph.frames, doubled)))
+    doubled = graph.edges[1]._replace(child="robot1/laser/robot1")
+    found = check(plan(), graph._replace(edges=(*graph.edges, doubled)))
     assert [f.code for f in found] == ["MG407"]
     assert "frame_prefix" in found[0].hint
 
@@ -364,11 +364,11 @@ def test_the_rule_of_the_postfix_layout() -> None:
 def test_an_action_needs_more_than_one_rule() -> None:
     end = PlannedEndpoint("/robot1/driver", "action", "serves", "/robot1/go", "a/action/B", "/go")
     wanted = plan()._replace(endpoints=(*plan().endpoints, end))
-    there = GraphEndpoint("action", "serves", "/go", "a/action/B", "", end.node, None, "")
+    there = End("action", "serves", "/go", "a/action/B", "", end.node, None, "")
     hidden = there._replace(
         kind="service", name="/go/_action/send_goal", type="a/action/B_SendGoal"
     )
-    graph = healthy()._replace(endpoints=(*healthy().endpoints, there, hidden))
+    graph = healthy()._replace(ends=(*healthy().ends, there, hidden))
     found = check(wanted, graph)
     assert [f.code for f in found] == ["MG102", "MG305"]
     assert "one rule for each of its _action/ names" in found[0].hint
@@ -378,9 +378,9 @@ def test_a_managed_node_may_not_be_configured() -> None:
     name = "/robot1/driver/get_state"
     end = PlannedEndpoint("/robot1/driver", SERVICE, SERVES, name, "", "~/get_state")
     wanted = plan()._replace(endpoints=(*plan().endpoints, end))
-    state = GraphEndpoint(SERVICE, SERVES, name, "", "", "/robot1/driver", None, "")
-    kept = (e for e in healthy().endpoints if e.name != "/robot1/reset")
-    (found,) = check(wanted, healthy()._replace(endpoints=(*kept, state)))
+    state = End(SERVICE, SERVES, name, "", "", "/robot1/driver", None, "")
+    kept = (e for e in healthy().ends if e.name != "/robot1/reset")
+    (found,) = check(wanted, healthy()._replace(ends=(*kept, state)))
     assert found.message == "should offer service /robot1/reset, but does not"
     assert "ros2 lifecycle get /robot1/driver" in found.hint
 
@@ -522,7 +522,7 @@ def test_stamped_and_plain_commands_have_a_known_cause() -> None:
 
 
 def test_a_service_and_a_topic_of_one_name_are_no_clash() -> None:
-    end = GraphEndpoint(
+    end = End(
         SERVICE,
         SERVES,
         "/robot1/joint_states",
@@ -532,7 +532,7 @@ def test_a_service_and_a_topic_of_one_name_are_no_clash() -> None:
         None,
         "",
     )
-    assert check(plan(), healthy()._replace(endpoints=(*healthy().endpoints, end))) == []
+    assert check(plan(), healthy()._replace(ends=(*healthy().ends, end))) == []
 
 
 @pytest.mark.parametrize(
@@ -550,9 +550,9 @@ def test_two_versions_of_a_message(hashes: tuple[str, str], clash: bool) -> None
         e._replace(type_hash=offered if e.role == PUBLISHES else asked)
         if e.name == "/robot1/joint_states"
         else e
-        for e in healthy().endpoints
+        for e in healthy().ends
     )
-    found = check(plan(), healthy()._replace(endpoints=ends))
+    found = check(plan(), healthy()._replace(ends=ends))
     assert [f.code for f in found] == (["MG306"] if clash else [])
     assert all("another version of sensor_msgs/msg/JointState" in f.message for f in found)
 
@@ -593,9 +593,9 @@ def test_what_dds_connects(
 
 def test_many_publishers_are_one_finding_for_a_listener() -> None:
     graph = with_qos(healthy(), "/robot1/joint_states", qos(), qos(durability="TRANSIENT_LOCAL"))
-    driver = next(e for e in graph.endpoints if e.name == "/robot1/joint_states" and e.qos == qos())
+    driver = next(e for e in graph.ends if e.name == "/robot1/joint_states" and e.qos == qos())
     more = tuple(driver._replace(node=f"/robot1/_more{at}") for at in range(5))
-    (found,) = check(plan(), graph._replace(endpoints=(*graph.endpoints, *more)))
+    (found,) = check(plan(), graph._replace(ends=(*graph.ends, *more)))
     assert "_more0, /robot1/_more1, /robot1/_more2 and 3 more offers VOLATILE" in found.message
 
 
@@ -603,7 +603,7 @@ def test_many_publishers_are_one_finding_for_a_listener() -> None:
 
 
 def test_an_operator_topic_without_an_operator_is_silent() -> None:
-    assert not [e for e in healthy().endpoints if e.role == PUBLISHES and "cmd_vel" in e.name]
+    assert not [e for e in healthy().ends if e.role == PUBLISHES and "cmd_vel" in e.name]
     assert check(plan(), healthy()) == []
 
 
@@ -626,7 +626,7 @@ def test_a_teleop_of_one_robot_is_no_fault_of_the_other() -> None:
     assert check(plan(), with_node(healthy(), "/teleop_twist_keyboard", twist)) == []
 
 
-def with_pilot(name: str) -> tuple[Expectation, Snapshot]:
+def with_pilot(name: str) -> tuple[Expectation, System]:
     """A planned pilot of robot1 that is not there, and one that is, with another topic."""
     first, second = plan().robots
     end = PlannedEndpoint("/robot1/pilot", TOPIC, PUBLISHES, "/robot1/cmd_vel", "", "cmd_vel")
@@ -664,13 +664,13 @@ SCAN = "sensor_msgs/msg/LaserScan"
 COSTMAP = "/robot1/local_costmap/local_costmap"
 
 
-def with_costmap(*names: str, published: str = "/robot1/scan") -> tuple[Expectation, Snapshot]:
+def with_costmap(*names: str, published: str = "/robot1/scan") -> tuple[Expectation, System]:
     """A planned costmap that hears these, and somebody who publishes."""
     first, second = plan().robots
     wanted = plan()._replace(robots=(first._replace(nodes=(*first.nodes, COSTMAP)), second))
     graph = with_node(healthy(), COSTMAP, *((SUBSCRIBES, name, SCAN) for name in names))
-    end = GraphEndpoint(TOPIC, PUBLISHES, published, SCAN, "", "/robot1/driver", None, "")
-    return wanted, graph._replace(endpoints=(*graph.endpoints, end))
+    end = End(TOPIC, PUBLISHES, published, SCAN, "", "/robot1/driver", None, "")
+    return wanted, graph._replace(ends=(*graph.ends, end))
 
 
 def test_a_topic_that_fell_below_a_costmap() -> None:
@@ -761,7 +761,7 @@ def test_descriptions_that_are_not_rewritten() -> None:
 
 
 def test_a_shared_topic_alone_is_no_collision() -> None:
-    publishers = {f.publishers for f in healthy().frames if f.topic == "/tf"}
+    publishers = {f.publishers for f in healthy().edges if f.topic == "/tf"}
     assert publishers == {("/robot1/robot_state_publisher", "/robot2/robot_state_publisher")}
     assert check(plan(), healthy()) == []
 
@@ -777,19 +777,17 @@ def test_a_shared_topic_alone_is_no_collision() -> None:
 )  # fmt: skip
 def test_a_name_put_in_twice(layout: str, name: str) -> None:
     graph = healthy(layout)
-    edge = next(f for f in graph.frames if f.static)
-    found = check(plan(layout), graph._replace(frames=(*graph.frames, edge._replace(child=name))))
+    edge = next(f for f in graph.edges if f.static)
+    found = check(plan(layout), graph._replace(edges=(*graph.edges, edge._replace(child=name))))
     assert [(f.code, f.robot, f.names) for f in found] == [("MG407", "robot1", (name,))]
     assert "frame_prefix" in found[0].hint
     assert "tf_frame_prefix_enable" in found[0].hint
 
 
-def with_frame(layout: str, child: str, parent: str, static: bool = True) -> Snapshot:
+def with_frame(layout: str, child: str, parent: str, static: bool = True) -> System:
     graph = healthy(layout)
-    topic = next(f.topic for f in graph.frames if f.static)
-    return sent(
-        graph._replace(frames=(*graph.frames, GraphFrame(child, parent, topic, static, ())))
-    )
+    topic = next(f.topic for f in graph.edges if f.static)
+    return sent(graph._replace(edges=(*graph.edges, Edge(child, parent, topic, static, ()))))
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
@@ -822,8 +820,8 @@ def test_other_frames_of_the_plan_are_silent() -> None:
 def test_many_undeclared_frames_are_one_finding() -> None:
     graph = healthy()
     for at in range(6):
-        more = with_frame("L2", f"part{at}/robot1", "base_link/robot1").frames[-1]
-        graph = graph._replace(frames=(*graph.frames, more))
+        more = with_frame("L2", f"part{at}/robot1", "base_link/robot1").edges[-1]
+        graph = graph._replace(edges=(*graph.edges, more))
     (found,) = check(plan(), graph)
     assert len(found.names) == 6
     assert "and 3 more" in found.message
@@ -836,9 +834,9 @@ def test_map_above_odom_is_silent() -> None:
 
 def test_a_copy_of_all_tf_for_rviz_is_silent() -> None:
     graph = with_node(healthy("L3"), "/tf_bridge", (PUBLISHES, "/tf", "tf2_msgs/msg/TFMessage"))
-    copies = tuple(f._replace(topic="/tf") for f in graph.frames if not f.static)
+    copies = tuple(f._replace(topic="/tf") for f in graph.edges if not f.static)
     assert copies
-    assert check(plan("L3"), sent(graph._replace(frames=(*graph.frames, *copies)))) == []
+    assert check(plan("L3"), sent(graph._replace(edges=(*graph.edges, *copies)))) == []
 
 
 def test_a_tf_listener_that_no_rule_reached() -> None:
@@ -929,7 +927,7 @@ def test_robots_outside_their_enclaves_cost_no_more_each_in_a_large_fleet() -> N
 
 def test_services_that_a_twin_may_hide_are_not_missed() -> None:
     graph = healthy()
-    left = tuple(end for end in graph.endpoints if end.name != "/robot1/reset")
-    twins = (*graph.nodes, GraphNode("/robot1/driver", "other"))
-    assert "MG102" in codes(graph._replace(endpoints=left))
-    assert codes(graph._replace(endpoints=left, nodes=twins)) == ["MG301"]
+    left = tuple(end for end in graph.ends if end.name != "/robot1/reset")
+    twins = (*graph.nodes, Node("/robot1/driver", "other"))
+    assert "MG102" in codes(graph._replace(ends=left))
+    assert codes(graph._replace(ends=left, nodes=twins)) == ["MG301"]

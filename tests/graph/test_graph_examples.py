@@ -6,9 +6,8 @@ import pytest
 from graph_examples import read_example
 
 from multibot_rewrite import catalogue
-from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.rules.check import RULES, check
-from multibot_rewrite.system.records import ACTION, CALLS, SERVICE
+from multibot_rewrite.system.records import ACTION, CALLS, SERVICE, Edge
 
 EXAMPLE = """\
 planned: frames of robot1 on /robot1/tf: base_link, laser
@@ -34,12 +33,12 @@ def test_the_plan_of_an_example() -> None:
 def test_the_graph_of_an_example() -> None:
     _, graph = read_example(EXAMPLE)
     assert [node.name for node in graph.nodes] == ["/robot1/nav"]
-    goal, path = graph.endpoints
+    goal, path = graph.ends
     assert (goal.kind, goal.qos, path.type) == (ACTION, None, "nav_msgs/msg/Path")
     assert path.qos is not None
     assert (path.qos.reliability, path.qos.durability) == ("BEST_EFFORT", "TRANSIENT_LOCAL")
     senders = ("/robot1/a", "/robot1/b")
-    assert graph.frames == (GraphFrame("base_link", "odom", "/robot1/tf_static", True, senders),)
+    assert graph.edges == (Edge("base_link", "odom", "/robot1/tf_static", True, senders),)
 
 
 def test_two_lines_of_a_node_are_two_nodes() -> None:
@@ -49,7 +48,7 @@ def test_two_lines_of_a_node_are_two_nodes() -> None:
 
 def test_a_service_needs_no_type() -> None:
     plan, graph = read_example("as planned: /robot1/nav serves /robot1/stop\n")
-    assert plan.endpoints[0].kind == graph.endpoints[0].kind == SERVICE
+    assert plan.endpoints[0].kind == graph.ends[0].kind == SERVICE
     assert check(plan, graph) == []
 
 

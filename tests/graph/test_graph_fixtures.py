@@ -16,8 +16,9 @@ from pytest import CaptureFixture, MonkeyPatch
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.graph.plan_file import from_yaml
-from multibot_rewrite.graph.snapshot import Snapshot, from_json, to_json
 from multibot_rewrite.rules.check import RULES
+from multibot_rewrite.system.json import from_json, to_json
+from multibot_rewrite.system.records import System
 
 ids = [f"{case.layout}-{case.code}" for case in CASES]
 
@@ -50,7 +51,7 @@ def test_the_plan_is_what_the_command_makes(layout: str, tmp_path: Path) -> None
     assert from_yaml(made.read_bytes(), "made") == read_plan(layout)
 
 
-def same(path: str, graph: Snapshot) -> None:
+def same(path: str, graph: System) -> None:
     """The file is this graph: if not, tests/support/graph_cases.py writes it anew."""
     data = (ROOT / path).read_bytes()
     assert data == to_json(graph)

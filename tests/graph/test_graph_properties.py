@@ -17,19 +17,12 @@ from multibot_rewrite.graph.expectation import (
 )
 from multibot_rewrite.graph.plan_file import read_plan, to_yaml
 from multibot_rewrite.graph.plan_file import to_json as plan_to_json
-from multibot_rewrite.graph.snapshot import (
-    GraphEndpoint,
-    GraphFrame,
-    GraphNode,
-    Snapshot,
-    from_json,
-    to_json,
-)
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.naming import Naming, affix, make_naming, spelled
 from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.table import build_table
 from multibot_rewrite.rules.check import check
+from multibot_rewrite.system.json import from_json, to_json
 from multibot_rewrite.system.records import (
     CALLS,
     PUBLISHES,
@@ -38,6 +31,10 @@ from multibot_rewrite.system.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
+    Edge,
+    End,
+    Node,
+    System,
 )
 
 pytestmark = pytest.mark.slow
@@ -66,7 +63,7 @@ class Fleet(NamedTuple):
     """A plan, and the graph that is as planned."""
 
     plan: Expectation
-    graph: Snapshot
+    graph: System
 
 
 @st.composite
@@ -95,11 +92,11 @@ def fleets(draw: st.DrawFn) -> Fleet:
     return Fleet(plan, beside(plan, as_planned(plan), naming))
 
 
-def beside(plan: Expectation, graph: Snapshot, naming: Naming) -> Snapshot:
+def beside(plan: Expectation, graph: System, naming: Naming) -> System:
     """What every node brings, a topic of its own that nobody planned, and people's tools."""
     robot_of = {node: robot.name for robot in plan.robots for node in robot.nodes}
     more = [
-        GraphEndpoint(kind, role, name, type_, "", node.name, None, "")
+        End(kind, role, name, type_, "", node.name, None, "")
         for node in graph.nodes
         for kind, role, name, type_ in (
             (TOPIC, PUBLISHES, "/rosout", "rcl_interfaces/msg/Log"),
@@ -117,8 +114,8 @@ def beside(plan: Expectation, graph: Snapshot, naming: Naming) -> Snapshot:
     )
     clock = ("/clock", "rosgraph_msgs/msg/Clock", "", "/ros_gz_bridge", None, "")
     return graph._replace(
-        nodes=(*graph.nodes, *(GraphNode(tool, "") for tool in tools)),
-        endpoints=(*graph.endpoints, *more, GraphEndpoint(TOPIC, PUBLISHES, *clock)),
+        nodes=(*graph.nodes, *(Node(tool, "") for tool in tools)),
+        ends=(*graph.ends, *more, End(TOPIC, PUBLISHES, *clock)),
     )
 
 
@@ -146,9 +143,9 @@ def test_a_name_that_was_moved_is_found_at_its_node(fleet: Fleet, data: st.DataO
     new = data.draw(st.sampled_from(("/elsewhere", "/scan", "/robot2/cmd_vel", f"{end[3]}_raw")))
     moved = tuple(
         e._replace(name=new) if (e.node, e.kind, e.role, e.name) == end else e
-        for e in fleet.graph.endpoints
+        for e in fleet.graph.ends
     )
-    found = check(fleet.plan, sent(fleet.graph._replace(endpoints=moved)))
+    found = check(fleet.plan, sent(fleet.graph._replace(ends=moved)))
     if (*end[:3], new) in planned:
         return
     assert end[0] in {finding.node for finding in found}
@@ -162,7 +159,7 @@ def test_a_node_that_is_taken_away_is_found(fleet: Fleet, data: st.DataObject) -
     node = data.draw(st.sampled_from(robot.nodes))
     graph = fleet.graph._replace(
         nodes=tuple(n for n in fleet.graph.nodes if n.name != node),
-        endpoints=tuple(e for e in fleet.graph.endpoints if e.node != node),
+        ends=tuple(e for e in fleet.graph.ends if e.node != node),
     )
     found = [(f.code, f.robot) for f in check(fleet.plan, graph) if f.code in ("MG101", "MG109")]
     assert found == [("MG101" if len(robot.nodes) > 1 else "MG109", robot.name)]
@@ -171,11 +168,11 @@ def test_a_node_that_is_taken_away_is_found(fleet: Fleet, data: st.DataObject) -
 @settings(max_examples=100, deadline=None)
 @given(fleets(), st.data())
 def test_a_frame_with_another_parent_is_found(fleet: Fleet, data: st.DataObject) -> None:
-    if not fleet.graph.frames:
+    if not fleet.graph.edges:
         return
-    edge = data.draw(st.sampled_from(fleet.graph.frames))
+    edge = data.draw(st.sampled_from(fleet.graph.edges))
     other = edge._replace(parent="somewhere_else")
-    found = check(fleet.plan, fleet.graph._replace(frames=(*fleet.graph.frames, other)))
+    found = check(fleet.plan, fleet.graph._replace(edges=(*fleet.graph.edges, other)))
     assert "MG401" in {finding.code for finding in found}
 
 
@@ -236,20 +233,20 @@ def anything(draw: st.DrawFn) -> Fleet:
         tuple(draw(st.lists(wanted, max_size=5, unique_by=lambda w: w[:4]))), draw(some),
     )  # fmt: skip
     seen = st.builds(
-        lambda end, *rest: GraphEndpoint(*end, *rest), ends, full_names, types,
+        lambda end, *rest: End(*end, *rest), ends, full_names, types,
         st.sampled_from(("", "RIHS01_a", "RIHS01_b")), node,
         st.sampled_from((None, qos())), st.just(""),
     )  # fmt: skip
     frame = st.builds(
-        GraphFrame,
+        Edge,
         any_names,
         any_names,
         full_names,
         st.booleans(),
         st.lists(node, max_size=2).map(tuple),
     )
-    graph = Snapshot(
-        tuple(GraphNode(name, "") for name in draw(st.lists(node, max_size=5))),
+    graph = System(
+        tuple(Node(name, "") for name in draw(st.lists(node, max_size=5))),
         tuple(draw(st.lists(seen, max_size=8))), tuple(draw(st.lists(frame, max_size=5))),
         environment(),
     )  # fmt: skip

@@ -17,15 +17,6 @@ from multibot_rewrite.fleets.fleet import NO_STATE_PUBLISHER
 from multibot_rewrite.graph.learning.choosing import choose_nodes, helpers_without_owner, left_out
 from multibot_rewrite.graph.learning.learn import LearnedNode, learn
 from multibot_rewrite.graph.learning.nodes_file import to_yaml
-from multibot_rewrite.graph.snapshot import (
-    QUIET,
-    Caveat,
-    Environment,
-    GraphEndpoint,
-    GraphNode,
-    Snapshot,
-    to_json,
-)
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.knowledge.node_library import NodeLibrary, stack_of
 from multibot_rewrite.knowledge.records import TRANSPORTS, Endpoint, NodeFacts
@@ -38,14 +29,21 @@ from multibot_rewrite.remap.records import Table
 from multibot_rewrite.remap.table import build_table, parsed
 from multibot_rewrite.remap.targets import expanded
 from multibot_rewrite.rosnames import bind, expand, resolve_bound
+from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
     PUBLISHES,
+    QUIET,
     SERVES,
     SERVICE,
     SUBSCRIBES,
     TOPIC,
+    Caveat,
+    End,
+    Environment,
+    Node,
+    System,
 )
 
 LAYOUTS = ("L1", "L2", "L3", "L4")
@@ -69,14 +67,12 @@ def environment(*caveats: Caveat) -> Environment:
     return Environment(0, "LOCALHOST", (), "rmw_fastrtps_cpp", "", False, 4, QUIET, 3.5, caveats)
 
 
-def graph(*nodes: NodeFacts, base: str = "", process: str = "") -> Snapshot:
+def graph(*nodes: NodeFacts, base: str = "", process: str = "") -> System:
     """What is seen of nodes that run without any rule below ``base``, in one process or in several."""
     found = [(node, *placed(node, base)) for node in nodes]
-    seen = [
-        GraphNode(f"{space.rstrip('/')}/{own}", process or node.name) for node, space, own in found
-    ]
+    seen = [Node(f"{space.rstrip('/')}/{own}", process or node.name) for node, space, own in found]
     ends = [end for one in found for end in shown(*one)]
-    return Snapshot(tuple(seen), tuple(ends), (), environment())
+    return System(tuple(seen), tuple(ends), (), environment())
 
 
 def placed(node: NodeFacts, base: str) -> tuple[str, str]:
@@ -85,11 +81,11 @@ def placed(node: NodeFacts, base: str) -> tuple[str, str]:
     return f"{base}/{above}".rstrip("/") or "/", own
 
 
-def shown(node: NodeFacts, space: str, own: str) -> Iterator[GraphEndpoint]:
+def shown(node: NodeFacts, space: str, own: str) -> Iterator[End]:
     for end in node.endpoints:
         full = expand(end.name, space, own)
         for kind, role, name, type_ in parts_of(end._replace(name=full)):
-            yield GraphEndpoint(kind, role, name, type_, "", f"{space.rstrip('/')}/{own}", None, "")
+            yield End(kind, role, name, type_, "", f"{space.rstrip('/')}/{own}", None, "")
 
 
 def parts_of(end: Endpoint) -> Iterator[tuple[str, str, str, str]]:
@@ -110,7 +106,7 @@ def parts_of(end: Endpoint) -> Iterator[tuple[str, str, str, str]]:
 
 
 def learned(
-    seen: Snapshot, *names: str, base: str = "/", library: NodeLibrary = UNKNOWN
+    seen: System, *names: str, base: str = "/", library: NodeLibrary = UNKNOWN
 ) -> tuple[LearnedNode, ...]:
     """What is learned, proved to survive the file."""
     found = learn(seen, choose_nodes(seen, names, base), base, library)
@@ -118,9 +114,7 @@ def learned(
     return found
 
 
-def one(
-    seen: Snapshot, *names: str, base: str = "/", library: NodeLibrary = UNKNOWN
-) -> LearnedNode:
+def one(seen: System, *names: str, base: str = "/", library: NodeLibrary = UNKNOWN) -> LearnedNode:
     (found,) = learned(seen, *names, base=base, library=library)
     return found
 
@@ -141,12 +135,10 @@ def spelled(found: LearnedNode) -> list[tuple[str, str]]:
     return [(end.role, end.name) for end in found.own]
 
 
-def with_end(seen: Snapshot, *ends: tuple[str, str, str, str, str]) -> Snapshot:
+def with_end(seen: System, *ends: tuple[str, str, str, str, str]) -> System:
     """With more endpoints: node, kind, role, name, type."""
-    more = tuple(
-        GraphEndpoint(k, r, name, type_, "", who, None, "") for who, k, r, name, type_ in ends
-    )
-    return seen._replace(endpoints=(*seen.endpoints, *more))
+    more = tuple(End(k, r, name, type_, "", who, None, "") for who, k, r, name, type_ in ends)
+    return seen._replace(ends=(*seen.ends, *more))
 
 
 # ---------------------------------------------------------------- the tables serve the code
@@ -280,7 +272,7 @@ def test_the_file_does_not_depend_on_the_order_of_the_snapshot(
     mixed = random.Random(seed)
     other = seen._replace(
         nodes=tuple(mixed.sample(seen.nodes, len(seen.nodes))),
-        endpoints=tuple(mixed.sample(seen.endpoints, len(seen.endpoints))),
+        ends=tuple(mixed.sample(seen.ends, len(seen.ends))),
     )
     texts = {to_yaml(learned(it), "mine", UNKNOWN) for it in (seen, other)}
     assert len(texts) == 1
@@ -398,8 +390,8 @@ def test_five_parts_are_an_action(role: str) -> None:
 
 def test_an_action_is_known_by_its_parts_and_by_its_record_alone() -> None:
     whole = graph(node(Endpoint(ACTION, SERVES, "fetch", FETCH)))
-    parts = whole._replace(endpoints=tuple(e for e in whole.endpoints if e.kind != ACTION))
-    record = whole._replace(endpoints=tuple(e for e in whole.endpoints if e.kind == ACTION))
+    parts = whole._replace(ends=tuple(e for e in whole.ends if e.kind != ACTION))
+    record = whole._replace(ends=tuple(e for e in whole.ends if e.kind == ACTION))
     for seen in (parts, record):
         assert [(end.kind, end.name, end.type) for end in one(seen).own] == [
             (ACTION, "/fetch", FETCH)
@@ -409,7 +401,7 @@ def test_an_action_is_known_by_its_parts_and_by_its_record_alone() -> None:
 def test_who_listens_to_an_action_is_no_client_of_it() -> None:
     """rcl lists everybody who subscribes to the feedback among the clients."""
     whole = graph(node(Endpoint(ACTION, CALLS, "fetch", FETCH)))
-    seen = whole._replace(endpoints=tuple(e for e in whole.endpoints if e.kind != SERVICE))
+    seen = whole._replace(ends=tuple(e for e in whole.ends if e.kind != SERVICE))
     found = one(seen)
     assert [(end.kind, end.name) for end in found.own] == [
         (TOPIC, "/fetch/_action/feedback"), (TOPIC, "/fetch/_action/status"),

@@ -19,9 +19,9 @@ from graph_cases import sent
 from graph_faults import FAULTS, LIVE
 from healthy_systems import SYSTEMS
 
-from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.snapshot_file import read_snapshot
 from multibot_rewrite.live.diagnose import diagnose
+from multibot_rewrite.system.records import System, clocks
 
 pytestmark = pytest.mark.live
 
@@ -71,7 +71,7 @@ def needed(tf2: Mapping[str, str]) -> Mapping[str, str]:
     return tf2
 
 
-def looked_at(at: int, graph: Snapshot, more: Mapping[str, str]) -> Outcome:
+def looked_at(at: int, graph: System, more: Mapping[str, str]) -> Outcome:
     """What the command says while nodes play the graph."""
     domain = live_commands.domain(at)
     env = {**live_fleet.environ(domain), **more}
@@ -82,24 +82,24 @@ def looked_at(at: int, graph: Snapshot, more: Mapping[str, str]) -> Outcome:
     return Outcome(done.returncode, codes, done.stdout + done.stderr)
 
 
-def small(graph: Snapshot, healthy: Snapshot) -> Snapshot:
+def small(graph: System, healthy: System) -> System:
     """The graph with the nodes that are played, and those that the healthy system has not."""
     known = {it.name for it in healthy.nodes}
     left_out = {it for it in known if it.rpartition("/")[2] not in PLAYED}
     return sent(
         graph._replace(
             nodes=tuple(it for it in graph.nodes if it.name not in left_out),
-            endpoints=tuple(it for it in graph.endpoints if it.node not in left_out),
+            ends=tuple(it for it in graph.ends if it.node not in left_out),
         )
     )
 
 
-def ill(fault: Fault) -> Snapshot:
+def ill(fault: Fault) -> System:
     healthy = fault.system()
     return small(fault.change(healthy), healthy)
 
 
-def side_by_side(graphs: Sequence[Snapshot], more: Mapping[str, str]) -> list[Outcome]:
+def side_by_side(graphs: Sequence[System], more: Mapping[str, str]) -> list[Outcome]:
     with ThreadPoolExecutor(AT_ONCE) as pool:
         return list(pool.map(lambda it: looked_at(20 + it[0] % 50, it[1], more), enumerate(graphs)))
 
@@ -152,8 +152,11 @@ def test_what_nodes_send_and_answer(needed: Mapping[str, str], tmp_path: Path) -
         ("/robot2/image", "robot1/laser"),
         ("/map", "map"),
     }
-    states = {it.node: (it.lifecycle, it.sim_time) for it in seen.states}
-    assert states["/robot1/amcl"] == ("inactive", True) and "/robot1/hangs" not in states
+    timed = clocks(seen)
+    states = {it.name: (it.lifecycle, timed.get(it.name)) for it in seen.nodes}
+    assert states["/robot1/amcl"] == ("inactive", True) and states.get(
+        "/robot1/hangs", ("", None)
+    ) == ("", None)
     assert states["/robot1/lidar"] == ("active", False) and states["/robot2/camera"] == ("", False)
     said = [str(it) for it in diagnose(seen).findings]
     (bare,) = [it for it in said if "MG412" in it]

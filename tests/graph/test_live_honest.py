@@ -26,17 +26,18 @@ from live_commands import (
 from network_hosts import THIS, discovery_server
 
 from multibot_rewrite.graph.environment import setting_caveats, settings, view_caveats
-from multibot_rewrite.graph.snapshot import (
+from multibot_rewrite.system.json import to_json
+from multibot_rewrite.system.records import (
+    PUBLISHES,
     QUIET,
+    TOPIC,
     UNKNOWN_NODE,
     Caveat,
+    End,
     Environment,
-    GraphEndpoint,
-    GraphNode,
-    Snapshot,
-    to_json,
+    Node,
+    System,
 )
-from multibot_rewrite.system.records import PUBLISHES, TOPIC
 
 pytestmark = pytest.mark.live
 
@@ -103,14 +104,14 @@ def test_how_many_participants_are_seen(ros: None, count: int, tmp_path: Path) -
 def seen(*machines: tuple[str, int], **environ: str) -> list[str]:
     """The caveats where so many Fast DDS participants of these machines are seen."""
     names = [f"010f{machine}{at:016x}" for machine, count in machines for at in range(count)]
-    nodes = [GraphNode(f"/{name}", name) for name in names]
+    nodes = [Node(f"/{name}", name) for name in names]
     ends = [end(f"/{name}", name) for name in names]
     return [caveat.code for caveat in view_caveats(nodes, ends, settings(environ), QUIET)]
 
 
-def end(owner: str, process: str = "") -> GraphEndpoint:
+def end(owner: str, process: str = "") -> End:
     type_ = "std_msgs/msg/Empty"
-    return GraphEndpoint(TOPIC, PUBLISHES, "/heartbeat", type_, "", owner, None, process)
+    return End(TOPIC, PUBLISHES, "/heartbeat", type_, "", owner, None, process)
 
 
 def test_the_limit_is_that_of_each_machine() -> None:
@@ -264,9 +265,7 @@ def test_a_dead_node_behind_a_server_is_endpoints_without_a_name(ros: None, plan
 
 def test_endpoints_without_a_name_in_a_file(plan: Path, tmp_path: Path) -> None:
     nobody = f"/{UNKNOWN_NODE}"
-    caveats = tuple(
-        view_caveats([GraphNode("/robot2/drive", "")], [end(nobody)], settings({}), QUIET)
-    )
+    caveats = tuple(view_caveats([Node("/robot2/drive", "")], [end(nobody)], settings({}), QUIET))
     file = tmp_path / "graph.json"
     file.write_bytes(to_json(snapshot(caveats)))
     done = multibot("check", plan, "--snapshot", file, env=os.environ)
@@ -276,10 +275,10 @@ def test_endpoints_without_a_name_in_a_file(plan: Path, tmp_path: Path) -> None:
     assert "endpoints whose node is not known yet: /heartbeat; look again" in done.stderr
 
 
-def snapshot(caveats: tuple[Caveat, ...]) -> Snapshot:
+def snapshot(caveats: tuple[Caveat, ...]) -> System:
     around = Environment(0, "SUBNET", (), "rmw_fastrtps_cpp", "", False, 1, QUIET, 4.0, caveats)
-    nodes = (GraphNode("/robot2/drive", ""),)
-    return Snapshot(nodes, (end(f"/{UNKNOWN_NODE}"),), (), around)
+    nodes = (Node("/robot2/drive", ""),)
+    return System(nodes, (end(f"/{UNKNOWN_NODE}"),), (), around)
 
 
 # --- looking elsewhere, or not at all

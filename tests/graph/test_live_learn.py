@@ -12,7 +12,6 @@ import live_commands
 import live_fleet
 import pytest
 
-from multibot_rewrite.graph.snapshot import Snapshot, from_json
 from multibot_rewrite.knowledge.node_library import stack_of
 from multibot_rewrite.knowledge.stacks import user_stack
 from multibot_rewrite.naming import make_naming
@@ -20,6 +19,8 @@ from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.records import NodeTable, Table
 from multibot_rewrite.remap.started import arguments, started
 from multibot_rewrite.remap.table import build_table
+from multibot_rewrite.system.json import from_json
+from multibot_rewrite.system.records import System
 
 pytestmark = pytest.mark.live
 
@@ -132,7 +133,7 @@ def test_started_with_the_rules_nothing_leaks(
         done = multibot(1, "snapshot", "-o", str(file), **tf2)
     assert done.returncode == 0, done.stderr
     graph = from_json(file.read_bytes(), str(file))
-    assert said(rules) <= {(e.node, e.kind, e.role, e.name) for e in graph.endpoints}
+    assert said(rules) <= {(e.node, e.kind, e.role, e.name) for e in graph.ends}
     first, second = (names(graph, rules, robot) for robot in ROBOTS)
     assert len(first) > len(ALWAYS) + 10
     assert {name.replace(*ROBOTS) for name in first} == second
@@ -146,11 +147,11 @@ def said(rules: Table) -> set[tuple[str, str, str, str]]:
     return {(n.node, n.endpoint.kind, n.endpoint.role, n.name) for n in ends}
 
 
-def names(graph: Snapshot, rules: Table, robot: str) -> set[str]:
+def names(graph: System, rules: Table, robot: str) -> set[str]:
     """All names of a robot's nodes."""
     nodes = {full(node) for node in rules.nodes if node.robot == robot}
     assert nodes <= {node.name for node in graph.nodes}
-    return {end.name for end in graph.endpoints if end.node in nodes}
+    return {end.name for end in graph.ends if end.node in nodes}
 
 
 def full(node: NodeTable) -> str:

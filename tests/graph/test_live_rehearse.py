@@ -18,7 +18,8 @@ import tf2_build
 from paths import ROBOTS
 from waiting import wait_until
 
-from multibot_rewrite.graph.snapshot import Snapshot, from_json
+from multibot_rewrite.system.json import from_json
+from multibot_rewrite.system.records import System
 
 pytestmark = pytest.mark.live
 
@@ -67,9 +68,9 @@ def test_every_layout_holds(
     assert "2 robots, 0 findings: as planned" in done.stderr
     graph = from_json(file.read_bytes(), "graph")
     # The tree is on the graph, too: from the map to every link of both robots.
-    assert len({frame.child for frame in graph.frames}) == (9 if layout == "L1" else 18)
+    assert len({frame.child for frame in graph.edges}) == (9 if layout == "L1" else 18)
     # Nodes that stand in for others do not know where a frame is.
-    assert {frame.transform for frame in graph.frames} == {()}
+    assert {frame.transform for frame in graph.edges} == {()}
     assert not [node for node in graph.nodes if not _of_a_robot(node.name)]
     # 18 of each robot: with those of route_server and of following_server, which is new in Lyrical.
     assert len(actions(graph)) == 36
@@ -82,8 +83,8 @@ def _of_a_robot(name: str) -> bool:
     return "robot1" in name or "robot2" in name or "transform_listener_impl" in name
 
 
-def actions(graph: Snapshot) -> set[str]:
-    names = (end.name for end in graph.endpoints if end.role == "serves")
+def actions(graph: System) -> set[str]:
+    names = (end.name for end in graph.ends if end.role == "serves")
     return {name for name in names if name.endswith("/_action/send_goal")}
 
 

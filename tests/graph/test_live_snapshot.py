@@ -19,16 +19,8 @@ import tf2_build
 from live_commands import domain
 from waiting import wait_until
 
-from multibot_rewrite.graph.snapshot import (
-    EXPECTED,
-    QUIET,
-    TIMEOUT,
-    GraphEndpoint,
-    GraphFrame,
-    Snapshot,
-    from_json,
-    to_json,
-)
+from multibot_rewrite.system.json import from_json, to_json
+from multibot_rewrite.system.records import EXPECTED, QUIET, TIMEOUT, Edge, End, System
 
 pytestmark = pytest.mark.live
 
@@ -90,7 +82,7 @@ def fleet(tf2: Build, has_tf: bool) -> Iterator[Build]:
 
 
 @pytest.fixture(scope="module")
-def seen(fleet: Build, tmp_path_factory: pytest.TempPathFactory) -> Snapshot:
+def seen(fleet: Build, tmp_path_factory: pytest.TempPathFactory) -> System:
     """The whole graph as the command writes it."""
     file = tmp_path_factory.mktemp("graph") / "graph.json"
     result = multibot(0, "-o", str(file), **fleet)
@@ -98,19 +90,19 @@ def seen(fleet: Build, tmp_path_factory: pytest.TempPathFactory) -> Snapshot:
     return from_json(file.read_bytes(), str(file))
 
 
-def ends(snapshot: Snapshot, name: str, role: str) -> list[GraphEndpoint]:
-    return [end for end in snapshot.endpoints if (end.name, end.role) == (name, role)]
+def ends(snapshot: System, name: str, role: str) -> list[End]:
+    return [end for end in snapshot.ends if (end.name, end.role) == (name, role)]
 
 
-def test_every_node_is_seen_but_the_observer(seen: Snapshot, has_tf: bool) -> None:
+def test_every_node_is_seen_but_the_observer(seen: System, has_tf: bool) -> None:
     names = [node.name for node in seen.nodes]
     own = ["drive", "pilot", *(["state", "dock"] if has_tf else [])]
     expected = [f"/robot{at}/{name}" for at in (1, 2) for name in own]
     assert names == sorted([*expected, "/robot1/pilot", "/bare"])
-    assert not [end for end in seen.endpoints if "_multibot" in end.node]
+    assert not [end for end in seen.ends if "_multibot" in end.node]
 
 
-def test_a_topic_has_both_sides_with_type_hash_and_process(seen: Snapshot) -> None:
+def test_a_topic_has_both_sides_with_type_hash_and_process(seen: System) -> None:
     (sends,) = ends(seen, "/robot2/cmd_vel", "publishes")
     (reads,) = ends(seen, "/robot2/cmd_vel", "subscribes")
     assert (sends.node, reads.node) == ("/robot2/pilot", "/robot2/drive")
@@ -121,7 +113,7 @@ def test_a_topic_has_both_sides_with_type_hash_and_process(seen: Snapshot) -> No
     assert sends.process == reads.process
 
 
-def test_qos_is_in_the_snapshot(seen: Snapshot) -> None:
+def test_qos_is_in_the_snapshot(seen: System) -> None:
     (sends,) = ends(seen, "/robot1/odom", "publishes")
     (reads,) = ends(seen, "/robot1/odom", "subscribes")
     (keeps,) = ends(seen, "/robot1/cmd_vel", "publishes")
@@ -131,7 +123,7 @@ def test_qos_is_in_the_snapshot(seen: Snapshot) -> None:
     assert sends.qos.deadline == float("inf")
 
 
-def test_services_and_their_clients_are_in_the_snapshot(seen: Snapshot) -> None:
+def test_services_and_their_clients_are_in_the_snapshot(seen: System) -> None:
     (serves,) = ends(seen, "/robot1/reset", "serves")
     assert (serves.kind, serves.node) == ("service", "/robot1/drive")
     assert serves.type == "std_srvs/srv/Trigger"
@@ -139,7 +131,7 @@ def test_services_and_their_clients_are_in_the_snapshot(seen: Snapshot) -> None:
     assert calls.node == "/robot2/pilot"
 
 
-def test_two_nodes_of_one_name_are_two(seen: Snapshot) -> None:
+def test_two_nodes_of_one_name_are_two(seen: System) -> None:
     twins = [node for node in seen.nodes if node.name == "/robot1/pilot"]
     assert len({node.process for node in twins}) == 2
     (hidden,) = ends(seen, "/robot1/twin", "publishes")
@@ -149,7 +141,7 @@ def test_two_nodes_of_one_name_are_two(seen: Snapshot) -> None:
     assert [c.code for c in seen.environment.caveats if c.code == "same-name"] == ["same-name"]
 
 
-def test_the_environment_is_shown(seen: Snapshot) -> None:
+def test_the_environment_is_shown(seen: System) -> None:
     around = seen.environment
     assert (around.domain, around.range, around.rmw) == (domain(0), "LOCALHOST", "rmw_fastrtps_cpp")
     assert around.settled == QUIET
@@ -159,25 +151,25 @@ def test_the_environment_is_shown(seen: Snapshot) -> None:
     assert "" not in {node.process for node in seen.nodes}
 
 
-def test_a_snapshot_of_real_nodes_survives_the_file(seen: Snapshot) -> None:
+def test_a_snapshot_of_real_nodes_survives_the_file(seen: System) -> None:
     assert from_json(to_json(seen), "again") == seen
 
 
-def test_frames_have_topic_and_publishers(seen: Snapshot, has_tf: bool) -> None:
+def test_frames_have_topic_and_publishers(seen: System, has_tf: bool) -> None:
     if not has_tf:
         pytest.skip(f"tf2_msgs is not there and not built: {tf2_build.missing()}")
     states = ("/robot1/state", "/robot2/state")
-    assert {it.transform for it in seen.frames} == {(1.5, 0, 0, 0, 0, 0, 1)}
-    assert {it._replace(transform=()) for it in seen.frames} == {
-        GraphFrame("base_link", "odom", "/robot1/tf", False, ("/robot1/state",)),
-        GraphFrame("base_link", "odom", "/robot2/tf", False, ("/robot2/state",)),
-        GraphFrame("lidar", "base_link", "/tf_static", True, states, several=True),
-        GraphFrame("robot1/imu", "base_link", "/tf_static", True, states),
-        GraphFrame("robot2/imu", "base_link", "/tf_static", True, states),
+    assert {it.transform for it in seen.edges} == {(1.5, 0, 0, 0, 0, 0, 1)}
+    assert {it._replace(transform=()) for it in seen.edges} == {
+        Edge("base_link", "odom", "/robot1/tf", False, ("/robot1/state",)),
+        Edge("base_link", "odom", "/robot2/tf", False, ("/robot2/state",)),
+        Edge("lidar", "base_link", "/tf_static", True, states, several=True),
+        Edge("robot1/imu", "base_link", "/tf_static", True, states),
+        Edge("robot2/imu", "base_link", "/tf_static", True, states),
     }
 
 
-def test_actions_are_in_the_snapshot(seen: Snapshot, has_tf: bool) -> None:
+def test_actions_are_in_the_snapshot(seen: System, has_tf: bool) -> None:
     if not has_tf:
         pytest.skip(f"no action type: tf2_msgs is not there: {tf2_build.missing()}")
     (serves,) = ends(seen, "/robot2/go", "serves")

@@ -12,17 +12,12 @@ from looks import ONE, QOS, TWO, end, look, node
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.graph.merging import Look, merged
-from multibot_rewrite.graph.snapshot import (
-    Caveat,
-    GraphFrame,
-    Snapshot,
-    from_json,
-    to_json,
-)
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.system.json import from_json, to_json
+from multibot_rewrite.system.records import Caveat, Edge, System
 
 
-def join(*looks: Snapshot) -> Snapshot:
+def join(*looks: System) -> System:
     return merged([Look(f"{name}.json", it) for name, it in zip("abcd", looks, strict=False)])
 
 
@@ -46,7 +41,7 @@ def test_a_node_whose_process_one_look_does_not_know_is_one_node() -> None:
     for first, second in permutations((look(node("robot1")), look(node("robot1", ONE)))):
         both = join(first, second)
         assert both.nodes == (node("robot1", ONE),)
-        assert {it.process for it in both.endpoints} == {ONE}
+        assert {it.process for it in both.ends} == {ONE}
 
 
 def test_two_processes_are_two_nodes_of_one_name() -> None:
@@ -67,31 +62,31 @@ def test_the_look_that_knows_more_of_an_endpoint_counts() -> None:
     full = plain._replace(qos=QOS, type_hash="RIHS01_ab")
     looks = (look(node("robot1", ONE), ends=(plain,)), look(node("robot1", ONE), ends=(full,)))
     for first, second in permutations(looks):
-        assert join(first, second).endpoints == (full,)
+        assert join(first, second).ends == (full,)
 
 
 def test_a_node_may_subscribe_twice() -> None:
     twice = (end("robot1", "/robot1/odom", ONE),) * 2
     seen = look(node("robot1", ONE), ends=twice)
-    assert join(seen, seen).endpoints == twice
+    assert join(seen, seen).ends == twice
 
 
 def test_frames_are_joined_with_all_their_publishers() -> None:
-    def heard(static: bool, *publishers: str) -> Snapshot:
-        frame = GraphFrame("base", "odom", "/tf", static, publishers)
-        return look(node("robot1", ONE))._replace(frames=(frame,))
+    def heard(static: bool, *publishers: str) -> System:
+        frame = Edge("base", "odom", "/tf", static, publishers)
+        return look(node("robot1", ONE))._replace(edges=(frame,))
 
-    (frame,) = join(heard(False, "/robot1/drive"), heard(True, "/robot2/drive")).frames
-    assert frame == GraphFrame("base", "odom", "/tf", True, ("/robot1/drive", "/robot2/drive"))
+    (frame,) = join(heard(False, "/robot1/drive"), heard(True, "/robot2/drive")).edges
+    assert frame == Edge("base", "odom", "/tf", True, ("/robot1/drive", "/robot2/drive"))
 
 
 def test_a_transform_is_kept_from_the_look_that_has_it() -> None:
-    plain = GraphFrame("base", "odom", "/tf", False, ())
+    plain = Edge("base", "odom", "/tf", False, ())
     numbers = (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)
-    looks = [look(node("robot1", ONE))._replace(frames=(it,)) for it in (plain, plain)]
-    looks[1] = looks[1]._replace(frames=(plain._replace(transform=numbers),))
+    looks = [look(node("robot1", ONE))._replace(edges=(it,)) for it in (plain, plain)]
+    looks[1] = looks[1]._replace(edges=(plain._replace(transform=numbers),))
     for first, second in permutations(looks):
-        assert [it.transform for it in join(first, second).frames] == [numbers]
+        assert [it.transform for it in join(first, second).edges] == [numbers]
 
 
 def test_two_domains_are_refused() -> None:
@@ -113,7 +108,7 @@ def test_what_one_look_doubts_stays_in_doubt_with_its_file() -> None:
 
 def test_what_another_look_has_seen_is_no_doubt_any_more() -> None:
     bare = Caveat("nodes-without-endpoints", True, "nodes without any endpoint: /robot1/drive")
-    blind = Snapshot((node("robot1"),), (), (), environment(bare))
+    blind = System((node("robot1"),), (), (), environment(bare))
     both = join(blind, look(node("robot1", ONE)))
     assert not any(it.incomplete for it in both.environment.caveats)
 
@@ -130,8 +125,8 @@ def test_the_command_joins_and_check_takes_all(
         mine = set(robot.nodes)
         half = whole._replace(
             nodes=tuple(it for it in whole.nodes if it.name in mine),
-            endpoints=tuple(it for it in whole.endpoints if it.node in mine),
-            frames=tuple(it for it in whole.frames if mine.intersection(it.publishers)),
+            ends=tuple(it for it in whole.ends if it.node in mine),
+            edges=tuple(it for it in whole.edges if mine.intersection(it.publishers)),
         )
         files.append(tmp_path / f"{robot.name}.json")
         files[-1].write_bytes(to_json(half))
@@ -145,7 +140,7 @@ def test_the_command_joins_and_check_takes_all(
     assert main(["check", file, "--snapshot", str(target)]) == 0
     joined = from_json(target.read_bytes(), "all.json")
     assert len(joined.nodes) == len(whole.nodes)
-    assert len(joined.endpoints) == len(whole.endpoints)
+    assert len(joined.ends) == len(whole.ends)
 
 
 def test_the_table_says_how_many_machines_were_seen(

@@ -15,10 +15,11 @@ from paths import FIXTURES
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.graph.learning.learn import learn
 from multibot_rewrite.graph.learning.nodl_file import to_nodl
-from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphNode, Qos, Snapshot, to_json
 from multibot_rewrite.knowledge.nodl.writing import NodlFile
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.releases import NEWEST_LTS
+from multibot_rewrite.system.json import to_json
+from multibot_rewrite.system.records import End, Node, Qos, System
 
 HEALTHY = str(FIXTURES / "graphs" / "healthy.json")
 INF = math.inf
@@ -28,17 +29,17 @@ FAST_DDS = Qos("UNKNOWN", 0, "RELIABLE", "TRANSIENT_LOCAL", INF, INF, "AUTOMATIC
 WHOLE = Qos("KEEP_LAST", 5, "BEST_EFFORT", "UNKNOWN", 0.1, INF, "MANUAL_BY_TOPIC", 2.5)
 
 
-def end(kind: str, role: str, name: str, type_: str, qos: Qos | None = None) -> GraphEndpoint:
-    return GraphEndpoint(kind, role, name, type_, "", "/robot1/arm", qos, "1")
+def end(kind: str, role: str, name: str, type_: str, qos: Qos | None = None) -> End:
+    return End(kind, role, name, type_, "", "/robot1/arm", qos, "1")
 
 
-def document(*ends: GraphEndpoint) -> NodlFile:
-    graph = Snapshot((GraphNode("/robot1/arm", "1"),), ends, (), environment())
+def document(*ends: End) -> NodlFile:
+    graph = System((Node("/robot1/arm", "1"),), ends, (), environment())
     (node,) = learn(graph, ["/robot1/arm"], "/robot1", built_in(NEWEST_LTS))
     return to_nodl(node, graph, "/robot1", built_in(NEWEST_LTS))
 
 
-def section(name: str, *ends: GraphEndpoint) -> list[dict[str, object]]:
+def section(name: str, *ends: End) -> list[dict[str, object]]:
     found: list[dict[str, object]] = yaml.safe_load(document(*ends).text).get(name, [])
     return found
 

@@ -13,8 +13,9 @@ from paths import FIXTURES
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.graph.plan_file import from_yaml, read_plan, to_yaml
-from multibot_rewrite.graph.snapshot import Caveat, Snapshot, to_json
 from multibot_rewrite.model import InputError
+from multibot_rewrite.system.json import to_json
+from multibot_rewrite.system.records import Caveat, System
 
 ROVER = str(FIXTURES / "robots" / "rover.urdf")
 FLEET = (ROVER, "robot1", "robot2", "--stack", "nav2,robot_state", "--layout", "both")
@@ -36,12 +37,12 @@ def plan(tmp_path: Path, nav2_plan: bytes) -> Path:
     return path
 
 
-def as_planned(plan: Path) -> Snapshot:
+def as_planned(plan: Path) -> System:
     """A graph that is the plan; of tf nothing was heard."""
-    return planned_graph(from_yaml(plan.read_bytes(), "plan"))._replace(frames=())
+    return planned_graph(from_yaml(plan.read_bytes(), "plan"))._replace(edges=())
 
 
-def held(plan: Path, graph: Snapshot, capture: pytest.CaptureFixture[str]) -> tuple[int, str, str]:
+def held(plan: Path, graph: System, capture: pytest.CaptureFixture[str]) -> tuple[int, str, str]:
     """Exit code, output and messages of a check."""
     path = plan.with_name("graph.json")
     path.write_bytes(to_json(graph))

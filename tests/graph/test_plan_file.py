@@ -7,9 +7,9 @@ from graph_cases import environment, qos
 
 from multibot_rewrite.graph.expectation import PlannedEndpoint, PlannedTopic
 from multibot_rewrite.graph.plan_file import read_plan, to_json, to_yaml
-from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphNode, Snapshot
 from multibot_rewrite.model import InputError
 from multibot_rewrite.rules.check import check
+from multibot_rewrite.system.records import End, Node, System
 
 PLAN = """\
 layout: both
@@ -101,10 +101,10 @@ def test_what_is_wrong_is_told_with_its_place(old: str, new: str, said: str) -> 
     assert "\n" not in str(refused.value)
 
 
-def graph(*ends: tuple[str, str, str, str], more: tuple[str, ...] = ()) -> Snapshot:
+def graph(*ends: tuple[str, str, str, str], more: tuple[str, ...] = ()) -> System:
     """Endpoints as (node, role, name, type); ``more`` are nodes without one."""
     found = tuple(
-        GraphEndpoint(
+        End(
             "service" if "/srv/" in type_ else "topic",
             role,
             name,
@@ -117,7 +117,7 @@ def graph(*ends: tuple[str, str, str, str], more: tuple[str, ...] = ()) -> Snaps
         for node, role, name, type_ in ends
     )
     names = dict.fromkeys((*(it.node for it in found), *more))
-    return Snapshot(tuple(GraphNode(it, "") for it in names), found, (), environment())
+    return System(tuple(Node(it, "") for it in names), found, (), environment())
 
 
 MAP = ("/map_server", "publishes", "/map", "nav_msgs/msg/OccupancyGrid")
@@ -131,7 +131,7 @@ RUNNING = (MAP, DOCK, *DRIVER)
 NODES = ("/rviz2", "/robot1/amcl")
 
 
-def codes(found: Snapshot) -> list[tuple[str, str]]:
+def codes(found: System) -> list[tuple[str, str]]:
     return [(it.code, it.node) for it in check(read_plan(plan(), "plan.yaml"), found)]
 
 
@@ -185,7 +185,7 @@ def test_a_map_that_is_not_latched() -> None:
         it._replace(qos=qos(reliability="RELIABLE", durability="VOLATILE"))
         if it.name == "/map"
         else it
-        for it in found.endpoints
+        for it in found.ends
     )
     assert codes(found._replace(endpoints=ends)) == [("MG309", "/map_server")]
 

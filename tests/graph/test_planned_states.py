@@ -9,6 +9,7 @@ from typing import NamedTuple
 import pytest
 from graph_cases import environment
 from graph_examples import read_example
+from node_answers import told
 from paths import ROBOTS
 
 from multibot_rewrite.cli import multibot
@@ -20,18 +21,20 @@ from multibot_rewrite.graph.live.answers import AGAIN_SECONDS, Answers
 from multibot_rewrite.graph.live.request import Request, from_text, to_text
 from multibot_rewrite.graph.plan_file import read_plan, to_json, to_yaml
 from multibot_rewrite.graph.questions import Question, questions
-from multibot_rewrite.graph.snapshot import (
-    GraphEndpoint,
-    GraphNode,
-    Snapshot,
-)
-from multibot_rewrite.graph.snapshot import (
-    to_json as graph_json,
-)
-from multibot_rewrite.graph.states import NodeState, Parameter
 from multibot_rewrite.model import InputError
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.system.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.answers import Answer, with_answers
+from multibot_rewrite.system.json import to_json as graph_json
+from multibot_rewrite.system.records import (
+    PUBLISHES,
+    SERVES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+    End,
+    Node,
+    System,
+)
 
 PLAN = """\
 layout: frames-per-robot
@@ -78,23 +81,19 @@ def plan(more: str = "") -> Expectation:
     return read_plan((PLAN + more).encode(), "plan.yaml")
 
 
-def graph(*states: NodeState) -> Snapshot:
+def graph(*states: Answer) -> System:
     """All planned nodes, and what they answer."""
     names = ("/robot1/amcl", "/robot1/costmap/costmap", "/robot1/driver", "/robot2/amcl")
-    nodes = tuple(GraphNode(it, "") for it in names)
-    return Snapshot(nodes, (), (), environment(), states=states)
+    nodes = tuple(Node(it, "") for it in names)
+    return with_answers(System(nodes, (), (), environment()), states)
 
 
-def having(node: str, **values: str) -> NodeState:
-    return NodeState(node, parameters=tuple(Parameter(*it) for it in values.items()))
+def having(node: str, **values: str) -> Answer:
+    return told(node, parameters=values.items())
 
 
-def found(planned: Expectation, *states: NodeState) -> list[Finding]:
-    return [
-        it
-        for it in check(planned, graph(*states))
-        if it.code in ("MG511", "MG132", "MG511", "MG514")
-    ]
+def found(planned: Expectation, *states: Answer) -> list[Finding]:
+    return [it for it in check(planned, graph(*states)) if it.code in ("MG511", "MG132", "MG514")]
 
 
 @pytest.fixture
@@ -134,18 +133,18 @@ def test_planned_clocks_are_seen_without_asking(
     """A node subscribes to the clock by ``use_sim_time`` alone (rclcpp time_source.cpp)."""
     ends = [(SUBSCRIBES, it) for it in timed] + [(PUBLISHES, "/bridge")] * published
     clock, type_ = "/clock", "rosgraph_msgs/msg/Clock"
-    ways = tuple(GraphEndpoint(TOPIC, role, clock, type_, "", it, None, "") for role, it in ends)
-    seen = graph()._replace(endpoints=ways)
+    ways = tuple(End(TOPIC, role, clock, type_, "", it, None, "") for role, it in ends)
+    seen = graph()._replace(ends=ways)
     codes = ("MG503", "MG501", "MG503")
-    told = [it for it in check(plan(CLOCKS), seen) if it.code in codes]
-    assert [(it.code, it.node) for it in told] == [it[:2] for it in wanted]
-    assert all(word in it.message for it, (_, _, word) in zip(told, wanted, strict=True))
+    said = [it for it in check(plan(CLOCKS), seen) if it.code in codes]
+    assert [(it.code, it.node) for it in said] == [it[:2] for it in wanted]
+    assert all(word in it.message for it, (_, _, word) in zip(said, wanted, strict=True))
     # Without a plan of them mixed clocks are a danger.
     unplanned = [it.node for it in check(plan(), seen) if it.code == "MG503"]
     assert bool(unplanned) == (published and len(timed) < 3)
     # What a node answers counts more.
     if wanted and wanted[0][0] == "MG503":
-        known = seen._replace(states=(NodeState(wanted[0][1], sim_time=wanted[0][2] == "true"),))
+        known = with_answers(seen, [told(wanted[0][1], sim_time=wanted[0][2] == "true")])
         assert "MG503" not in {it.code for it in check(plan(CLOCKS), known)}
 
 
@@ -195,19 +194,17 @@ def test_wrong_states_are_refused(states: str, said: str) -> None:
 def test_what_the_plan_says_of_states_is_meant() -> None:
     """A node that is planned to wait is no danger, and one that answers nothing is not known."""
     waiting = plan("states: {/robot1/amcl: {lifecycle: inactive}}")
-    assert found(waiting, NodeState("/robot1/amcl", "inactive")) == []
-    assert (
-        found(plan(STATES), NodeState("/robot1/amcl"), NodeState("/robot1/driver", "active")) == []
-    )
-    (it,) = found(plan(), NodeState("/robot1/amcl", "inactive"))
+    assert found(waiting, Answer("/robot1/amcl", "inactive")) == []
+    assert found(plan(STATES), Answer("/robot1/amcl"), Answer("/robot1/driver", "active")) == []
+    (it,) = found(plan(), Answer("/robot1/amcl", "inactive"))
     assert it.code == "MG511"
-    (it,) = found(waiting, NodeState("/robot1/amcl", "active"))
+    (it,) = found(waiting, Answer("/robot1/amcl", "active"))
     assert (it.code, it.robot, it.node) == ("MG511", "robot1", "/robot1/amcl")
     assert "is active, planned is inactive" in it.message
 
 
 def test_planned_simulated_time_is_compared_alone() -> None:
-    mixed = (NodeState("/robot1/amcl", sim_time=True), NodeState("/robot1/driver", sim_time=False))
+    mixed = (told("/robot1/amcl", sim_time=True), told("/robot1/driver", sim_time=False))
     assert [it.code for it in found(plan(), *mixed)] == ["MG514"]
     (it,) = found(plan(STATES), *mixed)
     assert (it.code, it.level) == ("MG132", ERROR)
@@ -232,7 +229,7 @@ def test_planned_simulated_time_is_compared_alone() -> None:
     ],
 )
 def test_values_are_compared_as_values(name: str, value: str, differs: bool) -> None:
-    state = NodeState("/robot1/amcl", parameters=(Parameter(name, value),))
+    state = told("/robot1/amcl", parameters=[(name, value)])
     assert [it.code for it in found(plan(STATES), state)] == ["MG132"] * differs
 
 
@@ -359,16 +356,16 @@ def test_wrong_use(given: list[str], said: str, capsys: pytest.CaptureFixture[st
 class Asked:
     """Nodes that answer with what is in ``states``; how often they were asked."""
 
-    def __init__(self, *states: NodeState) -> None:
+    def __init__(self, *states: Answer) -> None:
         self.states, self.times = states, 0
 
-    def __call__(self, asked: object) -> tuple[NodeState, ...]:
+    def __call__(self, asked: object) -> tuple[Answer, ...]:
         self.times += 1
         return self.states
 
 
-A, B = NodeState("/a", "active"), NodeState("/b", "active")
-BOTH = Snapshot((GraphNode("/a", ""), GraphNode("/b", "")), (), (), environment())
+A, B = Answer("/a", "active"), Answer("/b", "active")
+BOTH = System((Node("/a", ""), Node("/b", "")), (), (), environment())
 
 
 def test_a_watched_graph_is_asked_when_it_is_quiet_and_again_after_a_while() -> None:
@@ -409,8 +406,8 @@ def test_what_is_to_be_asked_reaches_the_child() -> None:
 
 def test_a_node_is_asked_for_what_is_planned() -> None:
     type_ = "rcl_interfaces/srv/GetParameters"
-    end = GraphEndpoint(SERVICE, SERVES, "/a/get_parameters", type_, "", "/a", None, "")
-    seen = Snapshot((GraphNode("/a", ""),), (end,), (), environment())
+    end = End(SERVICE, SERVES, "/a/get_parameters", type_, "", "/a", None, "")
+    seen = System((Node("/a", ""),), (end,), (), environment())
     (it,) = questions(seen, {"/a": ["rate", "use_sim_time"], "/b": ["x"]})
     assert it.parameters == ("rate", "use_sim_time")
 

@@ -14,18 +14,19 @@ from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, Finding
 from multibot_rewrite.graph.plan_file import read_plan
 from multibot_rewrite.graph.reach import machines
-from multibot_rewrite.graph.snapshot import Caveat, GraphEndpoint, Snapshot, to_json
 from multibot_rewrite.live.watching import Verdict, judge
 from multibot_rewrite.rules.check import check
+from multibot_rewrite.system.json import to_json
+from multibot_rewrite.system.records import Caveat, End, System
 
 # A second process of the machine of robot1.
 BESIDE = ONE[:8] + "cccccccccccccccc"
 
 
-def seen(*robots: tuple[str, str], **around: Any) -> Snapshot:
+def seen(*robots: tuple[str, str], **around: Any) -> System:
     """These robots as planned, each in its process."""
     ends = tuple(
-        GraphEndpoint(it.kind, it.role, it.name, it.type, "", f"/{robot}/drive", None, process)
+        End(it.kind, it.role, it.name, it.type, "", f"/{robot}/drive", None, process)
         for robot, process in robots
         for it in (
             end(robot, f"/{robot}/odom"),
@@ -38,7 +39,7 @@ def seen(*robots: tuple[str, str], **around: Any) -> Snapshot:
     return look(*(node(robot, process) for robot, process in robots), ends=ends, **around)
 
 
-def absent(tmp_path: Path, graph: Snapshot) -> Finding:
+def absent(tmp_path: Path, graph: System) -> Finding:
     """The one finding about robot2."""
     path = write_plan(tmp_path / "plan.yaml", ("robot1", "robot2"))
     (found,) = check(read_plan(path.read_bytes(), str(path)), graph)
@@ -73,7 +74,7 @@ def test_other_machines_are_seen(tmp_path: Path) -> None:
     rviz = end("x", "/rviz", TWO)._replace(node="/rviz2")
     graph = graph._replace(
         nodes=(*graph.nodes, node("robot1")._replace(name="/rviz2", process=TWO)),
-        endpoints=(*graph.endpoints, rviz),
+        ends=(*graph.ends, rviz),
     )
     found = absent(tmp_path, graph)
     assert found.level == ERROR
@@ -110,9 +111,9 @@ def test_a_node_under_another_name_is_no_robot_elsewhere(tmp_path: Path) -> None
     wrong = node("robot2")._replace(name="/drive", process=BESIDE)
     ends = tuple(
         it._replace(node="/drive", process=BESIDE, name=it.name.replace("/robot2", ""))
-        for it in seen(("robot2", BESIDE)).endpoints
+        for it in seen(("robot2", BESIDE)).ends
     )
-    graph = graph._replace(nodes=(*graph.nodes, wrong), endpoints=(*graph.endpoints, *ends))
+    graph = graph._replace(nodes=(*graph.nodes, wrong), ends=(*graph.ends, *ends))
     path = write_plan(tmp_path / "plan.yaml", ("robot1", "robot2"))
     found = check(read_plan(path.read_bytes(), str(path)), graph)
     assert [it.level for it in found if it.code == "MG109"] == [ERROR]

@@ -24,8 +24,8 @@ from multibot_rewrite.graph.rehearsal import (
     to_order,
     with_substitutes,
 )
-from multibot_rewrite.graph.snapshot import Snapshot, from_json
-from multibot_rewrite.graph.transforms import Edge, edges_of, frames_of, with_odometry
+from multibot_rewrite.graph.transforms import Edge as SentEdge
+from multibot_rewrite.graph.transforms import edges_of, frames_of, with_odometry
 from multibot_rewrite.knowledge.node_library import stack_of
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in
@@ -40,6 +40,7 @@ from multibot_rewrite.remap.ways import WAYS
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.steps.collect import Inventory, collect
 from multibot_rewrite.steps.document import read_document
+from multibot_rewrite.system.json import from_json
 from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
@@ -48,6 +49,7 @@ from multibot_rewrite.system.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
+    System,
 )
 
 ROVER = ROBOTS / "rover.urdf"
@@ -136,7 +138,7 @@ def test_robots_share_processes_when_they_are_many() -> None:
 def test_an_order_survives_the_pipe() -> None:
     import json
 
-    stub = drive()._replace(edges=(Edge("odom", "base", False),))
+    stub = drive()._replace(edges=(SentEdge("odom", "base", False),))
     assert from_order(json.loads(json.dumps(to_order([stub])))) == [stub]
 
 
@@ -174,7 +176,7 @@ def rewritten(layout: str) -> tuple[Inventory, Naming]:
     ), make_naming(layout)
 
 
-def sent(layout: str, *stacks: str) -> dict[str, list[Edge]]:
+def sent(layout: str, *stacks: str) -> dict[str, list[SentEdge]]:
     inventory, naming = rewritten(layout)
     nodes = [node for stack in stacks for node in stack_of(built_in(NEWEST_LTS), stack)]
     reading = read(inventory.document.source, "rover.urdf", builtin_tree((), NEWEST_LTS).vocabulary)
@@ -186,24 +188,24 @@ def sent(layout: str, *stacks: str) -> dict[str, list[Edge]]:
 @pytest.mark.parametrize(("layout", "end"), [("L1", ""), ("L2", "/robot1"), ("L4", "/robot1")])
 def test_description_odometry_and_map_are_one_tree(layout: str, end: str) -> None:
     edges = sent(layout, "robot_state", "localization")
-    assert edges["amcl"] == [Edge("map", f"odom{end}", False)]
-    assert edges["diff_drive"] == [Edge(f"odom{end}", f"base_footprint{end}", False)]
+    assert edges["amcl"] == [SentEdge("map", f"odom{end}", False)]
+    assert edges["diff_drive"] == [SentEdge(f"odom{end}", f"base_footprint{end}", False)]
     tree = edges["robot_state_publisher"]
-    assert tree[0] == Edge(f"base_footprint{end}", f"base_link{end}", True)
-    assert Edge(f"base_link{end}", f"left_wheel{end}", False) in tree
+    assert tree[0] == SentEdge(f"base_footprint{end}", f"base_link{end}", True)
+    assert SentEdge(f"base_link{end}", f"left_wheel{end}", False) in tree
     parents = {edge.child: edge.parent for edges in edges.values() for edge in edges}
     assert {parent for parent in parents.values() if parent not in parents} == {"map"}
 
 
 def test_odometry_leads_to_the_root_of_the_description() -> None:
     assert sent("L2", "robot_localization")["ekf_filter_node"] == [
-        Edge("odom/robot1", "base_footprint/robot1", False)
+        SentEdge("odom/robot1", "base_footprint/robot1", False)
     ]
 
 
 def test_a_robots_frames_are_declared_or_sent_and_not_shared() -> None:
     inventory, naming = rewritten("L2")
-    frames = frames_of(inventory, [Edge("map", "odom/robot1", False)], naming, "robot1")
+    frames = frames_of(inventory, [SentEdge("map", "odom/robot1", False)], naming, "robot1")
     assert "odom/robot1" in frames
     assert "camera_link/robot1" in frames
     assert "map" not in frames
@@ -211,37 +213,40 @@ def test_a_robots_frames_are_declared_or_sent_and_not_shared() -> None:
 
 def test_missing_odometry_is_added_and_reported() -> None:
     naming = make_naming("L2")
-    tree = [Edge("base", "arm", True)]
-    edges = {("r1", "robot_state_publisher"): tree, ("r1", "amcl"): [Edge("map", "odom", False)]}
+    tree = [SentEdge("base", "arm", True)]
+    edges = {
+        ("r1", "robot_state_publisher"): tree,
+        ("r1", "amcl"): [SentEdge("map", "odom", False)],
+    }
     filled, added = with_odometry(edges, "r1", naming)
     assert added == "odom -> base"
-    assert filled["r1", "robot_state_publisher"] == [*tree, Edge("odom", "base", False)]
+    assert filled["r1", "robot_state_publisher"] == [*tree, SentEdge("odom", "base", False)]
     assert with_odometry(filled, "r1", naming) == (filled, "")
     assert with_odometry({("r1", "robot_state_publisher"): tree}, "r1", naming)[1] == ""
     assert with_odometry(edges, "r2", naming) == (edges, "")
-    standing = {**edges, ("r1", "robot_state_publisher"): [Edge("world", "base", True)]}
+    standing = {**edges, ("r1", "robot_state_publisher"): [SentEdge("world", "base", True)]}
     assert with_odometry(standing, "r1", naming) == (standing, "")
 
 
-def _without_endpoints(graph: Snapshot) -> Snapshot:
+def _without_endpoints(graph: System) -> System:
     """Robot1's nodes are known, what they have is not: messages of the discovery were lost."""
-    left = tuple(end for end in graph.endpoints if not end.node.startswith("/robot1/"))
-    return graph._replace(endpoints=left)
+    left = tuple(end for end in graph.ends if not end.node.startswith("/robot1/"))
+    return graph._replace(ends=left)
 
 
 @pytest.mark.parametrize(
     ("first", "looks"),
     [
         (lambda full: full, 1),
-        (lambda full: full._replace(nodes=(), endpoints=(), frames=()), 2),
+        (lambda full: full._replace(nodes=(), ends=(), edges=()), 2),
         (_without_endpoints, 2),
-        (lambda full: full._replace(frames=full.frames[1:]), 2),
+        (lambda full: full._replace(edges=full.edges[1:]), 2),
         # What is seen and is wrong does not go away.
         (lambda _: _graph("MG320.json"), 1),
     ],
 )
 def test_a_look_that_only_lacks_something_is_taken_again(
-    first: Callable[[Snapshot], Snapshot], looks: int, monkeypatch: pytest.MonkeyPatch
+    first: Callable[[System], System], looks: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     full = _graph("healthy.json")
     plan = read_plan((FIXTURES / "graphs" / "plan.yaml").read_bytes(), "plan.yaml")
@@ -252,5 +257,5 @@ def test_a_look_that_only_lacks_something_is_taken_again(
     assert graph == (full if looks == 2 else first(full))
 
 
-def _graph(name: str) -> Snapshot:
+def _graph(name: str) -> System:
     return from_json((FIXTURES / "graphs" / name).read_bytes(), name)

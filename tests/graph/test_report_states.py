@@ -21,13 +21,13 @@ from multibot_rewrite.cli.pictures import snippets
 from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.graph.plan_file import to_yaml
 from multibot_rewrite.graph.rehearsal import with_substitutes
-from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphNode, to_json
 from multibot_rewrite.pages.page import to_html
 from multibot_rewrite.pages.page_sections import ids_of, make_ids
 from multibot_rewrite.pages.scene import BRIDGE, Scene
 from multibot_rewrite.pages.states import CLASH, MISSING, OK, UNEXPECTED, robots_of
 from multibot_rewrite.rules.check import side_by_side
-from multibot_rewrite.system.records import ACTION, SERVES
+from multibot_rewrite.system.json import to_json
+from multibot_rewrite.system.records import ACTION, SERVES, End, Node
 
 GRAPHS = ROOT / "fixtures" / "graphs"
 
@@ -177,8 +177,8 @@ def test_robots_in_namespaces_of_two_levels_with_all_that_a_plan_may_have() -> N
 
 def test_a_topic_that_no_bridge_carries_is_dashed() -> None:
     graph = report_pages.rich_graph()
-    ends = (it for it in graph.endpoints if it.name != f"{SECOND}/cmd_vel")
-    scene = report_pages.rich(graph._replace(endpoints=tuple(ends)))
+    ends = (it for it in graph.ends if it.name != f"{SECOND}/cmd_vel")
+    scene = report_pages.rich(graph._replace(ends=tuple(ends)))
     assert [it.finding.code for it in scene.rows] == ["MG126"]
     wrong = {key: state for key, state in edge_states(scene).items() if state != OK}
     assert wrong == {(BRIDGE, f"{SECOND}/cmd_vel"): MISSING}
@@ -188,7 +188,7 @@ def test_a_topic_that_no_bridge_carries_is_dashed() -> None:
 @pytest.mark.parametrize(("running", "state"), [((), MISSING), (("amcl", "slam_toolbox"), CLASH)])
 def test_of_alternatives_none_or_two_run(running: tuple[str, ...], state: str) -> None:
     graph = nav2_graphs.without_node(report_pages.rich_graph(), f"{FIRST}/amcl")
-    nodes = (GraphNode(f"{FIRST}/{it}", it) for it in running)
+    nodes = (Node(f"{FIRST}/{it}", it) for it in running)
     scene = report_pages.rich(graph._replace(nodes=(*graph.nodes, *nodes)))
     wrong = {node for node, it in node_states(scene).items() if it != OK}
     assert wrong == {f"{FIRST}/amcl", f"{FIRST}/slam_toolbox"}
@@ -198,8 +198,8 @@ def test_of_alternatives_none_or_two_run(running: tuple[str, ...], state: str) -
 
 def test_what_a_shared_node_lacks_is_dashed() -> None:
     graph = report_pages.rich_graph()
-    ends = (it for it in graph.endpoints if it.name != "/map")
-    scene = report_pages.rich(graph._replace(endpoints=tuple(ends)))
+    ends = (it for it in graph.ends if it.name != "/map")
+    scene = report_pages.rich(graph._replace(ends=tuple(ends)))
     assert edge_states(scene)["/map_server", "/map"] == MISSING
     assert cards(scene) == {"shared, or of no robot": "bad", "fleet_a/robot1": "good"}
 
@@ -207,8 +207,8 @@ def test_what_a_shared_node_lacks_is_dashed() -> None:
 def test_a_frame_that_is_not_received_is_drawn_with_its_finding() -> None:
     plan = nav2_graphs.nav2()
     graph = nav2_graphs.healthy(plan)
-    lost = [it for it in graph.frames if "robot2" not in it.child]
-    scene = nav2_graphs.scene(plan, graph._replace(frames=tuple(lost)))
+    lost = [it for it in graph.edges if "robot2" not in it.child]
+    scene = nav2_graphs.scene(plan, graph._replace(edges=tuple(lost)))
     assert "MG208" in {it.finding.code for it in scene.rows}
     (tree,) = (it for it in scene.trees if not it.received)
     assert {row.state for row in tree.rows} == {MISSING}
@@ -222,10 +222,10 @@ def test_the_action_of_a_stand_in_is_as_planned() -> None:
     types = {it.type: "std_msgs/msg/Empty" for it in plan.endpoints if it.kind == ACTION}
     stubs = with_substitutes(plan, types)
     node, name = "/robot1/behavior_server", "/robot1/backup"
-    action = GraphEndpoint(ACTION, SERVES, name, "std_msgs/msg/Empty", "", node, None, "")
+    action = End(ACTION, SERVES, name, "std_msgs/msg/Empty", "", node, None, "")
     odd = action._replace(name="/robot1/fly")
     graph = nav2_graphs.healthy(stubs)
-    scene = nav2_graphs.scene(stubs, graph._replace(endpoints=(*graph.endpoints, action, odd)))
+    scene = nav2_graphs.scene(stubs, graph._replace(ends=(*graph.ends, action, odd)))
     assert edge_states(scene)[node, name] == OK
     assert edge_states(scene)[node, "/robot1/fly"] == UNEXPECTED
 

@@ -15,9 +15,9 @@ from paths import FIXTURES
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.graph.rosgraph.reading import NO_FRAMES, ONLY_TOPICS, from_yaml
 from multibot_rewrite.graph.rosgraph.writing import to_yaml
-from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphNode, Qos, Snapshot
 from multibot_rewrite.graph.snapshot_file import read_snapshot
 from multibot_rewrite.model import InputError
+from multibot_rewrite.system.records import End, Node, Qos, System
 
 HEALTHY = str(FIXTURES / "graphs" / "healthy.json")
 INF = math.inf
@@ -74,12 +74,12 @@ def test_a_message_is_read_as_its_fields_say() -> None:
     qos = Qos("KEEP_LAST", 7, "BEST_EFFORT", "TRANSIENT_LOCAL", 1.5, INF, "MANUAL_BY_TOPIC", INF)
     hidden = "/robot1/go/_action"
 
-    def end(kind: str, role: str, name: str, type_: str) -> GraphEndpoint:
-        return GraphEndpoint(kind, role, name, type_, "", node, None, "")
+    def end(kind: str, role: str, name: str, type_: str) -> End:
+        return End(kind, role, name, type_, "", node, None, "")
 
-    assert found.nodes == (GraphNode(node, ""),)
-    assert found.endpoints == (
-        GraphEndpoint("topic", "publishes", "/robot1/state", "a/msg/B", HASH, node, qos, ""),
+    assert found.nodes == (Node(node, ""),)
+    assert found.ends == (
+        End("topic", "publishes", "/robot1/state", "a/msg/B", HASH, node, qos, ""),
         end("service", "serves", "/robot1/arm/stop", "std_srvs/srv/Trigger"),
         end("action", "calls", "/robot1/go", "a/action/Go"),
         end("service", "calls", f"{hidden}/send_goal", "a/action/Go_SendGoal"),
@@ -100,10 +100,10 @@ def test_what_is_written_is_read_back() -> None:
 def test_the_graph_of_nav2_keeps_its_endpoints(layout: str) -> None:
     graph = healthy(nav2(layout))
     again = from_yaml(to_yaml(graph).decode(), "graph.yaml")
-    plain = {it._replace(process="") for it in graph.endpoints}
-    assert plain <= set(again.endpoints)
+    plain = {it._replace(process="") for it in graph.ends}
+    assert plain <= set(again.ends)
     # The parts of an action are told even where the snapshot has the action alone.
-    assert all("/_action/" in it.name for it in set(again.endpoints) - plain)
+    assert all("/_action/" in it.name for it in set(again.ends) - plain)
     assert [it.name for it in again.nodes] == [it.name for it in graph.nodes]
 
 
@@ -112,25 +112,23 @@ def test_a_server_of_an_action_publishes_its_topics() -> None:
         "action_clients:", "action_servers:"
     )
     value = swapped.replace("service_clients: []", "service_clients: []\n  action_clients: []")
-    roles = {it.name.rpartition("/")[2]: it.role for it in from_yaml(value, "f").endpoints}
+    roles = {it.name.rpartition("/")[2]: it.role for it in from_yaml(value, "f").ends}
     assert (roles["go"], roles["send_goal"], roles["status"]) == ("serves", "serves", "publishes")
 
 
 def test_a_policy_that_the_message_does_not_have_is_unknown() -> None:
     qos = Qos("KEEP_LAST", 1, "RELIABLE", "OF_TOMORROW", INF, INF, "AUTOMATIC", INF)
-    ends = (GraphEndpoint("topic", "publishes", "/x", "a/msg/B", "", "/a", qos, ""),)
-    graph = Snapshot((GraphNode("/a", ""),), ends, (), environment())
-    (found,) = from_yaml(to_yaml(graph).decode(), "f").endpoints
+    ends = (End("topic", "publishes", "/x", "a/msg/B", "", "/a", qos, ""),)
+    graph = System((Node("/a", ""),), ends, (), environment())
+    (found,) = from_yaml(to_yaml(graph).decode(), "f").ends
     assert found.qos == qos._replace(durability="UNKNOWN")
 
 
 def test_topics_of_an_action_without_the_action_stay_topics() -> None:
     name = "/go/_action/feedback"
-    end = GraphEndpoint(
-        "topic", "subscribes", name, "a/action/Go_FeedbackMessage", "", "/a", None, ""
-    )
-    graph = Snapshot((GraphNode("/a", ""),), (end,), (), environment())
-    assert from_yaml(to_yaml(graph).decode(), "f").endpoints == (end,)
+    end = End("topic", "subscribes", name, "a/action/Go_FeedbackMessage", "", "/a", None, "")
+    graph = System((Node("/a", ""),), (end,), (), environment())
+    assert from_yaml(to_yaml(graph).decode(), "f").ends == (end,)
 
 
 def test_a_monitor_of_topics_alone_gives_an_incomplete_view() -> None:

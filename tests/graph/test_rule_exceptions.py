@@ -10,10 +10,9 @@ from graph_cases import healthy as planned
 
 from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, WARNING
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
-from multibot_rewrite.graph.snapshot import Caveat, GraphFrame, Snapshot
 from multibot_rewrite.live.watching import Verdict, WatchState, with_found
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.system.records import PUBLISHES, TOPIC
+from multibot_rewrite.system.records import PUBLISHES, TOPIC, Caveat, Edge, System
 
 TEXT, TF = "std_msgs/msg/String", "tf2_msgs/msg/TFMessage"
 CUT_OFF = environment(Caveat("participants", True, "the view may be cut off"))
@@ -33,21 +32,21 @@ def fleet(tf: str, **frames: Sequence[str]) -> Expectation:
     return Expectation("frames-per-robot", tuple(robots), (), ("/rosout",), ("map",), tuple(ends))
 
 
-def graph(plan: Expectation, *more: GraphFrame) -> Snapshot:
+def graph(plan: Expectation, *more: Edge) -> System:
     """As planned: each robot's frames below its first one, and transforms besides."""
     edges = [
-        GraphFrame(frame, robot.frames[0], robot.tf.replace("tf", "tf_static"), True, ())
+        Edge(frame, robot.frames[0], robot.tf.replace("tf", "tf_static"), True, ())
         for robot in plan.robots
         for frame in robot.frames[1:]
     ]
-    return sent(as_planned(plan)._replace(frames=(*edges, *more)))
+    return sent(as_planned(plan)._replace(edges=(*edges, *more)))
 
 
-def below(parent: str, *frames: str, topic: str = "/tf_static") -> list[GraphFrame]:
-    return [GraphFrame(frame, parent, topic, True, ()) for frame in frames]
+def below(parent: str, *frames: str, topic: str = "/tf_static") -> list[Edge]:
+    return [Edge(frame, parent, topic, True, ()) for frame in frames]
 
 
-def found(plan: Expectation, seen: Snapshot) -> list[tuple[str, str, tuple[str, ...]]]:
+def found(plan: Expectation, seen: System) -> list[tuple[str, str, tuple[str, ...]]]:
     return [(it.code, it.robot, tuple(it.names)) for it in check(plan, seen)]
 
 
@@ -114,8 +113,8 @@ def test_a_robots_name_behind_a_dot_where_no_frame_has_it(twice: str) -> None:
 def test_a_frame_without_what_the_dot_puts_there(spelled: str) -> None:
     own = {it: (f"base/{it}", spelled.replace("ROBOT", it)) for it in ("robot1", "robot2")}
     plan = fleet("/tf", **own)
-    edges = [it for it in graph(plan).frames if it.child != own["robot1"][1]]
-    seen = sent(graph(plan)._replace(frames=(*edges, *below("base/robot1", "camera"))))
+    edges = [it for it in graph(plan).edges if it.child != own["robot1"][1]]
+    seen = sent(graph(plan)._replace(edges=(*edges, *below("base/robot1", "camera"))))
     assert found(plan, seen) == [("MG207", "robot1", ("camera",))]
 
 
@@ -133,8 +132,8 @@ def test_a_disconnected_tree_has_the_frame_name_with_a_dot() -> None:
         *below("base.robot1", "camera.link.robot1.robot1"),
         *below("camera.link.robot1", "base.robot1.robot1"),
     )
-    edges = [it for it in seen.frames if it.child != "camera.link.robot1"]
-    torn = [it for it in check(DOTS, seen._replace(frames=tuple(edges))) if it.code == "MG406"]
+    edges = [it for it in seen.edges if it.child != "camera.link.robot1"]
+    torn = [it for it in check(DOTS, seen._replace(edges=tuple(edges))) if it.code == "MG406"]
     assert [it.robot for it in torn] == ["robot1"]
     assert "base.robot1.robot1 and base.robot1 are one frame" in torn[0].hint
 
@@ -150,13 +149,13 @@ PREFIXED = fleet(
 CAMERA, LASER = "robot1/camera", "robot1/laser"
 
 
-def copied(seen: Snapshot, node: str, *, at_home: bool = True) -> Snapshot:
+def copied(seen: System, node: str, *, at_home: bool = True) -> System:
     """The tf of robot1 is sent to /tf by a node, too, or only there."""
-    kept = [it for it in seen.frames if at_home or not it.topic.startswith("/robot1/")]
+    kept = [it for it in seen.edges if at_home or not it.topic.startswith("/robot1/")]
     copies = [
-        it._replace(topic="/tf_static") for it in seen.frames if it.topic.startswith("/robot1/")
+        it._replace(topic="/tf_static") for it in seen.edges if it.topic.startswith("/robot1/")
     ]
-    there = seen._replace(frames=(*kept, *copies))
+    there = seen._replace(edges=(*kept, *copies))
     if not node:
         return sent(there)
     return with_node(there, node, (PUBLISHES, "/tf", TF), (PUBLISHES, "/tf_static", TF))
@@ -184,9 +183,9 @@ def test_frames_without_a_known_sender_are_no_copy() -> None:
 def test_one_frame_more_than_at_home_is_no_copy() -> None:
     """A relay that sends what the robot does not."""
     seen = copied(graph(PREFIXED), "/relay")
-    kept = [it for it in seen.frames if (it.child, it.topic) != (LASER, "/robot1/tf_static")]
+    kept = [it for it in seen.edges if (it.child, it.topic) != (LASER, "/robot1/tf_static")]
     assert ("MG405", "robot1", (CAMERA, LASER)) in found(
-        PREFIXED, sent(seen._replace(frames=tuple(kept)))
+        PREFIXED, sent(seen._replace(edges=tuple(kept)))
     )
 
 
@@ -230,7 +229,7 @@ def test_nothing_is_called_missing_in_an_incomplete_view(case: Case) -> None:
     assert [it.level for it in partial] == expected
 
 
-def _state(plan: Expectation, graph: Snapshot, before: WatchState | None) -> WatchState:
+def _state(plan: Expectation, graph: System, before: WatchState | None) -> WatchState:
     return with_found(plan, graph, check(plan, graph), before)
 
 

@@ -23,9 +23,8 @@ from graph_examples import read_example
 
 from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.graph.expectation import Expectation, PlannedTopic
-from multibot_rewrite.graph.snapshot import GraphFrame, Snapshot
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Edge, System
 
 LAYOUTS = ("frames-per-robot", "tf-per-robot", "both", "postfix")
 # Those in which frames have the robot's name.
@@ -43,11 +42,11 @@ def named(layout: str, name: str) -> str:
     )
 
 
-def is_of(robot: str, frame: GraphFrame) -> bool:
+def is_of(robot: str, frame: Edge) -> bool:
     return any(robot in it for it in (frame.child, frame.parent, frame.topic))
 
 
-def hints(layout: str, graph: Snapshot, code: str) -> list[Finding]:
+def hints(layout: str, graph: System, code: str) -> list[Finding]:
     return [it for it in check(read_plan(layout), graph) if it.code == code]
 
 
@@ -55,7 +54,7 @@ def hints(layout: str, graph: Snapshot, code: str) -> list[Finding]:
 def test_the_description_of_robot1_in_both_publishers(layout: str) -> None:
     """Its tree is sent twice, that of robot2 not at all, but for the odometry of its driver."""
 
-    def lost(frame: GraphFrame) -> GraphFrame | None:
+    def lost(frame: Edge) -> Edge | None:
         mine = is_of("robot2", frame) and not frame.child.startswith("base_footprint")
         return None if mine else frame
 
@@ -69,7 +68,7 @@ def test_the_description_of_robot1_in_both_publishers(layout: str) -> None:
 def test_the_description_of_robot1_is_recognized_by_its_frames(layout: str) -> None:
     """They come twice, or on the topic of robot2."""
 
-    def lost(frame: GraphFrame) -> GraphFrame | None:
+    def lost(frame: Edge) -> Edge | None:
         if not is_of("robot2", frame):
             return frame._replace(several=True) if layout == "frames-per-robot" else frame
         if frame.child.startswith("base_footprint"):
@@ -145,10 +144,10 @@ def test_a_bridge_without_cmd_vel_of_robot2(layout: str) -> None:
     # The drive of Gazebo Classic reads it: in a gz there is nothing but the bridge.
     ends = [
         it
-        for it in as_planned(plan).endpoints
+        for it in as_planned(plan).ends
         if (it.kind, it.role, it.name) != (TOPIC, SUBSCRIBES, lost)
     ]
-    graph = with_node(as_planned(plan)._replace(endpoints=tuple(ends)), "/ros_gz_bridge")
+    graph = with_node(as_planned(plan)._replace(ends=tuple(ends)), "/ros_gz_bridge")
     (finding,) = (it for it in check(plan, graph) if it.code == "MG126")
     assert (finding.robot, finding.level) == ("robot2", ERROR)
     assert lost in finding.message
@@ -158,12 +157,12 @@ def test_a_bridge_without_cmd_vel_of_robot2(layout: str) -> None:
 # Causes name the node, by the plan, and its line; nothing points to other findings.
 
 
-def torn(layout: str, change: Callable[[GraphFrame], GraphFrame | None]) -> list[Finding]:
+def torn(layout: str, change: Callable[[Edge], Edge | None]) -> list[Finding]:
     """Findings where robot2 has a pose in the world, so that its odom is in the tree."""
     plan = read_plan(layout)
     odom = next(it for it in plan.robots[1].frames if "odom" in it)
     tf = plan.robots[1].tf.replace("tf", "tf_static", 1)
-    graph = reframed(change, GraphFrame(odom, "world", tf, True, ()))(healthy(layout))
+    graph = reframed(change, Edge(odom, "world", tf, True, ()))(healthy(layout))
     return check(plan, sent(graph))
 
 
@@ -174,7 +173,7 @@ def spelled(layout: str, frame: str) -> str:
 
 @pytest.mark.parametrize("layout", NAMED)
 def test_a_bare_odom_of_a_plugin(layout: str) -> None:
-    def bare(frame: GraphFrame) -> GraphFrame:
+    def bare(frame: Edge) -> Edge:
         mine = frame.child == spelled(layout, "base_footprint")
         return frame._replace(parent="odom") if mine else frame
 
@@ -188,7 +187,7 @@ def test_a_bare_odom_of_a_plugin(layout: str) -> None:
 
 @pytest.mark.parametrize("layout", NAMED)
 def test_a_bare_odom_where_nothing_else_has_it(layout: str) -> None:
-    def bare(frame: GraphFrame) -> GraphFrame:
+    def bare(frame: Edge) -> Edge:
         mine = frame.child == spelled(layout, "base_footprint")
         return frame._replace(parent="odom") if mine else frame
 
@@ -201,7 +200,7 @@ def test_a_bare_odom_where_nothing_else_has_it(layout: str) -> None:
 @pytest.mark.parametrize("layout", NAMED)
 @pytest.mark.parametrize("several", [True, False])
 def test_the_parameters_of_robot1_in_the_drive_of_robot2(layout: str, several: bool) -> None:
-    def swapped(frame: GraphFrame) -> GraphFrame | None:
+    def swapped(frame: Edge) -> Edge | None:
         if frame.child == spelled(layout, "base_footprint"):
             return None
         first = frame.child == spelled(layout, "base_footprint").replace("robot2", "robot1")
@@ -220,7 +219,7 @@ def test_the_parameters_of_robot1_in_the_drive_of_robot2(layout: str, several: b
 
 @pytest.mark.parametrize("layout", ["both", "postfix"])
 def test_the_transform_of_robot1_on_the_tf_topic_of_robot2(layout: str) -> None:
-    def swapped(frame: GraphFrame) -> GraphFrame:
+    def swapped(frame: Edge) -> Edge:
         if frame.child != spelled(layout, "base_footprint"):
             return frame
         parent, child = (it.replace("robot2", "robot1") for it in (frame.parent, frame.child))
@@ -239,7 +238,7 @@ def test_a_drive_that_does_not_run(layout: str) -> None:
     own = plan.robots[1].tf
     graph = reframed(
         lambda it: None if (it.child, it.topic) == (footprint, own) else it,
-        GraphFrame(odom, "world", own.replace("tf", "tf_static", 1), True, ()),
+        Edge(odom, "world", own.replace("tf", "tf_static", 1), True, ()),
     )(without_node(healthy(layout), drive))
     (finding,) = (it for it in check(plan, graph) if it.code == "MG406")
     assert finding.hint.startswith(f"{drive}, which sends {odom} -> {footprint}, does not run")
@@ -253,7 +252,7 @@ def test_a_bridge_that_was_not_started(layout: str, type_: str) -> None:
     name = named(layout, "pose/tf")
     topic = PlannedTopic(name, bridge=(PUBLISHES,), type=type_)
     plan = read_plan(layout)._replace(topics=(topic,), sends=())
-    odom = GraphFrame(spelled(layout, "odom"), "world", own.replace("tf", "tf_static", 1), True, ())
+    odom = Edge(spelled(layout, "odom"), "world", own.replace("tf", "tf_static", 1), True, ())
     graph = reframed(lambda it: None if (it.child, it.topic) == (footprint, own) else it, odom)
     (finding,) = (it for it in check(plan, graph(healthy(layout))) if it.code == "MG406")
     assert f"nothing publishes {name}, which a ros_gz_bridge has to carry" in finding.hint
@@ -263,7 +262,7 @@ def test_a_bridge_that_was_not_started(layout: str, type_: str) -> None:
 def test_two_parents_name_the_robots_own_nodes_first(layout: str) -> None:
     plan = read_plan(layout)
     footprint, own = spelled(layout, "base_footprint"), plan.robots[1].tf
-    graph = reframed(lambda it: it, GraphFrame(footprint, "map", own, False, ()))(healthy(layout))
+    graph = reframed(lambda it: it, Edge(footprint, "map", own, False, ()))(healthy(layout))
     (finding,) = (it for it in check(plan, graph) if it.code == "MG401")
     publishers = finding.hint.partition(f"send on {own}: ")[2]
     assert publishers.startswith(f"{named(layout, 'diff_drive')}, ")
@@ -279,9 +278,9 @@ def test_two_parents_name_senders_of_this_topic_alone() -> None:
     both = (node, "/robot2/base_again")
 
     graph = healthy("tf-per-robot")
-    frames = [it._replace(publishers=both) if it.topic == own else it for it in graph.frames]
-    again = GraphFrame("base_footprint", "base", own, False, both)
-    graph = graph._replace(frames=(*frames, again))
+    frames = [it._replace(publishers=both) if it.topic == own else it for it in graph.edges]
+    again = Edge("base_footprint", "base", own, False, both)
+    graph = graph._replace(edges=(*frames, again))
     (finding,) = (it for it in check(plan, graph) if it.code == "MG401")
     said = finding.hint.partition("two of the nodes")[0]
     assert "/robot1/" not in said
@@ -293,7 +292,7 @@ def test_two_parents_name_senders_of_this_topic_alone() -> None:
 @pytest.mark.parametrize("layout", LAYOUTS)
 @pytest.mark.parametrize("prefix", ["robot2/", "foo/", "foo", "my_"])
 def test_a_frame_prefix_beside_a_rewritten_description(layout: str, prefix: str) -> None:
-    def change(frame: GraphFrame) -> GraphFrame:
+    def change(frame: Edge) -> Edge:
         odometry = frame.child.startswith("base_footprint")
         if odometry or not is_of("robot2", frame):
             return frame
@@ -312,7 +311,7 @@ def test_a_frame_prefix_where_the_tag_is_another_word() -> None:
     other = last._replace(frames=frames, other_frames=(), frame_tag="robot2_tf")
     plan = plan._replace(robots=(plan.robots[0], other))
 
-    def change(frame: GraphFrame) -> GraphFrame:
+    def change(frame: Edge) -> Edge:
         if not is_of("robot2", frame):
             return frame
         ends = (f"{it}_tf" for it in (frame.parent, frame.child))
@@ -328,7 +327,7 @@ def test_a_frame_prefix_where_the_tag_is_another_word() -> None:
 def test_a_second_sensor_is_no_prefix() -> None:
     """front_camera_link beside camera_link: a frame of its own, to be planned."""
     more = (
-        GraphFrame(f"front_{it}/robot2", "base_link/robot2", "/tf_static/robot2", True, ())
+        Edge(f"front_{it}/robot2", "base_link/robot2", "/tf_static/robot2", True, ())
         for it in ("camera_link", "lidar_link")
     )
     graph = reframed(lambda it: it, *more)(healthy("postfix"))

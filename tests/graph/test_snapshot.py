@@ -37,24 +37,25 @@ from multibot_rewrite.graph.live.assemble import (
 from multibot_rewrite.graph.live.queries import TopicQueries, with_topic_details
 from multibot_rewrite.graph.live.request import Request, from_text, to_text
 from multibot_rewrite.graph.live.tf_subscriptions import TfSubscriptions
-from multibot_rewrite.graph.snapshot import (
+from multibot_rewrite.graph.wording import SEVERAL, shorten
+from multibot_rewrite.model import InputError, UsageError
+from multibot_rewrite.system.json import from_json, to_json
+from multibot_rewrite.system.records import (
     EXPECTED,
+    MAY,
     QUIET,
+    RUNS,
     TIMEOUT,
     UNKNOWN_NODE,
     Caveat,
+    Edge,
+    End,
     Environment,
-    GraphEndpoint,
-    GraphFrame,
-    GraphNode,
+    Node,
     Qos,
-    Snapshot,
-    from_json,
+    System,
     incomplete,
-    to_json,
 )
-from multibot_rewrite.graph.wording import SEVERAL, shorten
-from multibot_rewrite.model import InputError, UsageError
 
 QOS = Qos("UNKNOWN", 0, "RELIABLE", "VOLATILE", math.inf, 10.0, "AUTOMATIC", math.inf)
 HIDDEN = Caveat("nothing-seen", True, "no node was seen")
@@ -65,22 +66,22 @@ AROUND = Environment(
 CALM = settings({})
 
 
-def end(node: str, name: str, role: str = "publishes", **more: Any) -> GraphEndpoint:
+def end(node: str, name: str, role: str = "publishes", **more: Any) -> End:
     kind = {"publishes": "topic", "subscribes": "topic"}.get(role, "service")
     type_ = "std_msgs/msg/String"
-    return GraphEndpoint(kind, role, name, type_, "", node, None, "")._replace(**more)
+    return End(kind, role, name, type_, "", node, None, "")._replace(**more)
 
 
-SNAPSHOT = Snapshot(
-    (GraphNode("/robot1/amcl", "01aa"), GraphNode("/robot1/amcl", "01bb")),
+SNAPSHOT = System(
+    (Node("/robot1/amcl", "01aa"), Node("/robot1/amcl", "01bb")),
     (
         end("/robot1/amcl", "/robot1/scan", "subscribes", qos=QOS, process="01aa"),
         end("/robot1/amcl", "/robot1/amcl/get_state", "serves"),
         end("/robot1/amcl", "/robot1/go", "serves", kind="action"),
     ),
     (
-        GraphFrame("base_link/ä", "odom", "/robot1/tf", False, ("/robot1/amcl",)),
-        GraphFrame("imu", "base_link", "/robot1/tf", True, (), False, (0.5, -1, 2e-9, 0, 0, 0, 1)),
+        Edge("base_link/ä", "odom", "/robot1/tf", False, ("/robot1/amcl",)),
+        Edge("imu", "base_link", "/robot1/tf", True, (), False, (0.5, -1, 2e-9, 0, 0, 0, 1)),
     ),
     AROUND,
 )
@@ -94,46 +95,46 @@ def test_a_snapshot_survives_the_file() -> None:
 
 
 def test_an_empty_snapshot_survives_the_file() -> None:
-    empty = Snapshot((), (), (), AROUND._replace(caveats=(), static_peers=()))
+    empty = System((), (), (), AROUND._replace(caveats=(), static_peers=()))
     assert from_json(to_json(empty), "graph.json") == empty
 
 
 TEXT = st.text(st.characters(codec="utf-8"), max_size=8)
 NAME = TEXT.map("/{}".format)
+SURE = st.sampled_from([RUNS, MAY])
 TIME = st.floats(0, 1e6) | st.just(math.inf)
 
 
 @pytest.mark.slow
 @given(
-    st.builds(GraphNode, NAME, TEXT),
+    st.builds(Node, NAME, TEXT, sure=SURE),
     st.builds(Qos, TEXT, st.integers(), TEXT, TEXT, TIME, TIME, TEXT, TIME),
     st.builds(
-        GraphFrame,
+        Edge,
         *(TEXT, TEXT, NAME, st.booleans(), st.lists(NAME).map(tuple), st.booleans()),
         st.just(()) | st.tuples(*[st.floats(-1e3, 1e3)] * 7),
+        sure=SURE,
     ),
     st.builds(Caveat, TEXT, st.booleans(), TEXT),
 )
-def test_any_snapshot_survives_the_file(
-    node: GraphNode, qos: Qos, frame: GraphFrame, caveat: Caveat
-) -> None:
+def test_any_snapshot_survives_the_file(node: Node, qos: Qos, frame: Edge, caveat: Caveat) -> None:
     ends = (end(node.name, "/x", qos=qos, process=node.process),)
-    any_ = Snapshot((node, node), ends, (frame,), AROUND._replace(caveats=(caveat,)))
+    any_ = System((node, node), ends, (frame,), AROUND._replace(caveats=(caveat,)))
     assert from_json(to_json(any_), "graph.json") == any_
 
 
 def test_the_file_is_plain_json_with_null_for_no_limit() -> None:
     value = json.loads(to_json(SNAPSHOT))
-    assert value["schema"] == 1
-    assert value["endpoints"][0]["qos"]["deadline"] is None
-    assert value["endpoints"][0]["qos"]["lifespan"] == 10.0
+    assert value["schema"] == 2
+    assert value["ends"][0]["qos"]["deadline"] is None
+    assert value["ends"][0]["qos"]["lifespan"] == 10.0
     # A record a line, so that two snapshots can be compared line by line.
     assert to_json(SNAPSHOT).count(b'{"name": "/robot1/amcl"') == 2
 
 
 def test_equal_texts_and_profiles_are_in_memory_once() -> None:
     ends = tuple(end(f"/a{at}", "/x", qos=QOS) for at in range(3))
-    found = from_json(to_json(SNAPSHOT._replace(endpoints=ends)), "graph.json").endpoints
+    found = from_json(to_json(SNAPSHOT._replace(ends=ends)), "graph.json").ends
     assert found == ends
     assert len({id(it.name) for it in found}) == len({id(it.qos) for it in found}) == 1
 
@@ -162,41 +163,40 @@ NODE_OBJECT = {"name": "/a", "process": ""}
         (b"\xff", "g.json: cannot be read as JSON"),
         (b"[" * 100_000, "g.json:1:1: not valid JSON: it is nested deeper than 100 levels"),
         (b"[]", "g.json: not a snapshot, but []"),
-        (changed("schema"), "g.json: schema: expected 1, not null; take the snapshot again"),
-        (changed("schema", to=2), "g.json: schema: expected 1, not 2"),
-        (changed("schema", to=True), "g.json: schema: expected 1, not true"),
-        (changed("nodes"), "g.json: nodes: missing"),
+        (changed("schema"), "g.json: schema: expected 2, not null; take the snapshot again"),
+        (changed("schema", to=3), "g.json: schema: expected 2, not 3"),
+        (changed("schema", to=True), "g.json: schema: expected 2, not true"),
         (changed("nodes", to={}), "g.json: nodes: expected a list, not {}"),
         (changed("nodes", 1, to="x"), 'g.json: nodes[1]: expected an object, not "x"'),
         (changed("nodes", 1, "name"), "g.json: nodes[1].name: missing"),
         (changed("nodes", 0, "name", to="a"), "nodes[0].name: expected a full name that starts"),
         (changed("nodes", 0, "pid", to=3), "g.json: nodes[0].pid: unknown key"),
-        (changed("endpoints", 0, "kind", to="topik"), "one of topic, service, action, not"),
-        (changed("endpoints", 0, "role", to=None), "endpoints[0].role: expected one of publishes"),
-        (changed("endpoints", 0, "qos", "depth", to="1"), "qos.depth: expected a whole number"),
-        (changed("endpoints", 0, "qos", "depth", to=True), "qos.depth: expected a whole number"),
-        (changed("endpoints", 0, "qos", "deadline", to="x"), "deadline: expected a number or null"),
+        (changed("ends", 0, "kind", to="topik"), "one of topic, service, action, not"),
+        (changed("ends", 0, "role", to=None), "ends[0].role: expected one of publishes"),
+        (changed("ends", 0, "qos", "depth", to="1"), "qos.depth: expected a whole number"),
+        (changed("ends", 0, "qos", "depth", to=True), "qos.depth: expected a whole number"),
+        (changed("ends", 0, "qos", "deadline", to="x"), "deadline: expected a number or null"),
         (
-            changed("endpoints", 0, "qos", "deadline", to=10**400),
+            changed("ends", 0, "qos", "deadline", to=10**400),
             "a number of 401 characters",
         ),
         (b"[" + b"1" * 5000 + b"]", "g.json:1:2: not valid JSON: a number of 5,000"),
-        (changed("endpoints", 0, "qos", "deadline", to=math.nan), "deadline: expected a number"),
-        (changed("frames", 0, "static", to=1), "frames[0].static: expected true or false, not 1"),
-        (changed("frames", 0, "publishers", 0, to=1), "frames[0].publishers[0]: expected text"),
+        (changed("ends", 0, "qos", "deadline", to=math.nan), "deadline: expected a number"),
+        (changed("edges", 0, "static", to=1), "edges[0].static: expected true or false, not 1"),
+        (changed("edges", 0, "publishers", 0, to=1), "edges[0].publishers[0]: expected text"),
         (
-            changed("frames", 1, "transform", to=[1, 2, 3]),
-            "frames[1].transform: expected 7 numbers",
+            changed("edges", 1, "transform", to=[1, 2, 3]),
+            "edges[1].transform: expected 7 numbers",
         ),
         (
-            changed("frames", 1, "transform", to=[None] * 7),
-            "frames[1].transform: expected 7 numbers",
+            changed("edges", 1, "transform", to=[None] * 7),
+            "edges[1].transform: expected 7 numbers",
         ),
-        (changed("frames", 1, "transform", 0, to=1e200), "frames[1].transform: expected 7 numbers"),
-        (changed("frames", 1, "transform", 3, to="x"), "transform[3]: expected a number"),
-        (changed("endpoints", 0, to=NODE_OBJECT), "g.json: endpoints[0].kind: missing"),
-        (changed("frames", 0, to=NODE_OBJECT), "g.json: frames[0].child: missing"),
-        (changed("environment", to=NODE_OBJECT), "g.json: environment.domain: missing"),
+        (changed("edges", 1, "transform", 0, to=1e200), "edges[1].transform: expected 7 numbers"),
+        (changed("edges", 1, "transform", 3, to="x"), "transform[3]: expected a number"),
+        (changed("ends", 0, to=NODE_OBJECT), "g.json: ends[0].kind: missing"),
+        (changed("edges", 0, to=NODE_OBJECT), "g.json: edges[0].child: missing"),
+        (changed("environment", to=NODE_OBJECT), "g.json: environment.name: unknown key"),
         (changed("environment", to=None), "g.json: environment: expected an object"),
         (changed("environment", "settled", to="yes"), "expected one of expected, quiet, timeout"),
         (changed("environment", "caveats", 0, "code"), "environment.caveats[0].code: missing"),
@@ -283,14 +283,14 @@ def test_problems_in_settings_are_caveats(environ: dict[str, str], codes: list[s
 
 
 def codes_of(
-    nodes: list[str], ends: list[GraphEndpoint], why: str = QUIET, **environ: str
+    nodes: list[str], ends: list[End], why: str = QUIET, **environ: str
 ) -> list[tuple[str, bool]]:
-    records = [GraphNode(name, "") for name in nodes]
+    records = [Node(name, "") for name in nodes]
     found = view_caveats(records, ends, settings(environ), why)
     return [(caveat.code, caveat.incomplete) for caveat in found]
 
 
-def fleet(count: int) -> tuple[list[str], list[GraphEndpoint]]:
+def fleet(count: int) -> tuple[list[str], list[End]]:
     nodes = [f"/robot{number}/drive" for number in range(count)]
     return nodes, [end(node, "/heartbeat", process=f"{at:024x}") for at, node in enumerate(nodes)]
 
@@ -328,7 +328,7 @@ def test_timeout_nothing_seen_and_same_names_are_caveats() -> None:
 
 
 def test_expected_nodes_that_are_absent_are_named() -> None:
-    (caveat,) = view_caveats([GraphNode("/a", "")], [end("/a", "/x")], CALM, QUIET, ["/a", "/b"])
+    (caveat,) = view_caveats([Node("/a", "")], [end("/a", "/x")], CALM, QUIET, ["/a", "/b"])
     assert (caveat.code, caveat.incomplete) == ("expected-not-seen", True)
     assert "/b;" in caveat.message
 
@@ -405,12 +405,12 @@ def test_endpoints_by_topic_replace_those_by_node() -> None:
 def test_nodes_of_one_name_are_spread_over_its_processes() -> None:
     groups = processes_by_node([end("/a", "/x", process="1"), end("/a", "/x", process="2")])
     assert nodes_with_process(["/a", "/b", "/a"], groups) == [
-        GraphNode("/a", "1"),
-        GraphNode("/a", "2"),
-        GraphNode("/b", ""),
+        Node("/a", "1"),
+        Node("/a", "2"),
+        Node("/b", ""),
     ]
     # Both in one process: that is where they are.
-    assert nodes_with_process(["/a", "/a"], {"/a": ["1"]}) == [GraphNode("/a", "1")] * 2
+    assert nodes_with_process(["/a", "/a"], {"/a": ["1"]}) == [Node("/a", "1")] * 2
 
 
 def test_an_endpoint_gets_its_nodes_process_only_beyond_doubt() -> None:
@@ -433,8 +433,8 @@ def test_a_transform_is_there_once_a_topic_and_static_if_latched() -> None:
     ]
     ends = [end("/b", "/tf"), end("/a", "/tf"), end("/c", "/tf", "subscribes")]
     assert list(frames(heard, ends)) == [
-        GraphFrame("base_link", "odom", "/tf", False, ("/a", "/b")),
-        GraphFrame("lidar", "base_link", "/tf_static", True, ()),
+        Edge("base_link", "odom", "/tf", False, ("/a", "/b")),
+        Edge("lidar", "base_link", "/tf_static", True, ()),
     ]
 
 
@@ -559,7 +559,7 @@ def test_slow_queries_end_with_the_time() -> None:
     assert {it.name for it in left} == {f"/t{at}" for at in range(4, 9)}
 
 
-TWINS = SNAPSHOT._replace(nodes=(GraphNode("/a", "p"), GraphNode("/a", "q")))
+TWINS = SNAPSHOT._replace(nodes=(Node("/a", "p"), Node("/a", "q")))
 
 
 @pytest.mark.parametrize(("took", "looks"), [(5.0, [15.0, 10.0]), (8.0, [15.0]), (16.0, [15.0])])
@@ -568,7 +568,7 @@ def test_a_second_look_has_the_time_that_is_left(
 ) -> None:
     now, asked = [0.0], []
 
-    def look(request: Request, environ: object) -> Snapshot:
+    def look(request: Request, environ: object) -> System:
         asked.append(request.timeout)
         now[0] += took
         return TWINS._replace(environment=AROUND._replace(seconds=took, caveats=()))
@@ -580,12 +580,12 @@ def test_a_second_look_has_the_time_that_is_left(
     assert [it.code for it in incomplete(seen)] == ["no-second-look"] * (len(looks) == 1)
 
 
-@pytest.mark.parametrize(("first", "looks"), [((), 2), ((GraphNode("/a", "p"),), 1)])
+@pytest.mark.parametrize(("first", "looks"), [((), 2), ((Node("/a", "p"),), 1)])
 def test_an_empty_view_is_looked_at_again(
-    first: tuple[GraphNode, ...], looks: int, monkeypatch: pytest.MonkeyPatch
+    first: tuple[Node, ...], looks: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     around = AROUND._replace(seconds=3.0, caveats=())
-    full = SNAPSHOT._replace(nodes=(GraphNode("/a", "p"),), endpoints=(), environment=around)
+    full = SNAPSHOT._replace(nodes=(Node("/a", "p"),), ends=(), environment=around)
     views = [full, full._replace(nodes=first)]
     monkeypatch.setattr(child, "_observe_once", lambda *_: views.pop())
     assert child.observe(Request(15.0), {}).nodes == full.nodes

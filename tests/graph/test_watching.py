@@ -8,39 +8,38 @@ import pytest
 from graph_cases import environment, moved, without_node
 from small_fleet import healthy, plan
 
-from multibot_rewrite.graph.snapshot import CHANGING, Caveat, GraphEndpoint, GraphNode, Snapshot
 from multibot_rewrite.live.watching import Progress, Verdict, WatchState, final, with_found
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.system.records import PUBLISHES, TOPIC
+from multibot_rewrite.system.records import CHANGING, PUBLISHES, TOPIC, Caveat, End, Node, System
 
 ROBOT2 = ("/robot2/driver", "/robot2/robot_state_publisher")
 
 
-def moving(graph: Snapshot) -> Snapshot:
+def moving(graph: System) -> System:
     """The graph while it changes."""
     around = environment(Caveat("not-settled", True, "the graph is still changing"))
     return graph._replace(environment=around._replace(settled=CHANGING))
 
 
-def half() -> Snapshot:
+def half() -> System:
     """robot2 is not there."""
     graph = healthy()
     for node in ROBOT2:
         graph = without_node(graph, node)
-    frames = tuple(frame for frame in graph.frames if "robot2" not in frame.child)
-    return graph._replace(frames=frames)
+    frames = tuple(frame for frame in graph.edges if "robot2" not in frame.child)
+    return graph._replace(edges=frames)
 
 
-def clash() -> Snapshot:
+def clash() -> System:
     """Somebody publishes another type on a robot's topic."""
     graph = healthy()
-    end = GraphEndpoint(
+    end = End(
         TOPIC, PUBLISHES, "/robot1/cmd_vel", "std_msgs/msg/Empty", "", "/robot1/driver", None, ""
     )
-    return graph._replace(endpoints=(*graph.endpoints, end))
+    return graph._replace(ends=(*graph.ends, end))
 
 
-def watched(graphs: Iterable[Snapshot]) -> list[WatchState]:
+def watched(graphs: Iterable[System]) -> list[WatchState]:
     states: list[WatchState] = []
     for graph in graphs:
         states.append(
@@ -50,7 +49,7 @@ def watched(graphs: Iterable[Snapshot]) -> list[WatchState]:
 
 
 def test_a_fleet_that_comes_up_and_stays_is_as_planned() -> None:
-    nothing = healthy()._replace(nodes=(), endpoints=(), frames=())
+    nothing = healthy()._replace(nodes=(), ends=(), edges=())
     unseen = nothing._replace(environment=environment(Caveat("nothing-seen", True, "no node")))
     graphs = [moving(nothing), unseen, moving(half()), half(), moving(healthy()), healthy()]
     states = watched(graphs)
@@ -94,7 +93,7 @@ def test_changes_come_and_go() -> None:
 
 
 def test_what_is_wrong_from_the_start_is_announced_when_all_has_come() -> None:
-    early = half()._replace(endpoints=(*half().endpoints, clash().endpoints[-1]))
+    early = half()._replace(ends=(*half().ends, clash().ends[-1]))
     first, second = watched([moving(early), clash()])
     assert [it.complete for it in (first, second)] == [False, True]
     assert {it.code for it in second.appeared} == {it.code for it in second.findings} == {"MG306"}
@@ -106,13 +105,13 @@ def test_what_is_wrong_from_the_start_is_announced_when_all_has_come() -> None:
     ("graph", "robot2"), [(healthy(), ((2, 2), (5, 5))), (half(), ((0, 2), (0, 5)))]
 )
 def test_how_much_of_a_robot_is_there(
-    graph: Snapshot, robot2: tuple[tuple[int, int], tuple[int, int]]
+    graph: System, robot2: tuple[tuple[int, int], tuple[int, int]]
 ) -> None:
     (state,) = watched([graph])
     assert state.robots == (Progress("robot1", (2, 2), (5, 5)), Progress("robot2", *robot2))
 
 
 def test_an_unplanned_node_is_not_counted() -> None:
-    graph = healthy()._replace(nodes=(*healthy().nodes, GraphNode("/robot1/other", "")))
+    graph = healthy()._replace(nodes=(*healthy().nodes, Node("/robot1/other", "")))
     (state,) = watched([graph])
     assert state.robots[0].nodes == (2, 2)

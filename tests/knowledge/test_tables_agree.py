@@ -8,13 +8,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from multibot_rewrite.companions.params.known_nodes import (
-    Branch,
-    KnownNode,
-    Param,
-    built_in_nodes,
-)
-from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.knowledge.parameters import Branch, KnownNode, built_in_nodes
+from multibot_rewrite.knowledge.records import NodeFacts, Param
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.releases import RELEASES
 

@@ -1,6 +1,6 @@
 """Files beside a description: planted defects are found at their line, what is odd and healthy is not.
 
-What a parameter is was read in the sources that the rows of parameters.tsv name.
+What a parameter is was read in the sources that the rows of declared.schema name.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 from paths import FIXTURES, ROBOTS
 
+from multibot_rewrite.knowledge.declared import FILE, is_known
 from multibot_rewrite.knowledge.nodl.lookup import INDEX
 from multibot_rewrite.lint.beside.kinds import BRIDGE, MOVEIT, PARAMS, RVIZ, kind_of
 from multibot_rewrite.lint.check import lint_file
@@ -18,12 +19,10 @@ from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.run import lint_files
 from multibot_rewrite.releases import RELEASES
 from multibot_rewrite.rules.files.bounds import beyond
-from tools.interfaces.known_parameter_table import table
+from tools.interfaces.declared_table import ID, plugin_owners, table
 from tools.interfaces.parameter_facts import read_parameters
-from tools.interfaces.plugin_table import ID, plugin_owners
-from tools.interfaces.plugin_table import table as plugin_table
 
-SHIPPED = Path(beyond.__code__.co_filename).parent / "parameters.tsv"
+SHIPPED = Path(FILE)
 CONTROLLERS = """\
 controller_manager:
   ros__parameters:
@@ -506,16 +505,9 @@ def test_a_file_is_judged_with_the_descriptions_beside_it(tmp_path: Path) -> Non
 
 
 def test_the_known_parameters_are_those_of_the_sources() -> None:
-    """After a change: python -m tools.interfaces.known_parameter_table fixtures/interfaces"""
+    """After a change: python -m tools.interfaces.declared_table fixtures/interfaces"""
     assert SHIPPED.read_text() == table(FIXTURES / "interfaces")
-
-
-def test_the_known_plugins_are_those_of_the_sources() -> None:
-    """After a change: python -m tools.interfaces.plugin_table fixtures/interfaces"""
-    shipped = SHIPPED.with_name("plugins.tsv").read_text()
-    assert shipped == plugin_table(FIXTURES / "interfaces")
-    plugins = {it.partition("\t")[0] for it in shipped.splitlines()}
-    assert plugins == set(plugin_owners().packages)
+    assert all(is_known(it) for it in plugin_owners().packages)
 
 
 def test_every_class_of_a_package_with_plugins_has_a_plugin() -> None:

@@ -6,22 +6,14 @@ from collections import Counter
 from functools import cache
 
 import pytest
-import upstream_page
-from lint_triage import (
-    LEAST,
-    Judged,
-    committed,
-    errors,
-    judgements,
-    linted_corpus,
-    linted_wheels,
-    page,
-)
-from paths import CORPUS, FIXTURES
+from lint_triage import LEAST, errors, linted_corpus, linted_wheels
+from paths import CORPUS
 from real_robots import corpus_files, wheel_files
 
 from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.lint.registry import RULES
+from tools.pages import upstream
+from tools.pages.lint_triage import Judged, committed, judgements
 
 pytestmark = pytest.mark.slow
 
@@ -55,8 +47,8 @@ def test_places_are_in_the_files() -> None:
 
 
 def test_the_errors_are_those_that_were_counted() -> None:
-    """After a change that is meant: python tests/triage.py counts > fixtures/lint_triage_counts.tsv,
-    judge what is new in fixtures/lint_triage_MB*.tsv, and make the page anew."""
+    """After a meant change: python tests/support/lint_triage.py > fixtures/lint_triage_counts.tsv,
+    and judge what is new in fixtures/lint_triage_MB*.tsv."""
     known = committed()
     assert len(linted()) == known["files"][0]
     counts = {code: corpus for code, (corpus, _) in known.items() if corpus and code != "files"}
@@ -100,9 +92,7 @@ def test_what_is_judged_true_is_found_and_what_is_false_is_not(code: str) -> Non
 
 
 # What the lint says of a description alone; the others need a package's meshes or its xacro files.
-ERRORS_HERE = [
-    it for it in upstream_page.errors() if it.rule in ("MB205", "MB501", "MB606", "MB607")
-]
+ERRORS_HERE = [it for it in upstream.errors() if it.rule in ("MB205", "MB501", "MB606", "MB607")]
 
 
 def test_enough_errors_for_maintainers_are_in_the_public_files() -> None:
@@ -112,7 +102,7 @@ def test_enough_errors_for_maintainers_are_in_the_public_files() -> None:
 @pytest.mark.parametrize(
     "error", ERRORS_HERE, ids=lambda it: f"{it.file.rpartition('/')[2]}:{it.line}"
 )
-def test_an_error_for_its_maintainers_is_still_found(error: upstream_page.Error) -> None:
+def test_an_error_for_its_maintainers_is_still_found(error: upstream.Error) -> None:
     owner = error.repository.replace("/", "+")
     found = {
         (it.code, it.level, it.message)
@@ -121,8 +111,3 @@ def test_an_error_for_its_maintainers_is_still_found(error: upstream_page.Error)
         for it in its
     }
     assert (error.rule, ERROR, error.finding) in found
-
-
-def test_the_page_of_judgements_is_current() -> None:
-    """Made by: python tests/triage.py page > docs/lint-triage.md"""
-    assert (FIXTURES.parent / "docs" / "lint-triage.md").read_text() == page()

@@ -9,7 +9,7 @@ import pytest
 
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.config.settings import Settings
-from multibot_rewrite.lint.rules.names.ros_names import robot_name
+from multibot_rewrite.lint.files.named import robot_name
 from multibot_rewrite.lint.run import lint_files
 
 SHAPE = "<collision><geometry><sphere radius='1'/></geometry></collision>"

@@ -41,8 +41,8 @@ def test_the_page_works_as_written(tmp_path: Path, environment: dict[str, str]) 
         # What is installed by now must not stand in for what is contributed.
         own = environment if "cd " not in step.text else without_site(environment)
         guides.follow([step], folder, own)
-    page = (folder / "multibot_rewrite" / "docs" / "plugins.md").read_text()
-    assert "### plugin acme_winch\n" in page
+    page = (folder / "pages" / "plugins" / "classic_both.md").read_text()
+    assert "## plugin acme_winch\n" in page
 
 
 def without_site(environment: dict[str, str]) -> dict[str, str]:

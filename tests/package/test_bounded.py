@@ -17,12 +17,11 @@ from hypothesis import strategies as st
 
 import multibot_rewrite
 from multibot_rewrite import bounded
-from multibot_rewrite.companions.params.known_nodes import load_known_nodes
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.fleets.manifest import read_manifest
 from multibot_rewrite.graph.plan_file import from_json as from_json_plan
 from multibot_rewrite.graph.plan_file import from_yaml
-from multibot_rewrite.graph.snapshot import from_json
+from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.stacks import user_stack
 from multibot_rewrite.knowledge.yaml_with_lines import read_yaml_with_lines
 from multibot_rewrite.lint.config.baseline import read_baseline
@@ -30,6 +29,7 @@ from multibot_rewrite.model import InputError, MultibotError
 from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.rewriters.vocabulary import load_vocabulary
 from multibot_rewrite.sources.read import read_file
+from multibot_rewrite.system.json import from_json
 
 PACKAGE = Path(multibot_rewrite.__file__).parent
 Reader = Callable[[str], object]
@@ -236,7 +236,7 @@ def test_the_parsers_are_called_in_one_place() -> None:
     }
     # What these read is written by the tool: its schema, and messages between its processes.
     own = {"fleets/fleet_data.py", "cli/rehearse.py", "graph/live/request.py"}
-    own |= {"evidence/launch_records.py", "graph/live/ask.py", "graph/live/child.py"}
-    own |= {"graph/states.py"}
+    own |= {"producers/launch/records.py", "graph/live/ask.py", "graph/live/child.py"}
+    own |= {"system/parameters.py"}
     own |= {"sources/child/asking.py", "sources/child/serve.py"}
     assert found == {"bounded.py", "graph/live/stub_nodes.py", *own}

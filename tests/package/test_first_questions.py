@@ -12,8 +12,8 @@ from paths import ROBOTS, ROOT
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.graph.plan_file import read_plan
-from multibot_rewrite.graph.snapshot import Snapshot, to_json
-from multibot_rewrite.system.records import PUBLISHES
+from multibot_rewrite.system.json import to_json
+from multibot_rewrite.system.records import PUBLISHES, System
 
 EXAMPLE = ROOT / "examples" / "namespace_and_prefix"
 
@@ -26,12 +26,12 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
-def running(built: Path) -> Snapshot:
+def running(built: Path) -> System:
     """The graph that the plan of a build describes."""
     return sent(as_planned(read_plan((built / "plan.yaml").read_bytes(), "plan.yaml")))
 
 
-def doctor(graph: Snapshot, folder: Path, capsys: pytest.CaptureFixture[str]) -> list[str]:
+def doctor(graph: System, folder: Path, capsys: pytest.CaptureFixture[str]) -> list[str]:
     (folder / "graph.json").write_bytes(to_json(graph))
     main(["doctor", "--snapshot", str(folder / "graph.json")])
     return [line for line in capsys.readouterr().out.splitlines() if " MG" in line]

@@ -12,7 +12,7 @@ import pytest
 from graph_cases import healthy
 from paths import FIXTURES
 
-from multibot_rewrite.graph.snapshot import to_json
+from multibot_rewrite.system.json import to_json
 
 pytestmark = pytest.mark.slow
 

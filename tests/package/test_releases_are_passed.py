@@ -4,23 +4,14 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
-from pathlib import Path
 
-import multibot_rewrite
+from parsed import sources
 
-PACKAGE = Path(multibot_rewrite.__file__).parent
-SOURCES = {
-    path.relative_to(PACKAGE).as_posix(): ast.parse(path.read_text())
-    for path in sorted(PACKAGE.rglob("*.py"))
-}
 WORDS = ("release", "distro", "environment")
 # The public calls, which ask ROS_DISTRO.
 PUBLIC = ("library.py", "fleets/scripts.py", "releases.py")
-# `python -m` prints what the newest LTS has; a lint without a command has no other.
-NEWEST = {
-    *("releases.py", "cli/declared/shared.py"),
-    *("companions/params/page.py", "lint/config/settings.py"),
-}
+# A lint without a command has no other.
+NEWEST = {"releases.py", "cli/declared/shared.py", "lint/config/settings.py"}
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
@@ -63,7 +54,7 @@ def passed(call: ast.Call, word: str, count: int) -> bool:
 def test_no_function_has_a_release_of_its_own() -> None:
     found = {
         f"{file}: {function.name}"
-        for file, tree in SOURCES.items()
+        for file, tree in sources().items()
         for function in functions(tree)
         if file not in PUBLIC and set(optional(function)) & set(WORDS)
     }
@@ -73,7 +64,7 @@ def test_no_function_has_a_release_of_its_own() -> None:
 def test_the_newest_release_is_named_where_no_other_can_be_meant() -> None:
     found = {
         file
-        for file, tree in SOURCES.items()
+        for file, tree in sources().items()
         for it in ast.walk(tree)
         if isinstance(it, ast.Name) and it.id == "NEWEST_LTS"
     }
@@ -84,14 +75,14 @@ def test_every_call_of_what_is_made_once_names_the_release() -> None:
     """mypy does not see what a function behind ``lru_cache`` asks for; it sees the rest."""
     asking = {
         function.name: found
-        for tree in SOURCES.values()
+        for tree in sources().values()
         for function in tree.body
         if isinstance(function, Function) and is_cached(function) and (found := place(function))
     }
     assert {"built_in", "built_in_nodes", "builtin_tree", "load_vocabulary"} <= asking.keys()
     forgotten = [
         f"{file}:{call.lineno}: {call.func.id}"
-        for file, tree in SOURCES.items()
+        for file, tree in sources().items()
         for call in ast.walk(tree)
         if isinstance(call, ast.Call)
         and isinstance(call.func, ast.Name)

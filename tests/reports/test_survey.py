@@ -1,4 +1,4 @@
-"""What a survey counts, how surveys add up, and which mentions a reason explains."""
+"""What a survey counts, and how surveys add up."""
 
 from __future__ import annotations
 
@@ -8,22 +8,17 @@ from pathlib import Path
 import pytest
 from lxml import etree
 
-from multibot_rewrite import InputError
 from multibot_rewrite.checks.mentions import find_mentions
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.pipeline import prepare
 from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.reports.survey import (
-    Explained,
     Loaded,
     MentionPlace,
-    Reason,
     Survey,
     Tally,
     add,
-    explain,
     ranked,
-    read_reasons,
     share,
     survey,
 )
@@ -167,78 +162,6 @@ def test_the_walk_is_that_of_the_warnings() -> None:
     warned = prepare(text.encode(), "a.urdf", make_naming(), builtin_tree((), NEWEST_LTS)).findings
     count = Counter(finding.code for finding in warned)
     assert sum(tally.times for tally in found.mentions.values()) == count["MB901"] == 2
-
-
-# ---------------------------------------------------------------- explained mentions
-
-
-def explained(body: str, *reasons: str) -> Explained:
-    rows = [Reason(path, "why", line) for line, path in enumerate(reasons, 1)]
-    return explain(surveyed(body), rows)
-
-
-@pytest.mark.parametrize(
-    "path",
-    [
-        "robot/gazebo/plugin[libacme.so]/x",
-        "*/plugin[libacme.so]/x",
-        "robot/*/x",
-        "*plugin[lib*.so]*",
-        "*",
-    ],
-)
-def test_a_reason_explains_its_path_with_stars_for_any_text(path: str) -> None:
-    found = explained(plugin("libacme.so", "<x>hip</x>"), path)
-    assert [mention.path for mention, _, _ in found.explained] == [
-        "robot/gazebo/plugin[libacme.so]/x"
-    ]
-    assert not found.left and not found.stale
-
-
-@pytest.mark.parametrize(
-    "path",
-    [
-        "robot/gazebo/plugin[libacme.so]",
-        "robot/gazebo/pluginl/x",
-        "robot/gazebo/plugin[libacme?so]/x",
-        "robot/gazebo/plugin[[]libacme.so]/x",
-        "ROBOT/*",
-        "x",
-    ],
-)
-def test_only_a_star_stands_for_something_else(path: str) -> None:
-    found = explained(plugin("libacme.so", "<x>hip</x>"), path)
-    assert not found.explained
-    assert [mention.path for mention, _ in found.left] == ["robot/gazebo/plugin[libacme.so]/x"]
-    assert [stale.path for stale in found.stale] == [path]
-
-
-def test_the_first_reason_counts_and_the_second_is_not_stale() -> None:
-    found = explained(plugin("libacme.so", "<x>hip</x>"), "*/x", "*")
-    assert [reason.line for _, _, reason in found.explained] == [1]
-    assert not found.stale
-
-
-def test_a_reason_is_for_exact_mentions() -> None:
-    found = explained(plugin("libacme.so", "<x>hip arm</x>"), "*")
-    assert not found.explained and not found.left
-    assert len(found.stale) == 1
-
-
-def test_reasons_are_read_line_by_line() -> None:
-    text = "# comment\n\nrobot/a\tbecause it is\nrobot/b@c\ttab\tin it\n"
-    assert read_reasons(text, "f") == [
-        Reason("robot/a", "because it is", 3),
-        Reason("robot/b@c", "tab\tin it", 4),
-    ]
-
-
-@pytest.mark.parametrize("row", ["robot/a", "robot/a because", "robot/a\t", "\twhy", "robot/a\t  "])
-def test_a_line_without_path_or_reason_is_refused(row: str) -> None:
-    with pytest.raises(
-        InputError, match=r"^why\.tsv:2: write the tag path, a tab, and the reason$"
-    ):
-        read_reasons(f"# one\n{row}\n", "why.tsv")
 
 
 # ---------------------------------------------------------------- real files

@@ -17,8 +17,8 @@ from multibot_rewrite import VocabularyError, rewrite, strip
 from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.vocabulary import load_vocabulary
-from multibot_rewrite.rewriters.vocabulary.__main__ import page
 from multibot_rewrite.rewriters.vocabulary.installed import announcing, installed
+from tools.pages.plugins import pages
 
 pytestmark = pytest.mark.slow
 
@@ -236,9 +236,9 @@ def test_a_file_that_is_installed_and_named_too_is_read_once(make: Make) -> None
 
 
 def test_the_page_of_what_is_built_in_holds_nothing_else(make: Make) -> None:
-    before = page()
+    before = pages()
     make("aa", SECTION.format(name="aa"))
-    assert page() == before
+    assert pages() == before
 
 
 @pytest.mark.parametrize(

@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 from fault_changes import Change, Fault, nav, shared_tf, simulation
+from node_answers import told
 
 from multibot_rewrite.findings.finding import WARNING
-from multibot_rewrite.graph.snapshot import HeardFrame
-from multibot_rewrite.graph.states import Controller, NodeState
+from multibot_rewrite.system.answers import Answer, with_answers
+from multibot_rewrite.system.records import Heard
 
 MANAGERS = "/robot1/controller_manager", "/robot1/gz/controller_manager"
 
 
 def heard(topic: str, frame: str) -> Change:
     """A message on the topic names the frame."""
-    return lambda graph: graph._replace(heard=(*graph.heard, HeardFrame(topic, frame)))
+    return lambda graph: graph._replace(heard=(*graph.heard, Heard(topic, frame)))
 
 
-def answered(*states: NodeState) -> Change:
-    return lambda graph: graph._replace(states=(*graph.states, *states))
+def answered(*states: Answer) -> Change:
+    return lambda graph: with_answers(graph, states)
 
 
 def header_rows() -> tuple[Fault, ...]:
@@ -48,35 +49,35 @@ def header_rows() -> tuple[Fault, ...]:
 
 
 def state_rows() -> tuple[Fault, ...]:
-    arm = Controller("arm_controller", "active", ("joint1/position",))
-    spare = Controller("arm_controller", "inactive")
+    arm = "arm_controller", "active", ("joint1/position",)
+    spare = "arm_controller", "inactive", ()
     return (
         Fault(
-            "amcl was never activated", nav, answered(NodeState("/robot1/amcl", "inactive")),
+            "amcl was never activated", nav, answered(told("/robot1/amcl", "inactive")),
             "MG511", ("/robot1/lifecycle_manager_localization", "ros2 lifecycle get /robot1/amcl"),
         ),
         Fault(
             "a driver that nobody activates", nav,
-            answered(NodeState("/robot1/lidar_driver", "unconfigured")),
+            answered(told("/robot1/lidar_driver", "unconfigured")),
             "MG511", ("/robot1/lidar_driver", "nobody activates it"), WARNING,
         ),
         Fault(
             "one of robot2's nodes has use_sim_time false", simulation,
             answered(
-                NodeState("/robot2/amcl", sim_time=True),
-                NodeState("/robot2/planner_server", sim_time=True),
-                NodeState("/robot2/lidar_driver", sim_time=False),
+                told("/robot2/amcl", sim_time=True),
+                told("/robot2/planner_server", sim_time=True),
+                told("/robot2/lidar_driver", sim_time=False),
             ),
             "MG514", ("/robot2/lidar_driver", "the same for all"), WARNING,
         ),
         Fault(
             "a controller manager of the driver and one of the simulator", nav,
-            answered(*(NodeState(it, controllers=(arm,)) for it in MANAGERS)),
+            answered(*(told(it, controllers=(arm,)) for it in MANAGERS)),
             "MG512", (*MANAGERS, "stop one"),
         ),
         Fault(
             "controllers that no spawner activated", nav,
-            answered(NodeState(MANAGERS[0], controllers=(spare,))),
+            answered(told(MANAGERS[0], controllers=(spare,))),
             "MG513", ("arm_controller (inactive)", "spawners"), WARNING,
         ),
     )  # fmt: skip

@@ -16,8 +16,7 @@ from healthy_systems import (
 )
 
 from multibot_rewrite.findings.finding import ERROR, WARNING
-from multibot_rewrite.graph.snapshot import GraphNode, Snapshot
-from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
+from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES, Node, System
 
 JOY, BOOL = "sensor_msgs/msg/Joy", "std_msgs/msg/Bool"
 LISTED = "/controller_manager/list_controllers"
@@ -125,7 +124,7 @@ def chain_rows() -> tuple[Fault, ...]:
         ),
         Fault(
             "two containers of one name", nav,
-            lambda g: g._replace(nodes=(*g.nodes, *(GraphNode("/nav2_container", it) for it in "ab"))),
+            lambda g: g._replace(nodes=(*g.nodes, *(Node("/nav2_container", it) for it in "ab"))),
             "MG301", ("/nav2_container", "20 s"),
         ),
         Fault(
@@ -165,11 +164,11 @@ def chain_rows() -> tuple[Fault, ...]:
     )  # fmt: skip
 
 
-def _sent_by(graph: Snapshot, name: str, node: str, type_: str) -> Snapshot:
+def _sent_by(graph: System, name: str, node: str, type_: str) -> System:
     """Nobody publishes the topic but this node, and that below its own name."""
-    kept = (it for it in graph.endpoints if not (it.name == name and it.role == PUBLISHES))
+    kept = (it for it in graph.ends if not (it.name == name and it.role == PUBLISHES))
     own = f"{node}/{name.rpartition('/')[2]}"
-    return added(node, (PUBLISHES, own, type_))(graph._replace(endpoints=tuple(kept)))
+    return added(node, (PUBLISHES, own, type_))(graph._replace(ends=tuple(kept)))
 
 
 def _read_below(name: str, node: str) -> Change:
@@ -177,10 +176,10 @@ def _read_below(name: str, node: str) -> Change:
     return renamed(name, f"{node}/{name.rpartition('/')[2]}", node)
 
 
-def _two_versions(graph: Snapshot) -> Snapshot:
+def _two_versions(graph: System) -> System:
     """The lidar's computer has other messages than that of its robot."""
     ends = (
         it._replace(type_hash=f"RIHS01_{it.role}") if it.name == "/robot2/scan" else it
-        for it in graph.endpoints
+        for it in graph.ends
     )
-    return graph._replace(endpoints=tuple(ends))
+    return graph._replace(ends=tuple(ends))

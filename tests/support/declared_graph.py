@@ -8,12 +8,11 @@ from functools import cache
 
 from paths import FIXTURES
 
-from multibot_rewrite.graph.snapshot import GraphEndpoint
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.remap.records import NodeTable
 from multibot_rewrite.remap.table import parsed
 from multibot_rewrite.rosnames import bind, resolve_bound
-from multibot_rewrite.system.records import ACTION, SERVICE, TOPIC
+from multibot_rewrite.system.records import ACTION, SERVICE, TOPIC, End
 from tools.interfaces.compare import is_same
 from tools.interfaces.records import Fact
 from tools.interfaces.table import from_table
@@ -74,9 +73,7 @@ def names(fact: Fact, node: NodeFacts) -> list[str]:
     return same or given or ([fact.name] if "<" not in fact.name else [])
 
 
-def endpoints(
-    kind: str, node: NodeFacts, placed: NodeTable, release: str
-) -> Iterator[GraphEndpoint]:
+def endpoints(kind: str, node: NodeFacts, placed: NodeTable, release: str) -> Iterator[End]:
     """What a node has by its sources."""
     bound = bind(placed.name, placed.namespace, parsed(placed.rules))
     full = f"{placed.namespace.rstrip('/')}/{placed.name}"
@@ -110,4 +107,4 @@ def endpoints(
         elif way:
             owner = f"{full}_private_1407"
         resolved = resolve_bound(name, TOPIC if sort == ACTION else sort, bound)
-        yield GraphEndpoint(sort, role, resolved, type_, "", owner, None, "")
+        yield End(sort, role, resolved, type_, "", owner, None, "")

@@ -15,8 +15,7 @@ from healthy_systems import (
 )
 
 from multibot_rewrite.findings.finding import ERROR
-from multibot_rewrite.graph.snapshot import GraphFrame, Snapshot
-from multibot_rewrite.system.records import SUBSCRIBES
+from multibot_rewrite.system.records import SUBSCRIBES, Edge, System
 
 CHANGE_STATE = "lifecycle_msgs/srv/ChangeState"
 TRAJECTORY = "trajectory_msgs/msg/JointTrajectory"
@@ -25,14 +24,14 @@ DESCRIPTION = "std_msgs/msg/String"
 LEFT, RIGHT = (f"/{it}_arm/arm_controller/joint_trajectory" for it in ("left", "right"))
 LOCAL = "/robot1/local_costmap/local_costmap"
 LATCHED, VOLATILE = "TRANSIENT_LOCAL", "VOLATILE"
-Change = Callable[[Snapshot], Snapshot]
+Change = Callable[[System], System]
 
 
 class Fault(NamedTuple):
     """``words`` are in the finding of ``code``; ``also`` are codes that may come besides."""
 
     name: str
-    system: Callable[[], Snapshot]
+    system: Callable[[], System]
     change: Change
     code: str
     words: tuple[str, ...]
@@ -40,22 +39,22 @@ class Fault(NamedTuple):
     also: tuple[str, ...] = ()
 
 
-def nav() -> Snapshot:
+def nav() -> System:
     return nav2_with_tools("L1")
 
 
-def shared_tf() -> Snapshot:
+def shared_tf() -> System:
     return nav2_with_tools("L2")
 
 
-def simulation() -> Snapshot:
+def simulation() -> System:
     return simulated("robot1", "robot2", "robot3")
 
 
 def added(node: str, *ends: tuple[str, str, str]) -> Change:
     """A node more, or more of a node that is there."""
 
-    def change(graph: Snapshot) -> Snapshot:
+    def change(graph: System) -> System:
         there = any(it.name == node for it in graph.nodes)
         return (with_ends if there else with_node)(graph, node, *ends)
 
@@ -65,7 +64,7 @@ def added(node: str, *ends: tuple[str, str, str]) -> Change:
 def renamed(old: str, new: str, *nodes: str) -> Change:
     """A name under another one, of these nodes or of all."""
 
-    def change(graph: Snapshot) -> Snapshot:
+    def change(graph: System) -> System:
         for node in nodes or ("",):
             graph = moved(graph, old, new, node)
         return graph
@@ -74,7 +73,7 @@ def renamed(old: str, new: str, *nodes: str) -> Change:
 
 
 def both(*changes: Change) -> Change:
-    def change(graph: Snapshot) -> Snapshot:
+    def change(graph: System) -> System:
         for one in changes:
             graph = one(graph)
         return graph
@@ -89,7 +88,7 @@ def in_each(old: str, new: str) -> Change:
 
 def frame(child: str, parent: str, topic: str, static: bool = False) -> Change:
     """One transform more."""
-    return reframed(lambda it: it, GraphFrame(child, parent, topic, static, ()))
+    return reframed(lambda it: it, Edge(child, parent, topic, static, ()))
 
 
 def other_parent(child: str, parent: str, topic: str) -> Change:
@@ -109,7 +108,7 @@ def offered(name: str, publishers: str, subscribers: str, policy: str) -> Change
     return lambda graph: with_qos(graph, name, give, ask)
 
 
-def twice(graph: Snapshot) -> Snapshot:
+def twice(graph: System) -> System:
     """Every node of a robot runs twice, as when two robots have no namespace."""
     own = [
         it for it in graph.nodes if not it.name.startswith(("/ros", "/rqt", "/_", "/fox", "/fleet"))
@@ -117,16 +116,16 @@ def twice(graph: Snapshot) -> Snapshot:
     return graph._replace(nodes=(*graph.nodes, *own))
 
 
-def bare_odometry(graph: Snapshot) -> Snapshot:
+def bare_odometry(graph: System) -> System:
     """The controllers of both robots send the frames of their defaults."""
-    more = GraphFrame("base_footprint", "odom", "/tf", False, ())
+    more = Edge("base_footprint", "odom", "/tf", False, ())
     return reframed(lambda it: None if it.child.startswith("base_footprint/") else it, more)(graph)
 
 
-def prefixed_twice(graph: Snapshot) -> Snapshot:
+def prefixed_twice(graph: System) -> System:
     """frame_prefix: robot1/ on top of a description that has the name in front already."""
 
-    def change(it: GraphFrame) -> GraphFrame:
+    def change(it: Edge) -> Edge:
         child, parent = (_in_front(name) for name in (it.child, it.parent))
         if it.static and child.startswith("robot1/"):
             child, parent = f"robot1/{child}", f"robot1/{parent}"
@@ -143,15 +142,15 @@ def _in_front(name: str) -> str:
 def without_clock(*nodes: str) -> Change:
     """Nodes that nobody told of simulated time."""
 
-    def change(graph: Snapshot) -> Snapshot:
-        kept = (it for it in graph.endpoints if not (it.name == "/clock" and it.node in nodes))
-        return graph._replace(endpoints=tuple(kept))
+    def change(graph: System) -> System:
+        kept = (it for it in graph.ends if not (it.name == "/clock" and it.node in nodes))
+        return graph._replace(ends=tuple(kept))
 
     return change
 
 
 def on_simulated_time(robot: str) -> Change:
-    def change(graph: Snapshot) -> Snapshot:
+    def change(graph: System) -> System:
         for node in [it.name for it in graph.nodes if it.name.startswith(f"/{robot}/")]:
             graph = with_ends(graph, node, (SUBSCRIBES, "/clock", CLOCK))
         return graph
@@ -159,9 +158,9 @@ def on_simulated_time(robot: str) -> Change:
     return change
 
 
-def of_robot(graph: Snapshot, robot: str) -> tuple[str, ...]:
+def of_robot(graph: System, robot: str) -> tuple[str, ...]:
     return tuple(it.name for it in graph.nodes if it.name.startswith(f"/{robot}/"))
 
 
-def real_among_simulated(graph: Snapshot) -> Snapshot:
+def real_among_simulated(graph: System) -> System:
     return without_clock(*of_robot(graph, "robot3"))(graph)

@@ -17,17 +17,19 @@ from paths import ROOT
 from multibot_rewrite.cli.multibot import main as multibot
 from multibot_rewrite.graph.expectation import Expectation, PlannedRobot
 from multibot_rewrite.graph.plan_file import from_yaml
-from multibot_rewrite.graph.snapshot import (
+from multibot_rewrite.system.json import to_json
+from multibot_rewrite.system.records import (
+    PUBLISHES,
+    SUBSCRIBES,
+    TOPIC,
     Caveat,
+    Edge,
+    End,
     Environment,
-    GraphEndpoint,
-    GraphFrame,
-    GraphNode,
+    Node,
     Qos,
-    Snapshot,
-    to_json,
+    System,
 )
-from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
 
 # As a user names them: messages hold the paths.
 GRAPHS, ROVER = "fixtures/graphs", "fixtures/robots/rover.urdf"
@@ -55,7 +57,7 @@ class Case(NamedTuple):
     layout: str
     code: str
     found: tuple[str, ...]
-    broken: Callable[[Snapshot], Snapshot]
+    broken: Callable[[System], System]
 
     @property
     def stem(self) -> str:
@@ -76,31 +78,31 @@ def environment(*caveats: Caveat) -> Environment:
     return Environment(0, "LOCALHOST", (), "rmw_fastrtps_cpp", "", False, 4, "quiet", 3.5, caveats)
 
 
-def as_planned(plan: Expectation) -> Snapshot:
+def as_planned(plan: Expectation) -> System:
     """The graph that a plan is of; a type that is not known is that of the other end."""
     types: dict[tuple[str, str], str] = {}
     for wanted in plan.endpoints:
         both = (wanted.kind, wanted.name)
         types[both] = types.get(both) or wanted.type
     ends = [
-        GraphEndpoint(w.kind, w.role, w.name, types[w.kind, w.name], "", w.node, None, "")
+        End(w.kind, w.role, w.name, types[w.kind, w.name], "", w.node, None, "")
         for w in plan.endpoints
     ]
-    nodes = [GraphNode(node, "") for robot in plan.robots for node in robot.nodes]
+    nodes = [Node(node, "") for robot in plan.robots for node in robot.nodes]
     edges = [edge for robot in plan.robots for edge in robot_edges(robot)]
     ends += bridge(plan)
-    return sent(Snapshot(tuple(nodes), tuple(ends), tuple(edges), environment()))
+    return sent(System(tuple(nodes), tuple(ends), tuple(edges), environment()))
 
 
-def bridge(plan: Expectation) -> Iterable[GraphEndpoint]:
+def bridge(plan: Expectation) -> Iterable[End]:
     """The ends of a bridge that carries what the plan has for it."""
     for topic in plan.topics:
         for role in topic.bridge:
             node = "/ros_gz_bridge"
-            yield GraphEndpoint(TOPIC, role, topic.name, topic.type, "", node, None, "")
+            yield End(TOPIC, role, topic.name, topic.type, "", node, None, "")
 
 
-def robot_edges(robot: PlannedRobot) -> Iterator[GraphFrame]:
+def robot_edges(robot: PlannedRobot) -> Iterator[Edge]:
     """Its frames in one tree: a rover's as its description has them, else all below the first."""
     bare = {unspelled(frame, robot.name): frame for frame in robot.frames}
     root = bare.get("odom") or robot.frames[0]
@@ -109,7 +111,7 @@ def robot_edges(robot: PlannedRobot) -> Iterator[GraphFrame]:
             parent = bare.get(PARENTS.get(name, "base_link"), root)
             static = name not in MOVING
             topic = robot.tf.replace("tf", "tf_static", 1) if static else robot.tf
-            yield GraphFrame(frame, root if parent == frame else parent, topic, static, ())
+            yield Edge(frame, root if parent == frame else parent, topic, static, ())
 
 
 def unspelled(frame: str, robot: str) -> str:
@@ -117,14 +119,14 @@ def unspelled(frame: str, robot: str) -> str:
     return frame.removesuffix(f"/{robot}").removeprefix(f"{robot}/")
 
 
-def sent(graph: Snapshot) -> Snapshot:
+def sent(graph: System) -> System:
     """The graph whose frames tell who publishes on their topic, as a real one has it."""
     nodes: dict[str, dict[str, None]] = {}
-    for end in graph.endpoints:
+    for end in graph.ends:
         if (end.kind, end.role) == (TOPIC, PUBLISHES):
             nodes.setdefault(end.name, {})[end.node] = None
-    frames = (f._replace(publishers=tuple(sorted(nodes.get(f.topic, ())))) for f in graph.frames)
-    return graph._replace(frames=tuple(frames))
+    frames = (f._replace(publishers=tuple(sorted(nodes.get(f.topic, ())))) for f in graph.edges)
+    return graph._replace(edges=tuple(frames))
 
 
 # What nobody plans and everybody has: tools, sensors' own topics, parameter services.
@@ -145,72 +147,63 @@ BESIDE = (
 )
 
 
-def healthy(layout: str) -> Snapshot:
+def healthy(layout: str) -> System:
     """A fleet as planned, with what is beside it."""
     graph = as_planned(read_plan(layout))
     if layout != "frames-per-robot":
         return graph
-    ends = [GraphEndpoint(k, r, n, t, "", node, None, "") for k, r, n, t, node in BESIDE]
-    nodes = [GraphNode(node, "") for node in ("/rviz2", "/rosbag2_recorder", "/_ros2cli_4711")]
-    return graph._replace(nodes=(*graph.nodes, *nodes), endpoints=(*graph.endpoints, *ends))
+    ends = [End(k, r, n, t, "", node, None, "") for k, r, n, t, node in BESIDE]
+    nodes = [Node(node, "") for node in ("/rviz2", "/rosbag2_recorder", "/_ros2cli_4711")]
+    return graph._replace(nodes=(*graph.nodes, *nodes), ends=(*graph.ends, *ends))
 
 
 # ---------------------------------------------------------------- what can be done to it
 
 
-def moved(graph: Snapshot, old: str, new: str, node: str = "") -> Snapshot:
+def moved(graph: System, old: str, new: str, node: str = "") -> System:
     """One name under another one, at the nodes whose name ends so."""
     ends = (
-        e._replace(name=new) if e.name == old and e.node.endswith(node) else e
-        for e in graph.endpoints
+        e._replace(name=new) if e.name == old and e.node.endswith(node) else e for e in graph.ends
     )
-    return sent(graph._replace(endpoints=tuple(ends)))
+    return sent(graph._replace(ends=tuple(ends)))
 
 
-def without_node(graph: Snapshot, node: str) -> Snapshot:
+def without_node(graph: System, node: str) -> System:
     return sent(
         graph._replace(
             nodes=tuple(n for n in graph.nodes if n.name != node),
-            endpoints=tuple(e for e in graph.endpoints if e.node != node),
+            ends=tuple(e for e in graph.ends if e.node != node),
         )
     )
 
 
-def with_node(graph: Snapshot, node: str, *ends: tuple[str, str, str]) -> Snapshot:
+def with_node(graph: System, node: str, *ends: tuple[str, str, str]) -> System:
     """One node more, and its topics as (role, name, type)."""
-    more = [
-        GraphEndpoint(TOPIC, role, name, type_, "", node, None, "") for role, name, type_ in ends
-    ]
-    return sent(
-        graph._replace(
-            nodes=(*graph.nodes, GraphNode(node, "")), endpoints=(*graph.endpoints, *more)
-        )
-    )
+    more = [End(TOPIC, role, name, type_, "", node, None, "") for role, name, type_ in ends]
+    return sent(graph._replace(nodes=(*graph.nodes, Node(node, "")), ends=(*graph.ends, *more)))
 
 
-def renamed_node(graph: Snapshot, old: str, new: str) -> Snapshot:
+def renamed_node(graph: System, old: str, new: str) -> System:
     """A node under another name, its private names with it."""
     ends = tuple(
         e._replace(node=new, name=e.name.replace(f"{old}/", f"{new}/", 1)) if e.node == old else e
-        for e in graph.endpoints
+        for e in graph.ends
     )
     nodes = tuple(n._replace(name=new) if n.name == old else n for n in graph.nodes)
-    return sent(graph._replace(nodes=nodes, endpoints=ends))
+    return sent(graph._replace(nodes=nodes, ends=ends))
 
 
-def reframed(
-    change: Callable[[GraphFrame], GraphFrame | None], *more: GraphFrame
-) -> Callable[[Snapshot], Snapshot]:
+def reframed(change: Callable[[Edge], Edge | None], *more: Edge) -> Callable[[System], System]:
     """The graph with each of its transforms changed, or left out, and some more."""
 
-    def broken(graph: Snapshot) -> Snapshot:
-        kept = [frame for frame in map(change, graph.frames) if frame is not None]
-        return sent(graph._replace(frames=(*kept, *more)))
+    def broken(graph: System) -> System:
+        kept = [frame for frame in map(change, graph.edges) if frame is not None]
+        return sent(graph._replace(edges=(*kept, *more)))
 
     return broken
 
 
-def of(robot: str, frame: GraphFrame) -> bool:
+def of(robot: str, frame: Edge) -> bool:
     return robot in frame.child or robot in frame.topic
 
 
@@ -219,22 +212,20 @@ def qos(**words: object) -> Qos:
     return usual._replace(**words)  # type: ignore[arg-type]
 
 
-def with_qos(graph: Snapshot, name: str, offered: Qos, asked: Qos) -> Snapshot:
+def with_qos(graph: System, name: str, offered: Qos, asked: Qos) -> System:
     ends = (
         e._replace(qos=offered if e.role == PUBLISHES else asked) if e.name == name else e
-        for e in graph.endpoints
+        for e in graph.ends
     )
-    return graph._replace(endpoints=tuple(ends))
+    return graph._replace(ends=tuple(ends))
 
 
-def with_type(graph: Snapshot, name: str, node: str, type_: str) -> Snapshot:
-    ends = (
-        e._replace(type=type_) if (e.name, e.node) == (name, node) else e for e in graph.endpoints
-    )
-    return graph._replace(endpoints=tuple(ends))
+def with_type(graph: System, name: str, node: str, type_: str) -> System:
+    ends = (e._replace(type=type_) if (e.name, e.node) == (name, node) else e for e in graph.ends)
+    return graph._replace(ends=tuple(ends))
 
 
-def without_namespace(graph: Snapshot) -> Snapshot:
+def without_namespace(graph: System) -> System:
     """The plugin of a description that was not rewritten: its node and names in the root."""
     return moved(
         moved(renamed_node(graph, "/robot1/diff_drive", "/diff_drive"), "/robot1/odom", "/odom", "e"),
@@ -242,14 +233,14 @@ def without_namespace(graph: Snapshot) -> Snapshot:
     )  # fmt: skip
 
 
-def silent(graph: Snapshot) -> Snapshot:
+def silent(graph: System) -> System:
     for node in [n.name for n in graph.nodes if n.name.startswith("/robot2/")]:
         graph = without_node(graph, node)
     return reframed(lambda f: None if of("robot2", f) else f)(graph)
 
 
-def captured(graph: Snapshot) -> Snapshot:
-    end = GraphEndpoint(
+def captured(graph: System) -> System:
+    end = End(
         TOPIC,
         SUBSCRIBES,
         "/robot1/local_costmap/scan",
@@ -259,39 +250,37 @@ def captured(graph: Snapshot) -> Snapshot:
         None,
         "",
     )
-    return graph._replace(endpoints=(*graph.endpoints, end))
+    return graph._replace(ends=(*graph.ends, end))
 
 
-def unheard(graph: Snapshot) -> Snapshot:
+def unheard(graph: System) -> System:
     """A bridge for all robots brings an order under no robot's name."""
-    end = GraphEndpoint(
-        TOPIC, PUBLISHES, "/patrol", "std_msgs/msg/String", "", "/order_bridge", None, ""
-    )
-    nodes = (*graph.nodes, GraphNode("/order_bridge", ""))
-    return graph._replace(nodes=nodes, endpoints=(*graph.endpoints, end))
+    end = End(TOPIC, PUBLISHES, "/patrol", "std_msgs/msg/String", "", "/order_bridge", None, "")
+    nodes = (*graph.nodes, Node("/order_bridge", ""))
+    return graph._replace(nodes=nodes, ends=(*graph.ends, end))
 
 
-def bare(frame: GraphFrame) -> GraphFrame:
+def bare(frame: Edge) -> Edge:
     """A transform as the description has it that was not rewritten."""
     return frame._replace(child=frame.child.split("/")[0], parent=frame.parent.split("/")[0])
 
 
-def prefixed(frame: GraphFrame, robot: str) -> GraphFrame:
+def prefixed(frame: Edge, robot: str) -> Edge:
     """A transform under ``frame_prefix``."""
     return frame._replace(child=f"{robot}/{frame.child}", parent=f"{robot}/{frame.parent}")
 
 
-def on(topic: str, frame: GraphFrame) -> GraphFrame:
+def on(topic: str, frame: Edge) -> Edge:
     return frame._replace(topic=topic.replace("tf", "tf_static") if frame.static else topic)
 
 
-def global_tf(graph: Snapshot, *robots: str) -> Snapshot:
+def global_tf(graph: System, *robots: str) -> System:
     """The robots' nodes without the rule for tf."""
     for robot in robots:
         for topic in ("tf", "tf_static"):
             graph = moved(graph, f"/{robot}/{topic}", f"/{topic}")
-    frames = [on("/tf", f) if f.topic.split("/")[1] in robots else f for f in graph.frames]
-    return sent(graph._replace(frames=tuple(dict.fromkeys(frames))))
+    frames = [on("/tf", f) if f.topic.split("/")[1] in robots else f for f in graph.edges]
+    return sent(graph._replace(edges=tuple(dict.fromkeys(frames))))
 
 
 STATIC = "/tf_static"
@@ -312,7 +301,7 @@ CASES = (
     ),
     Case(
         L2, "MG301", ("MG301",),
-        lambda g: g._replace(nodes=(*g.nodes, GraphNode("/robot1/pilot", ""))),
+        lambda g: g._replace(nodes=(*g.nodes, Node("/robot1/pilot", ""))),
     ),
     Case(
         L2, "MG306", ("MG306",),
@@ -337,7 +326,7 @@ CASES = (
     Case(L2, "MG303", ("MG303", "MG303", "MG303"), lambda g: captured(unheard(g))),
     Case(
         L2, "MG401", ("MG401",),
-        reframed(lambda f: f, GraphFrame("base_footprint/robot1", "map", "/tf", False, ())),
+        reframed(lambda f: f, Edge("base_footprint/robot1", "map", "/tf", False, ())),
     ),
     Case(L2, "MG402", ("MG402",), reframed(bare)),
     Case(
@@ -347,8 +336,8 @@ CASES = (
     Case(
         L2, "MG204", ("MG204",),
         reframed(
-            lambda f: f, GraphFrame("laser/robot1", "base_link/robot1", STATIC, True, ()),
-            GraphFrame("camera_depth_frame/robot1", "camera_link/robot1", STATIC, True, ()),
+            lambda f: f, Edge("laser/robot1", "base_link/robot1", STATIC, True, ()),
+            Edge("camera_depth_frame/robot1", "camera_link/robot1", STATIC, True, ()),
         ),
     ),
     Case(
@@ -407,7 +396,7 @@ def check_lines(plan: str, graph: str) -> str:
         return data.getvalue().decode()
 
 
-def write(path: str, graph: Snapshot) -> None:
+def write(path: str, graph: System) -> None:
     (ROOT / path).write_bytes(to_json(graph))
 
 

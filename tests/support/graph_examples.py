@@ -33,6 +33,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator
 
 from graph_cases import environment, qos
+from node_answers import told
 
 from multibot_rewrite.graph.expectation import (
     Expectation,
@@ -42,19 +43,23 @@ from multibot_rewrite.graph.expectation import (
     PlannedState,
     PlannedTopic,
 )
-from multibot_rewrite.graph.snapshot import (
-    GraphEndpoint,
-    GraphFrame,
-    GraphNode,
-    HeardFrame,
-    Qos,
-    Snapshot,
-)
-from multibot_rewrite.graph.states import Controller, NodeState, Parameter
 from multibot_rewrite.rules.guess import GuessedRobot, whose_by_guess, with_frames
 from multibot_rewrite.rules.index import Index, Known, index
+from multibot_rewrite.system.answers import Answer, with_answers
 from multibot_rewrite.system.conventions import SENT_BY_EVERY_NODE
-from multibot_rewrite.system.records import ACTION, PUBLISHES, SERVICE, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.records import (
+    ACTION,
+    PUBLISHES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+    Edge,
+    End,
+    Heard,
+    Node,
+    Qos,
+    System,
+)
 
 LINE = re.compile(r"(planned|running|as planned): (.+)")
 NODE = re.compile(
@@ -90,7 +95,7 @@ POLICIES = {
 }
 
 
-def read_example(text: str) -> tuple[Expectation, Snapshot]:
+def read_example(text: str) -> tuple[Expectation, System]:
     """The plan and the graph of an example; AssertionError for a line that is not in the language."""
     lines = [LINE.fullmatch(line) for line in text.splitlines()]
     assert all(lines), f"a line does not begin with planned:, running: or as planned:\n{text}"
@@ -107,28 +112,26 @@ def read_system(text: str) -> Index:
     plan, graph = read_example(text)
     assert not plan.endpoints, "a danger needs no plan: begin its lines with running:"
     robots = sorted({*ROBOT.findall(text)})
-    frames = [name for frame in graph.frames for name in (frame.child, frame.parent)]
+    frames = [name for frame in graph.edges for name in (frame.child, frame.parent)]
     guessed = (with_frames(GuessedRobot(it, f"/{it}"), frames) for it in robots)
     running = [line.removeprefix("running: ") for line in text.splitlines()]
     messages = {name: int(count) for name, count in _words(CAME, running)}
     return index(graph, whose_by_guess(guessed), Known(messages=messages, seconds=60.0))
 
 
-def read_states(lines: list[str]) -> tuple[NodeState, ...]:
+def read_states(lines: list[str]) -> tuple[Answer, ...]:
     """What the nodes of an example answer."""
-    managed = (NodeState(node, lifecycle=state) for node, state in _words(STATE, lines))
-    timed = (NodeState(node, sim_time=it == "true") for node, it in _words(SIM_TIME, lines))
+    managed = (told(node, state) for node, state in _words(STATE, lines))
+    timed = (told(node, sim_time=it == "true") for node, it in _words(SIM_TIME, lines))
     active = [
-        NodeState(node, controllers=(Controller(name, "active", (claim,)),))
+        told(node, controllers=[(name, "active", (claim,))])
         for node, claim, name in _words(CONTROLS, lines)
     ]
     kept = [
-        NodeState(node, controllers=(Controller(name, state, ()),))
-        for node, name, state in _words(KEEPS, lines)
+        told(node, controllers=[(name, state, ())]) for node, name, state in _words(KEEPS, lines)
     ]
     having = (
-        NodeState(node, parameters=(Parameter(name, _text(value)),))
-        for node, name, value in _words(HAS, lines)
+        told(node, parameters=[(name, _text(value))]) for node, name, value in _words(HAS, lines)
     )
     return (*managed, *timed, *active, *kept, *having)
 
@@ -211,7 +214,7 @@ def _kind(role: str, type_: str) -> str:
     return TOPIC if role in (PUBLISHES, SUBSCRIBES) else SERVICE
 
 
-def read_graph(lines: list[str]) -> Snapshot:
+def read_graph(lines: list[str]) -> System:
     """What the lines say is running."""
     ends = [words for words in _words(NODE, lines) if words[1]]
     alone = [node for node, role, *_ in _words(NODE, lines) if not role]
@@ -221,24 +224,24 @@ def read_graph(lines: list[str]) -> Snapshot:
     enclaves = {node: path for path, node in _words(ENCLAVE, lines)}
     # Fast DDS: vendor, then the machine.
     processes = {node: f"010f{it:0>4}{it:0>16}" for node, it in _words(MACHINE, lines)}
-    return Snapshot(
-        tuple(GraphNode(node, processes.get(node, ""), enclaves.get(node, "")) for node in nodes),
+    seen = System(
+        tuple(Node(node, processes.get(node, ""), enclaves.get(node, "")) for node in nodes),
         tuple(_endpoint(*words) for words in ends),
         tuple(_transform(*words) for words in _words(TRANSFORM, lines)),
         environment(),
-        tuple(HeardFrame(topic, frame) for frame, topic in _words(FRAME_ID, lines)),
-        read_states(lines),
+        tuple(Heard(topic, frame) for frame, topic in _words(FRAME_ID, lines)),
     )
+    return with_answers(seen, read_states(lines))
 
 
-def _endpoint(node: str, role: str, name: str, type_: str, words: str) -> GraphEndpoint:
-    return GraphEndpoint(_kind(role, type_), role, name, type_, "", node, _qos(words.split()), "")
+def _endpoint(node: str, role: str, name: str, type_: str, words: str) -> End:
+    return End(_kind(role, type_), role, name, type_, "", node, _qos(words.split()), "")
 
 
 def _qos(words: list[str]) -> Qos | None:
     return qos(**{POLICIES[word]: word.upper() for word in words}) if words else None
 
 
-def _transform(parent: str, child: str, topic: str, nodes: str, twice: str) -> GraphFrame:
+def _transform(parent: str, child: str, topic: str, nodes: str, twice: str) -> Edge:
     publishers = tuple(nodes.split(", ")) if nodes else ()
-    return GraphFrame(child, parent, topic, "tf_static" in topic, publishers, bool(twice))
+    return Edge(child, parent, topic, "tf_static" in topic, publishers, bool(twice))

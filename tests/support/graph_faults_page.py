@@ -13,10 +13,10 @@ from healthy_systems import SYSTEMS, plan
 
 from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.graph.expectation import Expectation
-from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.plural import plural
 from multibot_rewrite.rules.check import check
+from multibot_rewrite.system.records import System
 
 HEAD = """\
 # Seeded faults
@@ -57,7 +57,7 @@ def outcome(fault: Fault) -> Outcome:
     return Outcome(bool(hits), fault.code, fault.level, int(failed), named, _checked(fault, graph))
 
 
-def _checked(fault: Fault, graph: Snapshot) -> str:
+def _checked(fault: Fault, graph: System) -> str:
     if fault.system not in PLANS:
         return ""
     planned = PLANS[fault.system]()
@@ -67,7 +67,7 @@ def _checked(fault: Fault, graph: Snapshot) -> str:
 
 
 @cache
-def _healthy_findings(planned: Expectation, graph: Snapshot) -> frozenset[Finding]:
+def _healthy_findings(planned: Expectation, graph: System) -> frozenset[Finding]:
     return frozenset(check(planned, graph))
 
 

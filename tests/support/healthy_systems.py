@@ -17,7 +17,6 @@ from nav2_graphs import healthy as as_planned
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.graph.expectation import Expectation, PlannedRobot
 from multibot_rewrite.graph.plan_file import from_yaml
-from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphFrame, GraphNode, Snapshot
 from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
@@ -26,6 +25,10 @@ from multibot_rewrite.system.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
+    Edge,
+    End,
+    Node,
+    System,
 )
 
 TWIST, ODOMETRY = "geometry_msgs/msg/Twist", "nav_msgs/msg/Odometry"
@@ -39,7 +42,7 @@ TRIGGER, MOVE = "std_srvs/srv/Trigger", "moveit_msgs/action/MoveGroup"
 TF, CLOCK = "tf2_msgs/msg/TFMessage", "rosgraph_msgs/msg/Clock"
 NAVIGATE = "nav2_msgs/action/NavigateToPose"
 # Role, name, type.
-End = tuple[str, str, str]
+Row = tuple[str, str, str]
 TWO = ("robot1", "robot2")
 
 
@@ -53,51 +56,48 @@ def plan(stacks: tuple[str, ...], layout: str = "L1", robots: tuple[str, ...] = 
         return from_yaml(Path(file).read_bytes(), file)
 
 
-def started(stacks: tuple[str, ...], layout: str = "L1", robots: tuple[str, ...] = TWO) -> Snapshot:
+def started(stacks: tuple[str, ...], layout: str = "L1", robots: tuple[str, ...] = TWO) -> System:
     """The graph of such a plan, each robot with its tree of frames."""
     planned = plan(stacks, layout, robots)
     graph = _with_types(as_planned(planned))
     edges = (edge for robot in planned.robots for edge in _edges(robot))
-    return sent(graph._replace(frames=tuple(edges)))
+    return sent(graph._replace(edges=tuple(edges)))
 
 
-def _edges(robot: PlannedRobot) -> Iterator[GraphFrame]:
+def _edges(robot: PlannedRobot) -> Iterator[Edge]:
     """The rover's tree, which localization hangs below the map."""
     odom = next(it for it in robot.frames if unspelled(it, robot.name) == "odom")
-    yield GraphFrame(odom, "map", robot.tf, False, ())
+    yield Edge(odom, "map", robot.tf, False, ())
     yield from robot_edges(robot)
 
 
-def _with_types(graph: Snapshot) -> Snapshot:
+def _with_types(graph: System) -> System:
     """A type that a plan does not know is that of the other side; Twist of Twist or TwistStamped."""
     types: dict[tuple[str, str], str] = {}
-    for end in graph.endpoints:
+    for end in graph.ends:
         types[end.kind, end.name] = types.get((end.kind, end.name)) or end.type
-    ends = (it._replace(type=types[it.kind, it.name]) for it in graph.endpoints)
-    return graph._replace(endpoints=tuple(ends))
+    ends = (it._replace(type=types[it.kind, it.name]) for it in graph.ends)
+    return graph._replace(ends=tuple(ends))
 
 
-def with_node(graph: Snapshot, node: str, *ends: End) -> Snapshot:
+def with_node(graph: System, node: str, *ends: Row) -> System:
     """One node more, with what every node has; an action's or a service's type says what it is."""
-    own = (
-        GraphEndpoint(_kind(type_), role, name, type_, "", node, None, "")
-        for role, name, type_ in ends
-    )
+    own = (End(_kind(type_), role, name, type_, "", node, None, "") for role, name, type_ in ends)
     usual = (
-        GraphEndpoint(kind, role, name.format(node), type_, "", node, None, "")
+        End(kind, role, name.format(node), type_, "", node, None, "")
         for kind, role, name, type_ in EVERYDAY
     )
     known = {it.name for it in graph.nodes}
-    nodes = graph.nodes if node in known else (*graph.nodes, GraphNode(node, node))
+    nodes = graph.nodes if node in known else (*graph.nodes, Node(node, node))
     more = own if node in known else (*own, *usual)
-    return sent(graph._replace(nodes=nodes, endpoints=(*graph.endpoints, *more)))
+    return sent(graph._replace(nodes=nodes, ends=(*graph.ends, *more)))
 
 
 def _kind(type_: str) -> str:
     return {"msg": TOPIC, "srv": SERVICE, "action": ACTION}[type_.split("/")[1]]
 
 
-def with_tools(graph: Snapshot, robots: Iterable[str]) -> Snapshot:
+def with_tools(graph: System, robots: Iterable[str]) -> System:
     """RViz for each robot, rqt, a recorder, bridges to browsers, a fleet manager, diagnostics."""
     for robot in robots:
         graph = with_node(graph, f"/{robot}/rviz2", *_rviz(f"/{robot}"))
@@ -105,7 +105,7 @@ def with_tools(graph: Snapshot, robots: Iterable[str]) -> Snapshot:
             graph, "/fleet_manager",
             (SUBSCRIBES, f"/{robot}/odom", ODOMETRY), (CALLS, f"/{robot}/navigate_to_pose", NAVIGATE),
         )  # fmt: skip
-    topics = sorted({(it.name, it.type) for it in graph.endpoints if it.kind == TOPIC and it.type})
+    topics = sorted({(it.name, it.type) for it in graph.ends if it.kind == TOPIC and it.type})
     everything = [(SUBSCRIBES, name, type_) for name, type_ in topics]
     graph = with_node(graph, "/rosbag2_recorder", *everything)
     graph = with_node(graph, "/foxglove_bridge", *everything)
@@ -118,7 +118,7 @@ def with_tools(graph: Snapshot, robots: Iterable[str]) -> Snapshot:
     return with_node(graph, "/diagnostic_aggregator", *ends)
 
 
-def _rviz(space: str) -> Iterator[End]:
+def _rviz(space: str) -> Iterator[Row]:
     yield SUBSCRIBES, f"{space}/scan", SCAN
     yield SUBSCRIBES, f"{space}/map", MAP
     yield PUBLISHES, f"{space}/goal_pose", POSE
@@ -128,11 +128,11 @@ def _rviz(space: str) -> Iterator[End]:
     yield CALLS, f"{space}/lifecycle_manager_slam/is_active", TRIGGER
 
 
-def nav2_with_tools(layout: str = "L1") -> Snapshot:
+def nav2_with_tools(layout: str = "L1") -> System:
     return with_tools(started(("nav2",), layout), TWO)
 
 
-def simulated(*robots: str) -> Snapshot:
+def simulated(*robots: str) -> System:
     """All nodes of the robots on the time of one Gazebo, whose bridge sends all sensors."""
     graph = started(("nav2",), "L1", robots)
     for node in [
@@ -144,20 +144,20 @@ def simulated(*robots: str) -> Snapshot:
     return with_tools(graph, robots)
 
 
-def with_ends(graph: Snapshot, node: str, *ends: End) -> Snapshot:
-    own = (GraphEndpoint(_kind(it[2]), it[0], it[1], it[2], "", node, None, "") for it in ends)
-    return sent(graph._replace(endpoints=(*graph.endpoints, *own)))
+def with_ends(graph: System, node: str, *ends: Row) -> System:
+    own = (End(_kind(it[2]), it[0], it[1], it[2], "", node, None, "") for it in ends)
+    return sent(graph._replace(ends=(*graph.ends, *own)))
 
 
-def respelled(graph: Snapshot, spelled: Callable[[str], str]) -> Snapshot:
+def respelled(graph: System, spelled: Callable[[str], str]) -> System:
     """The graph with other names of nodes, topics and services."""
     nodes = (it._replace(name=spelled(it.name)) for it in graph.nodes)
-    ends = (it._replace(name=spelled(it.name), node=spelled(it.node)) for it in graph.endpoints)
-    frames = (it._replace(topic=spelled(it.topic)) for it in graph.frames)
-    return sent(graph._replace(nodes=tuple(nodes), endpoints=tuple(ends), frames=tuple(frames)))
+    ends = (it._replace(name=spelled(it.name), node=spelled(it.node)) for it in graph.ends)
+    frames = (it._replace(topic=spelled(it.topic)) for it in graph.edges)
+    return sent(graph._replace(nodes=tuple(nodes), ends=tuple(ends), edges=tuple(frames)))
 
 
-def two_levels() -> Snapshot:
+def two_levels() -> System:
     """Robots of two fleets; one name is there in both."""
     spaces = {"/robot1": "/fleet_a/robot1", "/robot2": "/fleet_b/robot1"}
 
@@ -168,18 +168,18 @@ def two_levels() -> Snapshot:
     return respelled(nav2_with_tools(), spelled)
 
 
-def single() -> Snapshot:
+def single() -> System:
     """One robot, in no namespace."""
     graph = with_tools(started(("nav2",), "L1", ("robot1",)), ("robot1",))
     return respelled(graph, lambda name: name.replace("/robot1", "", 1) or "/")
 
 
-def slam_with_filters() -> Snapshot:
+def slam_with_filters() -> System:
     """SLAM and two filters a robot: the second's map to odom is switched off."""
     return with_tools(started(("nav2_slam", "robot_localization_gps")), TWO)
 
 
-def arms() -> Snapshot:
+def arms() -> System:
     """Two arms with MoveIt and ros2_control on one tf, frames with a prefix."""
     graph = started(("moveit", "ros2_control"), "L3", ("left_arm", "right_arm"))
     # Its name ends with an address.
@@ -192,9 +192,9 @@ def arms() -> Snapshot:
     return graph
 
 
-def arms_in_one_node_space() -> Snapshot:
+def arms_in_one_node_space() -> System:
     """A bimanual robot without namespaces: one description with prefixes, one joint_states."""
-    graph = Snapshot((), (), (), as_planned(plan(("nav2",))).environment)
+    graph = System((), (), (), as_planned(plan(("nav2",))).environment)
     graph = with_node(
         graph, "/robot_state_publisher", (SUBSCRIBES, "/joint_states", JOINTS), (PUBLISHES, "/tf", TF),
         (PUBLISHES, "/robot_description", "std_msgs/msg/String"),
@@ -209,12 +209,12 @@ def arms_in_one_node_space() -> Snapshot:
             graph, controller, (SUBSCRIBES, f"{controller}/joint_trajectory", trajectory)
         )
         frames = (("world", f"{side}_base_link"), (f"{side}_base_link", f"{side}_link1"))
-        new = (GraphFrame(child, parent, "/tf", False, ()) for parent, child in frames)
-        graph = graph._replace(frames=(*graph.frames, *new))
+        new = (Edge(child, parent, "/tf", False, ()) for parent, child in frames)
+        graph = graph._replace(edges=(*graph.edges, *new))
     return sent(graph)
 
 
-def with_mux() -> Snapshot:
+def with_mux() -> System:
     """Two joysticks and Nav2 before a twist_mux in each robot."""
     graph = started(("nav2", "teleop"))
     for robot in TWO:
@@ -225,7 +225,7 @@ def with_mux() -> Snapshot:
     return graph
 
 
-def idle_mux() -> Snapshot:
+def idle_mux() -> System:
     """A twist_mux with an input that nobody sends yet, its output on a topic of its own."""
     graph = with_mux()
     for robot in TWO:
@@ -235,7 +235,7 @@ def idle_mux() -> Snapshot:
     return with_tools(graph, TWO)
 
 
-def beside_the_root() -> Snapshot:
+def beside_the_root() -> System:
     """A robot without a namespace, and another one with one; each has its own tf topic."""
     graph = started(("nav2",))
 
@@ -245,7 +245,7 @@ def beside_the_root() -> Snapshot:
     return with_tools(respelled(graph, spelled), ("robot2",))
 
 
-def one_map_for_all() -> Snapshot:
+def one_map_for_all() -> System:
     """A map server for the fleet, and static frames of the world from nodes of their own."""
     graph = started(("navigation",), "L2")
     graph = with_node(graph, "/map_server", (PUBLISHES, "/map", MAP))
@@ -255,13 +255,11 @@ def one_map_for_all() -> Snapshot:
         graph = with_node(
             graph, f"/static_transform_publisher_{dock}", (PUBLISHES, "/tf_static", TF)
         )
-        graph = graph._replace(
-            frames=(*graph.frames, GraphFrame(dock, "map", "/tf_static", True, ()))
-        )
+        graph = graph._replace(edges=(*graph.edges, Edge(dock, "map", "/tf_static", True, ())))
     return sent(graph)
 
 
-def follower() -> Snapshot:
+def follower() -> System:
     """A robot that follows another reads its odometry, and its own."""
     graph = nav2_with_tools()
     ends = ((SUBSCRIBES, f"/{robot}/odom", ODOMETRY) for robot in TWO)
@@ -271,7 +269,7 @@ def follower() -> Snapshot:
     return with_node(graph, "/robot1/convoy", *both, (SERVES, "/robot1/handover", TRIGGER))
 
 
-SYSTEMS: Mapping[str, Callable[[], Snapshot]] = {
+SYSTEMS: Mapping[str, Callable[[], System]] = {
     "two robots with Nav2 and tools, tf-per-robot": nav2_with_tools,
     "two robots with Nav2 and tools, frames-per-robot": lambda: nav2_with_tools("L2"),
     "two robots with Nav2 and tools, both": lambda: nav2_with_tools("L3"),

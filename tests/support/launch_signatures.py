@@ -10,11 +10,12 @@ from __future__ import annotations
 
 import inspect
 import json
-from collections.abc import Callable
+from collections.abc import Iterator
 from importlib import import_module
 from typing import Any
 
-import launch_stand_in
+from multibot_rewrite.producers.launch.stand_in import contents
+from multibot_rewrite.producers.launch.stand_in.values import Kept
 
 CLASSES = {
     "launch_ros.actions": (
@@ -25,7 +26,10 @@ CLASSES = {
     "launch_ros.parameter_descriptions": ("ParameterValue",),
 }
 # What the classes give the classes above them.
-_MADE = {"self", "cmd", "process_description"}
+_MADE = {"self", "cmd", "process_description", "matcher", "action_matcher", "on_event"}
+_MADE |= {"target_action_cls", "target_event_cls"}
+# Newer releases have it.
+_LATER = {"autostart"}
 
 
 def options(module: str, name: str) -> list[str]:
@@ -41,35 +45,29 @@ def options(module: str, name: str) -> list[str]:
     return sorted(taken - _MADE)
 
 
-def signature(thing: Any) -> list[str]:
-    """The names of the parameters, and which are only given by name."""
-    made = inspect.signature(thing).parameters.values()
-    return [f"{'*' if it.kind is it.KEYWORD_ONLY else ''}{it.name}" for it in made]
+def stand_in() -> dict[str, list[str]]:
+    """What the classes of the stand-in take, by full name."""
+    return {name: sorted(_taken(it)) for name, it in _classes()}
 
 
-def signatures(find: Callable[[str, str], Any]) -> dict[str, list[str]]:
-    """What the stand-in has of launch, as ``find`` finds it by module and name."""
-    found = {}
-    for module, names in launch_stand_in.MODULES.items():
-        for name, ours in names.items():
-            thing = find(module, name)
-            if not inspect.isclass(ours):
-                found[f"{module}.{name}"] = ["callable"] if callable(thing) else []
-                continue
-            # The entities of XML and YAML are made by their own parsers.
-            if name != "Entity":
-                found[f"{module}.{name}"] = signature(thing.__init__)
-            own = [it for it, made in vars(ours).items() if inspect.isfunction(made)]
-            methods = [it for it in own if not it.startswith("_")]
-            found |= {f"{module}.{name}.{it}": signature(getattr(thing, it)) for it in methods}
-    return found
+def _classes() -> Iterator[tuple[str, Any]]:
+    for module, content in contents().items():
+        for name, it in content.items():
+            if module.startswith("launch") and inspect.isclass(it) and name != "Substitution":
+                yield f"{module}.{name}", it
+
+
+def _taken(kind: Any) -> set[str]:
+    if issubclass(kind, Kept):
+        return {*kind.names, *kind.others} - _MADE - _LATER
+    return {*inspect.signature(kind.__init__).parameters} - _MADE
 
 
 def table() -> dict[str, Any]:
-    """Options by the name of each class of launch_ros; below ``launch`` signatures by full name."""
+    """Options by the name of each class of launch_ros; below ``launch`` those that the stand-in has."""
     real = {name: options(module, name) for module, names in CLASSES.items() for name in names}
-    launch = signatures(lambda module, name: getattr(import_module(module), name))
-    return {**real, "launch": launch}
+    names = (name.rpartition(".") for name, _ in _classes())
+    return {**real, "launch": {".".join((it[0], it[2])): options(it[0], it[2]) for it in names}}
 
 
 if __name__ == "__main__":

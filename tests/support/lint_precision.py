@@ -37,7 +37,7 @@ Made by `python tests/support/lint_precision.py > docs/lint-precision.md` from
 `fixtures/lint_precision.tsv`.
 
 Each rule was run over the public files and those of Python packages that [the page of
-judgements](lint-triage.md) has, with the facts of the newest long-term release unless it says
+judgements](reference.md#judgements) has, with the facts of the newest long-term release unless it says
 otherwise. Ten of its findings or more were judged, all where there are fewer, by running or
 reading what consumes the value. A rule with less than 95 % true findings is a note.
 {in_packages} need what lies beside a file, and were run over checkouts of public packages.

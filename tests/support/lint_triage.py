@@ -1,70 +1,26 @@
-"""What the lint finds in public files, counted, and the judgements about it as a page.
+"""What the lint finds in public files, counted; ``tools/pages/lint_triage.py`` has the judgements.
 
-python tests/support/lint_triage.py counts > fixtures/lint_triage_counts.tsv
-python tests/support/lint_triage.py page > docs/lint-triage.md
+python tests/support/lint_triage.py > fixtures/lint_triage_counts.tsv
 """
 
 from __future__ import annotations
 
 import sys
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import NamedTuple
 
-from paths import CORPUS, FIXTURES
+from paths import CORPUS
 from real_robots import corpus_files, wheel_files
 
 from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.files.pairing import named_urdfs
-from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.run import lint_files
 
-COUNTS = FIXTURES / "lint_triage_counts.tsv"
 # So many findings of a rule are judged, or all where there are fewer.
 LEAST = 5
-SHOWN = 5
-_HEAD = """\
-# Findings of urdf-lint in public robots
-
-Made by `python tests/support/lint_triage.py page > docs/lint-triage.md`
-from `fixtures/lint_triage_*.tsv`.
-
-Every rule that finds an error in {corpus} public files or {wheels} of Python packages was
-judged: at least five of its findings, or all, by reading the file or with check_urdf,
-sdformat or MuJoCo. False errors were bugs of the rule and are fixed. Of warnings and notes a
-sample was judged; rules with a few false findings are warnings for that reason. Each rule
-shows some judgements here, the files have all of them. The counts are those of errors; a test
-checks them.
-
-| rule | public files | packages | judged | false |
-|---|--:|--:|--:|--:|
-"""
-
-
-class Judged(NamedTuple):
-    """A judgement: is a finding true, and why."""
-
-    code: str
-    file: str
-    line: int
-    true: bool
-    reason: str
-
-
-def judgements() -> list[Judged]:
-    """All of them, by rule."""
-    files = sorted(FIXTURES.glob("lint_triage_MB*.tsv"))
-    lines = (line for path in files for line in path.read_text().splitlines()[1:] if line)
-    return sorted(_judged(line) for line in lines)
-
-
-def _judged(line: str) -> Judged:
-    code, file, number, judgement, reason = line.split("\t")
-    assert judgement in ("true", "false"), line
-    return Judged(code, file.removeprefix("urdf/"), int(number), judgement == "true", reason)
 
 
 def linted_corpus() -> dict[str, list[Finding]]:
@@ -116,48 +72,7 @@ def counts_table(corpus: Counter[str], wheels: Counter[str], files: tuple[int, i
     return "".join("\t".join(row) + "\n" for row in rows)
 
 
-def committed() -> dict[str, tuple[int, int]]:
-    """The committed counts."""
-    rows = [line.split("\t") for line in COUNTS.read_text().splitlines()[1:]]
-    return {code: (int(corpus), int(wheels)) for code, corpus, wheels in rows}
-
-
-def page() -> str:
-    """The page of judgements, Markdown."""
-    counts = committed()
-    by_rule: dict[str, list[Judged]] = defaultdict(list)
-    for it in judgements():
-        by_rule[it.code].append(it)
-    corpus, wheels = counts.pop("files")
-    parts = [_HEAD.format(corpus=f"{corpus:,}", wheels=wheels)]
-    codes = [code for code in sorted({*counts, *by_rule}) if code in RULES]
-    parts += [_row(code, *counts.get(code, (0, 0)), by_rule[code]) for code in codes]
-    parts += [part for code in codes if by_rule[code] for part in _section(code, by_rule[code])]
-    return "".join(parts)
-
-
-def _row(code: str, corpus: int, wheels: int, judged: list[Judged]) -> str:
-    rule = RULES[code]
-    false = sum(not it.true for it in judged)
-    level = "" if rule.level == ERROR else f" ({rule.level})"
-    shown = (corpus, wheels) if rule.level == ERROR else ("", "")
-    return f"| {code} {rule.name}{level} | {shown[0]} | {shown[1]} | {len(judged)} | {false} |\n"
-
-
-def _section(code: str, judged: list[Judged]) -> Iterator[str]:
-    yield f"\n## {code} {RULES[code].name}\n\n"
-    # One of each reason first, then more of them.
-    firsts = {(it.true, it.reason): it for it in reversed(judged)}
-    order = sorted(judged, key=lambda it: firsts[it.true, it.reason] is not it)
-    for it in sorted(order[:SHOWN]):
-        verdict = "true" if it.true else "false"
-        yield f"- `{it.file}:{it.line}` {verdict}: {it.reason}\n"
-
-
 if __name__ == "__main__":
-    if sys.argv[1:] == ["counts"]:
-        corpus, wheels = linted_corpus(), linted_wheels()
-        sizes = len(corpus), len(wheels)
-        sys.stdout.write(counts_table(errors(corpus), errors(wheels), sizes))
-    else:
-        sys.stdout.write(page())
+    corpus, wheels = linted_corpus(), linted_wheels()
+    sizes = len(corpus), len(wheels)
+    sys.stdout.write(counts_table(errors(corpus), errors(wheels), sizes))

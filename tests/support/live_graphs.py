@@ -11,8 +11,7 @@ from functools import cache
 from importlib import import_module
 from typing import Any
 
-from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphNode, Snapshot
-from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
+from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES, End, Node, System
 
 LISTS = {
     PUBLISHES: "publishers",
@@ -25,10 +24,10 @@ TF = "tf2_msgs/msg/TFMessage"
 _OWN = ("/rosout", "/parameter_events")
 
 
-def processes(graph: Snapshot) -> list[list[dict[str, Any]]]:
+def processes(graph: System) -> list[list[dict[str, Any]]]:
     """One process for each first namespace; a second node of a name is in a process of its own."""
-    ends: dict[str, list[GraphEndpoint]] = defaultdict(list)
-    for end in graph.endpoints:
+    ends: dict[str, list[End]] = defaultdict(list)
+    for end in graph.ends:
         if _can_be_played(end):
             ends[end.node].append(end)
     frames = _frames(graph)
@@ -42,7 +41,7 @@ def processes(graph: Snapshot) -> list[list[dict[str, Any]]]:
     return list(groups.values())
 
 
-def _can_be_played(end: GraphEndpoint) -> bool:
+def _can_be_played(end: End) -> bool:
     return end.name not in _OWN and end.kind != "action" and bool(end.type) and _is_there(end.type)
 
 
@@ -57,7 +56,7 @@ def _is_there(type_: str) -> bool:
         return False
 
 
-def _node(node: GraphNode, ends: list[GraphEndpoint], frames: list[Any]) -> dict[str, Any]:
+def _node(node: Node, ends: list[End], frames: list[Any]) -> dict[str, Any]:
     space, _, name = node.name.rpartition("/")
     sent = {topic for topic, *_ in frames}
     lists: dict[str, list[Any]] = {it: [] for it in LISTS.values()}
@@ -71,17 +70,17 @@ def _word(type_: str) -> str:
     return "TFMessage" if type_ == TF else type_
 
 
-def _words(end: GraphEndpoint) -> Iterator[str]:
+def _words(end: End) -> Iterator[str]:
     if end.qos and end.qos.reliability == "BEST_EFFORT":
         yield "best_effort"
     if end.qos and end.qos.durability == "TRANSIENT_LOCAL":
         yield "latched"
 
 
-def _frames(graph: Snapshot) -> dict[str, list[list[Any]]]:
+def _frames(graph: System) -> dict[str, list[list[Any]]]:
     """By node: topic, static or not, edges; the first node on its topic sends a frame, or two do."""
     found: dict[str, dict[tuple[str, bool], list[list[str]]]] = defaultdict(dict)
-    for it in graph.frames:
+    for it in graph.edges:
         for sender in it.publishers[: 2 if it.several else 1]:
             found[sender].setdefault((it.topic, it.static), []).append([it.parent, it.child])
     return {

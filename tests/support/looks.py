@@ -6,7 +6,7 @@ from typing import Any
 
 from graph_cases import environment
 
-from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphNode, Qos, Snapshot
+from multibot_rewrite.system.records import End, Node, Qos, System
 
 INF = float("inf")
 QOS = Qos("KEEP_LAST", 1, "RELIABLE", "VOLATILE", INF, INF, "AUTOMATIC", INF)
@@ -14,16 +14,16 @@ ONE, TWO = "010f1111aaaaaaaaaaaaaaaa", "010f2222bbbbbbbbbbbbbbbb"
 TEXT = "std_msgs/msg/String"
 
 
-def node(robot: str, process: str = "") -> GraphNode:
-    return GraphNode(f"/{robot}/drive", process)
+def node(robot: str, process: str = "") -> Node:
+    return Node(f"/{robot}/drive", process)
 
 
-def end(robot: str, name: str, process: str = "", **more: Any) -> GraphEndpoint:
-    made = GraphEndpoint("topic", "publishes", name, TEXT, "", f"/{robot}/drive", None, process)
+def end(robot: str, name: str, process: str = "", **more: Any) -> End:
+    made = End("topic", "publishes", name, TEXT, "", f"/{robot}/drive", None, process)
     return made._replace(**more)
 
 
-def look(*nodes: GraphNode, ends: tuple[GraphEndpoint, ...] = (), **around: Any) -> Snapshot:
+def look(*nodes: Node, ends: tuple[End, ...] = (), **around: Any) -> System:
     known = {it.node for it in ends}
     more = tuple(
         end(it.name.split("/")[1], f"{it.name}/x", it.process)
@@ -31,4 +31,4 @@ def look(*nodes: GraphNode, ends: tuple[GraphEndpoint, ...] = (), **around: Any)
         if it.name not in known
     )
     where = environment()._replace(**around)
-    return Snapshot(nodes, (*ends, *more), (), where)
+    return System(nodes, (*ends, *more), (), where)

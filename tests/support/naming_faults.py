@@ -32,8 +32,7 @@ from healthy_systems import (
 )
 
 from multibot_rewrite.findings.finding import ERROR, WARNING
-from multibot_rewrite.graph.snapshot import GraphNode
-from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
+from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES, Node
 
 
 def name_rows() -> tuple[Fault, ...]:
@@ -165,7 +164,7 @@ def data_rows() -> tuple[Fault, ...]:
         Fault(
             # Live, both send map -> odom as well.
             "amcl started twice", nav,
-            lambda g: g._replace(nodes=(*g.nodes, GraphNode("/robot1/amcl", "x"))),
+            lambda g: g._replace(nodes=(*g.nodes, Node("/robot1/amcl", "x"))),
             "MG301", ("/robot1/amcl", "20 s"), ERROR, ("MG408",),
         ),
         Fault(

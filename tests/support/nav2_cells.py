@@ -16,6 +16,7 @@ import os
 import subprocess
 import sys
 import tempfile
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from itertools import product
 from pathlib import Path
@@ -34,11 +35,11 @@ from multibot_rewrite.graph.live.request import Request
 from multibot_rewrite.graph.plan_file import read_plan
 from multibot_rewrite.graph.questions import questions
 from multibot_rewrite.graph.rehearsal import with_substitutes
-from multibot_rewrite.graph.snapshot import Snapshot
-from multibot_rewrite.graph.states import NodeState
 from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.releases import has_release
 from multibot_rewrite.rules.check import check
+from multibot_rewrite.system.answers import Answer, with_answers
+from multibot_rewrite.system.records import SIM_TIME, System
 
 HERE = Path(__file__).parent
 ROOT = HERE.parent.parent
@@ -355,18 +356,18 @@ def looked_at(order: str, out: Path) -> Outcome:
         plan = with_substitutes(plan, replaced)
         graph = observe(Request(LOOK_SECONDS, substitutes=True), environ)
         asked = {it.node: [own.name for own in it.parameters] for it in plan.states}
-        graph = graph._replace(states=answers(graph, asked, environ))
+        graph = with_answers(graph, answers(graph, asked, environ))
     found = tuple(it for it in check(plan, graph) if it.level != "note")
     nodes = {name for it in plan.robots for name in it.nodes} & {it.name for it in graph.nodes}
-    answered = {it.node: len(it.parameters) for it in graph.states}
-    compared = sum(answered.get(node, 0) for node in asked)
+    answered = Counter(it.node for it in graph.parameters if it.name != SIM_TIME)
+    compared = sum(answered[node] for node in asked)
     wanted = sum(len(own) for node, own in asked.items() if node in nodes)
     return Outcome(len(nodes), compared, wanted, found)
 
 
 def answers(
-    graph: Snapshot, asked: Mapping[str, list[str]], environ: Mapping[str, str]
-) -> tuple[NodeState, ...]:
+    graph: System, asked: Mapping[str, list[str]], environ: Mapping[str, str]
+) -> tuple[Answer, ...]:
     """What nodes say of the parameters that they are asked for."""
     wanted = sum(len(own) for own in asked.values())
     for _ in range(TIMES):

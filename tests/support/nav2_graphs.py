@@ -13,17 +13,21 @@ from paths import ROBOTS
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
 from multibot_rewrite.graph.plan_file import from_yaml
-from multibot_rewrite.graph.snapshot import (
-    Caveat,
-    Environment,
-    GraphEndpoint,
-    GraphFrame,
-    GraphNode,
-    Snapshot,
-)
 from multibot_rewrite.pages.scene import Scene, make_scene
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.system.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.records import (
+    PUBLISHES,
+    SERVES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+    Caveat,
+    Edge,
+    End,
+    Environment,
+    Node,
+    System,
+)
 
 ROVER = ROBOTS / "rover.urdf"
 LAYOUTS = ("L1", "L2", "L3", "L4")
@@ -92,74 +96,72 @@ def _topic(robot: str, at: int) -> tuple[PlannedEndpoint, PlannedEndpoint]:
     )
 
 
-def healthy(plan: Expectation) -> Snapshot:
+def healthy(plan: Expectation) -> System:
     """The graph exactly as planned, with what every node has."""
     nodes = [*plan.shared_nodes, *(node for robot in plan.robots for node in robot.nodes)]
-    planned = (
-        GraphEndpoint(w.kind, w.role, w.name, w.type, "", w.node, None, "") for w in plan.endpoints
-    )
+    planned = (End(w.kind, w.role, w.name, w.type, "", w.node, None, "") for w in plan.endpoints)
     usual = (
-        GraphEndpoint(kind, role, name.format(node), type_, "", node, None, "")
+        End(kind, role, name.format(node), type_, "", node, None, "")
         for node in nodes
         for kind, role, name, type_ in EVERYDAY
     )
     frames = (frame for robot in plan.robots for frame in _chain(robot))
-    return Snapshot(
-        tuple(GraphNode(node, node) for node in nodes),
+    return System(
+        tuple(Node(node, node) for node in nodes),
         (*planned, *usual, *bridge(plan)),
         tuple(frames),
         environment(),
     )
 
 
-def _chain(robot: PlannedRobot) -> Iterable[GraphFrame]:
+def _chain(robot: PlannedRobot) -> Iterable[Edge]:
     """map, then the robot's frames below one another."""
     static = "/".join("tf_static" if word == "tf" else word for word in robot.tf.split("/"))
-    yield GraphFrame(robot.frames[0], "map", robot.tf, False, ())
+    yield Edge(robot.frames[0], "map", robot.tf, False, ())
     for parent, child in zip(robot.frames, robot.frames[1:], strict=False):
-        yield GraphFrame(child, parent, static, True, ())
+        yield Edge(child, parent, static, True, ())
 
 
 def environment(*caveats: Caveat) -> Environment:
     return Environment(7, "SUBNET", (), "rmw_fastrtps_cpp", "", False, 4, "quiet", 3.5, caveats)
 
 
-def moved(graph: Snapshot, old: str, new: str, node: str = "") -> Snapshot:
+def moved(graph: System, old: str, new: str, node: str = "") -> System:
     """The graph with one name under another one, of the nodes whose name ends so."""
     return graph._replace(
-        endpoints=tuple(
+        ends=tuple(
             e._replace(name=new) if e.name == old and e.node.endswith(node) else e
-            for e in graph.endpoints
+            for e in graph.ends
         )
     )
 
 
-def without_node(graph: Snapshot, node: str) -> Snapshot:
+def without_node(graph: System, node: str) -> System:
     return graph._replace(
         nodes=tuple(n for n in graph.nodes if n.name != node),
-        endpoints=tuple(e for e in graph.endpoints if e.node != node),
+        ends=tuple(e for e in graph.ends if e.node != node),
     )
 
 
-def with_end(graph: Snapshot, node: str, name: str, role: str = SUBSCRIBES) -> Snapshot:
+def with_end(graph: System, node: str, name: str, role: str = SUBSCRIBES) -> System:
     """The graph with one more topic of a node, which may be a new one."""
-    end = GraphEndpoint(TOPIC, role, name, TEXT, "", node, None, "")
+    end = End(TOPIC, role, name, TEXT, "", node, None, "")
     there = any(n.name == node for n in graph.nodes)
-    nodes = graph.nodes if there else (*graph.nodes, GraphNode(node, ""))
-    return graph._replace(nodes=nodes, endpoints=(*graph.endpoints, end))
+    nodes = graph.nodes if there else (*graph.nodes, Node(node, ""))
+    return graph._replace(nodes=nodes, ends=(*graph.ends, end))
 
 
-def spoiled(plan: Expectation) -> Snapshot:
+def spoiled(plan: Expectation) -> System:
     """Two rovers of which one leaks, one listens to the other, and a node is not there."""
     graph = moved(healthy(plan), "/robot1/cmd_vel", "/cmd_vel", "collision_monitor")
     graph = moved(graph, "/robot2/scan", "/robot1/scan", "amcl")
     graph = without_node(graph, "/robot2/bt_navigator")
     graph = with_end(graph, "/rviz2", "/robot1/map")
-    second = GraphFrame("lidar_link/robot1", "map", "/tf", False, ())
-    return graph._replace(frames=(*graph.frames, second))
+    second = Edge("lidar_link/robot1", "map", "/tf", False, ())
+    return graph._replace(edges=(*graph.edges, second))
 
 
-def nasty(plan: Expectation) -> tuple[Expectation, Snapshot]:
+def nasty(plan: Expectation) -> tuple[Expectation, System]:
     """A plan and a graph where robots, nodes, topics, types, frames and caveats have names that
     bite; the odd robot talks across."""
     odd = PlannedRobot(f'"></title>{NASTY[1]}', ("/odd",), (NASTY[2],), NASTY[0])
@@ -173,10 +175,10 @@ def nasty(plan: Expectation) -> tuple[Expectation, Snapshot]:
     graph = with_end(healthy(plan), "/odd", NASTY[1])
     for name in NASTY:
         graph = with_end(with_end(graph, f"{name}/node", name), first, name, PUBLISHES)
-    frames = (GraphFrame(name, "base_link/robot1", name, False, (name,)) for name in NASTY)
+    frames = (Edge(name, "base_link/robot1", name, False, (name,)) for name in NASTY)
     around = environment(*(Caveat("note", True, name) for name in NASTY))._replace(rmw=NASTY[0])
-    return worse, graph._replace(frames=(*graph.frames, *frames), environment=around)
+    return worse, graph._replace(edges=(*graph.edges, *frames), environment=around)
 
 
-def scene(plan: Expectation, graph: Snapshot) -> Scene:
+def scene(plan: Expectation, graph: System) -> Scene:
     return make_scene(plan, graph, check(plan, graph))

@@ -12,13 +12,12 @@ from multibot_rewrite.graph.expectation import (
     PlannedRobot,
     PlannedTopic,
 )
-from multibot_rewrite.graph.snapshot import Caveat, Snapshot
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.live.seen_plan import seen_plan
 from multibot_rewrite.live.watching import Outcome, Verdict
 from multibot_rewrite.pages.scene import Scene, make_scene
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Caveat, System
 
 FIRST, SECOND = "/fleet_a/robot1", "/fleet_a/robot2"
 OPEN_END = Finding("MF801", WARNING, "/robot2/amcl reads scan2, which nothing sends")
@@ -35,9 +34,9 @@ def tf_collision() -> Scene:
     graph = nav2_graphs.healthy(plan)
     bare = (
         it._replace(child=it.child.partition("/")[0], parent=it.parent.partition("/")[0])
-        for it in graph.frames
+        for it in graph.edges
     )
-    return nav2_graphs.scene(plan, graph._replace(frames=tuple(bare)))
+    return nav2_graphs.scene(plan, graph._replace(edges=tuple(bare)))
 
 
 def twenty() -> Scene:
@@ -69,7 +68,7 @@ def not_closed() -> Scene:
     return make_scene(plan, nav2_graphs.healthy(plan), [OPEN_END], outcome)
 
 
-def doctors(graph: Snapshot) -> Scene:
+def doctors(graph: System) -> Scene:
     """What the doctor draws of a graph."""
     seen = diagnose(graph)
     outcome = Outcome(Verdict.WRONG, "something is wrong", "multibot doctor", planned=False)
@@ -115,7 +114,7 @@ def rich_plan() -> Expectation:
 _OF_ONE = ("amcl", "slam_toolbox")
 
 
-def rich_graph() -> Snapshot:
+def rich_graph() -> System:
     """As ``rich_plan`` has it; amcl runs, slam_toolbox does not."""
     graph = nav2_graphs.healthy(rich_plan())
     for space in (FIRST, SECOND):
@@ -123,5 +122,5 @@ def rich_graph() -> Snapshot:
     return graph
 
 
-def rich(graph: Snapshot) -> Scene:
+def rich(graph: System) -> Scene:
     return make_scene(rich_plan(), graph, check(rich_plan(), graph))

@@ -8,12 +8,19 @@ from graph_cases import (
 )
 
 from multibot_rewrite.graph.expectation import Expectation, expect
-from multibot_rewrite.graph.snapshot import GraphFrame, Snapshot
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.naming import make_naming, spelled
 from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.table import build_table
-from multibot_rewrite.system.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.records import (
+    PUBLISHES,
+    SERVES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+    Edge,
+    System,
+)
 
 ROBOTS = ("robot1", "robot2")
 NODES = (
@@ -50,14 +57,12 @@ def frames(layout: str) -> dict[str, list[str]]:
     return {robot: [spelled(naming, robot, "frame", link) for link in LINKS] for robot in ROBOTS}
 
 
-def healthy(layout: str = "L2") -> Snapshot:
+def healthy(layout: str = "L2") -> System:
     """The graph exactly as planned, on odometry."""
     graph = as_planned(plan(layout))
     naming = make_naming(layout)
     odometry = tuple(
-        GraphFrame(
-            robot.frames[0], spelled(naming, robot.name, "frame", "odom"), robot.tf, False, ()
-        )
+        Edge(robot.frames[0], spelled(naming, robot.name, "frame", "odom"), robot.tf, False, ())
         for robot in plan(layout).robots
     )
-    return sent(graph._replace(frames=(*graph.frames, *odometry)))
+    return sent(graph._replace(edges=(*graph.edges, *odometry)))

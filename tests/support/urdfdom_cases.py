@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
-import sys
+from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
-CHECK = shutil.which("check_urdf", path=f"{Path(sys.executable).parent}") or shutil.which(
-    "check_urdf"
-)
+CMEEL = find_spec("cmeel")
+# The program of the wheel itself: the command of that name starts a Python for it.
+PREFIX = Path(CMEEL.origin or "").parents[1] / "cmeel.prefix" if CMEEL else Path("nowhere")
+CHECK = shutil.which("check_urdf", path=str(PREFIX / "bin")) or shutil.which("check_urdf")
+ENVIRONMENT = {**os.environ, "LD_LIBRARY_PATH": str(PREFIX / "lib")} if CMEEL else None
 VERSIONS = ("1.0", "1.1", "1.2")
 LIMIT = '<limit lower="-1" upper="1" effort="1" velocity="1"{}/>'
 INERTIA = '<mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
@@ -28,7 +31,9 @@ def check_urdf(text: str, folder: Path) -> Said:
     assert CHECK, "check_urdf of urdfdom 6 is there: pip install cmeel-urdfdom"
     file = folder / "case.urdf"
     file.write_text(text)
-    run = subprocess.run([CHECK, file], capture_output=True, text=True, timeout=60, check=False)
+    run = subprocess.run(
+        [CHECK, file], capture_output=True, text=True, timeout=60, check=False, env=ENVIRONMENT
+    )
     complains = run.returncode != 0 or "Error:" in run.stderr or "Warning:" in run.stderr
     return Said(run.returncode == 0, complains)
 

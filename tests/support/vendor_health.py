@@ -16,10 +16,10 @@ from vendor_systems import OTHER, ROBOT, Outcome, Started
 
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.graph.expectation import Expectation
-from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphNode, Snapshot
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.remap.records import NodeRule, NodeTable
 from multibot_rewrite.rules.check import check
+from multibot_rewrite.system.records import End, Node, System
 
 TF = ("/tf", "/tf_static")
 _EKF = "robot_localization/ekf_node"
@@ -31,7 +31,7 @@ def findings(found: Outcome, release: str, kinds: Mapping[str, str]) -> tuple[Fi
     known = {it.name: _unstamped(it) for it in found.fleet.facts}
     rules = {it.full_name: it.rules for it in found.fleet.table.nodes}
     nodes: list[str] = []
-    ends: list[GraphEndpoint] = []
+    ends: list[End] = []
     declared: set[str] = set()
     for it in two(found.started.values()):
         nodes.append(it.name)
@@ -42,7 +42,7 @@ def findings(found: Outcome, release: str, kinds: Mapping[str, str]) -> tuple[Fi
             table = placed(it, short, rules.get(it.name, ()))
             ends += _as_set(it, endpoints(kind, known[short], table, release))
     owners = dict.fromkeys([*nodes, *(it.node for it in ends)])
-    seen = Snapshot(tuple(GraphNode(it, it) for it in owners), tuple(ends), (), environment())
+    seen = System(tuple(Node(it, it) for it in owners), tuple(ends), (), environment())
     return tuple(check(_of(found.launched, declared), seen))
 
 
@@ -52,7 +52,7 @@ def _unstamped(node: NodeFacts) -> NodeFacts:
     return node._replace(endpoints=tuple(ends))
 
 
-def _as_set(node: Started, ends: Iterable[GraphEndpoint]) -> Iterator[GraphEndpoint]:
+def _as_set(node: Started, ends: Iterable[End]) -> Iterator[End]:
     """Its ends with the type of commands that its parameters choose (use_stamped, stamped_control). The
     filter reads commands with use_control alone (ros_filter.cpp)."""
     stamped = any("stamped" in it for it in node.parameters)

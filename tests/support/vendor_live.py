@@ -18,9 +18,9 @@ from multibot_rewrite.findings.finding import NOTE, Finding
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.plan_file import from_yaml
 from multibot_rewrite.graph.rehearsal import substitute_type, with_substitutes
-from multibot_rewrite.graph.snapshot import Snapshot, from_json
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.system.records import TOPIC
+from multibot_rewrite.system.json import from_json
+from multibot_rewrite.system.records import TOPIC, System
 
 PLAN = "plan.yaml"
 
@@ -80,10 +80,10 @@ def _finding(row: Mapping[str, str]) -> Finding:
     return Finding(row["code"], row["level"], row["message"])
 
 
-def _substituted(plan: Expectation, graph: Snapshot) -> Expectation:
+def _substituted(plan: Expectation, graph: System) -> Expectation:
     """The plan with the types that the rehearsal has in place of those that are not installed: no
     stand-in has these."""
-    there = {it.type for it in graph.endpoints}
+    there = {it.type for it in graph.ends}
     return with_substitutes(plan, {t: new for t, new in _substitutes(plan) if t not in there})
 
 

@@ -1,7 +1,7 @@
 """What vendors' launch files start, against what a plan has: by their own files, and by launch files.
 
-    python tests/support/vendor_systems.py [SYSTEM ...]      print the page
-    python tests/support/vendor_systems.py --write           write docs/vendors.md
+    python tests/support/vendor_systems.py [SYSTEM ...]      print each node
+    python tests/support/vendor_systems.py --write           write the figures into docs/vendors.md
 
 MULTIBOT_SOURCES names a folder with checkouts of the repositories that ``vendors/*.yaml`` names, under
 these names. Needs launch and launch_ros. The judge is ``launch_recorder.py``: the real launch with
@@ -40,7 +40,7 @@ Made by `MULTIBOT_SOURCES=FOLDER python tests/support/vendor_systems.py --write`
 launch files in the real `launch`, with programs that do nothing. *Named* are those of the started nodes
 that the plan has, *topics* those whose topics, services and actions it has too, *wrong* nodes that
 must run by the plan and that nothing starts. *Files* is the plan by the robot's own files and stacks,
-*launch* has its launch files besides, *before* stacks alone.
+*launch* has its launch files besides, *before* stacks alone. Without `--write` it prints each node.
 
 | system | nodes | before | files: named | topics | wrong | launch: named | topics | wrong |
 |---|--:|--:|--:|--:|--:|--:|--:|--:|\
@@ -253,9 +253,8 @@ def with_topics(plan: Expectation, there: Mapping[str, Started]) -> list[str]:
 
 
 def page(outcomes: Iterable[Outcome]) -> str:
-    """The page: a row a system, and a row a node."""
-    found = list(outcomes)
-    return "\n".join([HEAD, *map(_row, found), *(line for it in found for line in _table(it)), ""])
+    """The page: a row a system."""
+    return "\n".join([HEAD, *map(_row, outcomes), ""])
 
 
 def _row(it: Outcome) -> str:
@@ -289,7 +288,7 @@ def _short(origin: str) -> str:
 
 
 def main(words: list[str]) -> int:
-    """Print the page of some systems, or write that of all."""
+    """Print the nodes of some systems, or write the figures of all."""
     folder = sources_folder()
     if folder is None:
         print(WITHOUT, file=sys.stderr)
@@ -300,11 +299,11 @@ def main(words: list[str]) -> int:
     if lacking:
         print(f"{folder} lacks {', '.join(sorted(lacking))}", file=sys.stderr)
         return 2
-    text = page([outcome(it, vendors, folder) for it in names])
+    found = [outcome(it, vendors, folder) for it in names]
     if "--write" in words:
-        PAGE.write_text(text)
+        PAGE.write_text(page(found))
     else:
-        print(text)
+        print("\n".join([page(found), *(line for it in found for line in _table(it))]))
     return 0
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.graph.snapshot import Snapshot
+from multibot_rewrite.system.records import System
 
 
 def page(folder: Path, *words: object, code: int = 0) -> dict[str, Any]:
@@ -24,7 +24,7 @@ def page(folder: Path, *words: object, code: int = 0) -> dict[str, Any]:
     return made
 
 
-def with_places(graph: Snapshot) -> Snapshot:
+def with_places(graph: System) -> System:
     """Of the rover: all as in its file, but robot2's lidar 3 cm lower and its left wheel turned."""
     fixed = {
         "base_link": (0, 0, 0.05), "lidar_link": (0.1, 0, 0.12), "camera_link": (0.2, 0, 0.08),
@@ -32,7 +32,7 @@ def with_places(graph: Snapshot) -> Snapshot:
         "base_footprint": (1, 0, 0),
     }  # fmt: skip
     frames = []
-    for it in graph.frames:
+    for it in graph.edges:
         name, _, robot = it.child.partition("/")
         at, turn = fixed.get(name, (0, 0, 0)), (0, 0, 0, 1)
         if name == "camera_optical_frame":
@@ -42,4 +42,4 @@ def with_places(graph: Snapshot) -> Snapshot:
         if (name, robot) == ("left_wheel", "robot2"):
             turn = (0, sin(0.35), 0, cos(0.35))
         frames.append(it._replace(transform=tuple(map(float, (*at, *turn)))))
-    return graph._replace(frames=tuple(frames))
+    return graph._replace(edges=tuple(frames))

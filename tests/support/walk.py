@@ -29,7 +29,7 @@ from multibot_rewrite.cli.rehearse import stage
 from multibot_rewrite.graph.live.child import RUN_STUBS, observe, running
 from multibot_rewrite.graph.live.request import Request, to_text
 from multibot_rewrite.graph.rehearsal import split_over_processes, to_order
-from multibot_rewrite.graph.snapshot import to_json
+from multibot_rewrite.system.json import to_json
 
 REPOSITORY = "nav2_minimal_turtlebot_simulation"
 ORIGIN = f"https://github.com/ros-navigation/{REPOSITORY}"

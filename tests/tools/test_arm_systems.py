@@ -19,18 +19,17 @@ from lxml import etree
 from nav2_graphs import environment
 from paths import FIXTURES
 
-from multibot_rewrite.companions.params.known_nodes import built_in_nodes
 from multibot_rewrite.fleets.fleet import expected
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
-from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphFrame, GraphNode, Snapshot
+from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.remap.records import NodeTable
 from multibot_rewrite.remap.table import parsed
 from multibot_rewrite.rosnames import bind, resolve_bound
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.system.records import TOPIC
+from multibot_rewrite.system.records import TOPIC, Edge, End, Node, System
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
 SYSTEMS = yaml.safe_load((FIXTURES / "arm_systems.yaml").read_text())
@@ -108,11 +107,11 @@ def kinds(name: str, release: str) -> dict[str, str]:
     return {**{it: it for it in nodes}, **loaded}
 
 
-def played(name: str, release: str, plan: FleetPlan) -> Snapshot:
+def played(name: str, release: str, plan: FleetPlan) -> System:
     """The graph of all nodes that run, with what their sources declare."""
     placed = {(it.robot, it.node): it for it in plan.fleet.table.nodes}
     known: dict[str, NodeFacts] = {it.name: it for it in plan.fleet.facts}
-    ends: list[GraphEndpoint] = []
+    ends: list[End] = []
     nodes: list[str] = []
     for robot in ROBOTS:
         for node, kind in kinds(name, release).items():
@@ -133,20 +132,20 @@ def played(name: str, release: str, plan: FleetPlan) -> Snapshot:
         for frame in frames
         if not frame.static
     ]
-    return Snapshot(tuple(map(_node, owners)), tuple(ends), tuple(frames), environment())
+    return System(tuple(map(_node, owners)), tuple(ends), tuple(frames), environment())
 
 
-def _pose(beside: GraphFrame, params: dict[str, str]) -> GraphFrame:
+def _pose(beside: Edge, params: dict[str, str]) -> Edge:
     """What pose_broadcaster sends: its frames are spelled as the links are."""
     child = beside.parent.replace(params["frame_id"], params["tf.child_frame_id"])
     return beside._replace(child=child)
 
 
-def _node(name: str) -> GraphNode:
-    return GraphNode(name, name)
+def _node(name: str) -> Node:
+    return Node(name, name)
 
 
-def _tree(description: bytes, publisher: NodeTable) -> Iterator[GraphFrame]:
+def _tree(description: bytes, publisher: NodeTable) -> Iterator[Edge]:
     """What robot_state_publisher sends of a description."""
     bound = bind(publisher.name, publisher.namespace, parsed(publisher.rules))
     for joint in etree.fromstring(description).findall("joint"):
@@ -154,10 +153,10 @@ def _tree(description: bytes, publisher: NodeTable) -> Iterator[GraphFrame]:
         topic = resolve_bound("/tf_static" if fixed else "/tf", TOPIC, bound)
         parent, child = (joint.find(it).get("link") for it in ("parent", "child"))
         node = f"{publisher.namespace.rstrip('/')}/{publisher.name}"
-        yield GraphFrame(child, parent, topic, fixed, (node,))
+        yield Edge(child, parent, topic, fixed, (node,))
 
 
-def told(plan: FleetPlan, seen: Snapshot, release: str = "") -> list[str]:
+def told(plan: FleetPlan, seen: System, release: str = "") -> list[str]:
     found = (it for it in check(expected(plan.fleet), seen) if (release, *it.names) not in WAITS)
     return [f"{it.code} {it.node} {it.message}" for it in found]
 
@@ -170,7 +169,7 @@ def test_two_healthy_arms(name: str, release: str, layout: str, tmp_path: Path) 
 
 
 @pytest.fixture(scope="module")
-def ur(tmp_path_factory: pytest.TempPathFactory) -> tuple[FleetPlan, Snapshot]:
+def ur(tmp_path_factory: pytest.TempPathFactory) -> tuple[FleetPlan, System]:
     plan = planned("ur", "jazzy", "both", tmp_path_factory.mktemp("ur"))
     return plan, played("ur", "jazzy", plan)
 
@@ -179,12 +178,12 @@ def ur(tmp_path_factory: pytest.TempPathFactory) -> tuple[FleetPlan, Snapshot]:
     ("node", "code"),
     [("dashboard_client", "MG101"), ("io_and_status_controller", "MG101")],
 )
-def test_a_node_that_is_gone_is_found(node: str, code: str, ur: tuple[FleetPlan, Snapshot]) -> None:
+def test_a_node_that_is_gone_is_found(node: str, code: str, ur: tuple[FleetPlan, System]) -> None:
     plan, seen = ur
     gone = f"/right/{node}"
     left = seen._replace(
         nodes=tuple(it for it in seen.nodes if it.name != gone),
-        endpoints=tuple(it for it in seen.endpoints if it.node != gone),
+        ends=tuple(it for it in seen.ends if it.node != gone),
     )
     assert [it[:5] for it in told(plan, left)] == [code]
 
@@ -199,13 +198,13 @@ def test_a_node_that_is_gone_is_found(node: str, code: str, ur: tuple[FleetPlan,
     ],
 )
 def test_a_name_that_goes_astray_is_found(
-    name: str, other: str, ur: tuple[FleetPlan, Snapshot]
+    name: str, other: str, ur: tuple[FleetPlan, System]
 ) -> None:
     plan, seen = ur
-    moved = (it._replace(name=other) if it.name == name else it for it in seen.endpoints)
+    moved = (it._replace(name=other) if it.name == name else it for it in seen.ends)
     assert any(
         it.startswith(("MG102", "MG311", "MG321"))
-        for it in told(plan, seen._replace(endpoints=tuple(moved)))
+        for it in told(plan, seen._replace(ends=tuple(moved)))
     )
 
 

@@ -243,7 +243,7 @@ def test_the_command_prints_differences(tmp_path: Path, capsys: pytest.CaptureFi
     )
     assert main([str(folder), "--compare", "jazzy"]) == 1
     rows = [row.split("\t")[:5] for row in capsys.readouterr().out.splitlines()]
-    assert ["twist_mux", "calls", "c", "a/srv/B", "not in nodes.yaml"] in rows
+    assert ["twist_mux", "calls", "c", "a/srv/B", "not in ours"] in rows
 
 
 def test_new_nodes_of_a_package_are_seen(

@@ -10,7 +10,7 @@ import re
 from functools import cache
 
 import pytest
-from paths import FIXTURES, ROOT
+from paths import FIXTURES
 
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.releases import RELEASES
@@ -23,7 +23,6 @@ from tools.interfaces.compare import (
     excepted,
     exceptions_of,
 )
-from tools.interfaces.endpoints_page import page
 from tools.interfaces.records import Fact
 from tools.interfaces.table import from_table
 
@@ -117,7 +116,3 @@ def test_exceptions_are_patterns() -> None:
     seen = Difference("amcl", "serves", "x/y", "", WAY)
     assert excepted(seen, (one,)) == "for a test"
     assert not re.search("x", excepted(seen._replace(name="y"), (one,)))
-
-
-def test_the_page_is_current() -> None:
-    assert page(FIXTURES) in (ROOT / "docs" / "interfaces.md").read_text()

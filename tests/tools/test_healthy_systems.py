@@ -11,7 +11,6 @@ from declared_graph import endpoints, facts
 from nav2_graphs import environment
 
 from multibot_rewrite.graph.expectation import Expectation, expect
-from multibot_rewrite.graph.snapshot import GraphNode, Snapshot
 from multibot_rewrite.knowledge.node_library import stack_of
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in
@@ -20,6 +19,7 @@ from multibot_rewrite.releases import NEWEST_LTS, RELEASES
 from multibot_rewrite.remap.records import Table
 from multibot_rewrite.remap.table import build_table
 from multibot_rewrite.rules.check import check
+from multibot_rewrite.system.records import Node, System
 
 SYSTEMS = {
     "nav2": ("robot_state", "nav2", "ros2_control"),
@@ -57,7 +57,7 @@ def system(release: str, name: str) -> tuple[list[tuple[str, NodeFacts]], Table,
     return kinds, table, expect(table, naming, {"robot1": (), "robot2": ()}, nodes)
 
 
-def graph(release: str, name: str) -> tuple[Expectation, Snapshot]:
+def graph(release: str, name: str) -> tuple[Expectation, System]:
     kinds, table, plan = system(release, name)
     by_name = {(it.name): (kind, it) for kind, it in kinds}
     ends = []
@@ -71,7 +71,7 @@ def graph(release: str, name: str) -> tuple[Expectation, Snapshot]:
         ends += endpoints(kind, node, placed, release)
     owners = dict.fromkeys([*nodes, *(it.node for it in ends)])
     around = environment()
-    return plan, Snapshot(tuple(GraphNode(it, it) for it in owners), tuple(ends), (), around)
+    return plan, System(tuple(Node(it, it) for it in owners), tuple(ends), (), around)
 
 
 @pytest.mark.parametrize("release", RELEASES)
@@ -87,8 +87,8 @@ def test_a_healthy_system_has_no_finding(release: str, name: str) -> None:
 @pytest.mark.parametrize("name", ["/robot1/initialpose", "/tf", "/robot1/follow_path"])
 def test_what_a_node_lacks_is_found(name: str) -> None:
     plan, seen = graph("jazzy", "nav2")
-    left = tuple(it for it in seen.endpoints if it.name != name)
-    assert {it.code for it in check(plan, seen._replace(endpoints=left))} >= {"MG102"}
+    left = tuple(it for it in seen.ends if it.name != name)
+    assert {it.code for it in check(plan, seen._replace(ends=left))} >= {"MG102"}
 
 
 def test_the_private_node_is_needed() -> None:
@@ -96,7 +96,7 @@ def test_the_private_node_is_needed() -> None:
     gone = "/robot1/move_group_private_1407"
     left = seen._replace(
         nodes=tuple(it for it in seen.nodes if it.name != gone),
-        endpoints=tuple(it for it in seen.endpoints if it.node != gone),
+        ends=tuple(it for it in seen.ends if it.node != gone),
     )
     (found,) = check(plan, left)
     assert (found.code, found.node) == ("MG101", "/robot1/move_group_private_*")

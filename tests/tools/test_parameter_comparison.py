@@ -10,11 +10,12 @@ from __future__ import annotations
 from functools import cache
 
 import pytest
-from paths import FIXTURES, ROOT
+from paths import FIXTURES
 
+from multibot_rewrite.knowledge.declared import DECLARED, YAML
+from multibot_rewrite.knowledge.stacks import every_release
 from multibot_rewrite.releases import RELEASES
-from multibot_rewrite.rules.files.parameter_files import DECLARED, YAML
-from multibot_rewrite.rules.files.parameter_owners import Owners, owners
+from tools.interfaces.declared_table import plugin_owners
 from tools.interfaces.parameter_comparison import (
     DEFAULT,
     MISSING,
@@ -26,13 +27,12 @@ from tools.interfaces.parameter_comparison import (
     same,
 )
 from tools.interfaces.parameter_facts import ParameterFact, parameter_lines, read_parameters
-from tools.interfaces.parameters_page import START, page
 from tools.interfaces.records import Place
 
 TABLES = FIXTURES / "interfaces"
 LEAST_FACTS = 1400
 PLACE = Place("acme/nav", "1.0.0", "nav/src/nav.cpp", 1)
-NONE = Owners({}, {})
+NONE: dict[str, str] = {}
 
 
 def rows(file: str) -> list[list[str]]:
@@ -52,9 +52,8 @@ def facts(release: str) -> tuple[ParameterFact, ...]:
 
 @cache
 def found(release: str) -> tuple[Difference, ...]:
-    table = ROOT / "multibot_rewrite" / "companions" / "params" / "params.yaml"
-    ours = our_parameters(table.read_text(), owners())
-    return tuple(differences(ours, facts(release), release, owners()))
+    ours = our_parameters(every_release().parameters.values())
+    return tuple(differences(ours, facts(release), release, plugin_owners().below))
 
 
 @pytest.mark.parametrize("release", RELEASES)
@@ -173,9 +172,3 @@ def test_a_package_that_is_not_read_is_not_compared() -> None:
 )
 def test_paths_are_compared_by_segments(own: str, source: str, equal: bool) -> None:
     assert same(own, source) == equal
-
-
-def test_the_page_is_current() -> None:
-    text = (ROOT / "docs" / "interfaces.md").read_text()
-    assert page(TABLES) in text
-    assert text.count(START) == 1

@@ -13,7 +13,8 @@ from paths import ROBOTS
 from view_pages import page, with_places
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.graph.snapshot import GraphFrame, to_json
+from multibot_rewrite.system.json import to_json
+from multibot_rewrite.system.records import Edge
 from multibot_rewrite.view.heard import LinkFrames, apart, heard_trees
 from multibot_rewrite.view.models import Joint
 
@@ -30,7 +31,7 @@ LINKS = [
 def trees(*edges: str, topic: str = "/tf", **places: tuple[float, ...]) -> list[tuple[Any, ...]]:
     """Root, robot and frames of each tree of ``parent>child``; ``places`` by the last word."""
     heard = [
-        GraphFrame(child, parent, topic, False, (), False, places.get(child.split("/")[-1], HERE))
+        Edge(child, parent, topic, False, (), False, places.get(child.split("/")[-1], HERE))
         for parent, child in (it.split(">") for it in edges)
     ]
     return [
@@ -103,7 +104,7 @@ def test_the_page_has_the_trees_and_the_transforms_of_links(tmp_path: Path) -> N
 def test_a_snapshot_without_places_has_no_trees(tmp_path: Path) -> None:
     graph = tmp_path / "graph.json"
     graph.write_bytes(to_json(healthy("postfix")))
-    assert "transform" not in json.loads(graph.read_bytes())["frames"][0]
+    assert "transform" not in json.loads(graph.read_bytes())["edges"][0]
     made = page(tmp_path, ROBOTS / "rover.urdf", "robot1", "--snapshot", graph)
     assert made["trees"] == []
     assert made["robots"][0]["heard"]["base_link/robot1"] == "heard"
@@ -112,8 +113,8 @@ def test_a_snapshot_without_places_has_no_trees(tmp_path: Path) -> None:
 def test_a_frame_on_the_tf_of_another_robot_is_not_heard(tmp_path: Path) -> None:
     """Where each robot has its own tf, frames of all are called alike."""
     graph = healthy("tf-per-robot")
-    frames = (it for it in graph.frames if it.topic.startswith("/robot2/"))
-    (tmp_path / "graph.json").write_bytes(to_json(graph._replace(frames=tuple(frames))))
+    frames = (it for it in graph.edges if it.topic.startswith("/robot2/"))
+    (tmp_path / "graph.json").write_bytes(to_json(graph._replace(edges=tuple(frames))))
     words = [ROBOTS / "rover.urdf", "robot1", "robot2", "--layout", "tf-per-robot"]
     one, two = page(tmp_path, *words, "--snapshot", tmp_path / "graph.json")["robots"]
     assert set(one["heard"].values()) == {"silent"}

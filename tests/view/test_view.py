@@ -105,7 +105,7 @@ def test_topics_have_the_namespace_where_it_is_another_word(tmp_path: Path) -> N
 def test_frames_of_a_snapshot(tmp_path: Path) -> None:
     """Of a graph in which robot1's tree was heard, but for one frame that hangs elsewhere."""
     snapshot = json.loads((FIXTURES / "graphs" / "healthy.json").read_text())
-    (imu,) = [it for it in snapshot["frames"] if it["child"] == "imu_link/robot1"]
+    (imu,) = [it for it in snapshot["edges"] if it["child"] == "imu_link/robot1"]
     imu["parent"] = "lidar_link/robot1"
     (tmp_path / "graph.json").write_text(json.dumps(snapshot))
     words = [ROBOTS / "rover.urdf", "robot1", "--layout", "frames-per-robot"]

@@ -16,7 +16,7 @@ from selenium.webdriver.support.wait import WebDriverWait
 from view_pages import with_places
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.graph.snapshot import to_json
+from multibot_rewrite.system.json import to_json
 
 BROWSER = shutil.which("chromium") or shutil.which("google-chrome")
 DRIVER = shutil.which("chromedriver")

@@ -1,4 +1,4 @@
-"""What the sources of a release say against what ``knowledge/nodes.yaml`` says, both ways."""
+"""What the sources of a release say against what ``knowledge/nodes/`` says, both ways."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.record import NamedTuple
 from tools.interfaces.records import Class, Fact
 
-# Parts of nodes.yaml that come from rclcpp and rclcpp_lifecycle, which are not read.
+# Parts of ours that come from rclcpp and rclcpp_lifecycle, which are not read.
 NOT_READ = ("every_node", "lifecycle")
-OURS, THEIRS, WAY, WHEN = "not in the sources", "not in nodes.yaml", "another way", "only sometimes"
+OURS, THEIRS, WAY, WHEN = "not in the sources", "not in ours", "another way", "only sometimes"
 UNLISTED = "not in nodes.txt"
 # A condition with one of these is never true for all.
 SOMETIMES = re.compile(r"plugin |class |tree has ")
@@ -93,7 +93,7 @@ def _plain(name: str, node: str) -> str:
     """With the node's own name as ``~``."""
     above, _, own = node.rpartition("/")
     name = re.sub(rf"^(<get_name>|<this>|{re.escape(own)})/", "~/", name)
-    if above:  # nodes.yaml has names of the namespace above it as absolute ones.
+    if above:  # an entry has names of the namespace above it as absolute ones.
         name = name.lstrip("/")
     return name.replace("<getName>", f"<{own}>") if name.startswith("~") else name
 

@@ -11,11 +11,11 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 
-from multibot_rewrite.bounded import load_yaml
+from multibot_rewrite.knowledge.declared import YAML
+from multibot_rewrite.knowledge.records import NodeParameters
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import has_release
-from multibot_rewrite.rules.files.parameter_files import EMPTY, NO_DEFAULT, YAML
-from multibot_rewrite.rules.files.parameter_owners import Owners
+from multibot_rewrite.rules.files.parameter_files import EMPTY, NO_DEFAULT
 from tools.interfaces.parameter_facts import ParameterFact
 
 ID = "<id>"
@@ -32,8 +32,12 @@ _PATH = re.compile(r"[/~]?\w+(/\w+)+|/\w+")
 _SEGMENTS = {"*": r".+", "<>": r"(?:<\w+>|\w+)", "<index>": r"(?:<id>|\d+)"}
 
 
+# Package -> what stands before its parameters' names on the node.
+Below = Mapping[str, str]
+
+
 class OurParameter(NamedTuple):
-    """A row of params.yaml; ``packages`` are those whose sources may have it."""
+    """A parameter of a known node; ``packages`` are those whose sources may have it."""
 
     node: str
     packages: tuple[str, ...]
@@ -58,28 +62,30 @@ class Difference(NamedTuple):
         return self.kind, self.subject, self.path
 
 
-def our_parameters(text: str, known: Owners) -> tuple[OurParameter, ...]:
-    """The rows of params.yaml; a parameter with several forms has a row for each."""
-    rows = []
-    for node, entry in load_yaml(text)["nodes"].items():
-        packages = (entry.get("package", ""), *known.also.get(node, ()))
-        for path, given in (entry.get("params") or {}).items():
-            for form in given if isinstance(given, list) else [given]:
-                row = form if isinstance(form, dict) else {"kind": form}
-                words = row.get("releases") or entry.get("releases") or ""
-                default = str(row.get("default", ""))
-                rows.append(OurParameter(node, packages, path, row["kind"], default, words))
-    return tuple(rows)
+def our_parameters(nodes: Iterable[NodeParameters]) -> tuple[OurParameter, ...]:
+    """The known parameters; one with several forms has a row for each."""
+    return tuple(
+        OurParameter(
+            node.name,
+            (node.package, *node.declared_in),
+            it.path,
+            it.kind,
+            it.default,
+            it.releases or node.releases,
+        )
+        for node in nodes
+        for it in node.params
+    )
 
 
 def differences(
-    ours: Iterable[OurParameter], facts: Sequence[ParameterFact], release: str, known: Owners
+    ours: Iterable[OurParameter], facts: Sequence[ParameterFact], release: str, below: Below
 ) -> Iterator[Difference]:
     """Where the table and the sources of a release differ."""
     ours = tuple(ours)
     by_package: dict[str, dict[str, list[ParameterFact]]] = {}
     for fact in facts:
-        for path in _full(fact, known):
+        for path in _full(fact, below):
             by_package.setdefault(fact.package, {}).setdefault(path, []).append(fact)
     for row in ours:
         there = [by_package[it] for it in row.packages if it in by_package]
@@ -90,10 +96,10 @@ def differences(
         yield from _unknown(package, paths, claimed.get(package, ()), release)
 
 
-def _full(fact: ParameterFact, known: Owners) -> tuple[str, ...]:
+def _full(fact: ParameterFact, below: Below) -> tuple[str, ...]:
     """The paths on the node that it may have. In some packages the first ``<id>`` is a fixed word, or
     is left out; what a YAML file has may be below a prefix."""
-    above = known.below.get(fact.package, "")
+    above = below.get(fact.package, "")
     if not above or fact.path.startswith(f"{above}."):
         return (fact.path, f"{_PREFIX}.{fact.path}") if fact.how == YAML else (fact.path,)
     return (f"{above}.{fact.path.removeprefix(f'{ID}.')}",)

@@ -15,13 +15,7 @@ from multibot_rewrite.cli.declared.graph import (
     SNAPSHOT,
     ZENOH_FILES,
 )
-from multibot_rewrite.cli.declared.knowledge import (
-    ARGUMENTS,
-    COVERAGE,
-    EXPLAIN,
-    HELP,
-    VOCABULARY_LOOKUP,
-)
+from multibot_rewrite.cli.declared.knowledge import EXPLAIN, INSPECT
 from multibot_rewrite.cli.declared.view import VIEW
 from multibot_rewrite.cli.options import Command
 
@@ -30,23 +24,30 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
     {
         it.name: it
         for it in (
-            ARGUMENTS,
             BUILD,
             CHECK,
             CHECK_LAUNCH,
-            COVERAGE,
             DOCTOR,
             EXPLAIN,
-            HELP,
             INIT,
+            INSPECT,
             LEARN,
             PLAN,
             REHEARSE,
             REMAP,
             SNAPSHOT,
             VIEW,
-            VOCABULARY_LOOKUP,
             ZENOH_FILES,
         )
+    }
+)
+# Words that are no command -> what does it, as it is typed.
+INSTEAD: Mapping[str, str] = MappingProxyType(
+    {
+        "arguments": "multibot inspect FILE.xacro",
+        "coverage": "multibot inspect PATH...",
+        "vocabulary": "multibot inspect [NAME]",
+        "lint": "urdf-lint PATH...",
+        "rewrite": "urdf-postfix INPUT ROBOT...",
     }
 )

@@ -194,17 +194,12 @@ LIVE_CODES = (
     " missing or does not start"
 )
 PICTURES = OptionGroup(
-    "pictures",
+    "report",
     (
         value(
             "--report", metavar="FILE", about="write a page to look at, one HTML file",
             type=values.path,
         ),
-        value(
-            "--mermaid", metavar="FILE", about="write a flowchart for a page of Markdown",
-            type=values.path,
-        ),
-        value("--dot", metavar="FILE", about="write a graph for Graphviz", type=values.path),
         value(
             "--view", metavar="FLEET", type=values.path,
             about="with --report: show the robots of this fleet file in 3D; default: that of the input",

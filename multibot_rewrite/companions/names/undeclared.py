@@ -6,7 +6,7 @@ from multibot_rewrite.checks.mentions import mentioned
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.names.by_kind import is_plain, is_shared_frame
 from multibot_rewrite.companions.names.rename_map import is_declared, spell
-from multibot_rewrite.companions.params.known_nodes import built_in_nodes
+from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.nearest import did_you_mean
 from multibot_rewrite.rosnames import check_topic_name
 

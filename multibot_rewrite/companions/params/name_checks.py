@@ -17,12 +17,12 @@ from multibot_rewrite.companions.names.by_kind import (
 )
 from multibot_rewrite.companions.names.placeholders import is_robot
 from multibot_rewrite.companions.names.rename_map import is_declared
-from multibot_rewrite.companions.params.known_nodes import PREFIX_KINDS, RUN_TIME
 from multibot_rewrite.companions.params.name_sites import NameSite
 from multibot_rewrite.companions.params.values import ParamsJob, renamed
 from multibot_rewrite.companions.yaml_text import YamlText, found_at
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.knowledge.parameter_entries import PREFIX_KINDS, RUN_TIME
 from multibot_rewrite.nearest import did_you_mean
 from multibot_rewrite.rosnames import check_topic_name
 

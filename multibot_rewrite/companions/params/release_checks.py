@@ -6,13 +6,13 @@ from collections.abc import Iterator, Sequence
 
 import yaml
 
-from multibot_rewrite.companions.params.known_nodes import KnownNode, Param
 from multibot_rewrite.companions.params.name_sites import params_at
 from multibot_rewrite.companions.params.sections import ParamSection, flattened
 from multibot_rewrite.companions.params.values import ParamsJob
 from multibot_rewrite.companions.yaml_text import found_at, items, pairs
 from multibot_rewrite.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.knowledge.records import NodeParameters, Param
 from multibot_rewrite.releases import has_release, releases_with
 
 _BROADCASTER = "joint_state_broadcaster"
@@ -123,8 +123,8 @@ def _of_another_release(job: ParamsJob, section: ParamSection) -> Iterator[Findi
     node, release = section.node, job.context.distro
     if node is None or section.wild:
         return
-    if not has_release(node.releases, release):
-        yield _elsewhere(job, section.keys[-1], f"node {node.name}", node)
+    if not has_release(node.facts.releases, release):
+        yield _elsewhere(job, section.keys[-1], f"node {node.name}", node.facts)
         return
     for name, key in flattened(section.body):
         found = params_at(node, name, key)
@@ -139,7 +139,7 @@ def _source(places: Sequence[str]) -> str:
 
 
 def _elsewhere(
-    job: ParamsJob, key: yaml.ScalarNode, what: str, known: KnownNode | Param
+    job: ParamsJob, key: yaml.ScalarNode, what: str, known: NodeParameters | Param
 ) -> Finding:
     others = ", ".join(releases_with(known.releases))
     message = f"{what} is not in {job.context.distro}, only in {others}"
@@ -153,7 +153,7 @@ def _deprecated_types(job: ParamsJob, body: yaml.Node) -> Iterator[Finding]:
     types = {
         type_: it
         for node in job.known.nodes.values()
-        for type_, it in node.deprecated_types.items()
+        for type_, it in node.facts.deprecated_types.items()
     }
     for key, value in _scalars(body):
         words = types.get(value.value, "") if key.value.rpartition(".")[2] == "type" else ""

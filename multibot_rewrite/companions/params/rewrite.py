@@ -16,7 +16,6 @@ from multibot_rewrite.companions.params.controller_sections import (
     controller_sections,
     takes_sections,
 )
-from multibot_rewrite.companions.params.known_nodes import KnownNodes, built_in_nodes
 from multibot_rewrite.companions.params.name_checks import name_findings
 from multibot_rewrite.companions.params.name_sites import SectionNames, find_names
 from multibot_rewrite.companions.params.release_checks import release_findings
@@ -55,6 +54,7 @@ from multibot_rewrite.companions.template import (
 from multibot_rewrite.companions.yaml_text import Splice, YamlText
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.gc_pause import gc_paused
+from multibot_rewrite.knowledge.parameters import KnownNodes, built_in_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
 
 Page = tuple[ParamSection, SectionNames]

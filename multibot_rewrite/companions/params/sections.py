@@ -13,7 +13,6 @@ import yaml
 
 from multibot_rewrite.companions.context import Context, full_name
 from multibot_rewrite.companions.names.placeholders import without_robot
-from multibot_rewrite.companions.params.known_nodes import KnownNode, KnownNodes
 from multibot_rewrite.companions.template import NAMESPACE_SLOT
 from multibot_rewrite.companions.yaml_text import (
     Splice,
@@ -26,6 +25,7 @@ from multibot_rewrite.companions.yaml_text import (
 )
 from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.knowledge.parameters import KnownNode, KnownNodes
 from multibot_rewrite.knowledge.stacks import apart_nodes, is_apart
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import spelled
@@ -224,7 +224,11 @@ def identify_node(
     if type_ and "/" in type_:
         return None
     words = {key.partition(".")[0] for key in top}
-    found = (it for it in known.nodes.values() if it.known_by and words.issuperset(it.known_by))
+    found = (
+        it
+        for it in known.nodes.values()
+        if it.facts.known_by and words.issuperset(it.facts.known_by)
+    )
     return next(found, None)
 
 

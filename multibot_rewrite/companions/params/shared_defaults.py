@@ -9,7 +9,6 @@ import yaml
 
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.names.by_kind import SPELLERS, expressible
-from multibot_rewrite.companions.params.known_nodes import PREFIX_KINDS, KnownNode, is_absolute
 from multibot_rewrite.companions.params.name_checks import prefix_only
 from multibot_rewrite.companions.params.name_sites import SectionNames
 from multibot_rewrite.companions.params.sections import (
@@ -23,6 +22,8 @@ from multibot_rewrite.companions.template import NAMESPACE_SLOT
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, found_at, pairs, quoted
 from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.knowledge.parameter_entries import PREFIX_KINDS
+from multibot_rewrite.knowledge.parameters import KnownNode, is_absolute
 from multibot_rewrite.naming import NAMESPACE
 from multibot_rewrite.record import NamedTuple
 

@@ -17,20 +17,15 @@ from multibot_rewrite.companions.names.node_topics import (
 )
 from multibot_rewrite.companions.names.placeholders import filled, is_robot
 from multibot_rewrite.companions.names.rename_map import is_declared
-from multibot_rewrite.companions.params.known_nodes import (
-    GRAPH_NAME_KINDS,
-    RUN_TIME,
-    SWITCH_KINDS,
-    KnownNodes,
-    Param,
-    is_absolute,
-)
 from multibot_rewrite.companions.params.name_sites import NameSite, SectionNames
 from multibot_rewrite.companions.params.sections import ParamSection
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, found_at, pairs, replaced
 from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.knowledge.parameter_entries import GRAPH_NAME_KINDS, RUN_TIME, SWITCH_KINDS
+from multibot_rewrite.knowledge.parameters import KnownNodes, is_absolute
+from multibot_rewrite.knowledge.records import Param
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import RELEASES, has_release
 from multibot_rewrite.system.conventions import PLACEHOLDER
@@ -141,7 +136,7 @@ def renamed(context: Context, site: NameSite) -> str:
 
 def is_stripped(job: ParamsJob, section: ParamSection, site: NameSite) -> bool:
     """Does the node take off a slash that this frame starts with?"""
-    words = section.node.strips if section.node and site.kind == "frame" else ""
+    words = section.node.facts.strips if section.node and site.kind == "frame" else ""
     return bool(words) and site.at < 0 and has_release(words, job.context.distro)
 
 

@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING, Any
 from multibot_rewrite.bounded import load_yaml, read_text
 from multibot_rewrite.graph.bags.recording import RECORDER, RecordedTopic, Recording
 from multibot_rewrite.graph.live.assemble import TF_TYPES, numbers_of
-from multibot_rewrite.graph.snapshot import Caveat, GraphFrame, Qos
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.graph.zenoh.cdr import read_header_frame, read_tf
 from multibot_rewrite.model import InputError, MultibotError
 from multibot_rewrite.printable import one_line
+from multibot_rewrite.system.records import Caveat, Edge, Qos
 
 if TYPE_CHECKING:
     from rosbags.interfaces import Connection
@@ -79,7 +79,7 @@ def _recording(reader: Reader) -> Recording:
         name = str(connection.topic)
         by_topic[name if name.startswith("/") else f"/{name}"].append(connection)
     topics = tuple(_topic(reader, name, by_topic[name]) for name in sorted(by_topic))
-    transforms: list[GraphFrame] = []
+    transforms: list[Edge] = []
     caveats: list[Caveat] = []
     for name, connections in sorted(by_topic.items()):
         if connections[0].msgtype == TF_TYPES[0]:
@@ -123,9 +123,9 @@ def _first(reader: Reader, connections: list[Connection], many: int) -> Iterator
 
 def _transforms(
     reader: Reader, topic: str, connections: list[Connection]
-) -> tuple[Collection[GraphFrame], bool]:
+) -> tuple[Collection[Edge], bool]:
     """The transforms on a tf topic as they were at last, and whether some could not be read."""
-    found: dict[tuple[str, str], GraphFrame] = {}
+    found: dict[tuple[str, str], Edge] = {}
     static = topic.rpartition("/")[2] == "tf_static" or "/tf_static/" in topic
     for read, data in enumerate(_first(reader, connections, TRANSFORMS + 1)):
         message = read_tf(data) if read < TRANSFORMS else None
@@ -134,7 +134,7 @@ def _transforms(
         for it in message.transforms:
             edge = (it.child_frame_id, it.header.frame_id)
             last = numbers_of(it.transform)
-            found[edge] = GraphFrame(*edge, topic, static, (RECORDER,), transform=last)
+            found[edge] = Edge(*edge, topic, static, (RECORDER,), transform=last)
     return found.values(), False
 
 

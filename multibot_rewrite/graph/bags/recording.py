@@ -6,18 +6,19 @@ from collections import defaultdict
 from collections.abc import Iterable
 
 from multibot_rewrite.graph.expectation import Expectation
-from multibot_rewrite.graph.snapshot import (
-    QUIET,
-    Caveat,
-    Environment,
-    GraphEndpoint,
-    GraphFrame,
-    HeardFrame,
-    Qos,
-    Snapshot,
-)
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.system.records import PUBLISHES, TOPIC
+from multibot_rewrite.system.records import (
+    PUBLISHES,
+    QUIET,
+    TOPIC,
+    Caveat,
+    Edge,
+    End,
+    Environment,
+    Heard,
+    Qos,
+    System,
+)
 
 # In place of the RMW: such a snapshot has no nodes, so what asks for nodes has no answer.
 ROSBAG = "rosbag2"
@@ -43,17 +44,17 @@ class Recording(NamedTuple):
     """What was recorded in so many seconds, with the transforms of its tf topics."""
 
     topics: tuple[RecordedTopic, ...]
-    transforms: tuple[GraphFrame, ...]
+    transforms: tuple[Edge, ...]
     seconds: float
     caveats: tuple[Caveat, ...] = ()
 
 
-def is_recorded(graph: Snapshot) -> bool:
+def is_recorded(graph: System) -> bool:
     """Whether a snapshot is of a recording."""
     return graph.environment.rmw == ROSBAG
 
 
-def as_snapshot(found: Recording, plan: Expectation | None = None) -> Snapshot:
+def as_snapshot(found: Recording, plan: Expectation | None = None) -> System:
     """The recording as a snapshot. A transform does not say who sent it:
     those that publish its topic by the plan."""
     seconds = round(found.seconds, 2)
@@ -66,8 +67,8 @@ def as_snapshot(found: Recording, plan: Expectation | None = None) -> Snapshot:
         for it in found.transforms
     )
     around = Environment(0, "OFF", (), ROSBAG, "", False, 0, QUIET, seconds, found.caveats)
-    heard = (HeardFrame(it.name, frame) for it in found.topics for frame in it.frames)
-    return Snapshot((), tuple(_publishers(found.topics)), frames, around, tuple(heard))
+    heard = (Heard(it.name, frame) for it in found.topics for frame in it.frames)
+    return System((), tuple(_publishers(found.topics)), frames, around, tuple(heard))
 
 
 def counted(found: Recording) -> dict[str, int]:
@@ -75,7 +76,7 @@ def counted(found: Recording) -> dict[str, int]:
     return {it.name: it.messages for it in found.topics}
 
 
-def _publishers(topics: Iterable[RecordedTopic]) -> Iterable[GraphEndpoint]:
+def _publishers(topics: Iterable[RecordedTopic]) -> Iterable[End]:
     for it in topics:
         for qos in it.qos or (None,):
-            yield GraphEndpoint(TOPIC, PUBLISHES, it.name, it.type, "", RECORDER, qos, "")
+            yield End(TOPIC, PUBLISHES, it.name, it.type, "", RECORDER, qos, "")

@@ -6,12 +6,13 @@ import re
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 
-from multibot_rewrite.graph.snapshot import LISTENER, Snapshot
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.nearest import nearest_few
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rosnames import check_full_name, check_namespace
+from multibot_rewrite.system.conventions import LISTENER
+from multibot_rewrite.system.records import System
 
 # A tf2 listener without a node creates its own node, named after its address.
 HELPER = re.compile(LISTENER + "[0-9a-f]+")
@@ -26,7 +27,7 @@ class Helpers(NamedTuple):
     sure: bool = True
 
 
-def choose_nodes(graph: Snapshot, names: Sequence[str], namespace: str) -> tuple[str, ...]:
+def choose_nodes(graph: System, names: Sequence[str], namespace: str) -> tuple[str, ...]:
     """Full names of the nodes to learn, sorted: ``names``, or all below ``namespace`` but tools.
 
     Raises UsageError for a node that is not in the graph, not below the namespace, or in the graph
@@ -52,7 +53,7 @@ def choose_nodes(graph: Snapshot, names: Sequence[str], namespace: str) -> tuple
     return tuple(chosen)
 
 
-def left_out(graph: Snapshot, chosen: Iterable[str], namespace: str) -> tuple[str, ...]:
+def left_out(graph: System, chosen: Iterable[str], namespace: str) -> tuple[str, ...]:
     """Tools below ``namespace`` that are not learned although somebody may want to learn them."""
     base = namespace_prefix(namespace)
     below = {node.name for node in graph.nodes if node.name.startswith(f"{base}/")}
@@ -82,7 +83,7 @@ def _suggestion(name: str, known: Iterable[str]) -> str:
     return f"running are {', '.join(near)}" if near else "no nodes are running, or only tools"
 
 
-def helpers_of(graph: Snapshot, names: Sequence[str]) -> dict[str, Helpers]:
+def helpers_of(graph: System, names: Sequence[str]) -> dict[str, Helpers]:
     """The helper nodes in the process of each node; none of ``names`` counts as a helper."""
     inside, mains = _nodes_by_process(graph, names)
     return {
@@ -92,7 +93,7 @@ def helpers_of(graph: Snapshot, names: Sequence[str]) -> dict[str, Helpers]:
     }
 
 
-def helpers_without_owner(graph: Snapshot, names: Sequence[str]) -> tuple[str, ...]:
+def helpers_without_owner(graph: System, names: Sequence[str]) -> tuple[str, ...]:
     """Helper nodes that are alone in their process, so that their node is not known."""
     inside, mains = _nodes_by_process(graph, names)
     alone = (helpers for process, helpers in inside.items() if not mains[process])
@@ -100,7 +101,7 @@ def helpers_without_owner(graph: Snapshot, names: Sequence[str]) -> tuple[str, .
 
 
 def _nodes_by_process(
-    graph: Snapshot, names: Sequence[str]
+    graph: System, names: Sequence[str]
 ) -> tuple[Mapping[str, list[str]], Counter[str]]:
     """By process: its helper nodes, and how many others it has."""
     inside: dict[str, list[str]] = defaultdict(list)

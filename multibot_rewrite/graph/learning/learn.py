@@ -23,7 +23,6 @@ from multibot_rewrite.graph.learning.folding import (
     fold_images,
     fold_parts,
 )
-from multibot_rewrite.graph.snapshot import GraphEndpoint, Snapshot
 from multibot_rewrite.knowledge.node_library import NodeLibrary
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.model import UsageError
@@ -40,6 +39,8 @@ from multibot_rewrite.system.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
+    End,
+    System,
 )
 
 FROM_HELPER = "asked for by transform_listener_impl_<address>"
@@ -83,7 +84,7 @@ class _SeenPlace(NamedTuple):
 
 
 def learn(
-    graph: Snapshot, names: Sequence[str], namespace: str, library: NodeLibrary
+    graph: System, names: Sequence[str], namespace: str, library: NodeLibrary
 ) -> tuple[LearnedNode, ...]:
     """Facts of the nodes ``names`` below ``namespace``, the robot's namespace.
 
@@ -91,8 +92,8 @@ def learn(
     for an endpoint that no node can have.
     """
     base = namespace_prefix(namespace)
-    ends: dict[str, list[GraphEndpoint]] = defaultdict(list)
-    for end in graph.endpoints:
+    ends: dict[str, list[End]] = defaultdict(list)
+    for end in graph.ends:
         ends[end.node].append(end)
     helpers = helpers_of(graph, names)
     return tuple(
@@ -103,7 +104,7 @@ def learn(
 def _learn_node(
     name: str,
     base: str,
-    ends: Mapping[str, Sequence[GraphEndpoint]],
+    ends: Mapping[str, Sequence[End]],
     helpers: Helpers,
     library: NodeLibrary,
 ) -> LearnedNode:
@@ -158,7 +159,7 @@ def _relative_names(known: NodeFacts) -> Iterator[str]:
     return (f"/{name}" for name in names)
 
 
-def _endpoints(ends: Iterable[GraphEndpoint], place: _SeenPlace) -> dict[_Slot, Endpoint]:
+def _endpoints(ends: Iterable[End], place: _SeenPlace) -> dict[_Slot, Endpoint]:
     """A node's endpoints, by role and the name that its code may have."""
     seen, images = fold_images(fold_actions(_types_by_endpoint(ends)))
     found: dict[_Slot, Endpoint] = {}
@@ -178,7 +179,7 @@ def _endpoints(ends: Iterable[GraphEndpoint], place: _SeenPlace) -> dict[_Slot, 
     return found
 
 
-def _types_by_endpoint(ends: Iterable[GraphEndpoint]) -> Seen:
+def _types_by_endpoint(ends: Iterable[End]) -> Seen:
     types: dict[EndpointId, set[str]] = defaultdict(set)
     for end in ends:
         check_seen_name(end.kind, end.name)
@@ -192,7 +193,7 @@ def _types_by_endpoint(ends: Iterable[GraphEndpoint]) -> Seen:
     return {key: tuple(sorted(found)) for key, found in types.items()}
 
 
-def _is_valid_type(end: GraphEndpoint) -> bool:
+def _is_valid_type(end: End) -> bool:
     """Whether the type is valid for its kind; another type counts as not known."""
     found = _TYPE.fullmatch(end.type)
     return found is not None and found[1] in _WORDS[end.kind]
@@ -233,7 +234,7 @@ def _merge(first: Endpoint, second: Endpoint, key: EndpointId) -> Endpoint:
 
 
 def _with_helpers(
-    name: str, ends: Mapping[str, Sequence[GraphEndpoint]], helpers: Helpers, place: _SeenPlace
+    name: str, ends: Mapping[str, Sequence[End]], helpers: Helpers, place: _SeenPlace
 ) -> dict[_Slot, Endpoint]:
     """A node's endpoints, with those of its helper nodes."""
     found = _endpoints(ends.get(name, ()), place)

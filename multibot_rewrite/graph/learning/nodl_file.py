@@ -10,7 +10,6 @@ import math
 from collections.abc import Iterator
 
 from multibot_rewrite.graph.learning.learn import EVERY_NODE, LearnedNode
-from multibot_rewrite.graph.snapshot import GraphEndpoint, Qos, Snapshot
 from multibot_rewrite.knowledge.node_library import NodeLibrary
 from multibot_rewrite.knowledge.nodl.document import POLICIES
 from multibot_rewrite.knowledge.nodl.writing import DEFAULT, UNKNOWN_QOS, NodlFile, document_of
@@ -18,13 +17,13 @@ from multibot_rewrite.knowledge.records import TRANSPORTS, Endpoint
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rosnames import expand
 from multibot_rewrite.system.conventions import CLOCK
-from multibot_rewrite.system.records import TOPIC
+from multibot_rewrite.system.records import TOPIC, End, Qos, System
 
 KEEP_LAST = "KEEP_LAST"
 
 
 def to_nodl(
-    node: LearnedNode, graph: Snapshot, namespace: str, library: NodeLibrary, json: bool = False
+    node: LearnedNode, graph: System, namespace: str, library: NodeLibrary, json: bool = False
 ) -> NodlFile:
     """The document of a learned node; raises ProofError if reading it gives something else.
 
@@ -42,16 +41,16 @@ def to_nodl(
 class _Seen(NamedTuple):
     """The graph in which a node was seen, below the namespace ``base``."""
 
-    graph: Snapshot
+    graph: System
     node: LearnedNode
     base: str
 
-    def ends(self, end: Endpoint, suffix: str = "") -> list[GraphEndpoint]:
+    def ends(self, end: Endpoint, suffix: str = "") -> list[End]:
         """What the graph has of an endpoint, by the names that it may be seen under."""
         above, _, own = self.node.facts.name.rpartition("/")
         full = expand(end.name, f"/{above}", own) + suffix
         names = (self.base + full, full)
-        found = [it for it in self.graph.endpoints if it.name in names and it.role == end.role]
+        found = [it for it in self.graph.ends if it.name in names and it.role == end.role]
         found.sort(key=lambda it: (it.node != self.node.seen, it.name != names[0]))
         return found
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Mapping
 
 from multibot_rewrite.graph.questions import Question, questions
-from multibot_rewrite.graph.snapshot import Snapshot
-from multibot_rewrite.graph.states import NodeState
+from multibot_rewrite.system.answers import Answer
+from multibot_rewrite.system.records import System
 
 # States and parameters change without the graph: nodes are asked for them again after so long.
 AGAIN_SECONDS = 10.0
-Ask = Callable[[Iterable[Question]], Iterable[NodeState]]
+Ask = Callable[[Iterable[Question]], Iterable[Answer]]
 
 
 class Answers:
@@ -19,13 +19,13 @@ class Answers:
     def __init__(self, ask: Ask, parameters: Mapping[str, Collection[str]] | None) -> None:
         self._ask, self._parameters = ask, parameters
         self._asked = -AGAIN_SECONDS
-        self.states: tuple[NodeState, ...] = ()
+        self.states: tuple[Answer, ...] = ()
 
     def old(self, now: float) -> bool:
         """Whether it is time to ask again."""
         return self._parameters is not None and now - self._asked >= AGAIN_SECONDS
 
-    def update(self, seen: Snapshot, quiet: bool, now: float) -> bool:
+    def update(self, seen: System, quiet: bool, now: float) -> bool:
         """Ask the nodes of a graph that is quiet; whether an answer is another than before.
 
         One that does not answer now keeps what it said before, until it leaves.

@@ -16,9 +16,11 @@ from typing import Any
 
 from multibot_rewrite.graph.live import ros
 from multibot_rewrite.graph.live.worker import Send, run_worker
-from multibot_rewrite.graph.questions import GET_PARAMETERS, GET_STATE, SIM_TIME, Question
-from multibot_rewrite.graph.snapshot import plain_value
-from multibot_rewrite.graph.states import Controller, NodeState, Parameter, parameter_text
+from multibot_rewrite.graph.questions import GET_PARAMETERS, GET_STATE, Question
+from multibot_rewrite.system.answers import Answer
+from multibot_rewrite.system.json import plain_value
+from multibot_rewrite.system.parameters import parameter_text
+from multibot_rewrite.system.records import Controller, Parameter
 
 POLL_SECONDS = 0.05
 # rcl_interfaces/msg/ParameterType -> the field of ParameterValue; bytes are left out.
@@ -45,7 +47,7 @@ def ask_nodes(
     asked: Iterable[Question],
     seconds: float,
     stop: threading.Event,
-) -> tuple[NodeState, ...]:
+) -> tuple[Answer, ...]:
     """The answers that come within ``seconds``, or until ``stop``, by the names of nodes."""
     clients: dict[str, Any] = {}
     try:
@@ -63,17 +65,17 @@ def _ask(
     clients: dict[str, Any],
     end: float,
     stop: threading.Event,
-) -> dict[str, NodeState]:
+) -> dict[str, Answer]:
     waiting = [it for it in asked if _client(node, it, clients)]
     sent: dict[Question, Any] = {}
-    found: dict[str, NodeState] = {}
+    found: dict[str, Answer] = {}
     while (waiting or sent) and time.monotonic() < end and not stop.is_set():
         ready = [it for it in waiting if clients[it.service].service_is_ready()]
         sent |= {it: clients[it.service].call_async(_request(it)) for it in ready}
         waiting = [it for it in waiting if it not in sent]
         ros.spin(session, POLL_SECONDS)
         for it in [it for it, answer in sent.items() if answer.done()]:
-            before = found.get(it.node, NodeState(it.node))
+            before = found.get(it.node, Answer(it.node))
             answer = sent.pop(it).result()
             found[it.node] = _with_answer(before, it, answer)
             waiting += halves(it, answer)
@@ -104,28 +106,26 @@ def _request(asked: Question) -> Any:
     return class_.Request()
 
 
-def _with_answer(state: NodeState, asked: Question, answer: Any) -> NodeState:
+def _with_answer(state: Answer, asked: Question, answer: Any) -> Answer:
     if asked.type == GET_STATE:
         return state._replace(lifecycle=str(answer.current_state.label))
     if asked.type == GET_PARAMETERS:
         return _with_parameters(state, asked, answer.values)
     own = (
-        Controller(str(it.name), str(it.state), tuple(map(str, it.claimed_interfaces)))
+        Controller(asked.node, str(it.name), str(it.state), tuple(map(str, it.claimed_interfaces)))
         for it in answer.controller
     )
     return state._replace(controllers=tuple(own))
 
 
-def _with_parameters(state: NodeState, asked: Question, values: Sequence[Any]) -> NodeState:
+def _with_parameters(state: Answer, asked: Question, values: Sequence[Any]) -> Answer:
     known = {
         name: text
         for name, value in zip(asked.parameters, values, strict=False)
         if (text := _plain(value)) is not None
     }
-    timed = known.pop(SIM_TIME, None)
-    others = tuple(sorted({*state.parameters, *(Parameter(*it) for it in known.items())}))
-    sim_time = state.sim_time if timed is None else timed == "true"
-    return state._replace(sim_time=sim_time, parameters=others)
+    found = (Parameter(asked.node, name, text) for name, text in known.items())
+    return state._replace(parameters=tuple(sorted({*state.parameters, *found})))
 
 
 def _plain(value: Any) -> str | None:

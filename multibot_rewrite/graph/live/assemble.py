@@ -6,19 +6,20 @@ from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-from multibot_rewrite.graph.json_values import FARTHEST
-from multibot_rewrite.graph.snapshot import (
-    EXPECTED,
-    QUIET,
-    TIMEOUT,
-    Caveat,
-    GraphEndpoint,
-    GraphFrame,
-    GraphNode,
-)
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.system.conventions import SENT_BY_EVERY_NODE
-from multibot_rewrite.system.records import PUBLISHES, TOPIC
+from multibot_rewrite.system.json_values import FARTHEST
+from multibot_rewrite.system.records import (
+    EXPECTED,
+    PUBLISHES,
+    QUIET,
+    TIMEOUT,
+    TOPIC,
+    Caveat,
+    Edge,
+    End,
+    Node,
+)
 
 # Participants announce themselves every 3 s: a shorter quiet time proves nothing.
 QUIET_SECONDS = 3.5
@@ -111,7 +112,7 @@ def why_settled(
 
 def topics_to_query(
     names: Sequence[str],
-    endpoints: Iterable[GraphEndpoint],
+    endpoints: Iterable[End],
     topics: Mapping[str, Sequence[str]],
     requested: Collection[str],
 ) -> list[str]:
@@ -135,15 +136,13 @@ def topics_to_query(
     )
 
 
-def merged(
-    by_node: Iterable[GraphEndpoint], by_topic: Mapping[str, Iterable[GraphEndpoint]]
-) -> list[GraphEndpoint]:
+def merged(by_node: Iterable[End], by_topic: Mapping[str, Iterable[End]]) -> list[End]:
     """The endpoints by node; those of topics that were queried are replaced by the better answer."""
     kept = [end for end in by_node if end.kind != TOPIC or end.name not in by_topic]
     return kept + [end for ends in by_topic.values() for end in ends]
 
 
-def processes_by_node(endpoints: Iterable[GraphEndpoint]) -> dict[str, list[str]]:
+def processes_by_node(endpoints: Iterable[End]) -> dict[str, list[str]]:
     """The processes seen for each node name."""
     found: dict[str, set[str]] = defaultdict(set)
     for end in endpoints:
@@ -156,30 +155,30 @@ def nodes_with_process(
     names: Sequence[str],
     processes: Mapping[str, Sequence[str]],
     enclaves: Mapping[str, str] = NO_ENCLAVES,
-) -> list[GraphNode]:
+) -> list[Node]:
     """One record for each node; nodes with one name are spread over its processes."""
     result = []
     for name, times in sorted(Counter(names).items()):
         own = processes.get(name) or [""]
         enclave = enclaves.get(name, "")
-        result += [GraphNode(name, own[at % len(own)], enclave) for at in range(times)]
+        result += [Node(name, own[at % len(own)], enclave) for at in range(times)]
     return result
 
 
 def endpoints_with_process(
-    endpoints: Iterable[GraphEndpoint], processes: Mapping[str, Sequence[str]]
-) -> list[GraphEndpoint]:
+    endpoints: Iterable[End], processes: Mapping[str, Sequence[str]]
+) -> list[End]:
     """Sorted, each with the process of its node where the node has only one."""
     return sorted(
         (_with_process(end, processes.get(end.node, ())) for end in endpoints), key=_order
     )
 
 
-def _with_process(end: GraphEndpoint, processes: Sequence[str]) -> GraphEndpoint:
+def _with_process(end: End, processes: Sequence[str]) -> End:
     return end._replace(process=processes[0]) if not end.process and len(processes) == 1 else end
 
 
-def _order(end: GraphEndpoint) -> tuple[str, ...]:
+def _order(end: End) -> tuple[str, ...]:
     return (end.kind, end.name, end.role, end.node, end.process, end.type, repr(end.qos))
 
 
@@ -194,10 +193,10 @@ def numbers_of(transform: Any) -> tuple[float, ...]:
 
 def frames(
     received: Iterable[ReceivedTransform],
-    endpoints: Iterable[GraphEndpoint],
+    endpoints: Iterable[End],
     of_several: Collection[ReceivedTransform] = (),
     last: Mapping[ReceivedTransform, tuple[float, ...]] = NO_TRANSFORMS,
-) -> Iterator[GraphFrame]:
+) -> Iterator[Edge]:
     """The transforms received, each once a topic; static if it came from a latched subscription.
 
     ``of_several`` are those that more than one publisher sends, ``last`` what each was at last.
@@ -216,4 +215,4 @@ def frames(
         topic, parent, child = edge
         senders = tuple(sorted(publishers[topic]))
         transform = numbers.get(edge, ())
-        yield GraphFrame(child, parent, topic, static, senders, edge in several, transform)
+        yield Edge(child, parent, topic, static, senders, edge in several, transform)

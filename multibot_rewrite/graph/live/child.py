@@ -24,16 +24,10 @@ from multibot_rewrite.graph.live.request import (
     to_text,
 )
 from multibot_rewrite.graph.questions import Question
-from multibot_rewrite.graph.snapshot import (
-    UNKNOWN_NODE,
-    ZENOH,
-    Caveat,
-    Snapshot,
-    from_json,
-    record_from,
-)
-from multibot_rewrite.graph.states import NodeState
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.answers import Answer
+from multibot_rewrite.system.json import from_json, record_from
+from multibot_rewrite.system.records import UNKNOWN_NODE, ZENOH, Caveat, System
 
 INSTALL = (
     "source ROS 2 (. /opt/ros/jazzy/setup.bash) or, on Linux, pip install 'multibot_rewrite[ros]'"
@@ -71,7 +65,7 @@ class RosProcess(NamedTuple):
         raise RosUnusable(_explain(code, output, self.environ))
 
 
-def observe(request: Request, environ: Mapping[str, str]) -> Snapshot:
+def observe(request: Request, environ: Mapping[str, str]) -> System:
     """A snapshot of the graph with the variables of ``environ``; raises RosUnusable.
 
     No process is left running, however this call ends.
@@ -89,19 +83,19 @@ def observe(request: Request, environ: Mapping[str, str]) -> Snapshot:
     return _with_caveat(seen, Caveat("no-second-look", True, NO_SECOND_LOOK)) if doubtful else seen
 
 
-def _with_caveat(seen: Snapshot, caveat: Caveat) -> Snapshot:
+def _with_caveat(seen: System, caveat: Caveat) -> System:
     around = seen.environment
     return seen._replace(environment=around._replace(caveats=(*around.caveats, caveat)))
 
 
-def _may_contain_dead_nodes(seen: Snapshot) -> bool:
+def _may_contain_dead_nodes(seen: System) -> bool:
     """Whether a view may have dead nodes: a node name occurs twice, or one is unknown."""
     names = [node.name for node in seen.nodes]
-    nameless = any(UNKNOWN_NODE in end.node for end in seen.endpoints)
+    nameless = any(UNKNOWN_NODE in end.node for end in seen.ends)
     return nameless or len(set(names)) < len(names)
 
 
-def _observe_once(request: Request, environ: Mapping[str, str]) -> Snapshot:
+def _observe_once(request: Request, environ: Mapping[str, str]) -> System:
     limit = request.timeout + SLACK_SECONDS
     with running(OBSERVE, to_text(request), environ, limit) as child:
         data = child.next_message()
@@ -109,7 +103,7 @@ def _observe_once(request: Request, environ: Mapping[str, str]) -> Snapshot:
         return from_json(data, "the view of the graph")
 
 
-def watch(request: Request, environ: Mapping[str, str]) -> Generator[Snapshot, None, None]:
+def watch(request: Request, environ: Mapping[str, str]) -> Generator[System, None, None]:
     """Snapshots of the graph for ``request.timeout`` seconds, one after each change.
 
     Raises RosUnusable. No process is left running once the iterator is closed.
@@ -127,14 +121,14 @@ def watch(request: Request, environ: Mapping[str, str]) -> Generator[Snapshot, N
 
 def ask(
     asked: Iterable[Question], seconds: float, environ: Mapping[str, str]
-) -> tuple[NodeState, ...]:
+) -> tuple[Answer, ...]:
     """What nodes answer within ``seconds``, all asked at once; raises RosUnusable."""
     order = json.dumps((seconds, list(asked)))
     with running(ASK, order, environ, seconds + SLACK_SECONDS) as child:
         data = child.next_message()
     assert data is not None
-    states = record_from(tuple[NodeState, ...], json.loads(data), "the answers of nodes")
-    return cast(tuple[NodeState, ...], states)
+    states = record_from(tuple[Answer, ...], json.loads(data), "the answers of nodes")
+    return cast(tuple[Answer, ...], states)
 
 
 @contextmanager

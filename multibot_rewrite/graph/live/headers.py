@@ -10,10 +10,10 @@ import time
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator
 
-from multibot_rewrite.graph.snapshot import LISTENER, Caveat, GraphEndpoint, HeardFrame
 from multibot_rewrite.graph.zenoh.cdr import read_header_frame
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.system.records import PUBLISHES, TOPIC
+from multibot_rewrite.system.conventions import LISTENER
+from multibot_rewrite.system.records import PUBLISHES, TOPIC, Caveat, End, Heard
 
 # Their headers name frames of tf; where there are too many topics the first ones matter most.
 PACKAGES = (
@@ -43,9 +43,9 @@ class SensorTopic(NamedTuple):
     publishers: int
 
 
-def sensor_topics(endpoints: Iterable[GraphEndpoint]) -> Iterator[SensorTopic]:
+def sensor_topics(endpoints: Iterable[End]) -> Iterator[SensorTopic]:
     """The topics worth a subscription, sensors first."""
-    found: dict[str, list[GraphEndpoint]] = defaultdict(list)
+    found: dict[str, list[End]] = defaultdict(list)
     for end in endpoints:
         if (end.kind, end.role) == (TOPIC, PUBLISHES) and _names_a_frame(end):
             found[end.name].append(end)
@@ -54,12 +54,12 @@ def sensor_topics(endpoints: Iterable[GraphEndpoint]) -> Iterator[SensorTopic]:
         yield SensorTopic(name, ends[0].type, latched, len(ends))
 
 
-def _rank(topic: tuple[str, list[GraphEndpoint]]) -> tuple[int, str]:
+def _rank(topic: tuple[str, list[End]]) -> tuple[int, str]:
     name, ends = topic
     return PACKAGES.index(ends[0].type.partition("/")[0]), name
 
 
-def _names_a_frame(end: GraphEndpoint) -> bool:
+def _names_a_frame(end: End) -> bool:
     known = end.type.partition("/")[0] in PACKAGES and end.type not in WITHOUT_FRAME
     return known and "/_" not in end.name and LISTENER not in end.node
 
@@ -75,7 +75,7 @@ class HeaderSamples:
         self._left_out = 0
         self._began = time.monotonic()
 
-    def update(self, endpoints: Iterable[GraphEndpoint]) -> None:
+    def update(self, endpoints: Iterable[End]) -> None:
         """Subscribe to every sensor topic that was not there before."""
         new = [it for it in sensor_topics(endpoints) if it.name not in self._asked]
         room = max(0, MOST_TOPICS - len(self._asked))
@@ -109,10 +109,10 @@ class HeaderSamples:
         silent = self._open.keys() - self._heard.keys()
         return bool(silent) and time.monotonic() - self._began < seconds
 
-    def heard(self) -> tuple[HeardFrame, ...]:
+    def heard(self) -> tuple[Heard, ...]:
         """The frames by topic; several of a topic that several nodes publish."""
         pairs = ((topic, it) for topic, frames in self._heard.items() for it in frames)
-        return tuple(sorted(HeardFrame(*pair) for pair in pairs))
+        return tuple(sorted(Heard(*pair) for pair in pairs))
 
     def caveats(self) -> Iterator[Caveat]:
         """Where there were more topics than are listened to."""

@@ -23,19 +23,21 @@ from multibot_rewrite.graph.live.request import ENDED, Request, from_text
 from multibot_rewrite.graph.live.tf_subscriptions import Callback, TfSubscriptions
 from multibot_rewrite.graph.live.worker import Send, run_worker
 from multibot_rewrite.graph.questions import ANSWER_SECONDS, Question
-from multibot_rewrite.graph.snapshot import (
+from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.answers import Answer, with_answers
+from multibot_rewrite.system.json import to_json
+from multibot_rewrite.system.records import (
+    ACTION,
+    CALLS,
     CHANGING,
     QUIET,
+    SERVES,
     UNKNOWN_NODE,
     Caveat,
+    End,
     Environment,
-    GraphEndpoint,
-    Snapshot,
-    to_json,
+    System,
 )
-from multibot_rewrite.graph.states import NodeState
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.system.records import ACTION, CALLS, SERVES
 
 # The shortest pause between two polls. A pause is also so many times as long as a poll took: a
 # large fleet is polled less often, even less where the graph is not watched.
@@ -97,7 +99,7 @@ def _open_session(request: Request, stop: threading.Event) -> Iterator[GraphSess
         yield GraphSession(opened, node, request, stop, time.monotonic())
 
 
-def take_snapshot(session: GraphSession) -> Snapshot:
+def take_snapshot(session: GraphSession) -> System:
     """A snapshot, once the graph is settled; not usable if ``stop`` was set meanwhile."""
     cache: queries.TopicCache = {}
     ears = _Ears(session)
@@ -119,7 +121,7 @@ class _Ears:
         self.tf = TfSubscriptions(partial(_subscribe, session))
         self.headers = HeaderSamples(partial(_subscribe_to_headers, session))
 
-    def update(self, endpoints: Sequence[GraphEndpoint]) -> None:
+    def update(self, endpoints: Sequence[End]) -> None:
         """Subscribe to what is published now."""
         self.tf.update(endpoints, self._request.substitutes)
         if self._request.headers:
@@ -130,7 +132,7 @@ class _Ears:
         return self.tf.keep_waiting(*TF_SECONDS) or self.headers.keep_waiting(HEADER_SECONDS)
 
 
-def watch(session: GraphSession) -> Iterator[Snapshot]:
+def watch(session: GraphSession) -> Iterator[System]:
     """A snapshot after each change, and one when nothing has changed for a while."""
     ears = _Ears(session)
     cache: queries.TopicCache = {}
@@ -160,15 +162,15 @@ def watch(session: GraphSession) -> Iterator[Snapshot]:
             seen = _snapshot(session, names, endpoints, ears, (why, session.now()))
             other = answers.update(seen, quiet, session.now())
             if new or other:
-                yield seen._replace(states=answers.states)
+                yield with_answers(seen, answers.states)
         spent = time.thread_time() - began
 
 
-def _ask(session: GraphSession, asked: Iterable[Question]) -> Iterable[NodeState]:
+def _ask(session: GraphSession, asked: Iterable[Question]) -> Iterable[Answer]:
     return ask_nodes(session.ros, session.node, asked, ANSWER_SECONDS, session.stop)
 
 
-def _overview(session: GraphSession) -> tuple[list[str], list[GraphEndpoint]]:
+def _overview(session: GraphSession) -> tuple[list[str], list[End]]:
     """The nodes and their endpoints: enough to see whether anything changed."""
     names = queries.node_names(session.node)
     found = queries.endpoints_by_node(
@@ -221,7 +223,7 @@ class _ChangeTimes:
         self._changed = assemble.LastChange(0.0, 0.0)
 
     def update(
-        self, now: float, view: tuple[list[str], list[GraphEndpoint]], expected: Collection[str]
+        self, now: float, view: tuple[list[str], list[End]], expected: Collection[str]
     ) -> assemble.LastChange:
         """The times after a poll at ``now``."""
         parts = (view, [end for end in view[1] if end.node in expected])
@@ -238,9 +240,7 @@ def _pause_after(took: float, factor: int) -> float:
     return min(max(POLL_SECONDS, factor * took), LONGEST_PAUSE_SECONDS)
 
 
-def _complete_view(
-    session: GraphSession, cache: queries.TopicCache
-) -> tuple[list[str], list[GraphEndpoint]]:
+def _complete_view(session: GraphSession, cache: queries.TopicCache) -> tuple[list[str], list[End]]:
     """Names and endpoints; repeated for a while if nodes have no endpoints or no name yet."""
     limit = min(session.request.timeout, session.now() + assemble.QUIET_SECONDS)
     while True:
@@ -251,9 +251,7 @@ def _complete_view(
             return names, endpoints
 
 
-def _view(
-    session: GraphSession, cache: queries.TopicCache
-) -> tuple[list[str], list[GraphEndpoint]]:
+def _view(session: GraphSession, cache: queries.TopicCache) -> tuple[list[str], list[End]]:
     """Names and endpoints, with QoS and process for the topics that are worth a query."""
     node = session.node
     names = queries.node_names(node)
@@ -287,11 +285,11 @@ def _subscribe_to_headers(
 def _snapshot(
     session: GraphSession,
     names: list[str],
-    endpoints: list[GraphEndpoint],
+    endpoints: list[End],
     ears: _Ears,
     settled: tuple[str, float],
     more: Iterable[Caveat] = (),
-) -> Snapshot:
+) -> System:
     processes = assemble.processes_by_node(endpoints)
     enclaves = queries.enclaves(session.node)
     nodes = assemble.nodes_with_process(names, processes, enclaves)
@@ -317,7 +315,7 @@ def _snapshot(
         round(seconds, 2),
         tuple(caveats),
     )
-    return Snapshot(
+    return System(
         tuple(nodes),
         placed,
         tuple(assemble.frames(ears.tf.transforms(), placed, ears.tf.of_several(), ears.tf.last)),

@@ -11,7 +11,6 @@ from functools import lru_cache
 from typing import Any
 
 from multibot_rewrite.graph.live import assemble
-from multibot_rewrite.graph.snapshot import UNKNOWN_NODE, GraphEndpoint, Qos
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.system.records import (
     ACTION,
@@ -21,6 +20,9 @@ from multibot_rewrite.system.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
+    UNKNOWN_NODE,
+    End,
+    Qos,
 )
 
 # Kind and role of the answer, and the query: (node, name, namespace) -> names and types.
@@ -59,7 +61,7 @@ NODE_QUERIES: tuple[NodeQuery, ...] = (
 
 def endpoints_by_node(
     node: Any, names: Iterable[str], queries: Iterable[NodeQuery], gone: type[Exception]
-) -> Iterator[GraphEndpoint]:
+) -> Iterator[End]:
     """The endpoints of each node; of two nodes with one name rcl shows only the first.
 
     ``gone`` is the exception for a node that is not in the graph.
@@ -71,11 +73,11 @@ def endpoints_by_node(
             for kind, role, query in queries:
                 for topic, types in query(node, own, space or "/"):
                     for type_ in types:
-                        yield GraphEndpoint(kind, role, topic, type_, "", name, None, "")
+                        yield End(kind, role, topic, type_, "", name, None, "")
 
 
 # For each topic its endpoints by node at the time of the query, and the answer.
-TopicCache = dict[str, tuple[frozenset[GraphEndpoint], list[GraphEndpoint]]]
+TopicCache = dict[str, tuple[frozenset[End], list[End]]]
 
 
 class TopicQueries(NamedTuple):
@@ -91,8 +93,8 @@ class TopicQueries(NamedTuple):
 
 
 def with_topic_details(
-    node: Any, names: list[str], found: list[GraphEndpoint], asked: TopicQueries
-) -> list[GraphEndpoint]:
+    node: Any, names: list[str], found: list[End], asked: TopicQueries
+) -> list[End]:
     """The endpoints ``found`` by node, with QoS and process for topics that are worth a query."""
     topics = dict(node.get_topic_names_and_types())
     wanted = assemble.topics_to_query(names, found, topics, asked.requested)
@@ -109,9 +111,9 @@ def with_topic_details(
 
 
 def _query_topics(
-    node: Any, topics: Iterable[str], found: Iterable[GraphEndpoint], asked: TopicQueries
-) -> dict[str, list[GraphEndpoint]]:
-    ends: dict[str, list[GraphEndpoint]] = {}
+    node: Any, topics: Iterable[str], found: Iterable[End], asked: TopicQueries
+) -> dict[str, list[End]]:
+    ends: dict[str, list[End]] = {}
     for end in found:
         ends.setdefault(end.name, []).append(end)
     result = {}
@@ -129,9 +131,7 @@ def _query_topics(
     return result
 
 
-def _with_process(
-    node: Any, endpoints: list[GraphEndpoint], unknown: Mapping[str, GraphEndpoint]
-) -> Iterator[GraphEndpoint]:
+def _with_process(node: Any, endpoints: list[End], unknown: Mapping[str, End]) -> Iterator[End]:
     """For each node without a known process one endpoint with its process.
 
     The same endpoint without a process is removed from ``endpoints``.
@@ -145,7 +145,7 @@ def _with_process(
                 yield better
 
 
-def _topic_endpoints(node: Any, topic: str) -> list[GraphEndpoint]:
+def _topic_endpoints(node: Any, topic: str) -> list[End]:
     own = node.get_fully_qualified_name()
     found = [
         _endpoint(TOPIC, PUBLISHES, topic, it) for it in node.get_publishers_info_by_topic(topic)
@@ -157,7 +157,7 @@ def _topic_endpoints(node: Any, topic: str) -> list[GraphEndpoint]:
     return [end for end in found if end.node != own]
 
 
-def _service_endpoints(node: Any, end: GraphEndpoint) -> list[GraphEndpoint]:
+def _service_endpoints(node: Any, end: End) -> list[End]:
     """The DDS endpoints of a service: a server reads requests, a client writes them."""
     side = "publishers" if end.role == CALLS else "subscriptions"
     query = getattr(node, f"get_{side}_info_by_topic")
@@ -167,13 +167,13 @@ def _service_endpoints(node: Any, end: GraphEndpoint) -> list[GraphEndpoint]:
     return [it._replace(type=end.type, type_hash="") for it in found]
 
 
-def _endpoint(kind: str, role: str, name: str, info: Any) -> GraphEndpoint:
+def _endpoint(kind: str, role: str, name: str, info: Any) -> End:
     hash_ = str(info.topic_type_hash) if info.topic_type_hash.version > 0 else ""
     # The first 12 bytes of a DDS gid are its participant.
     process = bytes(info.endpoint_gid[:12]).hex()
     owner = _full_name(info.node_name, info.node_namespace)
     qos = _qos(info.qos_profile)
-    return GraphEndpoint(kind, role, name, info.topic_type, hash_, owner, qos, process)
+    return End(kind, role, name, info.topic_type, hash_, owner, qos, process)
 
 
 def _qos(profile: Any) -> Qos:

@@ -23,9 +23,9 @@ from multibot_rewrite.graph.rehearsal import (
     from_order,
     substitute_type,
 )
-from multibot_rewrite.graph.snapshot import LISTENER
 from multibot_rewrite.graph.transforms import Edge
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.conventions import LISTENER
 from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SERVES, SUBSCRIBES, TOPIC
 
 # The rate of robot_state_publisher and of most odometry sources.

@@ -8,9 +8,8 @@ from typing import Any
 
 from multibot_rewrite.graph.live.assemble import TF_TYPES, ReceivedTransform, numbers_of
 from multibot_rewrite.graph.live.voices import Mark, Voices
-from multibot_rewrite.graph.snapshot import Caveat, GraphEndpoint
 from multibot_rewrite.graph.wording import SEVERAL, shorten
-from multibot_rewrite.system.records import PUBLISHES
+from multibot_rewrite.system.records import PUBLISHES, Caveat, End
 
 # As long as tf2 keeps a transform.
 FORGET_SECONDS = 10.0
@@ -34,7 +33,7 @@ class TfSubscriptions:
         self.last: dict[ReceivedTransform, tuple[float, ...]] = {}
         self._began = time.monotonic()
 
-    def update(self, endpoints: Iterable[GraphEndpoint], substitutes: bool) -> None:
+    def update(self, endpoints: Iterable[End], substitutes: bool) -> None:
         """Subscribe to every tf topic that is published, and to no other."""
         types = TF_TYPES if substitutes else TF_TYPES[:1]
         topics = {

@@ -18,29 +18,29 @@ from multibot_rewrite.graph.rosgraph.messages import (
     Action,
     Duration,
     Graph,
-    Node,
     Service,
     Topic,
 )
-from multibot_rewrite.graph.snapshot import (
-    QUIET,
-    Caveat,
-    Environment,
-    GraphEndpoint,
-    GraphNode,
-    Qos,
-    Snapshot,
-    record_from,
+from multibot_rewrite.graph.rosgraph.messages import (
+    Node as NodeMessage,
 )
 from multibot_rewrite.model import InputError
+from multibot_rewrite.system.json import record_from
 from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
     PUBLISHES,
+    QUIET,
     SERVES,
     SERVICE,
     SUBSCRIBES,
     TOPIC,
+    Caveat,
+    End,
+    Environment,
+    Node,
+    Qos,
+    System,
 )
 
 # nodl_observe writes no limit as the largest int32, rosgraph_monitor as 0.
@@ -64,21 +64,21 @@ def is_message(value: object) -> bool:
     )
 
 
-def from_message(value: dict[str, Any], file: str) -> Snapshot:
+def from_message(value: dict[str, Any], file: str) -> System:
     """The snapshot that a message describes; raises InputError with file and key."""
     graph = cast(Graph, record_from(Graph, _without_parameters(value), file))
     nodes, ends = [], []
     for node in graph.nodes:
-        nodes.append(GraphNode(_full(node.name, file), ""))
+        nodes.append(Node(_full(node.name, file), ""))
         ends += [end._replace(name=_full(end.name, file)) for end in _endpoints(node, file)]
     caveats = [NO_FRAMES]
     if not any(end.kind == SERVICE for end in ends):
         caveats.append(ONLY_TOPICS)
     around = Environment(0, "", (), "", "", False, 0, QUIET, 0.0, tuple(caveats))
-    return Snapshot(tuple(nodes), tuple(ends), (), around)
+    return System(tuple(nodes), tuple(ends), (), around)
 
 
-def from_yaml(text: str, file: str) -> Snapshot:
+def from_yaml(text: str, file: str) -> System:
     """Read what ``ros2 topic echo --once --full-length`` printed; raises InputError."""
     import yaml
 
@@ -116,7 +116,7 @@ def _full(name: str, file: str) -> str:
     return name
 
 
-def _endpoints(node: Node, file: str) -> Iterator[GraphEndpoint]:
+def _endpoints(node: NodeMessage, file: str) -> Iterator[End]:
     for role, topics in ((PUBLISHES, node.publishers), (SUBSCRIBES, node.subscriptions)):
         yield from (_topic(it, role, node.name, file) for it in topics)
     for role, services in ((SERVES, node.service_servers), (CALLS, node.service_clients)):
@@ -126,21 +126,21 @@ def _endpoints(node: Node, file: str) -> Iterator[GraphEndpoint]:
             yield from _action(action, role, node.name, file)
 
 
-def _topic(topic: Topic, role: str, node: str, file: str) -> GraphEndpoint:
+def _topic(topic: Topic, role: str, node: str, file: str) -> End:
     version, value = topic.type.hash
     if not all(0 <= it < 256 for it in (version, *value)):
         raise InputError(f"{file}: {topic.name}: a byte of the type's hash is not 0 to 255")
     hash_ = f"RIHS{version:02d}_{bytes(value).hex()}" if any(value) else ""
     qos = _qos(topic, file)
-    return GraphEndpoint(TOPIC, role, topic.name, topic.type.name, hash_, node, qos, "")
+    return End(TOPIC, role, topic.name, topic.type.name, hash_, node, qos, "")
 
 
-def _service(service: Service, role: str, node: str) -> GraphEndpoint:
+def _service(service: Service, role: str, node: str) -> End:
     type_ = service.request_type.name.removesuffix(_REQUEST)
-    return GraphEndpoint(SERVICE, role, service.name, type_, "", node, None, "")
+    return End(SERVICE, role, service.name, type_, "", node, None, "")
 
 
-def _action(action: Action, role: str, node: str, file: str) -> Iterator[GraphEndpoint]:
+def _action(action: Action, role: str, node: str, file: str) -> Iterator[End]:
     """The action, and the services and topics that it is made of, as a snapshot has them."""
     parts = [_service(it, role, node) for it in action[1:4] if isinstance(it, Service) and it.name]
     sent = PUBLISHES if role == SERVES else SUBSCRIBES
@@ -148,7 +148,7 @@ def _action(action: Action, role: str, node: str, file: str) -> Iterator[GraphEn
         _topic(it, sent, node, file) for it in action[4:] if isinstance(it, Topic) and it.name
     ]
     type_ = action.send_goal.request_type.name.removesuffix(_REQUEST).removesuffix(SEND_GOAL)
-    yield GraphEndpoint(ACTION, role, action.name, type_, "", node, None, "")
+    yield End(ACTION, role, action.name, type_, "", node, None, "")
     yield from parts
 
 

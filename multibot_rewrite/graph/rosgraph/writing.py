@@ -15,7 +15,6 @@ from multibot_rewrite.graph.rosgraph.messages import (
     SEND_GOAL,
     UNKNOWN,
 )
-from multibot_rewrite.graph.snapshot import GraphEndpoint, Qos, Snapshot
 from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
@@ -24,6 +23,9 @@ from multibot_rewrite.system.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
+    End,
+    Qos,
+    System,
 )
 
 _HASH = re.compile(r"RIHS(\d\d)_([0-9a-f]{64})")
@@ -34,23 +36,23 @@ _GET_RESULT, _FEEDBACK = "_GetResult", "_FeedbackMessage"
 _CANCEL, _STATUS = "action_msgs/srv/CancelGoal", "action_msgs/msg/GoalStatusArray"
 
 
-def to_yaml(snapshot: Snapshot) -> bytes:
+def to_yaml(snapshot: System) -> bytes:
     """The snapshot as a message; what a message cannot hold is left out."""
     import yaml
 
-    ends: dict[str, list[GraphEndpoint]] = defaultdict(list)
-    for end in snapshot.endpoints:
+    ends: dict[str, list[End]] = defaultdict(list)
+    for end in snapshot.ends:
         ends[end.node].append(end)
     # Of two nodes with a name the first gets all: a message does not say whose an endpoint is.
     nodes = [_node(node.name, ends.pop(node.name, [])) for node in snapshot.nodes]
     return str(yaml.safe_dump({"nodes": nodes}, sort_keys=False)).encode() + b"---\n"
 
 
-def _node(name: str, ends: Sequence[GraphEndpoint]) -> dict[str, object]:
+def _node(name: str, ends: Sequence[End]) -> dict[str, object]:
     parts = _action_parts(ends)
     plain = [it for it in ends if it not in parts]
 
-    def of(kind: str, role: str) -> list[GraphEndpoint]:
+    def of(kind: str, role: str) -> list[End]:
         return [it for it in plain if (it.kind, it.role) == (kind, role)]
 
     return {
@@ -66,15 +68,15 @@ def _node(name: str, ends: Sequence[GraphEndpoint]) -> dict[str, object]:
     }
 
 
-def _side(end: GraphEndpoint) -> str:
+def _side(end: End) -> str:
     return SERVES if end.role in (SERVES, PUBLISHES) else CALLS
 
 
 # A hidden endpoint of an action -> the action's role and name.
-_Parts = Mapping[GraphEndpoint, tuple[str, str]]
+_Parts = Mapping[End, tuple[str, str]]
 
 
-def _action_parts(ends: Iterable[GraphEndpoint]) -> dict[GraphEndpoint, tuple[str, str]]:
+def _action_parts(ends: Iterable[End]) -> dict[End, tuple[str, str]]:
     """The hidden endpoints of the actions that are listed."""
     ends = list(ends)
     actions = {(it.role, it.name) for it in ends if it.kind == ACTION}
@@ -86,10 +88,10 @@ def _action_parts(ends: Iterable[GraphEndpoint]) -> dict[GraphEndpoint, tuple[st
     return found
 
 
-def _action_message(action: GraphEndpoint, parts: _Parts) -> dict[str, object]:
+def _action_message(action: End, parts: _Parts) -> dict[str, object]:
     own = {end.name: end for end, whole in parts.items() if whole == (action.role, action.name)}
 
-    def part(kind: str, name: str, type_: str) -> GraphEndpoint:
+    def part(kind: str, name: str, type_: str) -> End:
         full = f"{action.name}/_action/{name}"
         return own.get(full, action._replace(kind=kind, name=full, type=type_))
 
@@ -109,12 +111,12 @@ def _type_message(name: str, hash_: str = "") -> dict[str, object]:
     return {"name": name, "hash": {"version": int(found[1]) if found else 1, "value": value}}
 
 
-def _topic_message(end: GraphEndpoint) -> dict[str, object]:
+def _topic_message(end: End) -> dict[str, object]:
     type_ = _type_message(end.type, end.type_hash)
     return {"name": end.name, "type": type_, "qos": _qos_message(end.qos)}
 
 
-def _service_message(end: GraphEndpoint) -> dict[str, object]:
+def _service_message(end: End) -> dict[str, object]:
     message: dict[str, object] = {"name": end.name}
     for side in ("request", "response"):
         message[f"{side}_type"] = _type_message(end.type)

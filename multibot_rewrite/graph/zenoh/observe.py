@@ -12,16 +12,6 @@ from collections.abc import Generator, Iterable, Iterator
 from multibot_rewrite.graph.live.assemble import frames
 from multibot_rewrite.graph.live.request import Request
 from multibot_rewrite.graph.live.tf_subscriptions import TfSubscriptions
-from multibot_rewrite.graph.snapshot import (
-    CHANGING,
-    EXPECTED,
-    QUIET,
-    TIMEOUT,
-    ZENOH,
-    Caveat,
-    Environment,
-    Snapshot,
-)
 from multibot_rewrite.graph.wording import FEW, SEVERAL, shorten
 from multibot_rewrite.graph.zenoh import tokens
 from multibot_rewrite.graph.zenoh.session import NoRouter, RouterSession, opened
@@ -29,6 +19,16 @@ from multibot_rewrite.graph.zenoh.tf import ZenohTf
 from multibot_rewrite.graph.zenoh.tokens import SPACE, Token, read_token
 from multibot_rewrite.plural import plural
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.records import (
+    CHANGING,
+    EXPECTED,
+    QUIET,
+    TIMEOUT,
+    ZENOH,
+    Caveat,
+    Environment,
+    System,
+)
 
 POLL_SECONDS = 0.05
 # A watched graph is shown so long after a change, because changes come in groups, but not later.
@@ -46,7 +46,7 @@ class Router(NamedTuple):
         return f"{SPACE}/{self.domain}/**"
 
 
-def look(request: Request, router: Router) -> Snapshot:
+def look(request: Request, router: Router) -> System:
     """A snapshot of what the router knows now, or once the nodes of ``request.expected`` are there.
 
     Raises RosUnusable without zenoh, InputError for a bad configuration. Where no router answers the
@@ -60,7 +60,7 @@ def look(request: Request, router: Router) -> Snapshot:
         return _snapshot(router, _Seen(), time.monotonic() - started, [_no_router(router, error)])
 
 
-def watch(request: Request, router: Router) -> Generator[Snapshot, None, None]:
+def watch(request: Request, router: Router) -> Generator[System, None, None]:
     """Snapshots for ``request.timeout`` seconds, one after each change; raises as ``look``."""
     started = time.monotonic()
     try:
@@ -79,7 +79,7 @@ class _Seen(NamedTuple):
     settled: str = QUIET
 
 
-def _look(session: RouterSession, request: Request, router: Router, started: float) -> Snapshot:
+def _look(session: RouterSession, request: Request, router: Router, started: float) -> System:
     keys, complete = session.tokens(router.key())
     while not _all_there(keys, request.expected) and time.monotonic() - started < request.timeout:
         time.sleep(POLL_SECONDS)
@@ -145,7 +145,7 @@ def _cut_short(router: Router) -> Caveat:
 
 def _watch(
     session: RouterSession, request: Request, router: Router, started: float
-) -> Iterator[Snapshot]:
+) -> Iterator[System]:
     there: set[str] = set()
     tf = ZenohTf(session, router.domain)
     before: object = None
@@ -179,7 +179,7 @@ def _lost(router: Router) -> Caveat:
     return Caveat("no-router", True, text)
 
 
-def _snapshot(router: Router, seen: _Seen, seconds: float, caveats: Iterable[Caveat]) -> Snapshot:
+def _snapshot(router: Router, seen: _Seen, seconds: float, caveats: Iterable[Caveat]) -> System:
     nodes = tuple(tokens.nodes(seen.tokens))
     ends = tuple(tokens.endpoints(seen.tokens))
     heard = frames(seen.tf.transforms(), ends, last=seen.tf.last) if seen.tf else ()
@@ -195,7 +195,7 @@ def _snapshot(router: Router, seen: _Seen, seconds: float, caveats: Iterable[Cav
         round(seconds, 2),
         (*caveats, *_not_tokens(seen.strange), *_twins(node.name for node in nodes)),
     )
-    return Snapshot(nodes, ends, tuple(heard), around)
+    return System(nodes, ends, tuple(heard), around)
 
 
 def _not_tokens(keys: tuple[str, ...]) -> Iterator[Caveat]:

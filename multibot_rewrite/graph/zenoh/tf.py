@@ -8,11 +8,10 @@ from collections.abc import Callable, Iterable, Iterator
 
 from multibot_rewrite.graph.live.assemble import TF_TYPES
 from multibot_rewrite.graph.live.tf_subscriptions import Callback, TfSubscriptions
-from multibot_rewrite.graph.snapshot import Caveat, GraphEndpoint
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.graph.zenoh.cdr import read_tf
 from multibot_rewrite.graph.zenoh.session import RouterSession
-from multibot_rewrite.system.records import PUBLISHES
+from multibot_rewrite.system.records import PUBLISHES, Caveat, End
 
 POLL_SECONDS = 0.05
 # tf has 10 Hz or more: all that a publisher sends has come twice. A silent one is waited for longer.
@@ -32,13 +31,13 @@ class ZenohTf:
         self._unread: set[str] = set()
         self.subscriptions = TfSubscriptions(self._subscribe)
 
-    def update(self, endpoints: Iterable[GraphEndpoint]) -> None:
+    def update(self, endpoints: Iterable[End]) -> None:
         """Subscribe to the tf topics among these, and to no other."""
         ends = [it for it in endpoints if it.type == TF_TYPES[0] and it.role == PUBLISHES]
         self._publishers = Counter(end.name for end in ends)
         self.subscriptions.update(ends, False)
 
-    def listen(self, endpoints: Iterable[GraphEndpoint], seconds: float) -> None:
+    def listen(self, endpoints: Iterable[End], seconds: float) -> None:
         """Subscribe, and wait until every publisher has spoken, ``seconds`` at the longest."""
         self.update(endpoints)
         began = time.monotonic()

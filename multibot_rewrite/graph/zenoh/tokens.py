@@ -14,7 +14,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
 from math import inf
 
-from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphNode, Qos
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.system.records import (
     ACTION,
@@ -24,6 +23,9 @@ from multibot_rewrite.system.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
+    End,
+    Node,
+    Qos,
 )
 
 SPACE = "@ros2_lv"
@@ -68,7 +70,7 @@ class Token(NamedTuple):
     node_id: str
     node: str
     enclave: str
-    end: GraphEndpoint | None
+    end: End | None
 
 
 class _Malformed(Exception):
@@ -96,7 +98,7 @@ def _token(key: str) -> Token:
     return Token(_number(domain), session, node_id, node, _plain(enclave), end)
 
 
-def _end(kind: str, node: str, session: str, rest: Sequence[str]) -> GraphEndpoint:
+def _end(kind: str, node: str, session: str, rest: Sequence[str]) -> End:
     if kind not in _ENDS or len(rest) < _END_PARTS - _NODE_PARTS:
         raise _Malformed
     name, type_, hash_ = (_plain(part) for part in rest[:3])
@@ -104,7 +106,7 @@ def _end(kind: str, node: str, session: str, rest: Sequence[str]) -> GraphEndpoi
         raise _Malformed
     role = _ENDS[kind]
     known = hash_ if hash_.startswith(_HASH) else ""
-    return GraphEndpoint(*role, name, ros_type(type_), known, node, read_qos(rest[3]), session)
+    return End(*role, name, ros_type(type_), known, node, read_qos(rest[3]), session)
 
 
 def _plain(part: str) -> str:
@@ -170,24 +172,24 @@ def _seconds(whole: str, rest: str) -> float:
     return seconds + nanoseconds / 1e9
 
 
-def nodes(tokens: Iterable[Token]) -> list[GraphNode]:
+def nodes(tokens: Iterable[Token]) -> list[Node]:
     """One record a node, by name; its process is its session.
 
     A node is there once one of its endpoints is: rmw_zenoh ``graph_cache.cpp``, ``parse_put``.
     """
     found = {(it.node, it.session, it.node_id, it.enclave.rstrip("/")) for it in tokens}
-    return [GraphNode(name, session, enclave) for name, session, _, enclave in sorted(found)]
+    return [Node(name, session, enclave) for name, session, _, enclave in sorted(found)]
 
 
-def endpoints(tokens: Iterable[Token]) -> list[GraphEndpoint]:
+def endpoints(tokens: Iterable[Token]) -> list[End]:
     """The endpoints in order, with the actions that topics of theirs belong to."""
     ends = [it.end for it in tokens if it.end]
     return sorted([*ends, *_actions(ends)], key=repr)
 
 
-def _actions(ends: Iterable[GraphEndpoint]) -> Iterator[GraphEndpoint]:
+def _actions(ends: Iterable[End]) -> Iterator[End]:
     for end in ends:
         if end.kind == TOPIC and end.name.endswith(_FEEDBACK) and end.type.endswith(_FEEDBACK_TYPE):
             role, name = _ACTION_ROLES[end.role], end.name.removesuffix(_FEEDBACK)
             type_ = end.type.removesuffix(_FEEDBACK_TYPE)
-            yield GraphEndpoint(ACTION, role, name, type_, "", end.node, None, end.process)
+            yield End(ACTION, role, name, type_, "", end.node, None, end.process)

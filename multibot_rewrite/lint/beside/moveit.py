@@ -8,9 +8,9 @@ from collections.abc import Iterator
 import yaml
 
 from multibot_rewrite.closure.moveit import moveit_gaps
-from multibot_rewrite.companions.params.known_nodes import built_in_nodes
 from multibot_rewrite.companions.yaml_text import YamlText, line_of, read_yaml
 from multibot_rewrite.evidence.parameter_files import given_nodes
+from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.lint.beside.kinds import PARAMS, is_beside, kind_of
 from multibot_rewrite.lint.beside.records import Beside, Remark

@@ -10,10 +10,10 @@ from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.moveit.file_kind import find_kind
 from multibot_rewrite.companions.moveit.name_sites import find_names as moveit_names
 from multibot_rewrite.companions.names.rename_map import KINDS, CompanionNames
-from multibot_rewrite.companions.params.known_nodes import built_in_nodes
 from multibot_rewrite.companions.params.name_sites import find_names
 from multibot_rewrite.companions.params.sections import identify_sections, raw_sections
 from multibot_rewrite.companions.rviz.read_config import every, read_config, value
+from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.lint.beside.kinds import PARAMS, RVIZ
 from multibot_rewrite.lint.beside.records import Beside, Remark
 from multibot_rewrite.lint.beside.robots import NO_ROBOTS, robots_of

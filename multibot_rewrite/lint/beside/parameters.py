@@ -7,7 +7,6 @@ from collections.abc import Iterator, Sequence
 
 import yaml
 
-from multibot_rewrite.companions.params.known_nodes import KnownNode, built_in_nodes
 from multibot_rewrite.companions.params.name_sites import params_at
 from multibot_rewrite.companions.params.rcl_parameters import Value, value_of
 from multibot_rewrite.companions.params.sections import (
@@ -17,13 +16,15 @@ from multibot_rewrite.companions.params.sections import (
     raw_sections,
 )
 from multibot_rewrite.companions.yaml_text import YamlText, pairs
+from multibot_rewrite.knowledge.declared import READ, YAML, Declared
+from multibot_rewrite.knowledge.parameters import KnownNode, built_in_nodes
 from multibot_rewrite.lint.beside.records import Beside, Remark
 from multibot_rewrite.lint.facts.typos import meant_name
 from multibot_rewrite.model import InputError
 from multibot_rewrite.nearest import MISTYPED, Guesses
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules.files.bounds import beyond
-from multibot_rewrite.rules.files.parameter_facts import Fact, facts_of_node, of_release
+from multibot_rewrite.rules.files.parameter_facts import facts_of_node, of_release
 from multibot_rewrite.rules.files.plugins import RENAMED, plugins_in
 from multibot_rewrite.system.conventions import PLACEHOLDER
 
@@ -55,7 +56,7 @@ class Section(NamedTuple):
     title: str
     node: KnownNode | None
     given: tuple[Given, ...]
-    facts: tuple[Fact, ...]
+    facts: tuple[Declared, ...]
 
 
 def sections(beside: Beside) -> list[Section]:
@@ -107,10 +108,10 @@ def _of_plugins(title: str, given: Sequence[Given]) -> tuple[list[Section], tupl
 
 def _is_surely(node: KnownNode, name: str, type_: str, given: Sequence[Given]) -> bool:
     """Is it this controller, not another one that is often called the same?"""
-    if not node.types or type_ in node.types:
+    if not node.facts.types or type_ in node.facts.types:
         return True
     words = {it.name.partition(".")[0] for it in given}
-    by_words = bool(node.known_by) and words.issuperset(node.known_by)
+    by_words = bool(node.facts.known_by) and words.issuperset(node.facts.known_by)
     return "/" not in type_ and (name == node.name or by_words)
 
 
@@ -137,7 +138,7 @@ def unknown_parameters(beside: Beside) -> Iterator[Remark]:
     """Parameters that no release of their node declares, with a name nearly that of one."""
     guesses = Guesses()
     for section in sections(beside):
-        facts = [it for it in section.facts if it.is_declared]
+        facts = [it for it in section.facts if it.how != READ]
         paths = [it.path for it in of_release(facts, beside.settings.distro)]
         there = [it for it in paths if "<" not in it]
         there += _in_blocks(section, paths) if section.node is None else ()
@@ -185,7 +186,7 @@ def wrong_types(beside: Beside) -> Iterator[Remark]:
             (type_,) = types
             given = _type_of(it.value)
             # What code gives as a default may be a variable of any type.
-            sure = all(fact.is_checked for fact in facts) or type_ in _NUMBERS
+            sure = all(fact.how == YAML for fact in facts) or type_ in _NUMBERS
             if sure and _expected(type_) not in ("", given) and not _is_filled_in(it.value):
                 message = f"{section.title}: {it.name} is {_article(given)}, not {_article(type_)}"
                 yield Remark(it.node, message, _other_type(type_, given, it))
@@ -199,7 +200,7 @@ def out_of_bounds(beside: Beside) -> Iterator[Remark]:
             for fact in facts if len(facts) == 1 else ():
                 if given != _expected(fact.type):
                     continue
-                said = [beyond(*check, it.value) for check in fact.bounds]
+                said = [beyond(*check, it.value) for check in fact.checks]
                 for words in filter(None, said):
                     message = f"{section.title}: {it.name} is {it.value!r}, and has to be {words}"
                     yield Remark(it.node, message, f"declared in {fact.source}")
@@ -210,9 +211,9 @@ def _is_filled_in(value: Value) -> bool:
     return isinstance(value, str) and _CAPITALS.fullmatch(value) is not None
 
 
-def _declared(section: Section, release: str) -> Iterator[tuple[Given, list[Fact]]]:
+def _declared(section: Section, release: str) -> Iterator[tuple[Given, list[Declared]]]:
     """Each parameter with its declarations in a release: those of its name, else those of a pattern."""
-    facts = [it for it in of_release(section.facts, release) if it.is_declared]
+    facts = [it for it in of_release(section.facts, release) if it.how != READ]
     for it in section.given:
         found = [fact for fact in facts if fact.pattern.fullmatch(it.name)]
         exact = [fact for fact in found if fact.path == it.name]

@@ -1,25 +1,19 @@
 """The parameters that nodes declare: by the sources of their packages where those are there, else by
-installed NoDL documents and by what is known.
-
-``parameters.tsv`` is made by ``python -m tools.interfaces.known_parameter_table``.
-"""
+installed NoDL documents and by what is known."""
 
 from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator, Mapping, Sequence
-from functools import lru_cache
-from importlib.resources import files
+from collections.abc import Iterator, Sequence
 
-from multibot_rewrite.companions.params.known_nodes import KnownNode
+from multibot_rewrite.knowledge.declared import YAML, Declared, declared_by, says_something
 from multibot_rewrite.knowledge.nodl.lookup import Identity, file_of, find_interfaces, load
+from multibot_rewrite.knowledge.parameters import KnownNode
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.outside import outside
-from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import has_release
-from multibot_rewrite.rules.files.parameter_files import READ, YAML, file_parameters
-from multibot_rewrite.rules.files.parameter_owners import owners
+from multibot_rewrite.rules.files.parameter_files import file_parameters
 from multibot_rewrite.sources.packages import entries, package_folder
 from multibot_rewrite.sources.read import read_file
 
@@ -27,30 +21,11 @@ NODL = "nodl"
 # Folders of a package that have files of generate_parameter_library, and what those are called.
 _FOLDERS = ("src", "param", "params", "parameters", "config", "include", "")
 _CALLED = re.compile(r".*param\w*\.ya?ml")
-_WILD = re.compile(r"<[^>]*>")
-# A name that is put together at run time says nothing.
-_ANY = re.compile(r"(?:<[^>]*>\.?)*")
-_CHECK = re.compile(r"([\w:]+?)\((.*?)\)(?=\s[\w:]+\(|$)")
-
-
-class Fact(NamedTuple):
-    """A parameter as its package declares it: ``pattern`` matches its names, ``type`` is empty where it
-    is not known, ``bounds`` are checks of generate_parameter_library, which ``is_checked`` says has it;
-    ``is_declared`` is false for one that is only read."""
-
-    path: str
-    pattern: re.Pattern[str]
-    type: str
-    bounds: tuple[tuple[str, str], ...]
-    releases: str
-    is_declared: bool
-    is_checked: bool
-    source: str
 
 
 def facts_of_node(
     node: KnownNode | None, type_: str, file: str, roots: tuple[str, ...]
-) -> tuple[Fact, ...]:
+) -> tuple[Declared, ...]:
     """What the packages of a node declare: its own sources if they are there; ``type_`` is a
     controller's."""
     named = type_.partition("/")[0] if "/" in type_ else ""
@@ -60,15 +35,16 @@ def facts_of_node(
         return own
     if node is None:
         return ()
-    packages = (node.package, *owners().also.get(node.name, ()))
-    known = (it for package in packages for it in known_facts().get(package, ()))
+    packages = (node.package, *node.facts.declared_in)
+    known = (it for package in packages for it in declared_by(package))
     return (*_in_nodl(node), *known)
 
 
-def _in_nodl(node: KnownNode) -> Iterator[Fact]:
+def _in_nodl(node: KnownNode) -> Iterator[Declared]:
     """What the installed NoDL document of a node declares."""
     for path, type_ in nodl_parameters(node.package, node.name):
-        yield from make_facts(path, type_, "", "", NODL, f"NoDL of {node.package}/{node.name}")
+        if says_something(path):
+            yield Declared(path, type_, "", "", NODL, f"NoDL of {node.package}/{node.name}")
 
 
 @outside
@@ -84,52 +60,21 @@ def nodl_parameters(package: str, node: str) -> tuple[tuple[str, str], ...]:
     return tuple((it.name, it.type) for it in found)
 
 
-@lru_cache
-def known_facts() -> Mapping[str, tuple[Fact, ...]]:
-    """The facts of ``parameters.tsv`` by package."""
-    text = files("multibot_rewrite.rules.files").joinpath("parameters.tsv").read_text("utf-8")
-    below, found = owners().below, dict[str, list[Fact]]()
-    for line in text.splitlines():
-        package, path, type_, bounds, releases, how, source = line.split("\t")
-        whole = f"{below[package]}.{path}" if package in below else path
-        its = found.setdefault(package, [])
-        its += make_facts(whole, type_, bounds, releases, how, source)
-    return {package: tuple(its) for package, its in found.items()}
-
-
-def make_facts(
-    path: str, type_: str, bounds: str, releases: str, how: str, source: str
-) -> Iterator[Fact]:
-    """The fact of a row; none for a name that says nothing."""
-    if not _ANY.fullmatch(path):
-        pattern = ".+".join(map(re.escape, _WILD.split(path)))
-        checks = tuple((it[1], it[2]) for it in _CHECK.finditer(bounds))
-        own = how == YAML
-        yield Fact(
-            path,
-            re.compile(pattern),
-            type_,
-            checks if own else (),
-            releases,
-            how != READ,
-            own,
-            source,
-        )
-
-
-def _in_sources(package: str, file: str, roots: tuple[str, ...]) -> tuple[Fact, ...]:
+def _in_sources(package: str, file: str, roots: tuple[str, ...]) -> tuple[Declared, ...]:
     """What the files of generate_parameter_library of a package declare, where its sources are."""
     folder = package_folder(package, file, roots)
-    found: list[Fact] = []
+    found: list[Declared] = []
     for path in _parameter_files(folder) if folder else ():
         try:
             text = read_file(path).decode()
         except (InputError, UnicodeDecodeError):
             continue
-        for it in (
-            file_parameters(text) if "type:" in text and "ros__parameters" not in text else ()
-        ):
-            found += make_facts(it.path, it.type, it.bounds, "", YAML, f"{path}:{it.line}")
+        known = "type:" in text and "ros__parameters" not in text
+        found += (
+            Declared(it.path, it.type, it.bounds, "", YAML, f"{path}:{it.line}")
+            for it in (file_parameters(text) if known else ())
+            if says_something(it.path)
+        )
     return tuple(found)
 
 
@@ -141,6 +86,6 @@ def _parameter_files(folder: str) -> Iterator[str]:
                 yield os.path.join(inner, name)
 
 
-def of_release(facts: Sequence[Fact], release: str) -> list[Fact]:
+def of_release(facts: Sequence[Declared], release: str) -> list[Declared]:
     """Those that the release has."""
     return [it for it in facts if has_release(it.releases, release)]

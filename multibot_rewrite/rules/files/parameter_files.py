@@ -15,8 +15,6 @@ from multibot_rewrite.record import NamedTuple
 # The types of parameters; an array may have a length behind it: double_array_fixed_6.
 _TYPES = ("bool", "double", "int", "string", "none")
 _MAP = "__map_"
-# How a source comes to a parameter.
-YAML, DECLARED, READ = "yaml", "declared", "read"
 NO_DEFAULT = ""
 EMPTY = '""'
 

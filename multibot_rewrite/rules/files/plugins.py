@@ -1,8 +1,8 @@
 """Nav2's plugins in a section of a parameter file, and the parameters that each has below its name.
 
-``plugins.tsv`` is made by ``python -m tools.interfaces.plugin_table``. Sources: pluginlib
-loads the class that ``NAME.plugin`` says; dwb_local_planner.cpp (resolveCriticClassName) and
-critic_manager.cpp of nav2_mppi_controller make the classes of critics of their names;
+Sources: pluginlib loads the class that ``NAME.plugin`` says; dwb_local_planner.cpp
+(resolveCriticClassName) and critic_manager.cpp of nav2_mppi_controller make the classes of critics of
+their names;
 nav2_rotation_shim_controller.cpp gives its controller its own name, from Lyrical on
 ``primary_controller`` below it; collision_monitor_node.cpp (configurePolygons, configureSources).
 """
@@ -10,11 +10,9 @@ nav2_rotation_shim_controller.cpp gives its controller its own name, from Lyrica
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from functools import lru_cache
-from importlib.resources import files
 
 from multibot_rewrite.companions.params.rcl_parameters import Value
-from multibot_rewrite.rules.files.parameter_facts import Fact, make_facts
+from multibot_rewrite.knowledge.declared import Declared, declared_by, is_known
 
 DWB = "dwb_core::DWBLocalPlanner"
 MPPI = "nav2_mppi_controller::MPPIController"
@@ -32,23 +30,12 @@ _CRITICS, _NAMESPACES = ".critics", ".default_critic_namespaces"
 Values = Mapping[str, Value | None]
 
 
-@lru_cache
-def plugin_facts() -> Mapping[str, tuple[Fact, ...]]:
-    """The facts of ``plugins.tsv`` by plugin."""
-    text = files("multibot_rewrite.rules.files").joinpath("plugins.tsv").read_text("utf-8")
-    found: dict[str, list[Fact]] = {}
-    for line in text.splitlines():
-        plugin, path, type_, releases, how, source = line.split("\t")
-        found.setdefault(plugin, []).extend(make_facts(path, type_, "", releases, how, source))
-    return {plugin: tuple(facts) for plugin, facts in found.items()}
-
-
-def plugins_in(values: Values) -> dict[str, tuple[str, tuple[Fact, ...]]]:
+def plugins_in(values: Values) -> dict[str, tuple[str, tuple[Declared, ...]]]:
     """The name of each plugin of a section -> its class and what it declares: nothing for one that is
     not known, or loads one that is not known."""
-    found: dict[str, tuple[str, tuple[Fact, ...]]] = {}
+    found: dict[str, tuple[str, tuple[Declared, ...]]] = {}
     for name, class_ in (*_listed(values), *_classes(values)):
-        facts = plugin_facts().get(class_, ())
+        facts = declared_by(class_)
         if class_ == SHIM:
             facts = _with_primary(facts, values, name)
         found[name] = (class_, facts)
@@ -76,12 +63,12 @@ def _classes(values: Values) -> Iterator[tuple[str, str]]:
             yield f"{name}.{critic}", _critic(own, critic, name, values)
 
 
-def _with_primary(facts: tuple[Fact, ...], values: Values, name: str) -> tuple[Fact, ...]:
+def _with_primary(facts: tuple[Declared, ...], values: Values, name: str) -> tuple[Declared, ...]:
     """What a controller around another one declares, and what that one does below the same name."""
     class_ = _text(values, name + _PRIMARY)
     if not class_:  # it has a name of its own, or the file does not say it
         return facts if name + _PRIMARY + _PLUGIN in values else ()
-    inner = plugin_facts().get(class_, ())
+    inner = declared_by(class_)
     return (*facts, *inner) if inner else ()
 
 
@@ -92,7 +79,7 @@ def _critic(controller: str, critic: str, name: str, values: Values) -> str:
         return ""
     class_ = _text(values, f"{name}.{critic}.class") or critic
     class_ = class_ if "::" in class_ else f"dwb_critics::{class_}"
-    return class_ if class_ in plugin_facts() else f"{class_}Critic"
+    return class_ if is_known(class_) else f"{class_}Critic"
 
 
 def _text(values: Values, path: str) -> str:

@@ -8,7 +8,6 @@ from fnmatch import fnmatchcase
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.expectation import PlannedTopic
-from multibot_rewrite.graph.snapshot import GraphEndpoint
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import found_by_plan, pair_rule
 from multibot_rewrite.rules.index import Index, ends_of
@@ -16,7 +15,7 @@ from multibot_rewrite.rules.pair.causes import DOES
 from multibot_rewrite.rules.planned import Planned
 from multibot_rewrite.rules.system.matching import not_latched
 from multibot_rewrite.system.conventions import ANY
-from multibot_rewrite.system.records import PUBLISHES, TOPIC
+from multibot_rewrite.system.records import PUBLISHES, TOPIC, End
 
 # How the nodes of ros_gz_bridge are called.
 _BRIDGES = ("bridge", "parameter_bridge")
@@ -62,7 +61,7 @@ def _may_send(topic: PlannedTopic, node: str) -> bool:
     return any(fnmatchcase(node, pattern) for pattern in topic.senders)
 
 
-def _publishers(seen: Index, name: str) -> Sequence[GraphEndpoint]:
+def _publishers(seen: Index, name: str) -> Sequence[End]:
     ends = seen.names.get((TOPIC, name))
     return ends.publishers if ends else ()
 
@@ -117,7 +116,7 @@ def other_qos_offered(plan: Planned, seen: Index) -> Iterator[Finding]:
                 yield not_latched.finding(message, hint, **_about(plan, topic, end.node))
 
 
-def _different(topic: PlannedTopic, end: GraphEndpoint) -> Iterator[str]:
+def _different(topic: PlannedTopic, end: End) -> Iterator[str]:
     """Each policy that is not as planned; one whose word is not known is none."""
     for policy, word in topic.qos if end.qos else ():
         offered = getattr(end.qos, policy)

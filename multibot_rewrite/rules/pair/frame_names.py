@@ -7,7 +7,6 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.expectation import PlannedRobot
-from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.rules.declaration import found_by_plan, pair_rule
 from multibot_rewrite.rules.index import Index
@@ -19,6 +18,7 @@ from multibot_rewrite.rules.pair.tf_senders import sent_by_robot, state_publishe
 from multibot_rewrite.rules.pair.tf_trees import TfTree, frames_in, tf_trees
 from multibot_rewrite.rules.planned import Planned
 from multibot_rewrite.rules.system.transforms import robots_name_twice
+from multibot_rewrite.system.records import Edge
 
 
 @pair_rule(
@@ -145,7 +145,7 @@ def _undeclared(plan: Planned, robot: PlannedRobot, names: Sequence[str]) -> Fin
     return undeclared_frame.finding(message, cause, robot=robot.name, names=tuple(names))
 
 
-def _of_a_sensor(plan: Planned, robot: str, name: str, children: Mapping[str, GraphFrame]) -> bool:
+def _of_a_sensor(plan: Planned, robot: str, name: str, children: Mapping[str, Edge]) -> bool:
     """Whether a frame is one that a driver adds below its sensor's link.
 
     Its name begins like the link's: camera_depth_frame is below camera_link.
@@ -196,7 +196,7 @@ def _behind_prefixes(plan: Planned, tree: TfTree) -> Iterator[tuple[str, str]]:
 
 
 def _not_in_a_description(
-    plan: Planned, tree: TfTree, children: Mapping[str, GraphFrame]
+    plan: Planned, tree: TfTree, children: Mapping[str, Edge]
 ) -> dict[str, list[str]]:
     """By robot: the frames of a tree that are its own and not in its description."""
     found: dict[str, list[str]] = defaultdict(list)
@@ -247,7 +247,7 @@ def _has_name_twice(plan: Planned, robot: PlannedRobot, name: str) -> bool:
 
 
 def _robot_without_frame(
-    plan: Planned, tree: TfTree, name: str, children: Mapping[str, GraphFrame]
+    plan: Planned, tree: TfTree, name: str, children: Mapping[str, Edge]
 ) -> str:
     """The robot of a frame by name or topic, if the frame is not in the robot's description."""
     if name in plan.system.shared_frames or plan.frames.exact.get(name):

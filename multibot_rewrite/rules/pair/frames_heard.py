@@ -49,7 +49,7 @@ running: transform base_link/robot1 -> wheel/robot1 on /tf
 def frame_not_received(plan: Planned, seen: Index) -> Iterator[Finding]:
     """One finding for a robot whose senders all run. Where no transform was received at all, tf may
     not have been looked at."""
-    senders = _senders(plan) if seen.system.frames else {}
+    senders = _senders(plan) if seen.system.edges else {}
     trees, strays = _trees_of(plan, seen), _strays(plan, seen)
     for robot in plan.system.robots:
         needed = senders.get(robot.name, set()) - plan.may_miss

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.enclaves import enclave_of
-from multibot_rewrite.graph.snapshot import GraphNode
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.rules.declaration import pair_rule
 from multibot_rewrite.rules.index import Index
 from multibot_rewrite.rules.planned import Planned
+from multibot_rewrite.system.records import Node
 
 
 @pair_rule(
@@ -72,14 +72,14 @@ def without_enclave(plan: Planned, seen: Index) -> Iterator[Finding]:
     planned = [it for it in seen.system.nodes if it.name in plan.robot_of]
     if not any(it.enclave for it in planned):
         return
-    bare: dict[str, list[GraphNode]] = {robot: [] for robot in plan.robots}
+    bare: dict[str, list[Node]] = {robot: [] for robot in plan.robots}
     for it in planned:
         if not it.enclave:
             bare[plan.robot_of[it.name]].append(it)
     yield from (_bare(robot, nodes) for robot, nodes in bare.items() if nodes)
 
 
-def _bare(robot: str, nodes: list[GraphNode]) -> Finding:
+def _bare(robot: str, nodes: list[Node]) -> Finding:
     names = [it.name for it in nodes]
     return without_enclave.finding(
         f"{shorten(names)}: in no enclave", _start(robot), robot=robot, node=names[0]

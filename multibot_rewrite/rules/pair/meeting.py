@@ -6,10 +6,10 @@ from collections import defaultdict
 from collections.abc import Mapping, Sequence, Set
 
 from multibot_rewrite.graph.expectation import PlannedEndpoint
-from multibot_rewrite.graph.snapshot import GraphEndpoint
 from multibot_rewrite.rules.index import EndKey, Index, once, types
 from multibot_rewrite.rules.pair.similar_names import probable_matches
 from multibot_rewrite.rules.planned import Planned
+from multibot_rewrite.system.records import End
 
 
 @once
@@ -20,11 +20,11 @@ def missing(plan: Planned, seen: Index) -> Mapping[EndKey, PlannedEndpoint]:
 
 
 @once
-def unplanned_ends(plan: Planned, seen: Index) -> Mapping[str, Sequence[GraphEndpoint]]:
+def unplanned_ends(plan: Planned, seen: Index) -> Mapping[str, Sequence[End]]:
     """By node: the ends that are not planned, each once, without hidden ones."""
-    found: dict[str, list[GraphEndpoint]] = defaultdict(list)
+    found: dict[str, list[End]] = defaultdict(list)
     known = set(plan.ends)
-    for end in seen.system.endpoints:
+    for end in seen.system.ends:
         key = (end.node, end.kind, end.role, end.name)
         # A node may subscribe to a topic more than once.
         if key not in known and "/_" not in end.name:

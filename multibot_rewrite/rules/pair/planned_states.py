@@ -7,9 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.expectation import PlannedParameter, PlannedState
-from multibot_rewrite.graph.questions import SIM_TIME
 from multibot_rewrite.graph.reach import machines
-from multibot_rewrite.graph.states import NodeState, parameter_text, parameter_value
 from multibot_rewrite.graph.wording import FEW, SEVERAL, shorten
 from multibot_rewrite.rules.declaration import found_by_plan, pair_rule
 from multibot_rewrite.rules.index import Index, ends_of
@@ -17,7 +15,8 @@ from multibot_rewrite.rules.planned import Planned
 from multibot_rewrite.rules.system.clocks import clocks_mixed
 from multibot_rewrite.rules.system.states import not_active
 from multibot_rewrite.system.conventions import CLOCK
-from multibot_rewrite.system.records import SUBSCRIBES
+from multibot_rewrite.system.parameters import parameter_text, parameter_value
+from multibot_rewrite.system.records import SIM_TIME, SUBSCRIBES, clocks
 
 # A planned parameter, and its value there.
 Difference = tuple[PlannedParameter, str]
@@ -26,19 +25,16 @@ Difference = tuple[PlannedParameter, str]
 @found_by_plan(not_active)
 def state_not_planned(plan: Planned, seen: Index) -> Iterator[Finding]:
     """A node that did not answer is not known."""
-    for planned, state in _asked(plan, seen):
-        if planned.lifecycle and state.lifecycle and state.lifecycle != planned.lifecycle:
+    states = {it.name: it.lifecycle for it in seen.system.nodes if it.lifecycle}
+    for planned in plan.system.states:
+        state = states.get(planned.node, planned.lifecycle)
+        if planned.lifecycle and state != planned.lifecycle:
             yield not_active.finding(
-                f"is {state.lifecycle}, planned is {planned.lifecycle}",
-                f"ros2 lifecycle get {state.node}; see the log of its lifecycle manager",
-                robot=plan.robot_of.get(state.node, ""),
-                node=state.node,
+                f"is {state}, planned is {planned.lifecycle}",
+                f"ros2 lifecycle get {planned.node}; see the log of its lifecycle manager",
+                robot=plan.robot_of.get(planned.node, ""),
+                node=planned.node,
             )
-
-
-def _asked(plan: Planned, seen: Index) -> Iterator[tuple[PlannedState, NodeState]]:
-    states = {it.node: it for it in seen.system.states}
-    return ((it, states[it.node]) for it in plan.system.states if it.node in states)
 
 
 @pair_rule(
@@ -66,20 +62,20 @@ running: /robot1/amcl has base_frame_id robot1/base_link
 )
 def parameter_not_planned(plan: Planned, seen: Index) -> Iterator[Finding]:
     """One finding a node; a parameter that it does not have is not known."""
-    for planned, state in _asked(plan, seen):
-        found = [*_differences(planned, state)]
+    values = {(it.node, it.name): it.value for it in seen.system.parameters}
+    for planned in plan.system.states:
+        found = [*_differences(planned, values)]
         # What makes it an error comes first.
         found.sort(key=lambda it: not _is_serious(plan, planned.node, it[0]))
         if found:
             yield _differs(plan, planned.node, found)
 
 
-def _differences(planned: PlannedState, seen: NodeState) -> Iterator[Difference]:
-    values = {it.name: it.value for it in seen.parameters}
-    if seen.sim_time is not None:
-        values[SIM_TIME] = parameter_text(seen.sim_time)
+def _differences(
+    planned: PlannedState, values: Mapping[tuple[str, str], str]
+) -> Iterator[Difference]:
     for it in planned.parameters:
-        value = values.get(it.name)
+        value = values.get((planned.node, it.name))
         if value is not None and not _is_same(it.value, value):
             yield it, value
 
@@ -141,7 +137,7 @@ def _whose(plan: Planned, node: str, found: Sequence[Difference]) -> str:
 def clock_not_planned(plan: Planned, seen: Index) -> Iterator[Finding]:
     """One finding for the nodes of a robot that differ alike."""
     timed = {it.node for it in ends_of(seen, CLOCK) if it.role == SUBSCRIBES}
-    asked = {it.node for it in seen.system.states if it.sim_time is not None}
+    asked = clocks(seen.system)
     differing: dict[tuple[str, str], list[str]] = defaultdict(list)
     for node, wanted in planned_clocks(plan.system.states):
         if node in seen.nodes and node not in asked and wanted != parameter_text(node in timed):

@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.graph.snapshot import GraphEndpoint
 from multibot_rewrite.rules.declaration import found_by_plan
 from multibot_rewrite.rules.index import Index, by_node, in_namespaces_above, published
 from multibot_rewrite.rules.pair.causes import use_absolute
 from multibot_rewrite.rules.pair.meeting import unplanned_ends, unplanned_nodes
 from multibot_rewrite.rules.planned import Planned
 from multibot_rewrite.rules.system.names import topic_names_miss
-from multibot_rewrite.system.records import SUBSCRIBES, TOPIC
+from multibot_rewrite.system.records import SUBSCRIBES, TOPIC, End
 
 # In the names of Nav2's costmap nodes.
 COSTMAP = "costmap"
@@ -51,7 +50,7 @@ def _nodes_with_own_namespace(plan: Planned, seen: Index) -> Iterator[tuple[str,
             yield node, robot
 
 
-def _without_publisher(plan: Planned, seen: Index, node: str) -> Iterator[GraphEndpoint]:
+def _without_publisher(plan: Planned, seen: Index, node: str) -> Iterator[End]:
     """A node's subscriptions without a publisher, each topic once. A costmap reads its robot's sensors;
     for other nodes the plan is right."""
     costmap = COSTMAP in node.rpartition("/")[2]

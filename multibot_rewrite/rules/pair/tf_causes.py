@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence, Set
 
 from multibot_rewrite.graph.expectation import PlannedRobot
-from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.rules.index import Index, ends_of, tree_topic
 from multibot_rewrite.rules.pair.causes import Cause, caused
@@ -19,7 +18,7 @@ from multibot_rewrite.rules.pair.tf_senders import (
 )
 from multibot_rewrite.rules.pair.tf_trees import TfTree, tf_trees
 from multibot_rewrite.rules.planned import Planned, Sent
-from multibot_rewrite.system.records import PUBLISHES
+from multibot_rewrite.system.records import PUBLISHES, Edge
 
 JOINT_STATES, TF = "sensor_msgs/msg/JointState", "tf2_msgs/msg/TFMessage"
 
@@ -44,7 +43,7 @@ def _trees(plan: Planned, seen: Index, robot: PlannedRobot) -> Iterator[TfTree]:
     return (tree for tree in tf_trees(plan, seen) if tree.topic == tree_topic(robot.tf))
 
 
-def _is_sent(planned: Sent, edges: Sequence[GraphFrame]) -> bool:
+def _is_sent(planned: Sent, edges: Sequence[Edge]) -> bool:
     return any((it.parent, it.child) == planned[1:] for it in edges)
 
 
@@ -52,7 +51,7 @@ def _two_names(
     plan: Planned,
     robot: PlannedRobot,
     roots: Sequence[str],
-    edges: Sequence[GraphFrame],
+    edges: Sequence[Edge],
 ) -> Cause | None:
     """A root that is in the tree under another name, with the robot's or without."""
     children = {edge.child for edge in edges}

@@ -6,9 +6,8 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping
 
 from multibot_rewrite.graph.expectation import Expectation
-from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.rules.index import tree_topic
-from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, Edge
 
 _TF, _GLOBAL = "/tf", ("/tf", "/tf_static")
 
@@ -34,7 +33,7 @@ def copying_nodes(plan: Expectation) -> Mapping[str, str]:
     return found
 
 
-def without_bridged(plan: Expectation, frames: Iterable[GraphFrame]) -> tuple[GraphFrame, ...]:
+def without_bridged(plan: Expectation, frames: Iterable[Edge]) -> tuple[Edge, ...]:
     """The transforms without those on ``/tf`` that are a robot's own with its namespace in front of
     both frames, and without what joins its world to that of the fleet."""
     seen, copied = tuple(frames), set(copying_nodes(plan).values())

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from multibot_rewrite.graph.expectation import PlannedRobot
-from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER
 from multibot_rewrite.rules.index import Index, tree_topic
 from multibot_rewrite.rules.pair.tf_trees import tf_trees
 from multibot_rewrite.rules.planned import Planned, Sent
+from multibot_rewrite.system.records import Edge
 
 
 def sent_by_robot(plan: Planned, robot: PlannedRobot) -> list[Sent]:
@@ -17,7 +17,7 @@ def sent_by_robot(plan: Planned, robot: PlannedRobot) -> list[Sent]:
     return [it for it in plan.sent if plan.robot_of.get(it.node) == robot.name]
 
 
-def foreign(plan: Planned, seen: Index, robot: PlannedRobot) -> Iterator[tuple[str, GraphFrame]]:
+def foreign(plan: Planned, seen: Index, robot: PlannedRobot) -> Iterator[tuple[str, Edge]]:
     """Transforms of other robots, each with its robot, that a node of this one may send: all on a tf
     topic of its own, else what several nodes send."""
     for tree in tf_trees(plan, seen):

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 
-from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules.index import Index, Tree, once, tree_topic
 from multibot_rewrite.rules.planned import Planned
+from multibot_rewrite.system.records import Edge
 
 
 class TfTree(NamedTuple):
@@ -20,7 +20,7 @@ class TfTree(NamedTuple):
     """
 
     topic: str
-    edges: tuple[GraphFrame, ...]
+    edges: tuple[Edge, ...]
     senders: Mapping[str, tuple[str, ...]]
     home: tuple[str, ...]
     robots: tuple[str, ...]

@@ -7,7 +7,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.graph.expectation import PlannedRobot
-from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.rules.declaration import found_by_plan
 from multibot_rewrite.rules.index import Index, tree_topic
@@ -16,7 +15,7 @@ from multibot_rewrite.rules.pair.tf_causes import why_disconnected
 from multibot_rewrite.rules.pair.tf_trees import TfTree, tf_trees
 from multibot_rewrite.rules.planned import Planned
 from multibot_rewrite.rules.system.tf_topics import in_pieces, tf_on_two_topics, tf_tree_in_pieces
-from multibot_rewrite.system.records import PUBLISHES
+from multibot_rewrite.system.records import PUBLISHES, Edge
 
 
 @found_by_plan(tf_tree_in_pieces, nodes=False)
@@ -45,7 +44,7 @@ def _root(above: Mapping[str, str], frame: str) -> str:
     return "" if frame in above else frame
 
 
-def _robots_at_home(plan: Planned, tree: TfTree, edge: GraphFrame) -> Set[str]:
+def _robots_at_home(plan: Planned, tree: TfTree, edge: Edge) -> Set[str]:
     return {_robot_at_home(plan, tree, frame) for frame in (edge.child, edge.parent)} - {""}
 
 
@@ -70,7 +69,7 @@ def wrong_tf_topic(plan: Planned, seen: Index) -> Iterator[Finding]:
     """One finding for a robot and topic."""
     children = {tree.topic: {edge.child for edge in tree.edges} for tree in tf_trees(plan, seen)}
     for tree in tf_trees(plan, seen):
-        misplaced: dict[str, list[GraphFrame]] = defaultdict(list)
+        misplaced: dict[str, list[Edge]] = defaultdict(list)
         for edge in tree.edges:
             robot = _sending_robot(plan, tree, edge.child)
             if robot and tree_topic(plan.robots[robot].tf) != tree.topic:
@@ -88,7 +87,7 @@ def wrong_tf_topic(plan: Planned, seen: Index) -> Iterator[Finding]:
                 yield _wrong_topic(plan, tree, plan.robots[robot], edges)
 
 
-def _only_planned(plan: Planned, tree: TfTree, robot: str, edges: Iterable[GraphFrame]) -> bool:
+def _only_planned(plan: Planned, tree: TfTree, robot: str, edges: Iterable[Edge]) -> bool:
     """Do only those nodes of the robot send on a topic that should by the plan?"""
     topics = {edge.topic for edge in edges}
     planned = {node for node, kind, role, name in plan.ends if name in topics and role == PUBLISHES}
@@ -96,7 +95,7 @@ def _only_planned(plan: Planned, tree: TfTree, robot: str, edges: Iterable[Graph
 
 
 def _wrong_topic(
-    plan: Planned, tree: TfTree, robot: PlannedRobot, edges: Sequence[GraphFrame]
+    plan: Planned, tree: TfTree, robot: PlannedRobot, edges: Sequence[Edge]
 ) -> Finding:
     frames = tuple(dict.fromkeys(edge.child for edge in edges))
     message = f"frame {frames[0]} of {robot.name} is on {edges[0].topic}, expected on {robot.tf}"
@@ -116,7 +115,7 @@ def _sending_robot(plan: Planned, tree: TfTree, frame: str) -> str:
 
 
 def _why_wrong_topic(
-    plan: Planned, tree: TfTree, robot: PlannedRobot, edges: Iterable[GraphFrame]
+    plan: Planned, tree: TfTree, robot: PlannedRobot, edges: Iterable[Edge]
 ) -> Cause:
     every = [node for nodes in tree.senders.values() for node in nodes]
     senders = tree.senders.get(robot.name) or every

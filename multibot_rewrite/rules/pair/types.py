@@ -6,19 +6,19 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Set
 
 from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.graph.snapshot import GraphEndpoint
 from multibot_rewrite.rules.declaration import found_by_plan
 from multibot_rewrite.rules.index import Index
 from multibot_rewrite.rules.pair.causes import caused, plugin_of
 from multibot_rewrite.rules.planned import Planned
 from multibot_rewrite.rules.system.matching import STAMPED, types_differ
+from multibot_rewrite.system.records import End
 
 
 @found_by_plan(types_differ, nodes=False)
 def type_not_planned(plan: Planned, seen: Index) -> Iterator[Finding]:
     """Each end of a planned name whose type is none that the plan has for it."""
     planned = _types(plan)
-    for end in dict.fromkeys(it._replace(qos=None, process="") for it in seen.system.endpoints):
+    for end in dict.fromkeys(it._replace(qos=None, process="") for it in seen.system.ends):
         known = plan.ends.get((end.node, end.kind, end.role, end.name))
         by_name = planned.get((end.kind, end.name), frozenset())
         wanted = {known.type, *known.also} if known and known.type else by_name
@@ -34,7 +34,7 @@ def _types(plan: Planned) -> Mapping[tuple[str, str], Set[str]]:
     return found
 
 
-def _not_as_planned(plan: Planned, seen: Index, end: GraphEndpoint, wanted: Set[str]) -> Finding:
+def _not_as_planned(plan: Planned, seen: Index, end: End, wanted: Set[str]) -> Finding:
     listed = " or ".join(sorted(wanted))
     plugin, place = plugin_of(plan, end.node)
     which = f"another version or setting of {plugin or 'the node'}"

@@ -6,7 +6,6 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator
 
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING, Finding
-from multibot_rewrite.graph.snapshot import GraphEndpoint
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.rules import words
@@ -26,7 +25,7 @@ from multibot_rewrite.rules.index import (
 from multibot_rewrite.rules.system.names import ABSENT, alike, nobody_in
 from multibot_rewrite.rules.system.sharing import own_namespace
 from multibot_rewrite.system.conventions import EVERYBODYS, OF_EVERY_NODE, chooses, team
-from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SUBSCRIBES, TOPIC, End
 
 
 @system_rule(
@@ -172,7 +171,7 @@ def command_from_another_robot(seen: Index) -> Iterator[Finding]:
             )
 
 
-def _of_others(seen: Index, owner: str, ends: Iterable[GraphEndpoint]) -> list[GraphEndpoint]:
+def _of_others(seen: Index, owner: str, ends: Iterable[End]) -> list[End]:
     """The ends of other robots' nodes."""
     return [it for it in ends if seen.robot(it.node) not in ("", owner)]
 
@@ -265,7 +264,7 @@ running: /rosbag2_player publishes /recorded/scan sensor_msgs/msg/LaserScan
 def bag_beside_a_robot(seen: Index) -> Iterator[Finding]:
     """A bag that is played to nodes which only read is what bags are for."""
     mixed: dict[str, list[str]] = {}
-    played = {end.name for end in seen.system.endpoints if words.PLAYER in end.node}
+    played = {end.name for end in seen.system.ends if words.PLAYER in end.node}
     for ends in seen.names.values() if played else ():
         if ends.kind != TOPIC or ends.name not in played:
             continue

@@ -8,13 +8,12 @@ from functools import lru_cache
 from math import inf
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.graph.snapshot import ZENOH, GraphEndpoint, Qos
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.index import TF, Ends, Index, is_viewer, nodes_of
 from multibot_rewrite.rules.words import DESCRIPTION, MAP
 from multibot_rewrite.system.conventions import EVERYBODYS
-from multibot_rewrite.system.records import TOPIC
+from multibot_rewrite.system.records import TOPIC, ZENOH, End, Qos
 
 # The words of each policy, the weakest first; any other word does not say what is in force.
 RELIABILITY = ("BEST_EFFORT", "RELIABLE")
@@ -66,14 +65,14 @@ def types_differ(seen: Index) -> Iterator[Finding]:
             )
 
 
-def _type(end: GraphEndpoint) -> tuple[str, str]:
+def _type(end: End) -> tuple[str, str]:
     """With its hash, where that is valid."""
     return end.type, end.type_hash if end.type_hash.startswith(HASH) else ""
 
 
 def _apart(
-    ends: Iterable[GraphEndpoint], others: Sequence[GraphEndpoint]
-) -> list[tuple[str, dict[str, str], Sequence[GraphEndpoint]]]:
+    ends: Iterable[End], others: Sequence[End]
+) -> list[tuple[str, dict[str, str], Sequence[End]]]:
     """The nodes of some ends that connect with none of the others, with their types."""
     known = [end for end in others if end.type]
     there = {_type(end) for end in known}
@@ -140,7 +139,7 @@ def qos_never_meets(seen: Index) -> Iterator[Finding]:
         if kind != TOPIC or name in EVERYBODYS or not ends.publishers:
             continue
         for end in {(it.node, it.qos): it for it in ends.subscribers}.values():
-            refused: dict[tuple[tuple[str, str], ...], list[GraphEndpoint]] = defaultdict(list)
+            refused: dict[tuple[tuple[str, str], ...], list[End]] = defaultdict(list)
             for it in ends.publishers:
                 if it.qos and end.qos and (conflicts := qos_conflicts(it.qos, end.qos)):
                     refused[conflicts].append(it)
@@ -152,8 +151,8 @@ def qos_never_meets(seen: Index) -> Iterator[Finding]:
 
 def _never_meets(
     seen: Index,
-    end: GraphEndpoint,
-    publishers: Iterable[GraphEndpoint],
+    end: End,
+    publishers: Iterable[End],
     conflicts: tuple[tuple[str, str], ...],
     hears: bool,
 ) -> Finding:

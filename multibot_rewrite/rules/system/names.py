@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import islice, zip_longest
 
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING, Finding
-from multibot_rewrite.graph.snapshot import GraphEndpoint
 from multibot_rewrite.nearest import CHOICE, COMPARED, MISTYPED, nearest
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.index import (
@@ -25,7 +24,7 @@ from multibot_rewrite.rules.index import (
     robots_of,
 )
 from multibot_rewrite.system.conventions import EVERYBODYS, chooses
-from multibot_rewrite.system.records import ACTION, SERVES, SERVICE, TOPIC
+from multibot_rewrite.system.records import ACTION, SERVES, SERVICE, TOPIC, End
 
 ABSENT = "is that robot started, and is its name right?"
 _DIGITS = re.compile(r"_?\d+")
@@ -77,12 +76,12 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
                 yield _missed_topic(seen, end, published[other])
 
 
-def _each_node(ends: Iterable[GraphEndpoint]) -> Iterator[GraphEndpoint]:
+def _each_node(ends: Iterable[End]) -> Iterator[End]:
     return iter({end.node: end for end in ends}.values())
 
 
 def _published_instead(
-    seen: Index, end: GraphEndpoint, published: dict[str, Ends], unheard: dict[str, Ends]
+    seen: Index, end: End, published: dict[str, Ends], unheard: dict[str, Ends]
 ) -> str:
     """The published topic that was probably meant; empty for none."""
     above = (it for it in _written_out(end.node, end.name) if it in published)
@@ -126,7 +125,7 @@ def _hides(ends: Ends, meant: str) -> bool:
     return ends.name in own or _is_doubled(ends.name, meant)
 
 
-def _without_own_name(end: GraphEndpoint) -> str:
+def _without_own_name(end: End) -> str:
     """What ``cmd_vel`` is for others that the node has as ``~/cmd_vel``; empty for other names."""
     last = last_word(end.name)
     return f"{end.node.rpartition('/')[0]}/{last}" if end.name == f"{end.node}/{last}" else ""
@@ -185,7 +184,7 @@ def _same_but_number(one: str, other: str) -> bool:
     return _DIGITS.sub("", one) == _DIGITS.sub("", other)
 
 
-def _missed_topic(seen: Index, end: GraphEndpoint, other: Ends) -> Finding:
+def _missed_topic(seen: Index, end: End, other: Ends) -> Finding:
     sender = nodes_of(other.publishers)[0]
     message = f"subscribes to {end.name}, which nobody publishes; {sender} publishes {other.name}"
     # The side in the wrong place is the one whose name has no robot, or is below the node.
@@ -256,7 +255,7 @@ def server_names_miss(seen: Index) -> Iterator[Finding]:
             )
 
 
-def _served_instead(seen: Index, end: GraphEndpoint, served: Sequence[str]) -> str:
+def _served_instead(seen: Index, end: End, served: Sequence[str]) -> str:
     robot, owner = seen.robot(end.node), seen.robot(end.name)
     same = [it for it in served if seen.plain(it) == seen.plain(end.name)]
     # Another robot's is no answer to a robot that lacks it.

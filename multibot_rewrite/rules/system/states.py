@@ -6,12 +6,11 @@ from collections import defaultdict
 from collections.abc import Iterator
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.graph.questions import SIM_TIME
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.index import Index, is_viewer
-from multibot_rewrite.system.records import SERVICE
+from multibot_rewrite.system.records import SERVICE, SIM_TIME, Controller, clocks
 
 ACTIVE = "active"
 
@@ -40,9 +39,9 @@ running: /robot1/amcl is active
 def not_active(seen: Index) -> Iterator[Finding]:
     """One finding for the nodes of a robot that are in one state and have one manager."""
     found: dict[tuple[str, str, str], list[str]] = defaultdict(list)
-    for it in seen.system.states:
+    for it in seen.system.nodes:
         if it.lifecycle not in ("", ACTIVE):
-            found[seen.robot(it.node), it.lifecycle, _manager(seen, it.node)].append(it.node)
+            found[seen.robot(it.name), it.lifecycle, _manager(seen, it.name)].append(it.name)
     for (robot, state, manager), nodes in found.items():
         verb = "is" if len(nodes) == 1 else "are"
         message = f"{shorten(sorted(nodes), SEVERAL)} {verb} {state}, not active"
@@ -83,10 +82,9 @@ running: /robot1/gripper/controller_manager controls finger/position by gripper_
 def interface_commanded_twice(seen: Index) -> Iterator[Finding]:
     """One controller manager refuses it by itself."""
     claims: dict[tuple[str, str], dict[str, str]] = defaultdict(dict)
-    for it in seen.system.states:
-        for controller in (one for one in it.controllers if one.state == ACTIVE):
-            for interface in controller.claims:
-                claims[seen.robot(it.node), interface][it.node] = controller.name
+    for it in (one for one in seen.system.controllers if one.state == ACTIVE):
+        for interface in it.claims:
+            claims[seen.robot(it.manager), interface][it.manager] = it.name
     reported = set()
     for (robot, interface), found in claims.items():
         if len(found) > 1 and (robot, *found) not in reported:
@@ -111,13 +109,16 @@ def interface_commanded_twice(seen: Index) -> Iterator[Finding]:
 )
 def no_controller_active(seen: Index) -> Iterator[Finding]:
     """Some inactive ones beside active ones are usual."""
-    for it in seen.system.states:
-        if it.controllers and all(one.state != ACTIVE for one in it.controllers):
-            listed = shorten((f"{one.name} ({one.state})" for one in it.controllers), SEVERAL)
+    kept: dict[str, list[Controller]] = defaultdict(list)
+    for it in seen.system.controllers:
+        kept[it.manager].append(it)
+    for manager, own in kept.items():
+        if all(it.state != ACTIVE for it in own):
+            listed = shorten((f"{it.name} ({it.state})" for it in own), SEVERAL)
             message = f"none of its controllers is active: {listed}"
-            cause = f"ros2 control list_controllers -c {it.node}; see the log of the spawners"
+            cause = f"ros2 control list_controllers -c {manager}; see the log of the spawners"
             yield no_controller_active.finding(
-                message, cause, robot=seen.robot(it.node), node=it.node
+                message, cause, robot=seen.robot(manager), node=manager
             )
 
 
@@ -140,9 +141,9 @@ running: /robot1/driver has use_sim_time true
 def use_sim_time_differs(seen: Index) -> Iterator[Finding]:
     """Tools and bridges have the machine's time beside any robot."""
     by_robot: dict[str, dict[bool, list[str]]] = defaultdict(lambda: defaultdict(list))
-    for it in seen.system.states:
-        if it.sim_time is not None and not is_tool(it.node) and not is_viewer(it.node):
-            by_robot[seen.robot(it.node)][it.sim_time].append(it.node)
+    for node, simulated in clocks(seen.system).items():
+        if not is_tool(node):
+            by_robot[seen.robot(node)][simulated].append(node)
     for robot, found in by_robot.items():
         if len(found) < 2:
             continue

@@ -128,7 +128,7 @@ def test_what_is_latched_and_the_graph_pass(tmp_path: Path, plan: Expectation) -
             there.end(0, "/robot1", "drive", "MP", topic, TF_TYPE, hash=TF_HASH, qos=latched)
             with there.sends(topic, ("base", "laser"), latched=True):
                 graph = look(Request(SECONDS), Router(address, 0))
-    assert [(it.parent, it.child, it.static) for it in graph.frames] == [("base", "laser", True)]
+    assert [(it.parent, it.child, it.static) for it in graph.edges] == [("base", "laser", True)]
     assert [it.name for it in graph.nodes] == ["/robot1/drive"]
 
 

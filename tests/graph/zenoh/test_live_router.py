@@ -16,9 +16,9 @@ from zenoh_robots import STRING, TF_HASH, TF_TYPE, Robot, drive, robot, router
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.graph.live.request import Request
-from multibot_rewrite.graph.snapshot import CHANGING, Snapshot, incomplete
 from multibot_rewrite.graph.zenoh.observe import Router, look, watch
 from multibot_rewrite.model import InputError
+from multibot_rewrite.system.records import CHANGING, System, incomplete
 
 pytestmark = pytest.mark.live
 NOWHERE = "tcp/127.0.0.1:1"
@@ -45,7 +45,7 @@ def fleet(address: str, domain: int, names: tuple[str, ...] = BOTH) -> Iterator[
         yield there
 
 
-def seen(address: str, domain: int, **more: tuple[str, ...]) -> Snapshot:
+def seen(address: str, domain: int, **more: tuple[str, ...]) -> System:
     return look(Request(10.0, **more), Router(address, domain))
 
 
@@ -53,7 +53,7 @@ def check(plan: Path, address: str, domain: int) -> int:
     return main(["check", str(plan), "--zenoh", address, "--domain", str(domain)])
 
 
-def codes(snapshot: Snapshot) -> set[str]:
+def codes(snapshot: System) -> set[str]:
     return {it.code for it in snapshot.environment.caveats}
 
 
@@ -72,9 +72,9 @@ def test_the_snapshot_is_complete_with_qos_and_hashes(address: str) -> None:
         ("/robot1/drive", session),
         ("/robot2/drive", session),
     ]
-    assert len(graph.endpoints) == 6
-    assert all(it.type_hash.startswith("RIHS01_") for it in graph.endpoints)
-    assert {it.qos.depth for it in graph.endpoints if it.qos} == {10}
+    assert len(graph.ends) == 6
+    assert all(it.type_hash.startswith("RIHS01_") for it in graph.ends)
+    assert {it.qos.depth for it in graph.ends if it.qos} == {10}
     around = graph.environment
     assert (around.rmw, around.participants, around.caveats) == ("rmw_zenoh_cpp", 1, ())
 
@@ -116,13 +116,13 @@ def test_tf_is_heard_latched_and_not(address: str) -> None:
         static = there.sends("/robot1/tf_static", ("base", "laser"), ("base", "imu"), latched=True)
         with static, there.sends("/tf", ("odom", "base")):
             graph = seen(address, 5)
-    found = {(it.topic, it.parent, it.child, it.static) for it in graph.frames}
+    found = {(it.topic, it.parent, it.child, it.static) for it in graph.edges}
     assert found == {
         ("/tf", "odom", "base", False),
         ("/robot1/tf_static", "base", "laser", True),
         ("/robot1/tf_static", "base", "imu", True),
     }
-    assert {it.publishers for it in graph.frames} == {("/robot1/drive",)}
+    assert {it.publishers for it in graph.edges} == {("/robot1/drive",)}
     assert not incomplete(graph)
 
 
@@ -134,7 +134,7 @@ def test_a_slow_sender_of_tf_is_waited_for(address: str) -> None:
         fast = there.sends("/tf", ("odom", "base"), gid=b"1")
         with fast, there.sends("/tf", ("map", "odom"), gid=b"2", period=1.0):
             graph = seen(address, 14)
-    assert {(it.parent, it.child) for it in graph.frames} == {("odom", "base"), ("map", "odom")}
+    assert {(it.parent, it.child) for it in graph.edges} == {("odom", "base"), ("map", "odom")}
 
 
 @pytest.mark.deep
@@ -190,14 +190,14 @@ def test_watching_shows_what_comes_and_goes(address: str) -> None:
             both = next(it for it in graphs if len(it.nodes) == 2)
             there.end(0, "/robot1", "drive", "MP", "/tf", TF_TYPE, hash=TF_HASH)
             with there.sends("/tf", ("odom", "base")):
-                moving = next(it for it in graphs if it.frames)
+                moving = next(it for it in graphs if it.edges)
         gone = next(it for it in graphs if not it.nodes)
     finally:
         graphs.close()
     assert [it.name for it in first.nodes] == ["/robot1/drive"]
-    assert len(both.endpoints) >= 3
-    assert [(it.parent, it.child) for it in moving.frames] == [("odom", "base")]
-    assert not gone.frames and "no-router" not in codes(gone)
+    assert len(both.ends) >= 3
+    assert [(it.parent, it.child) for it in moving.edges] == [("odom", "base")]
+    assert not gone.edges and "no-router" not in codes(gone)
 
 
 def test_a_router_that_ends_is_no_robot_that_left() -> None:

@@ -11,8 +11,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphNode, Qos
 from multibot_rewrite.graph.zenoh.tokens import endpoints, nodes, read_qos, read_token, ros_type
+from multibot_rewrite.system.records import End, Node, Qos
 
 STRING = "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"
 ADD = "RIHS01_e118de6bf5eeb66a2491b5bda11202e7b68f198d6f67922cf30364858239c81a"
@@ -41,7 +41,7 @@ def test_the_subscription_of_the_design_page() -> None:
     token = read_token(SUBSCRIPTION)
     assert token is not None
     qos = DEFAULT._replace(depth=10)
-    assert token.end == GraphEndpoint(
+    assert token.end == End(
         *("topic", "subscribes", "/chatter", "std_msgs/msg/String", STRING),
         *("/listener", qos, SESSION),
     )
@@ -162,9 +162,9 @@ def test_nodes_of_one_name_are_as_many_as_sessions_and_ids() -> None:
     found = nodes([token for key in keys if (token := read_token(key))])
     other = SESSION.replace("aac", "b")
     assert found == [
-        GraphNode("/listener", SESSION),
-        GraphNode("/listener", SESSION),
-        GraphNode("/listener", other),
+        Node("/listener", SESSION),
+        Node("/listener", SESSION),
+        Node("/listener", other),
     ]
 
 
@@ -179,7 +179,7 @@ def test_the_enclave_of_a_node_and_none() -> None:
 def test_a_node_is_there_once_its_endpoint_is() -> None:
     token = read_token(SUBSCRIPTION)
     assert token is not None
-    assert nodes([token]) == [GraphNode("/listener", SESSION)]
+    assert nodes([token]) == [Node("/listener", SESSION)]
 
 
 @pytest.mark.parametrize(("kind", "role"), [("MP", "serves"), ("MS", "calls")])

@@ -143,10 +143,10 @@ def _found_in(subject: Subject, path: str, is_sure: bool) -> Iterator[tuple[str,
     # Most descriptions have no such file, and a lint of them loads nothing of this.
     from multibot_rewrite.closure.gap import by_place
     from multibot_rewrite.closure.interfaces import claims_any, interface_gaps, twice_gaps
-    from multibot_rewrite.companions.params.known_nodes import load_known_nodes
     from multibot_rewrite.companions.yaml_text import read_yaml
     from multibot_rewrite.evidence.hardware import exported
     from multibot_rewrite.evidence.parameter_files import given_nodes
+    from multibot_rewrite.knowledge.parameters import load_known_nodes
     from multibot_rewrite.knowledge.stacks import load_nodes
 
     release, document = subject.settings.distro, subject.document

@@ -1,0 +1,162 @@
+"""The parameters of known nodes in a release: by node, by the type of a controller, by their paths."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from functools import lru_cache
+
+from multibot_rewrite.knowledge.node_library import NodeLibrary
+from multibot_rewrite.knowledge.parameter_entries import has_default
+from multibot_rewrite.knowledge.records import NodeParameters, Param
+from multibot_rewrite.knowledge.stacks import every_release, with_file
+from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.releases import has_release
+
+# Undeclared names of these kinds stay as they are, so a wrong guess does no harm.
+SAFE_KINDS = ("link", "joint")
+_INDEX = "<index>"
+
+
+class Branch(NamedTuple):
+    """Paths by their next segment: ``exact``, ``numbered`` (a stem with digits), ``wild`` (what the
+    segment is, if any word is allowed); ``params`` are those whose path ends here."""
+
+    exact: dict[str, Branch]
+    numbered: dict[str, Branch]
+    wild: dict[str, Branch]
+    params: list[Param]
+
+
+class KnownNode(NamedTuple):
+    """A node's parameters in a release: ``params`` by path, as a tree, and those that hold one name by
+    ``defaults``. What a release lacks is known all the same: where a file sets it, it is for a release
+    that has it. ``facts`` is what is known of it in all of them."""
+
+    name: str
+    package: str
+    facts: NodeParameters
+    params: Mapping[str, Param]
+    tree: Branch
+    defaults: tuple[Param, ...]
+
+
+class KnownNodes(NamedTuple):
+    """All known nodes; ``names`` and ``types`` lead to them. ``anywhere`` holds what is the same in
+    every node that has it, ``guesses`` last words of other paths (``guessing`` as one expression),
+    ``sent`` frames that nodes send.
+    """
+
+    nodes: Mapping[str, KnownNode]
+    names: Mapping[str, str]
+    types: Mapping[str, str]
+    anywhere: Branch
+    guesses: Mapping[str, tuple[str, ...]]
+    guessing: re.Pattern[str]
+    sent: frozenset[str]
+
+
+@lru_cache
+def built_in_nodes(release: str) -> KnownNodes:
+    """The nodes that this package knows, with the defaults of a release."""
+    return _known(every_release(), release)
+
+
+def load_known_nodes(path: str, release: str) -> KnownNodes:
+    """The built-in nodes, and those that a user's file of nodes adds or changes.
+
+    Raises UsageError, with file and line, for whatever is wrong in it.
+    """
+    return _known(with_file(path), release) if path else built_in_nodes(release)
+
+
+def is_absolute(param: Param, release: str) -> bool:
+    """Is a relative topic in it outside of the robot's namespace in this release?"""
+    return bool(param.absolute) and has_release(param.absolute, release)
+
+
+def guess(known: KnownNodes, path: str) -> str:
+    """The kind that the last word of a path suggests; empty for none."""
+    found = known.guessing.fullmatch(path, path.rfind(".") + 1)
+    return (found.lastgroup or "") if found else ""
+
+
+def _guessing(guesses: Mapping[str, tuple[str, ...]]) -> re.Pattern[str]:
+    """One expression for all guesses, with a group for each kind."""
+    every = {
+        kind: "|".join(re.escape(it).replace(r"\*", ".*") for it in words)
+        for kind, words in guesses.items()
+    }
+    return re.compile("|".join(f"(?P<{kind}>{words})" for kind, words in every.items()))
+
+
+def _known(library: NodeLibrary, release: str) -> KnownNodes:
+    nodes = {it.name: _node(it, release) for it in library.parameters.values()}
+    facts = library.parameters.values()
+    names = {alias: it.name for it in facts for alias in (*it.aliases, it.name)}
+    types = {type_: it.name for it in facts for type_ in it.types}
+    guessing = _guessing(library.guesses)
+    return KnownNodes(
+        nodes,
+        names | {name: name for name in nodes},
+        types,
+        _tree(_anywhere(nodes.values(), guessing)),
+        library.guesses,
+        guessing,
+        library.sent,
+    )
+
+
+def _node(facts: NodeParameters, release: str) -> KnownNode:
+    """A node in a release; a parameter that it lacks is what it was in the last that had it."""
+    params: dict[str, Param] = {}
+    for it in facts.params:
+        if it.path not in params or not has_release(params[it.path].releases, release):
+            params[it.path] = it
+    here = has_release(facts.releases, release)
+    there = [it for it in params.values() if here and has_release(it.releases, release)]
+    defaults = tuple(it for it in there if has_default(it))
+    return KnownNode(facts.name, facts.package, facts, params, _tree(params.values()), defaults)
+
+
+def _anywhere(nodes: Iterable[KnownNode], guessing: re.Pattern[str]) -> Iterator[Param]:
+    """Parameters that likely mean the same in an unknown node: several nodes have them with one
+    meaning, or their name suggests it."""
+    found: dict[str, list[Param]] = {}
+    for node in nodes:
+        for param in node.params.values():
+            if "*" not in param.path and "<" not in param.path.replace(_INDEX, ""):
+                found.setdefault(param.path, []).append(param)
+    for path, params in found.items():
+        kind = params[0].kind
+        sure = len(params) > 1 or kind in SAFE_KINDS or path.endswith(_INDEX)
+        guessed = guessing.fullmatch(path.rpartition(".")[2])
+        # What is [position] in a known controller may be [elbow/position] in another one.
+        if kind == "keep" and guessed and guessed.lastgroup == "interface":
+            continue
+        if (
+            kind != "exclusive"
+            and len({it.kind for it in params}) == 1
+            and (sure or (guessed and guessed.lastgroup == kind))
+        ):
+            yield params[0]._replace(default="", absolute="")
+
+
+def _tree(params: Iterable[Param]) -> Branch:
+    root = Branch({}, {}, {}, [])
+    for param in params:
+        branch = root
+        for segment in param.path.split("."):
+            branch = _below(branch, segment)
+        branch.params.append(param)
+    return root
+
+
+def _below(branch: Branch, segment: str) -> Branch:
+    if segment.endswith(_INDEX):
+        where, key = branch.numbered, segment.removesuffix(_INDEX)
+    elif segment == "*" or segment.startswith("<"):
+        where, key = branch.wild, segment.strip("<>")
+    else:
+        where, key = branch.exact, segment
+    return where.setdefault(key, Branch({}, {}, {}, []))

@@ -1,0 +1,1 @@
+"""Where a system is read from: one module or folder a source."""

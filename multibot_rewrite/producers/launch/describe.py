@@ -1,0 +1,269 @@
+"""Actions that start nodes -> records of these nodes.
+
+Source: launch_ros jazzy, actions/node.py, actions/load_composable_nodes.py (humble to rolling keep what
+is given to them under the same names).
+"""
+
+from __future__ import annotations
+
+import os
+import pathlib
+import re
+import tempfile
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+import yaml
+
+from multibot_rewrite.evidence.records import Place
+from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
+from multibot_rewrite.producers.launch.made_files import source_of
+from multibot_rewrite.producers.launch.places import place_of
+from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchNote, ParameterText
+from multibot_rewrite.producers.launch.ros_arguments import params_text, ros2_run, ros_arguments
+from multibot_rewrite.producers.launch.spawners import controller_files
+from multibot_rewrite.record import NamedTuple
+
+_LIMIT = 1 << 24
+# launch_ros says so of a text that is no YAML or value (jazzy, utilities/evaluate_parameters.py:82).
+_FAILS = "try wrapping it"
+# The commands of Gazebo, and what ROS starts it with.
+_SIMULATORS = ("gz", "ign", "gazebo", "gzserver")
+_GAZEBO = ("ros_gz_sim", "gzserver")
+# ament_index_python and Python say it so.
+_OF_PLUGIN = re.compile(r"<parameters>\s*([^<\s]+)\s*</parameters>")
+_NOT_FOUND = re.compile(r"package '(\w+)' not found|No module named '(\w+)")
+
+
+class Visit(NamedTuple):
+    """A visit: the context, what has been found, the files that descriptions name, what an event or a
+    timer starts with its visit and the locals that it keeps, the place of what is visited, what starts
+    it if not the launch itself, and after how many events."""
+
+    context: Any
+    nodes: list[LaunchedNode]
+    notes: list[LaunchNote]
+    files: dict[str, ParameterText]
+    waiting: list[tuple[Any, Any, Mapping[str, Any]]]
+    place: Place
+    later: str = ""
+    events: int = 0
+
+    def note(self, message: str, parameters: bool = False) -> None:
+        """Keep what is not known here: nodes, or only ``parameters`` of one."""
+        self.notes.append(LaunchNote(self.place, message, parameters))
+
+
+def failure(error: BaseException) -> str:
+    """What went wrong, in one line; for a package that is missing what to do."""
+    found = _NOT_FOUND.search(str(error))
+    if found:
+        name = found[1] or found[2]
+        hint = "source its workspace, or give the folder of its sources with --launch-roots"
+        return f"package {name!r} is not installed here; {hint}"
+    return " ".join(f"{type(error).__name__}: {error}".split())
+
+
+def is_wanted(action: Any, context: Any) -> bool:
+    """Does its condition hold?"""
+    condition = getattr(action, "condition", None)
+    return condition is None or bool(condition.evaluate(context))
+
+
+def text(value: Any, context: Any) -> str:
+    """The value of substitutions; empty for none."""
+    if value is None:
+        return ""
+    utilities = of_launch("utilities")
+    parts = utilities.normalize_to_list_of_substitutions(value)
+    return str(utilities.perform_substitutions(context, parts))
+
+
+def node(action: Any, here: Visit) -> LaunchedNode:
+    """The node of launch_ros's Node, or of an action that extends it."""
+    words = _words(action, here.context)
+    given = ros_arguments(words)
+    package, executable = (
+        text(_kept(action, it), here.context) for it in ("package", "node_executable")
+    )
+    rules = [*_rules(_kept(action, "remappings"), here.context), *given.rules]
+    own = _kept(action, "parameters") or ()
+    files = (*given.files, *controller_files(f"{package}/{executable}", given.own))
+    return LaunchedNode(
+        package,
+        executable,
+        text(_kept(action, "node_name"), here.context) or given.name,
+        given.namespace or _namespace(_kept(action, "node_namespace"), here.context),
+        tuple(rules),
+        (*_parameters(own, here), *_given(given.values, files, here)),
+        "",
+        given.own,
+        here.later,
+        place_of(action, here.place.file, (package, executable)),
+    )
+
+
+def component(it: Any, container: str, here: Visit) -> LaunchedNode:
+    """A component that is loaded into a container."""
+    own = getattr(it, "parameters", None) or ()
+    package, plugin = text(it.package, here.context), text(it.node_plugin, here.context)
+    return LaunchedNode(
+        package,
+        plugin,
+        text(it.node_name, here.context),
+        _namespace(it.node_namespace, here.context),
+        tuple(_rules(it.remappings or (), here.context)),
+        tuple(_parameters(own, here)),
+        f"/{container.lstrip('/')}",
+        (),
+        here.later,
+        place_of(it, here.place.file, (package, plugin)),
+    )
+
+
+def process(action: Any, here: Visit) -> Iterator[LaunchedNode]:
+    """The node of a ``ros2 run`` line, or a simulator; another process is no node that is known."""
+    line = [text(it, here.context) for it in getattr(action, "cmd", ())]
+    words = [word for it in line for word in it.split()]
+    run = ros2_run(words) or _simulator(words)
+    if run is None:
+        return
+    given = ros_arguments(run[2])
+    values = tuple(_given(given.values, given.files, here))
+    namespace = given.namespace or "/"
+    names = (run[0], run[1], given.name, namespace)
+    yield LaunchedNode(*names, given.rules, values, "", given.own, here.later, here.place)
+
+
+def _simulator(words: list[str]) -> tuple[str, str, list[str]] | None:
+    program = os.path.basename(words[0]) if words else ""
+    return (*_GAZEBO, []) if program in _SIMULATORS else None
+
+
+def _kept(action: Any, name: str) -> Any:
+    """What launch_ros's Node was made with."""
+    return getattr(action, f"_Node__{name}", None)
+
+
+def _words(action: Any, context: Any) -> list[str]:
+    own = [text(it, context) for it in _kept(action, "arguments") or ()]
+    ros = [text(it, context) for it in _kept(action, "ros_arguments") or ()]
+    return [*own, "--ros-args", *ros] if ros else own
+
+
+def _namespace(value: Any, context: Any) -> str:
+    """The full namespace, below those that groups push."""
+    utilities = of_launch_ros("utilities")
+    above = context.launch_configurations.get("ros_namespace")
+    own = text(value, context) if value is not None else None
+    full = utilities.make_namespace_absolute(utilities.prefix_namespace(above, own))
+    return full or "/"
+
+
+def _rules(rules: Iterable[Any], context: Any) -> Iterator[tuple[str, str]]:
+    yield from context.launch_configurations.get("ros_remaps", ())
+    yield from ((text(old, context), text(new, context)) for old, new in rules)
+
+
+def _parameters(own: Iterable[Any], here: Visit) -> Iterator[ParameterText]:
+    for it in here.context.launch_configurations.get("global_params", ()):
+        if isinstance(it, tuple):
+            yield from _given([(str(it[0]), str(it[1]))], (), here)
+        else:
+            yield from _file(str(it), here)
+    for given in own:
+        for it in _each(given):
+            yield from _evaluated(it, here)
+
+
+def _each(given: Any) -> Iterator[Any]:
+    """The values one by one: one that cannot be told does not hide the others."""
+    if isinstance(given, dict):
+        yield from ({name: value} for name, value in given.items())
+    else:
+        yield given
+
+
+def _evaluated(given: Any, here: Visit) -> Iterator[ParameterText]:
+    try:
+        (found,) = of_launch_ros("utilities").evaluate_parameters(here.context, [given])
+    except Exception as error:
+        # A value may be the output of a program that is not started; other ones fail in a launch, too.
+        if _FAILS in str(error):
+            here.note(failure(error), parameters=True)
+        elif not isinstance(given, dict):
+            here.note(f"a parameter file is not known: {failure(error)}", parameters=True)
+        return
+    if isinstance(found, dict):
+        yield _values(found)
+        yield from _made(found.values(), here)
+        _keep_files(found.values(), here)
+    elif isinstance(found, pathlib.PurePath):
+        yield from _file(str(found), here)
+    else:
+        name, value = found.evaluate(here.context)
+        yield _values({name: value})
+        _keep_files([value], here)
+
+
+def _made(values: Iterable[Any], here: Visit) -> Iterator[ParameterText]:
+    """The texts of files that the launch makes and names in values, such as that of a bridge."""
+    for path in (it for it in values if isinstance(it, str) and "\n" not in it):
+        if os.path.isfile(path) and not _kept_file(path):
+            yield from _file(path, here)
+
+
+def _keep_files(values: Iterable[Any], here: Visit) -> None:
+    """Keep the parameter files that plugins in descriptions name: they may be gone when these are
+    read."""
+    for text_ in (it for it in values if isinstance(it, str)):
+        for path in _OF_PLUGIN.findall(text_):
+            here.files.update((path, it) for it in _file(path, here))
+
+
+def _values(values: Any) -> ParameterText:
+    body = {"/**": {"ros__parameters": {name: _plain(it) for name, it in values.items()}}}
+    return ParameterText("", yaml.safe_dump(body, sort_keys=False))
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {str(name): _plain(it) for name, it in value.items()}
+    if isinstance(value, str):
+        # The folder with links to sources is gone when this is read.
+        return _kept_file(value) or value
+    if isinstance(value, bytes) or not hasattr(value, "__iter__"):
+        return value
+    return [_plain(it) for it in value]
+
+
+def _given(
+    values: Iterable[tuple[str, str]], files: Iterable[str], here: Visit
+) -> Iterator[ParameterText]:
+    for path in files:
+        yield from _file(path, here)
+    written = params_text(values)
+    if written:
+        yield ParameterText("", written)
+
+
+def _file(path: str, here: Visit) -> Iterator[ParameterText]:
+    if not os.path.isfile(path) or os.path.getsize(path) > _LIMIT:
+        here.note(f"the parameter file {path!r} is not there", parameters=True)
+        return
+    source = source_of(path, here.context)
+    with open(path, encoding="utf-8", errors="replace") as file:
+        text_ = file.read()
+    # A file that the launch makes is gone when this is read.
+    yield ParameterText("" if _is_made(path) else os.path.realpath(path), text_, _kept_file(source))
+
+
+def _is_made(path: str) -> bool:
+    return os.path.realpath(path).startswith(os.path.realpath(tempfile.gettempdir()) + os.sep)
+
+
+def _kept_file(path: str) -> str:
+    """The real path of a file that is there when the launch is over, else nothing."""
+    if "\n" in path:
+        return ""
+    return "" if _is_made(path) or not os.path.isfile(path) else os.path.realpath(path)

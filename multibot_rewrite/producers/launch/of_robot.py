@@ -1,0 +1,348 @@
+"""The nodes of a robot's stacks and what its launch files start -> the nodes that it runs.
+
+A node that is launched runs: that is the surest evidence there is. What a stack has and no launch file
+starts is left out, if all of the launch files is known.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from functools import cache, lru_cache
+from importlib.resources import files
+from typing import Any
+
+from multibot_rewrite.bounded import load_yaml
+from multibot_rewrite.companions.params.sections import raw_sections
+from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
+from multibot_rewrite.controller_ways import controller_way
+from multibot_rewrite.evidence.nodes import MANAGER
+from multibot_rewrite.evidence.parameter_files import given_nodes
+from multibot_rewrite.evidence.records import GivenNode, Place
+from multibot_rewrite.evidence.remapped import remapped
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.knowledge.parameters import KnownNodes
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
+from multibot_rewrite.model import InputError
+from multibot_rewrite.producers.launch.bridge_rows import bridge_rows
+from multibot_rewrite.producers.launch.findings import launch_findings
+from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, ParameterText
+from multibot_rewrite.producers.launch.spawner_managers import under_managers
+from multibot_rewrite.producers.launch.spawners import Spawned, is_spawner, spawned_in, texts_of
+from multibot_rewrite.producers.launch.static_transforms import with_static_transform
+from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.rosnames import expand
+
+_CAMEL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
+# The name of a file for what a launch file gives itself.
+_OWN = "parameters of a launch file"
+NO_NAME = "the launch file gives it no name"
+
+
+class Programs(NamedTuple):
+    """Executables whose node is known under another word, those whose node has another name, and those
+    that are no node of a robot. ``simulators`` are packages that only a simulated robot needs,
+    ``stamped`` parameters that are true by default, with their releases."""
+
+    nodes: Mapping[str, str]
+    names: Mapping[str, str]
+    passing: Collection[str]
+    simulators: Collection[str]
+    stamped: Mapping[str, str]
+
+
+class Launched(NamedTuple):
+    """The nodes of stacks and launch files, what these set for nodes, what each launched node is by
+    its name, the controllers that are spawned by theirs, if that is all that runs, findings, and if
+    they start a simulator, or what is for one."""
+
+    nodes: tuple[NodeFacts, ...]
+    given: tuple[GivenNode, ...]
+    started: Mapping[str, LaunchedNode]
+    spawned: Mapping[str, Spawned]
+    whole: bool
+    findings: tuple[Finding, ...]
+    simulated: bool = False
+
+
+class _Pair(NamedTuple):
+    node: LaunchedNode
+    facts: NodeFacts
+    known: bool
+
+
+@cache
+def programs() -> Programs:
+    """Those of ``programs.yaml``."""
+    text = files(__package__).joinpath("programs.yaml").read_text("utf-8")
+    data = load_yaml(text)
+    passing, simulators = (frozenset(data[it]) for it in ("passing", "simulators"))
+    return Programs(data["nodes"], data["names"], passing, simulators, data["stamped"])
+
+
+def with_launched(
+    stack: Sequence[NodeFacts],
+    graph: LaunchGraph,
+    known: Mapping[str, NodeFacts],
+    words: Collection[str],
+    parameters: KnownNodes,
+    release: str,
+) -> Launched:
+    """The nodes of a robot before its files are asked; ``words`` stand for it in namespaces."""
+    spawned, notes = spawned_in(graph.nodes)
+    graph = graph._replace(notes=(*graph.notes, *notes))
+    pairs = [_pair(it, stack, known, words) for it in graph.nodes if not passes(it)]
+    spawned, lost = under_managers(spawned, _managers(pairs) if graph.whole else ())
+    nodes = {it.facts.name: it.facts for it in pairs}
+    left = [it for it in stack if _is_left(it, nodes)] if graph.whole else []
+    gone = {it.name for it in left}
+    # A node that every robot has, such as robot_state_publisher, may be launched under another name.
+    gone |= {it.known for it in nodes.values() if it.known} - {
+        it.name for it in stack if _is_named(it)
+    }
+    kept = [it for it in stack if it.name not in nodes and not {it.name, it.host} & gone]
+    hosted = list(_hosted(pairs, known, {it.name for it in kept}))
+    inside = [*hosted, *(it for it in kept if it.host)]
+    given = list(_controllers(spawned, pairs, words, parameters))
+    given += [it for pair in pairs for it in _given(pair, inside, words, parameters)]
+    unknown = [(it.node, it.facts.name) for it in pairs if not it.known]
+    return Launched(
+        (*kept, *nodes.values(), *hosted),
+        tuple({it.name: it for it in reversed(given)}.values()),
+        {it.facts.name: it.node for it in pairs},
+        dict(_under_manager(spawned, pairs, words, release)),
+        graph.whole,
+        (*launch_findings(graph, unknown, left), *lost),
+        any(it.package in programs().simulators for it in graph.nodes),
+    )
+
+
+def _managers(pairs: Iterable[_Pair]) -> dict[str, None]:
+    """The full names of the controller managers."""
+    return {_full_name(it.node, it.facts): None for it in pairs if it.facts.known == MANAGER}
+
+
+def _under_manager(
+    spawned: Iterable[Spawned], pairs: Iterable[_Pair], words: Collection[str], release: str
+) -> Iterator[tuple[str, Spawned]]:
+    """The controllers by name, under the rules of their manager, too, where these reach them."""
+    reached = controller_way(release).of_manager
+    wide = {it.facts.name: it.node.remappings for it in pairs if reached}
+    for it in spawned:
+        manager = _stripped(it.manager.strip("/"), words)
+        rules = (*wide.get(manager, ()), *it.rules)
+        yield _stripped(it.full_name.strip("/"), words), it._replace(rules=rules)
+
+
+def as_launched(nodes: Iterable[NodeFacts], launched: Launched) -> Iterator[NodeFacts]:
+    """The nodes under rules and arguments of launch files, without those with parameters alone."""
+    origins = {it.name: it.origin for it in launched.nodes}
+    for it in nodes:
+        if it.name in launched.started:
+            node = launched.started[it.name]
+            made = with_static_transform(it, node.arguments)._replace(origin=origins[it.name])
+            yield remapped(made, node.remappings, node.namespace)
+        elif it.name in launched.spawned:
+            controller = launched.spawned[it.name]
+            above = controller.manager.rpartition("/")[0]
+            yield remapped(it, controller.rules, above)
+        elif it.host in launched.started:
+            yield _in_process(it, launched.started[it.host])._replace(
+                origin=origins.get(it.name, it.origin)
+            )
+        elif it.name in origins or it.host or it.name == MANAGER or not launched.whole:
+            yield it
+
+
+def passes(it: LaunchedNode) -> bool:
+    """Does the program do its work and end, or is it a simulator?"""
+    program = f"{it.package}/{it.executable}"
+    return not it.package or is_spawner(it) or program in programs().passing
+
+
+def _pair(
+    it: LaunchedNode,
+    stack: Sequence[NodeFacts],
+    known: Mapping[str, NodeFacts],
+    words: Collection[str],
+) -> _Pair:
+    base = known_node(it, stack, known)
+    own = programs().names.get(f"{it.package}/{it.executable}") or (base.name if base else "")
+    name = it.name or own or it.executable.rpartition(":")[2]
+    facts = base or NodeFacts(name, it.package, ())
+    unnamed = "" if it.name or own else NO_NAME
+    found = facts._replace(
+        name=_below(it.namespace, name, words),
+        endpoints=bridge_rows(it, words) or _unmapped(facts),
+        known=facts.known or facts.name if base else "",
+        # A node that usually serves all robots, in the namespace of one, is that robot's.
+        shared=facts.shared and not _is_of_robot(it.namespace, words),
+        when=it.later or unnamed,
+        container=_below(it.container, "", words),
+        origin=_origin(it.place),
+    )
+    return _Pair(it, found, base is not None)
+
+
+def _unmapped(facts: NodeFacts) -> tuple[Endpoint, ...]:
+    """Its endpoints without the rules of a stack: those of the launch count."""
+    return tuple(end._replace(remapped="") for end in facts.endpoints)
+
+
+def known_node(
+    it: LaunchedNode, stack: Sequence[NodeFacts], known: Mapping[str, NodeFacts]
+) -> NodeFacts | None:
+    """What is known of a node: by its name in a stack, else by its package and executable."""
+    executable = _CAMEL.sub("_", it.executable.rpartition(":")[2]).lower()
+    named = programs().nodes.get(f"{it.package}/{it.executable}")
+    of_stack = (node for node in stack if node.name == it.name and node.package == it.package)
+    wanted = {it.name, it.executable, executable, executable.removesuffix("_node"), named}
+    of_package = [node for node in known.values() if node.package == it.package and not node.host]
+    by_word = (node for node in of_package if wanted & {node.name, *node.nodl})
+    chosen = known.get(named) if named else None
+    return next(of_stack, None) or chosen or next(by_word, None)
+
+
+def _is_of_robot(namespace: str, words: Collection[str]) -> bool:
+    return namespace.strip("/").partition("/")[0] in words
+
+
+def _below(namespace: str, name: str, words: Collection[str]) -> str:
+    """The name of a node as a stack has it: without the robot's namespace."""
+    tokens = [*(it for it in namespace.split("/") if it), *([name] if name else [])]
+    return "/".join(tokens[1:] if len(tokens) > 1 and tokens[0] in words else tokens)
+
+
+def _origin(place: Place) -> str:
+    # Without its folder: a plan is the same from every working directory.
+    return f"{os.path.basename(place.file)}:{place.line}"
+
+
+def _is_left(node: NodeFacts, launched: Mapping[str, NodeFacts]) -> bool:
+    """Should a launch file have started it? What has no process of its own is not launched, and what
+    no stack is named for is added to every robot."""
+    own = not node.host and not node.plugin and node.name != MANAGER
+    return own and node.name not in launched and _is_named(node)
+
+
+def _is_named(node: NodeFacts) -> bool:
+    return node.origin.startswith("stack ")
+
+
+def _hosted(
+    pairs: Iterable[_Pair], known: Mapping[str, NodeFacts], there: Collection[str]
+) -> Iterator[NodeFacts]:
+    """The nodes that run inside of launched ones, such as costmaps."""
+    origins = {it.facts.known: it.facts.origin for it in pairs}
+    for node in known.values():
+        if node.host and node.host in origins and node.host != MANAGER and node.name not in there:
+            own = programs().names.get(f"{node.package}/{node.name}", node.name)
+            known_as = node.name if own != node.name else node.known
+            yield node._replace(name=own, known=known_as, origin=origins[node.host])
+
+
+def _controllers(
+    spawned: Sequence[Spawned],
+    pairs: Iterable[_Pair],
+    words: Collection[str],
+    parameters: KnownNodes,
+) -> Iterator[GivenNode]:
+    """What the launch files set for the controllers that they spawn."""
+    own = {_full_name(it.node, it.facts): it.node.parameters for it in pairs}
+    places = {_stripped(it.full_name.strip("/"), words): it.place for it in spawned}
+    for manager, texts in texts_of(spawned, own):
+        above = _stripped(manager.strip("/"), words)
+        documents = [document_of(it.file, it.text) for it in texts if has_sections(it)]
+        found: dict[str, GivenNode] = {}
+        for it in given_nodes(documents, parameters):
+            name = _stripped(it.name, words)
+            if name in places:
+                found[name] = _joined(found.get(name, it), it)
+        for name, it in found.items():
+            yield _placed(it, places[name])._replace(name=name, manager=above)
+
+
+def _joined(one: GivenNode, other: GivenNode) -> GivenNode:
+    """A controller as it is started, with the type that a manager of any namespace declares."""
+    return one if one.type else other._replace(values=one.values)
+
+
+def _full_name(node: LaunchedNode, facts: NodeFacts) -> str:
+    return expand(facts.name.rpartition("/")[2], node.namespace, "")
+
+
+def _given(
+    pair: _Pair, inside: Iterable[NodeFacts], words: Collection[str], parameters: KnownNodes
+) -> Iterator[GivenNode]:
+    """What the launch file's parameters set for a node, the nodes in it and its controllers."""
+    # Sections for any node count, too, so each node gets one of its own.
+    first = ParameterText("", f"{_full_name(pair.node, pair.facts)}:\n  ros__parameters: {{}}\n")
+    # launch_ros gives a component the values of a file without such a key; it names no node.
+    files_ = (it for it in pair.node.parameters if has_sections(it))
+    documents = [document_of(it.file, it.text) for it in (first, *files_)]
+    names = {pair.facts.name, *(it.name for it in inside if it.host == pair.facts.known)}
+    for it in given_nodes(documents, parameters):
+        mine = without_robot(it, words)
+        if mine.name in names or mine.manager == pair.facts.name:
+            yield _of_any_robot(_placed(mine, pair.node.place), pair.node.namespace, words)
+
+
+def _of_any_robot(given: GivenNode, namespace: str, words: Collection[str]) -> GivenNode:
+    """Parameters that a launch file filled for a robot, without it: ``/scan`` of ``/robot1/scan``."""
+    own = [f"/{it}/" for it in words if f"{namespace}/".startswith(f"/{it}/")]
+    if not own:
+        return given
+    above = max(own, key=len)
+    values = {
+        name: it._replace(value=_without(it.value, above)) for name, it in given.values.items()
+    }
+    return given._replace(values=values)
+
+
+def _without(value: Any, above: str) -> Any:
+    is_name = isinstance(value, str) and value.startswith(above)
+    return f"/{value.removeprefix(above)}" if is_name else value
+
+
+def _placed(given: GivenNode, place: Place) -> GivenNode:
+    """What a launch file gives itself is where that starts the node."""
+    values = {
+        name: it if it.place.file != _OWN else it._replace(place=place)
+        for name, it in given.values.items()
+    }
+    return given._replace(values=values, place=place if given.place.file == _OWN else given.place)
+
+
+def without_robot(given: GivenNode, words: Collection[str]) -> GivenNode:
+    """A node of a file that is for one robot, without the namespace of that robot."""
+    name, manager = (_stripped(it, words) for it in (given.name, given.manager))
+    return given._replace(name=name, manager=manager)
+
+
+def _stripped(name: str, words: Collection[str]) -> str:
+    above, slash, rest = name.partition("/")
+    return rest if slash and above in words else name
+
+
+def has_sections(it: ParameterText) -> bool:
+    """Is it a parameter file with sections of nodes?"""
+    try:
+        return any(True for _ in raw_sections(document_of(it.file, it.text)))
+    except InputError:
+        return False
+
+
+@lru_cache(maxsize=64)
+def document_of(file: str, text: str) -> YamlText:
+    """A parameter file, or with no ``file`` what a launch file sets itself; raises InputError."""
+    return read_yaml(text.encode(), file or _OWN)
+
+
+def _in_process(node: NodeFacts, host: LaunchedNode) -> NodeFacts:
+    """The rules of a launch file are for all nodes of a process; controllers have their own."""
+    if node.host == MANAGER:
+        return node
+    below = node.name.rpartition("/")[0]
+    above = f"{host.namespace.rstrip('/')}/{below}".rstrip("/")
+    return remapped(node, host.remappings, above)

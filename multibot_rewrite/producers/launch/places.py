@@ -1,0 +1,67 @@
+"""Where an action of a launch file stands: kept when it is made."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable
+from functools import lru_cache, wraps
+from types import FrameType
+from typing import Any
+
+from multibot_rewrite.evidence.records import Place
+from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
+from multibot_rewrite.producers.launch.launch_files import launched_nodes
+
+_KEPT = "multibot_place"
+# What makes actions for a launch file, and what reads launch files: neither is one.
+_READERS = tuple(f"{__package__}.{it}" for it in ("read", "visit"))
+_MAKERS = ("launch", "launch_ros", "launch_xml", "launch_yaml", "multibot_rewrite")
+
+
+def keep_places() -> None:
+    """From now on every action and component knows the line of the launch file that made it."""
+    for kind in (of_launch().Action, of_launch_ros("descriptions").ComposableNode):
+        kind.__init__ = _keeping(kind.__init__)
+
+
+def _keeping(made: Callable[..., None]) -> Callable[..., None]:
+    @wraps(made)
+    def keeping(self: Any, *words: Any, **options: Any) -> None:
+        # An action for a robot is made again when it runs.
+        if getattr(self, _KEPT, None) is None:
+            setattr(self, _KEPT, _maker(sys._getframe(1)))
+        made(self, *words, **options)
+
+    return keeping
+
+
+def place_of(action: Any, file: str, what: tuple[str, str] | None = None) -> Place:
+    """The place of an action; ``file`` is the launch file that has it, ``what`` its package and
+    executable, by which it is found in a file that is not Python."""
+    kept: Place | None = getattr(action, _KEPT, None)
+    if kept is not None:
+        return kept
+    real = os.path.realpath(file)
+    return Place(real, _lines(real).get(what, 1) if what else 1)
+
+
+def _maker(frame: FrameType | None) -> Place | None:
+    """The line of the launch file that made an action; None for a file that a parser reads."""
+    while frame is not None:
+        module = str(frame.f_globals.get("__name__", ""))
+        if module in _READERS:
+            return None
+        if module.partition(".")[0] not in _MAKERS:
+            return Place(os.path.realpath(frame.f_code.co_filename), frame.f_lineno)
+        frame = frame.f_back
+    return None
+
+
+@lru_cache
+def _lines(file: str) -> dict[tuple[str, str], int]:
+    if not os.path.isfile(file):
+        return {}
+    with open(file, encoding="utf-8", errors="replace") as source:
+        nodes = launched_nodes(file, source.read())
+    return {(it.package, it.executable): it.line for it in reversed(nodes)}

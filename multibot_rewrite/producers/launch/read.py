@@ -1,0 +1,56 @@
+"""A launch file and its arguments -> the nodes that it would start."""
+
+from __future__ import annotations
+
+import os
+import sys
+from typing import Any
+
+from multibot_rewrite.evidence.records import Place
+from multibot_rewrite.producers.launch.commands import faults, read_commands
+from multibot_rewrite.producers.launch.describe import Visit, failure
+from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
+from multibot_rewrite.producers.launch.made_files import keep_sources
+from multibot_rewrite.producers.launch.places import keep_places
+from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder
+from multibot_rewrite.producers.launch.source_packages import add_sources
+from multibot_rewrite.producers.launch.visit import visit_all
+
+
+class UnreadableError(Exception):
+    """The launch file itself cannot be read; the message says why."""
+
+
+def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
+    """Visit the description of a launch file; ``folder`` is for temporary files.
+
+    Raises ImportError without launch, UnreadableError for a file that cannot be read.
+    """
+    add_sources(order.roots, folder)
+    # What the parsers of the launch files in XML and YAML need.
+    of_launch_ros("actions")
+    keep_places()
+    keep_sources()
+    read_commands()
+    # A launch file may look at the command line itself.
+    sys.argv = order.command_line
+    try:
+        description = _included(order)
+    except (Exception, SystemExit) as error:
+        raise UnreadableError(failure(error)) from error
+    context = of_launch().LaunchContext(noninteractive=True)
+    seen = Visit(context, [], [], {}, [], Place(os.path.abspath(order.file), 1))
+    visit_all(description, seen)
+    for it in faults(context):
+        seen.note(it, parameters=True)
+    notes = tuple(dict.fromkeys(seen.notes))
+    return LaunchGraph(tuple(seen.nodes), notes, tuple(seen.files.items()))
+
+
+def _included(order: LaunchOrder) -> Any:
+    """The file as ``ros2 launch`` includes it; its description is read here to see its faults."""
+    sources = of_launch("launch_description_sources")
+    source = sources.AnyLaunchDescriptionSource(os.path.abspath(order.file))
+    source.get_launch_description(of_launch().LaunchContext(noninteractive=True))
+    include = of_launch("actions").IncludeLaunchDescription
+    return include(source, launch_arguments=list(order.arguments))

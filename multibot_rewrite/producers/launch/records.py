@@ -1,0 +1,159 @@
+"""What launch files start, as records; how they pass from the process that reads them."""
+
+from __future__ import annotations
+
+import json
+import os
+import shlex
+from collections.abc import Mapping, Sequence
+from itertools import takewhile
+from typing import Any
+
+from multibot_rewrite.evidence.records import Place
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.producers.launch.package_files import file_of_package
+from multibot_rewrite.record import NamedTuple
+
+
+class LaunchOrder(NamedTuple):
+    """A launch file or system_model.yaml to read, with launch arguments.
+
+    ``roots`` are folders with the sources of packages that are not installed; ``trusted`` says that
+    whoever runs this named the file: a launch file is a program. ``package`` is that of the file where
+    it was named by it.
+    """
+
+    file: str
+    arguments: tuple[tuple[str, str], ...] = ()
+    roots: tuple[str, ...] = ()
+    trusted: bool = False
+    package: str = ""
+
+    @property
+    def command_line(self) -> list[str]:
+        """That of ``ros2 launch``: nav2_common's ParseMultiRobotPose reads it from sys.argv[4] on."""
+        file = [self.package, os.path.basename(self.file)] if self.package else [self.file]
+        return ["ros2", "launch", *file, *(f"{name}:={value}" for name, value in self.arguments)]
+
+
+class ParameterText(NamedTuple):
+    """A parameter file that a node gets, or values that a launch file gives it, in YAML; ``file`` is
+    empty for these, and for a file that the launch makes. ``source`` is the file that is there without
+    the launch: ``file``, or what the launch makes another one of; empty for values."""
+
+    file: str
+    text: str
+    source: str = ""
+
+
+class LaunchedNode(NamedTuple):
+    """A node that a launch file starts.
+
+    ``executable`` is the plugin of a component, ``name`` is empty where the node has its own.
+    ``container`` is the full name of the node that a component is loaded into. ``later`` says what
+    starts it if not the launch itself. ``place`` is where the launch file has it.
+    """
+
+    package: str
+    executable: str
+    name: str
+    namespace: str
+    remappings: tuple[tuple[str, str], ...]
+    parameters: tuple[ParameterText, ...]
+    container: str
+    arguments: tuple[str, ...]
+    later: str
+    place: Place
+
+
+class LaunchNote(NamedTuple):
+    """Something of a launch file whose nodes are not known, and why; with ``parameters`` the node is
+    known, and what a parameter file sets for it is not."""
+
+    place: Place
+    message: str
+    parameters: bool = False
+
+
+class LaunchGraph(NamedTuple):
+    """What launch files start. ``files`` are the parameter files that plugins in descriptions name, by
+    the path that they have there. ``stood_in`` is true where launch is not installed and its stand-in
+    read them."""
+
+    nodes: tuple[LaunchedNode, ...] = ()
+    notes: tuple[LaunchNote, ...] = ()
+    files: tuple[tuple[str, ParameterText], ...] = ()
+    stood_in: bool = False
+
+    @property
+    def whole(self) -> bool:
+        """Are these all nodes?"""
+        return all(it.parameters for it in self.notes)
+
+
+def launch_order(text: str, roots: Sequence[str] = ()) -> LaunchOrder:
+    """The order of what follows ``ros2 launch``: a file, or a package and a file in it, and
+    ``NAME:=VALUE`` words.
+
+    Raises UsageError for other words, and for a package or file that is not there.
+    """
+    try:
+        words = shlex.split(text)
+    except ValueError:
+        words = []
+    return order_in_words(words, text, roots)
+
+
+def order_in_words(words: Sequence[str], text: str, roots: Sequence[str] = ()) -> LaunchOrder:
+    """The same of words that a shell has split already; ``text`` stands for them in an error."""
+    named = list(takewhile(lambda it: "=" not in it, words))
+    if not 0 < len(named) < 3:
+        raise UsageError(f"launch {text!r}: write FILE NAME:=VALUE ..., or PACKAGE FILE ...")
+    for it in words[len(named) :]:
+        if not it.partition(":=")[0] or ":=" not in it:
+            raise UsageError(f"launch {named[-1]}: {it!r} is no argument; write NAME:=VALUE")
+    arguments = (it.partition(":=") for it in words[len(named) :])
+    file, package = named[0], named[0] if len(named) > 1 else ""
+    if package:
+        file = file_of_package(package, named[1], tuple(roots))
+    values = tuple((name, value) for name, _, value in arguments)
+    return LaunchOrder(file, values, tuple(roots), package=package)
+
+
+def to_json(record: LaunchOrder | LaunchGraph) -> str:
+    """The record as a text."""
+    return json.dumps(record)
+
+
+def order_of(text: str) -> LaunchOrder:
+    """The order that ``to_json`` wrote."""
+    file, arguments, roots, trusted, package = json.loads(text)
+    pairs = tuple((name, value) for name, value in arguments)
+    return LaunchOrder(file, pairs, tuple(roots), trusted, package)
+
+
+def graph_of(text: str) -> LaunchGraph:
+    """The graph that ``to_json`` wrote."""
+    nodes, notes, files, stood_in = json.loads(text)
+    found = (LaunchNote(Place(*place), *rest) for place, *rest in notes)
+    return LaunchGraph(
+        tuple(_node(dict(zip(_FIELDS, it, strict=True))) for it in nodes),
+        tuple(found),
+        tuple((path, ParameterText(*it)) for path, it in files),
+        stood_in,
+    )
+
+
+_FIELDS = LaunchedNode._fields
+
+
+def _node(values: Mapping[str, Any]) -> LaunchedNode:
+    return LaunchedNode(
+        **{
+            **values,
+            "remappings": tuple((old, new) for old, new in values["remappings"]),
+            "parameters": tuple(ParameterText(*it) for it in values["parameters"]),
+            "arguments": tuple(values["arguments"]),
+            "place": Place(*values["place"]),
+        }
+    )

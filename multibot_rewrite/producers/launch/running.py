@@ -1,0 +1,217 @@
+"""What a launch starts -> its nodes as they run, with their parameters and remap rules.
+
+Every launched node stands for itself: nothing is known here of robots, stacks and layouts. A launch
+file that is wrong is to be seen as it is.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+from multibot_rewrite.controller_ways import controller_way
+from multibot_rewrite.evidence.filling import filled
+from multibot_rewrite.evidence.parameter_files import given_nodes
+from multibot_rewrite.evidence.records import Given, GivenNode, Place
+from multibot_rewrite.knowledge.parameters import KnownNodes
+from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
+from multibot_rewrite.producers.launch.of_robot import document_of, has_sections, known_node, passes
+from multibot_rewrite.producers.launch.of_robot import programs as known_programs
+from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, LaunchNote
+from multibot_rewrite.producers.launch.simulated_managers import Published, simulated_managers
+from multibot_rewrite.producers.launch.spawners import Spawned, spawned_in, texts_of
+from multibot_rewrite.producers.launch.static_transforms import with_static_transform
+from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.rosnames import expand
+
+Rules = tuple[tuple[str, str], ...]
+DESCRIPTION = "robot_description"
+# The process of the managers that plugins make.
+_SIMULATOR = "simulator"
+
+
+class Knowledge(NamedTuple):
+    """What is known of nodes and their parameters in a release."""
+
+    nodes: Mapping[str, NodeFacts]
+    parameters: KnownNodes
+    release: str
+
+
+class RunningNode(NamedTuple):
+    """A node as a launch starts it.
+
+    ``rules`` are its own ones; ``process_rules`` and ``process_namespace`` are those of its process,
+    which helper nodes in it have.
+    ``facts`` are its endpoints and frames with its parameters, None where nothing is known of it.
+    ``values`` are its parameters, ``texts`` other files that a parameter names. ``process`` tells the
+    processes of the launch apart.
+    """
+
+    name: str
+    namespace: str
+    rules: Rules
+    process_rules: Rules
+    process_namespace: str
+    facts: NodeFacts | None
+    values: Mapping[str, Given]
+    process: str
+    arguments: tuple[str, ...]
+    program: str
+    place: Place
+    texts: tuple[str, ...] = ()
+
+    @property
+    def full_name(self) -> str:
+        """Namespace and name."""
+        return expand(self.name, self.namespace, "")
+
+
+def running_nodes(
+    graph: LaunchGraph, known: Knowledge
+) -> tuple[tuple[RunningNode, ...], tuple[LaunchNote, ...]]:
+    """The nodes that a launch starts, hosted ones and controllers with them, and what is not known."""
+    spawned, notes = spawned_in(graph.nodes)
+    started = [it for it in graph.nodes if not passes(it)]
+    containers = {full_name(it, None): it for it in started}
+    found: list[RunningNode] = []
+    for at, it in enumerate(started):
+        found += _started(it, containers.get(it.container), f"{at}", known)
+    asked = {it.manager for it in spawned} - {it.full_name for it in found}
+    for manager in simulated_managers(
+        _descriptions(found), dict(graph.files), asked, known.release
+    ):
+        found += _started(manager, None, _SIMULATOR, known)
+        started.append(manager)
+    managers = {it.full_name: it for it in found if it.facts and it.facts.known == MANAGER}
+    controllers = _controllers(spawned, managers, started, known)
+    lost = [it for it in spawned if it.manager not in managers]
+    return (*found, *controllers), (*notes, *_spawned_twice(spawned), *_without_manager(lost))
+
+
+def _descriptions(nodes: Iterable[RunningNode]) -> Iterator[Published]:
+    """The descriptions that launched nodes have as parameters."""
+    for it in nodes:
+        given = it.values.get(DESCRIPTION)
+        if given and isinstance(given.value, str):
+            yield Published(given.value, it.place)
+
+
+def full_name(it: LaunchedNode, facts: NodeFacts | None) -> str:
+    """The full name of a launched node; by its code where the launch file has none."""
+    program = f"{it.package}/{it.executable}"
+    own = known_programs().names.get(program) or (facts.name if facts else "")
+    return expand(it.name or own or it.executable.rpartition(":")[2], it.namespace, "")
+
+
+def _started(
+    it: LaunchedNode, container: LaunchedNode | None, process: str, known: Knowledge
+) -> Iterator[RunningNode]:
+    """A launched node, and the nodes that its code makes in its process."""
+    facts = known_node(it, (), known.nodes)
+    name = full_name(it, facts)
+    home = container.remappings if container else () if it.container else it.remappings
+    inside = () if facts is None else [n for n in known.nodes.values() if n.host == facts.name]
+    hosted = {expand(n.name, it.namespace, ""): n for n in inside if facts and not n.is_controller}
+    values = _values_by_name(it, (name, *hosted), known)
+    names = {name: facts, **hosted}
+    for full, own in names.items():
+        above, _, last = full.rpartition("/")
+        rules = it.remappings if full == name else home
+        arguments = it.arguments if full == name else ()
+        yield RunningNode(
+            last,
+            above or "/",
+            rules,
+            home,
+            (container or it).namespace,
+            _with_values(own, values[full], arguments),
+            values[full].values,
+            it.container or process,
+            arguments,
+            f"{it.package}/{it.executable}",
+            it.place,
+            tuple(text.text for text in it.parameters if not has_sections(text)),
+        )
+
+
+def _with_values(
+    facts: NodeFacts | None, given: GivenNode, words: Sequence[str] = ()
+) -> NodeFacts | None:
+    if facts is None:
+        return None
+    made = filled(facts, given)._replace(known=facts.known or facts.name)
+    return with_static_transform(made, words)
+
+
+def _values_by_name(
+    it: LaunchedNode, names: Sequence[str], known: Knowledge
+) -> dict[str, GivenNode]:
+    """What the parameters of a launched node set for each node in its process."""
+    sections = "".join(f"{name}:\n  ros__parameters: {{}}\n" for name in names)
+    texts = [text for text in it.parameters if has_sections(text)]
+    documents = [document_of("", sections), *(document_of(text.file, text.text) for text in texts)]
+    found = {f"/{one.name}": one for one in given_nodes(documents, known.parameters)}
+    return {name: found[name] for name in names}
+
+
+def _controllers(
+    spawned: Sequence[Spawned],
+    managers: Mapping[str, RunningNode],
+    started: Iterable[LaunchedNode],
+    known: Knowledge,
+) -> Iterator[RunningNode]:
+    """The controllers that spawners load into launched managers, where they are activated."""
+    own = {full_name(it, known_node(it, (), known.nodes)): it.parameters for it in started}
+    forwarded = controller_way(known.release)
+    for name, texts in texts_of(spawned, own):
+        if name not in managers:
+            continue
+        manager = managers[name]
+        documents = [document_of(it.file, it.text) for it in texts if has_sections(it)]
+        given = given_nodes(documents, known.parameters)
+        active = (it for it in spawned if it.manager == name and not it.inactive)
+        # A spawner skips what is loaded already (spawner.py).
+        for it in {it.name: it for it in active}.values():
+            mine = _given_to(it, given)
+            wide = manager.rules if forwarded.of_manager else ()
+            yield RunningNode(
+                it.name,
+                manager.namespace,
+                (*wide, *it.rules),
+                (),
+                manager.namespace,
+                _with_values(known.nodes.get(mine.known), mine),
+                mine.values,
+                manager.process,
+                (),
+                mine.type or "a controller",
+                it.place,
+            )
+
+
+def _given_to(controller: Spawned, given: Sequence[GivenNode]) -> GivenNode:
+    """What the files set for a controller; a manager of any namespace may have its type."""
+    mine = next(it for it in given if f"/{it.name}" == controller.full_name)
+    typed = (it for it in given if it.type and it.name.rpartition("/")[2] == controller.name)
+    declared = mine if mine.type else next(typed, mine)
+    return declared._replace(name=mine.name, values={**declared.values, **mine.values})
+
+
+def _spawned_twice(spawned: Sequence[Spawned]) -> Iterator[LaunchNote]:
+    """The second one finds it loaded: it was to be another robot's."""
+    for (name, manager), count in Counter((it.name, it.manager) for it in spawned).items():
+        if count > 1:
+            last = next(it for it in reversed(spawned) if (it.name, it.manager) == (name, manager))
+            text = f"{manager} gets {name} from {count} spawners; is one of them another robot's?"
+            yield LaunchNote(last.place, text)
+
+
+def _without_manager(lost: Sequence[Spawned]) -> Iterator[LaunchNote]:
+    """No description that the launch publishes has a plugin that makes the manager either."""
+    for manager in dict.fromkeys(it.manager for it in lost):
+        mine = [it for it in lost if it.manager == manager]
+        names = ", ".join(dict.fromkeys(it.name for it in mine))
+        who = "no node of the launch and no plugin of a published description"
+        text = f"{manager} is started by {who}, so {names} are not known"
+        yield LaunchNote(mine[0].place, text)

@@ -1,0 +1,291 @@
+"""What a launch starts -> the graph that it would make: a snapshot, and what is not known of it.
+
+Names are those that rcl makes of the rules, transforms those that parameters name. What depends on a
+condition that nobody knows is left out.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Sequence
+
+from lxml import etree
+
+from multibot_rewrite.graph.transforms import STATE_PUBLISHER, edges_in, sent_by
+from multibot_rewrite.graph.transforms import Edge as SentEdge
+from multibot_rewrite.graph.wording import SEVERAL, shorten
+from multibot_rewrite.knowledge.records import Endpoint
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.plural import plural
+from multibot_rewrite.producers.launch.bridges import bridged_by, is_bridge
+from multibot_rewrite.producers.launch.findings import STOOD_IN
+from multibot_rewrite.producers.launch.of_robot import programs
+from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchNote
+from multibot_rewrite.producers.launch.running import (
+    DESCRIPTION,
+    Knowledge,
+    RunningNode,
+    running_nodes,
+)
+from multibot_rewrite.producers.launch.static_transforms import STATIC
+from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.releases import has_release
+from multibot_rewrite.rosnames import (
+    BoundNode,
+    NameFault,
+    RemapRule,
+    bind,
+    expand,
+    read_remap,
+    resolve_bound,
+)
+from multibot_rewrite.system.conventions import CLOCK
+from multibot_rewrite.system.parameters import parameter_text
+from multibot_rewrite.system.records import (
+    ACTION,
+    PUBLISHES,
+    SERVICE,
+    SIM_TIME,
+    SUBSCRIBES,
+    TOPIC,
+    Caveat,
+    Edge,
+    End,
+    Environment,
+    Node,
+    Parameter,
+    System,
+)
+
+CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
+TF, TF_STATIC, TF_TYPE = "/tf", "/tf_static", "tf2_msgs/msg/TFMessage"
+_CLASSIC = ("gazebo_ros", "spawn_entity.py")
+_PREFIX_SWITCH = "tf_frame_prefix_enable"
+NOT_WHOLE, NOT_KNOWN, NO_TREE, REFUSED = (
+    "launch-not-whole",
+    "node-not-known",
+    "description-not-known",
+    "rcl-refuses",
+)
+
+
+class _Part(NamedTuple):
+    """What one node adds to the graph: its endpoints, and its transforms by topic."""
+
+    name: str
+    endpoints: tuple[End, ...]
+    edges: tuple[tuple[str, SentEdge], ...]
+
+
+def would_run(graph: LaunchGraph, known: Knowledge) -> System:
+    """The graph of all that the launch starts; what is not known makes the view incomplete."""
+    nodes, notes = running_nodes(graph, known)
+    refused: list[str] = []
+    parts = []
+    for it in nodes:
+        try:
+            parts.append(_part(it, known.release))
+        except UsageError as error:
+            refused.append(f"{it.full_name} ({it.place}: {error})")
+            parts.append(_Part(it.full_name, (), ()))
+    caveats = (*_stood_in(graph), *_refused(refused), *_caveats((*graph.notes, *notes), nodes))
+    caveats = (*caveats, *_in_classic(graph))
+    return System(
+        tuple(Node(part.name, it.process) for it, part in zip(nodes, parts, strict=True)),
+        tuple(end for part in parts for end in part.endpoints),
+        tuple(_frames(parts)),
+        Environment(caveats=caveats),
+        parameters=tuple(_clocks(nodes)),
+    )
+
+
+def _stood_in(graph: LaunchGraph) -> Iterator[Caveat]:
+    if graph.stood_in:
+        yield Caveat(NOT_WHOLE, False, STOOD_IN)
+
+
+def _refused(nodes: Sequence[str]) -> Iterator[Caveat]:
+    if nodes:
+        text = f"rcl refuses {plural(len(nodes), 'node')}: {shorten(nodes)}"
+        yield Caveat(REFUSED, True, text)
+
+
+def _caveats(notes: Iterable[LaunchNote], nodes: Sequence[RunningNode]) -> Iterator[Caveat]:
+    for note in notes:
+        yield Caveat(NOT_WHOLE, True, f"{note.place}: {note.message}")
+    unknown = [f"{it.full_name} ({it.program})" for it in nodes if it.facts is None]
+    if unknown:
+        listed = shorten(unknown, SEVERAL)
+        hint = "describe them in a file of nodes (--nodes, docs/stacks.md)"
+        text = f"{plural(len(unknown), 'node')} not known, with all topics and frames: {listed}"
+        yield Caveat(NOT_KNOWN, True, f"{text}; {hint}")
+    bridges = [it.full_name for it in nodes if is_bridge(it) and _passes_tf_on(it)]
+    if bridges:
+        text = f"the transforms that the simulator sends are not known: {shorten(bridges)}"
+        yield Caveat(NO_TREE, True, text)
+    treeless = [it.full_name for it in nodes if _publishes_a_tree(it) and _tree(it) is None]
+    if treeless:
+        text = f"the description is not known, so neither are its frames: {shorten(treeless)}"
+        yield Caveat(NO_TREE, True, text)
+
+
+def _in_classic(graph: LaunchGraph) -> Iterator[Caveat]:
+    """Plugins of Gazebo Classic are nodes, which a robot brings with it."""
+    spawners = [it for it in graph.nodes if (it.package, it.executable) == _CLASSIC]
+    if spawners:
+        text = "nodes that plugins of Gazebo Classic make of a spawned robot are not known"
+        yield Caveat(NOT_WHOLE, True, f"{spawners[0].place}: {text}")
+
+
+def _passes_tf_on(it: RunningNode) -> bool:
+    return any((role, type_) == (PUBLISHES, TF_TYPE) for role, _, type_ in bridged_by(it))
+
+
+def _part(it: RunningNode, release: str) -> _Part:
+    bound = _bound(it.name, it.namespace, it.rules)
+    name = f"{bound.namespace.rstrip('/')}/{bound.node}"
+    helper = _bound(it.name, it.process_namespace, it.process_rules)
+    own = _endpoints(it, name, bound, helper, release)
+    ends = [*own, *_bridged(it, name, bound)]
+    if _value(it, SIM_TIME) is True and all(end.name != CLOCK for end in ends):
+        ends.append(End(TOPIC, SUBSCRIBES, CLOCK, CLOCK_TYPE, "", name, None, it.process))
+    return _Part(name, tuple(dict.fromkeys(ends)), tuple(_edges(it, bound)))
+
+
+def _bound(name: str, namespace: str, rules: Iterable[tuple[str, str]]) -> BoundNode:
+    return bind(name, namespace, [_rule(f"{old}:={new}") for old, new in rules])
+
+
+def _rule(text: str) -> RemapRule:
+    found = read_remap(text)
+    if isinstance(found, NameFault):
+        raise UsageError(f"rule {text!r}: {found.reason}")
+    return found
+
+
+def _endpoints(
+    it: RunningNode, name: str, bound: BoundNode, helper: BoundNode, release: str
+) -> Iterator[End]:
+    for end in it.facts.endpoints if it.facts and not is_bridge(it) else ():
+        if not end.when and end.name and "<" not in end.name:
+            own = end._replace(name=_below_namespace_above(it, end))
+            full = _resolved(own, helper if end.helper else bound)
+            type_ = _type(it, end, release)
+            yield End(end.kind, end.role, full, type_, "", name, None, it.process)
+
+
+def _type(it: RunningNode, end: Endpoint, release: str) -> str:
+    """Its type, where a parameter such as ``enable_stamped_cmd_vel`` chooses between two."""
+    chosen = [given.value for name, given in it.values.items() if "stamped" in name]
+    usual = (has_release(them, release) for word, them in _stamped() if word in end.note)
+    for wanted in chosen or usual:
+        fitting = (type_ for type_ in end.also if type_.endswith("Stamped") == wanted)
+        if end.type.endswith("Stamped") != wanted:
+            return next(fitting, end.type)
+    return end.type
+
+
+def _stamped() -> Iterable[tuple[str, str]]:
+    return programs().stamped.items()
+
+
+def _below_namespace_above(it: RunningNode, end: Endpoint) -> str:
+    """The name of an endpoint that its node resolves in the namespace above its own, else its name."""
+    if not end.above or str(_value(it, end.parameter) or "").startswith("/"):
+        return end.name
+    return expand(end.name.lstrip("/"), it.namespace.rpartition("/")[0] or "/", "")
+
+
+def _resolved(end: Endpoint, bound: BoundNode) -> str:
+    """An action is services and topics with names of their own; a rule for its name reaches none."""
+    if end.kind == ACTION:
+        part = resolve_bound(f"{end.name}/_action/send_goal", SERVICE, bound)
+        return part.removesuffix("/_action/send_goal")
+    return resolve_bound(end.name, end.kind, bound)
+
+
+def _bridged(it: RunningNode, name: str, bound: BoundNode) -> Iterator[End]:
+    for role, topic, type_ in bridged_by(it) if is_bridge(it) else ():
+        full = resolve_bound(topic, TOPIC, bound)
+        yield End(TOPIC, role, full, type_, "", name, None, it.process)
+
+
+def _edges(it: RunningNode, bound: BoundNode) -> Iterator[tuple[str, SentEdge]]:
+    """The transforms of a node, each with its topic."""
+    if it.facts is None:
+        return
+    sent = [end.name for end in it.facts.endpoints if end.role == PUBLISHES and not end.when]
+    for edge in _own_edges(it):
+        topic = TF_STATIC if edge.static else TF
+        # A driver may send its odometry on tf_static, and nodes may only have one of the two.
+        named = next((name for name in sent if name.strip("/") == topic.strip("/")), "")
+        if named:
+            yield resolve_bound(named, TOPIC, bound), edge
+
+
+def _own_edges(it: RunningNode) -> Iterable[SentEdge]:
+    if it.facts is None:
+        return ()
+    if _publishes_a_tree(it):
+        return _tree(it) or ()
+    prefix = _prefix(it)
+    edges = sent_by(it.facts, "")
+    return [SentEdge(prefix + e.parent, prefix + e.child, e.static) for e in edges]
+
+
+def _prefix(it: RunningNode) -> str:
+    """What a node puts before its frames: robot_localization ros_filter.cpp (``tf_prefix``),
+    ros2_controllers diff_drive_controller.cpp (its namespace, where no parameter says otherwise)."""
+    prefix = _value(it, "tf_prefix")
+    fixed = it.facts.fixed if it.facts else ()
+    if any(text.startswith(_PREFIX_SWITCH) for text in fixed):
+        own = _value(it, "tf_frame_prefix") or it.namespace
+        prefix = "" if _value(it, _PREFIX_SWITCH) is False else own
+    bare = str(prefix or "").strip("/")
+    return f"{bare}/" if bare else ""
+
+
+def _publishes_a_tree(it: RunningNode) -> bool:
+    return it.facts is not None and it.facts.package == STATE_PUBLISHER
+
+
+def _tree(it: RunningNode) -> list[SentEdge] | None:
+    """The transforms of a description under ``frame_prefix``; None where that is not known."""
+    prefix = str(_value(it, "frame_prefix") or "")
+    text = _value(it, DESCRIPTION)
+    if not isinstance(text, str) or not text.strip():
+        return None
+    try:
+        root = etree.fromstring(text.encode(), etree.XMLParser(resolve_entities=False))
+    except etree.XMLSyntaxError:
+        return None
+    return [SentEdge(prefix + e.parent, prefix + e.child, e.static) for e in edges_in(root)]
+
+
+def _value(it: RunningNode, name: str) -> object:
+    given = it.values.get(name)
+    return given.value if given else None
+
+
+def _frames(parts: Sequence[_Part]) -> Iterator[Edge]:
+    """Each transform once, with all who send on its topic."""
+    senders: dict[str, list[str]] = defaultdict(list)
+    times: dict[tuple[str, SentEdge], int] = defaultdict(int)
+    for part in parts:
+        for end in part.endpoints:
+            if (end.role, end.type) == (PUBLISHES, TF_TYPE):
+                senders[end.name].append(part.name)
+        for topic, edge in dict.fromkeys(part.edges):
+            times[topic, edge] += 1
+    for (topic, edge), count in times.items():
+        who = tuple(dict.fromkeys(senders[topic]))
+        yield Edge(edge.child, edge.parent, topic, edge.static, who, count > 1)
+
+
+def _clocks(nodes: Iterable[RunningNode]) -> Iterator[Parameter]:
+    """Simulated time by parameter; the default is false (rclcpp time_source.cpp). What sends transforms
+    that hold for ever needs no time."""
+    for it in nodes:
+        if it.facts is not None and it.facts.known != STATIC:
+            text = parameter_text(_value(it, SIM_TIME) is True)
+            yield Parameter(it.full_name, SIM_TIME, text)

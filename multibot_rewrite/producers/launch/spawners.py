@@ -1,0 +1,148 @@
+"""The arguments of ``controller_manager spawner`` -> the controllers that it loads.
+
+Source: ros2_control jazzy and humble, controller_manager/spawner.py (``--controller NAME ...`` has
+options of its own; the name of a manager is relative to the spawner's namespace).
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NoReturn
+
+from multibot_rewrite.evidence.records import Place
+from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchNote, ParameterText
+from multibot_rewrite.producers.launch.ros_arguments import ros_arguments
+from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.rosnames import expand
+
+SPAWNER = "controller_manager/spawner"
+_ONE = "--controller"
+
+
+class Spawned(NamedTuple):
+    """A controller that a spawner loads into ``manager`` (a full name): its type where the spawner
+    says it, its parameters, remap rules, what starts the spawner if not the launch itself, where the
+    launch file has that, and if it stays inactive."""
+
+    name: str
+    manager: str
+    type: str
+    parameters: tuple[ParameterText, ...]
+    rules: tuple[tuple[str, str], ...]
+    later: str
+    place: Place
+    inactive: bool = False
+
+    @property
+    def full_name(self) -> str:
+        """It runs in the namespace of its manager."""
+        return f"{self.manager.rpartition('/')[0]}/{self.name}"
+
+
+class _Parser(argparse.ArgumentParser):
+    """One that raises ValueError where argparse would end the program."""
+
+    def error(self, message: str) -> NoReturn:
+        """Raise ValueError."""
+        raise ValueError(message)
+
+
+def is_spawner(node: LaunchedNode) -> bool:
+    """Does it load controllers and end?"""
+    return f"{node.package}/{node.executable}" == SPAWNER
+
+
+def spawned_in(nodes: Iterable[LaunchedNode]) -> tuple[tuple[Spawned, ...], tuple[LaunchNote, ...]]:
+    """The controllers that these spawners load, and notes of those whose arguments are not right."""
+    found: list[Spawned] = []
+    notes: list[LaunchNote] = []
+    for node in filter(is_spawner, nodes):
+        try:
+            found += _spawned(node)
+        except ValueError as error:
+            notes.append(LaunchNote(node.place, f"the arguments of a spawner are wrong: {error}"))
+    return tuple(found), tuple(notes)
+
+
+def active(spawned: Mapping[str, Spawned]) -> set[str]:
+    """The names of those that are active as soon as all is started, whatever happens."""
+    return {name for name, it in spawned.items() if not (it.inactive or it.later)}
+
+
+def controller_files(program: str, words: Sequence[str]) -> tuple[str, ...]:
+    """The files with parameters of controllers that a program (``package/executable``) gets with these
+    arguments; none if it is no spawner."""
+    if program != SPAWNER:
+        return ()
+    try:
+        every = [it.param_file for it in _each(words)]
+    except ValueError:
+        return ()
+    return tuple(dict.fromkeys(file for files in every for file in files))
+
+
+def texts_of(
+    spawned: Iterable[Spawned], given: Mapping[str, Sequence[ParameterText]]
+) -> Iterator[tuple[str, list[ParameterText]]]:
+    """Each manager by its full name, and all parameters that decide its controllers: what it gets
+    itself (``given``, by its name), what the spawners name, and the types that they say."""
+    by_manager: dict[str, list[Spawned]] = {}
+    for it in spawned:
+        by_manager.setdefault(it.manager, []).append(it)
+    for manager, controllers in by_manager.items():
+        named = (text for it in controllers for text in it.parameters)
+        said = (_declaration(it) for it in controllers)
+        yield manager, list(dict.fromkeys((*said, *given.get(manager, ()), *named)))
+
+
+def _declaration(it: Spawned) -> ParameterText:
+    """The controller as a parameter file would have it: a section of its own, its type if said."""
+    typed = f"{it.manager}:\n  ros__parameters: {{{it.name}.type: {it.type}}}\n" if it.type else ""
+    return ParameterText("", f"{typed}{it.full_name}:\n  ros__parameters: {{}}\n")
+
+
+def _spawned(node: LaunchedNode) -> Iterator[Spawned]:
+    for given in _each(node.arguments):
+        words = [word for text in given.controller_ros_args for word in text.split()]
+        above = given.namespace or node.namespace
+        manager = expand(given.controller_manager, above, SPAWNER.rpartition("/")[2])
+        rules = ros_arguments(["--ros-args", *words]).rules
+        own = (node.parameters, rules, node.later, node.place)
+        inactive = given.inactive or given.stopped or given.load_only
+        for name in given.controller_names:
+            yield Spawned(name, manager, given.controller_type, *own, inactive)
+
+
+def _each(words: Sequence[str]) -> Iterator[argparse.Namespace]:
+    """What is said of the controllers; raises ValueError for words that the spawner refuses."""
+    if _ONE not in words:
+        yield _parser(names="+").parse_args(list(words))
+        return
+    starts = [at for at, word in enumerate(words) if word == _ONE]
+    top = _parser(names="*").parse_args(list(words[: starts[0]]))
+    for at, end in zip(starts, (*starts[1:], len(words)), strict=True):
+        one = _parser(names="+").parse_args(list(words[at + 1 : end]))
+        yield _below(one, vars(top))
+
+
+def _below(one: argparse.Namespace, top: Mapping[str, object]) -> argparse.Namespace:
+    shared = ("controller_manager", "namespace")
+    return argparse.Namespace(**{**vars(one), **{key: top[key] for key in shared}})
+
+
+def _parser(names: str) -> _Parser:
+    parser = _Parser(add_help=False, allow_abbrev=True)
+    parser.add_argument("controller_names", nargs=names)
+    parser.add_argument("-c", "--controller-manager", default="controller_manager")
+    parser.add_argument("-p", "--param-file", action="append", default=[])
+    parser.add_argument("-n", "--namespace", default="")
+    parser.add_argument("-t", "--controller-type", default="")
+    parser.add_argument("--controller-ros-args", action="append", default=[])
+    for flag in ("--load-only", "--inactive", "--stopped", "--activate-as-group"):
+        parser.add_argument(flag, action="store_true")
+    parser.add_argument("-u", "--unload-on-kill", action="store_true")
+    parser.add_argument("--switch-asap", action=argparse.BooleanOptionalAction)
+    for value in ("--controller-manager-timeout", "--switch-timeout", "--service-call-timeout"):
+        parser.add_argument(value)
+    return parser

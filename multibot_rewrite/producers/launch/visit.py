@@ -1,0 +1,219 @@
+"""The entities of a launch description, visited in the order of a launch.
+
+What only sets something up is executed, what would start something is described. An entity is known
+by the names of its classes, so that this works in every release. Source: launch, launch_ros jazzy.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from types import MappingProxyType
+from typing import Any
+
+from multibot_rewrite.producers.launch.describe import (
+    Visit,
+    component,
+    failure,
+    is_wanted,
+    node,
+    process,
+    text,
+)
+from multibot_rewrite.producers.launch.places import place_of
+
+# They only change the context, or give further entities.
+_EXECUTED = (
+    *("LaunchDescription", "GroupAction", "IncludeLaunchDescription", "OpaqueFunction"),
+    *("ForEach", "ForLoop"),
+    *("DeclareLaunchArgument", "SetLaunchConfiguration", "UnsetLaunchConfiguration"),
+    *("PushLaunchConfigurations", "PopLaunchConfigurations", "ResetLaunchConfigurations"),
+    *("PushEnvironment", "PopEnvironment", "ResetEnvironment", "ReplaceEnvironmentVariables"),
+    *("SetEnvironmentVariable", "AppendEnvironmentVariable", "UnsetEnvironmentVariable"),
+    *(
+        "PushRosNamespace",
+        "PushROSNamespace",
+        "SetParameter",
+        "SetParametersFromFile",
+        "SetRemap",
+    ),
+)
+# They start no node; SetUseSimTime is for the node that launch itself would have.
+_PASSED = (
+    "SetUseSimTime",
+    *("LogInfo", "EmitEvent", "Shutdown", "SetROSLogDir", "LifecycleTransition"),
+    "UnregisterEventHandler",
+)
+
+
+# One after the other; a timer may start itself again.
+_MOST_EVENTS = 20
+
+
+def visit_all(entity: Any, seen: Visit) -> None:
+    """Visit a description, then what its events and timers start: by then all groups have ended, with
+    their namespaces and launch configurations (launch jazzy, launch_service.py)."""
+    visit(entity, seen)
+    while seen.waiting:
+        later, here, kept = seen.waiting.pop(0)
+        seen.context._push_locals()
+        seen.context.extend_locals(kept)
+        visit(later, here)
+        seen.context._pop_locals()
+
+
+def visit(entity: Any, seen: Visit) -> None:
+    """Visit an entity and what is below it; what cannot be visited becomes a note."""
+    here = _at(entity, seen)
+    # An include has the path of its file for what is below it; other actions may leave theirs.
+    own = _is(entity, "IncludeLaunchDescription")
+    if own:
+        seen.context._push_locals()
+    try:
+        for below in _handler(entity)(entity, here) or ():
+            visit(below, here)
+    except (Exception, SystemExit) as error:
+        # A launch file is a program: it may raise anything.
+        ended = "; groups and their launch configurations have ended by then" if here.later else ""
+        here.note(f"{here.later} {failure(error)}{ended}".strip())
+    finally:
+        if own:
+            seen.context._pop_locals()
+
+
+def _at(entity: Any, seen: Visit) -> Visit:
+    """The visit at the place of this entity."""
+    file = seen.context.get_locals_as_dict().get("current_launch_file_path", seen.place.file)
+    return seen._replace(place=place_of(entity, file))
+
+
+def _is(entity: Any, *names: str) -> bool:
+    return any(it.__name__ in names for it in type(entity).__mro__)
+
+
+def _execute(entity: Any, seen: Visit) -> Iterable[Any] | None:
+    found: Iterable[Any] | None = entity.visit(seen.context)
+    return found
+
+
+def _pass(entity: Any, seen: Visit) -> None:
+    return None
+
+
+def _node(entity: Any, seen: Visit) -> Iterable[Any] | None:
+    if not is_wanted(entity, seen.context):
+        return None
+    # launch/later.py: an action for a robot gets its options when it runs, or others run in its place.
+    instead = entity.resolve(seen.context) if type(entity).__name__ == "OfRobot" else None
+    if instead is None:
+        seen.nodes.append(node(entity, seen))
+        _ended(entity, seen)
+    return instead
+
+
+def _container(entity: Any, seen: Visit) -> Iterable[Any] | None:
+    if not is_wanted(entity, seen.context):
+        return None
+    _node(entity, seen)
+    host = seen.nodes[-1]
+    full = f"{host.namespace.rstrip('/')}/{host.name}"
+    _components(entity._ComposableNodeContainer__composable_node_descriptions, full, seen)
+    return None
+
+
+def _loaded(entity: Any, seen: Visit) -> Iterable[Any] | None:
+    if not is_wanted(entity, seen.context):
+        return None
+    target = entity._LoadComposableNodes__target_container
+    if _is(target, "ComposableNodeContainer"):
+        host = node(target, seen)
+        name = f"{host.namespace.rstrip('/')}/{host.name}"
+    else:
+        name = text(target, seen.context)
+    _components(entity._LoadComposableNodes__composable_node_descriptions, name, seen)
+    return None
+
+
+def _components(descriptions: Iterable[Any] | None, container: str, seen: Visit) -> None:
+    for it in descriptions or ():
+        condition = it.condition() if callable(getattr(it, "condition", None)) else None
+        if condition is None or condition.evaluate(seen.context):
+            seen.nodes.append(component(it, container, seen))
+
+
+def _process(entity: Any, seen: Visit) -> Iterable[Any] | None:
+    if is_wanted(entity, seen.context):
+        seen.nodes.extend(process(entity, seen))
+        _ended(entity, seen)
+    return None
+
+
+def _later(entity: Any, seen: Visit) -> Iterable[Any] | None:
+    """The actions of a timer or an event handler wait for the end of the description."""
+    if not is_wanted(entity, seen.context):
+        return None
+    timer = _is(entity, "TimerAction")
+    handler = entity if timer else entity.event_handler
+    if _is(handler, "OnShutdown"):
+        return None
+    actions = entity.actions if timer else _flat(handler.describe()[1])
+    word = "after a time" if timer else f"at an event ({type(handler).__name__})"
+    if not timer and not actions:
+        message = f"what {type(handler).__name__} starts is decided only at run time"
+        seen.note(message)
+    kept = dict(seen.context.get_locals_as_dict()) if timer else {}
+    _wait(actions, word, seen, kept)
+    return None
+
+
+def _wait(actions: Iterable[Any], word: str, seen: Visit, kept: Mapping[str, Any]) -> None:
+    actions = [*actions]
+    if actions and seen.events >= _MOST_EVENTS:
+        seen.note(f"what starts {word} starts something {word} again and again")
+        return
+    later = seen._replace(later=word, events=seen.events + 1)
+    seen.waiting.extend((it, later, kept) for it in actions)
+
+
+def _ended(entity: Any, seen: Visit) -> None:
+    """What ``on_exit`` of a program starts."""
+    actions = getattr(entity, "_ExecuteLocal__on_exit", None)
+    if not callable(actions):
+        _wait(_flat(actions), "at an event (on_exit)", seen, {})
+
+
+def _flat(actions: Any) -> list[Any]:
+    if isinstance(actions, list | tuple):
+        return [below for it in actions for below in _flat(it)]
+    return [] if actions is None else [actions]
+
+
+def _unknown(entity: Any, seen: Visit) -> Iterable[Any] | None:
+    if is_wanted(entity, seen.context):
+        message = f"what the action {type(entity).__name__} starts is decided only at run time"
+        seen.note(message)
+    return None
+
+
+Handler = Callable[[Any, Visit], "Iterable[Any] | None"]
+_HANDLERS: Mapping[str, Handler] = MappingProxyType(
+    {
+        **dict.fromkeys(_EXECUTED, _execute),
+        **dict.fromkeys(_PASSED, _pass),
+        "ComposableNodeContainer": _container,
+        "LoadComposableNodes": _loaded,
+        "Node": _node,
+        "ExecuteLocal": _process,
+        "ExecuteProcess": _process,
+        "RegisterEventHandler": _later,
+        "TimerAction": _later,
+    }
+)
+
+
+def _handler(entity: Any) -> Handler:
+    return next(_known(entity), _unknown)
+
+
+def _known(entity: Any) -> Iterator[Handler]:
+    names = (it.__name__ for it in type(entity).__mro__)
+    yield from (_HANDLERS[it] for it in names if it in _HANDLERS)

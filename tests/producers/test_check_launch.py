@@ -1,0 +1,341 @@
+"""What would run by a launch: names by rcl's rules, transforms by parameters, and what hurts there.
+
+The launch graphs are records as the evidence has them. Expectations: rcl's remapping (remap.c), the
+code of the nodes and of tf2_ros.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import pytest
+import yaml
+from launched_nodes import AT
+
+from multibot_rewrite.cli import check_launch
+from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.knowledge.parameters import load_known_nodes
+from multibot_rewrite.knowledge.stacks import built_in
+from multibot_rewrite.live.diagnose import diagnose
+from multibot_rewrite.producers.launch.records import (
+    LaunchedNode,
+    LaunchGraph,
+    LaunchNote,
+    ParameterText,
+)
+from multibot_rewrite.producers.launch.running import Knowledge
+from multibot_rewrite.producers.launch.snapshot import would_run
+from multibot_rewrite.system.records import System, clocks
+
+TF = (("/tf", "tf"), ("/tf_static", "tf_static"))
+URDF = '<robot name="r"><link name="base_link"/><link name="laser"/><joint name="j" type="fixed">\
+<parent link="base_link"/><child link="laser"/></joint></robot>'
+Graph = Callable[..., System]
+
+
+@pytest.fixture(scope="module")
+def known() -> Knowledge:
+    return Knowledge(built_in("jazzy").nodes, load_known_nodes("", "jazzy"), "jazzy")
+
+
+@pytest.fixture
+def run(known: Knowledge) -> Graph:
+    def made(*nodes: LaunchedNode, notes: Sequence[LaunchNote] = ()) -> System:
+        return would_run(LaunchGraph(nodes, tuple(notes)), known)
+
+    return made
+
+
+def node(
+    program: str, name: str, space: str = "/robot1", rules: object = (), **more: object
+) -> LaunchedNode:
+    """A launched node; ``container``, ``arguments`` and values of parameters by name."""
+    package, executable = program.split("/")
+    container, arguments = more.pop("container", ""), more.pop("arguments", ())
+    own = yaml.safe_dump({"/**": {"ros__parameters": more}})
+    texts = (ParameterText("", own),) if more else ()
+    given = (package, executable, name, space, rules, texts, container, arguments, "", AT)
+    return LaunchedNode(*given)  # type: ignore[arg-type]
+
+
+def publisher(space: str, rules: object = (), **more: object) -> LaunchedNode:
+    more = {"robot_description": URDF, **more}
+    return node("robot_state_publisher/robot_state_publisher", "rsp", space, rules, **more)
+
+
+def codes(made: System) -> set[str]:
+    return {it.code for it in diagnose(made).findings}
+
+
+def names(made: System, of: str) -> set[tuple[str, str]]:
+    return {(it.role, it.name) for it in made.ends if it.node == of}
+
+
+def test_names_are_those_that_rcl_makes_of_the_rules(run: Graph) -> None:
+    made = run(publisher("/robot1", TF, use_sim_time=True))
+    assert names(made, "/robot1/rsp") >= {
+        ("publishes", "/robot1/tf"),
+        ("publishes", "/robot1/tf_static"),
+        ("publishes", "/robot1/robot_description"),
+        ("subscribes", "/robot1/joint_states"),
+        ("subscribes", "/clock"),
+    }
+    (edge,) = made.edges
+    assert (edge.parent, edge.child, edge.topic) == ("base_link", "laser", "/robot1/tf_static")
+    assert made.environment.caveats == ()
+
+
+def test_a_prefix_of_frames_counts(run: Graph) -> None:
+    (edge,) = run(publisher("/robot1", frame_prefix="robot1/")).edges
+    assert (edge.parent, edge.child) == ("robot1/base_link", "robot1/laser")
+    assert (edge.topic, edge.publishers) == ("/tf_static", ("/robot1/rsp",))
+
+
+def test_two_robots_on_one_tf_collide_before_anything_starts(run: Graph) -> None:
+    assert "MG402" in codes(run(publisher("/robot1"), publisher("/robot2")))
+    assert codes(run(publisher("/robot1", TF), publisher("/robot2", TF))) == set()
+    prefixed = [publisher(f"/{it}", frame_prefix=f"{it}/") for it in ("robot1", "robot2")]
+    assert codes(run(*prefixed)) == set()
+
+
+def test_a_component_has_its_own_rules_and_its_helper_those_of_the_container(run: Graph) -> None:
+    container = node("rclcpp_components/component_container_isolated", "box", "/robot1", TF)
+    server = node(
+        "nav2_controller/nav2_controller::ControllerServer",
+        *("controller_server", "/robot1", (("cmd_vel", "cmd_vel_nav"),)),
+        container="/robot1/box",
+    )
+    made = run(container, server)
+    assert ("publishes", "/robot1/cmd_vel_nav") in names(made, "/robot1/controller_server")
+    costmap = names(made, "/robot1/local_costmap/local_costmap")
+    assert ("subscribes", "/robot1/tf") in costmap
+    bare = run(container._replace(remappings=()), server._replace(remappings=TF))
+    assert ("subscribes", "/tf") in names(bare, "/robot1/local_costmap/local_costmap")
+
+
+def test_an_absolute_topic_in_a_parameter_is_one_for_all_robots(run: Graph) -> None:
+    spaces = ("/robot1", "/robot2")
+    bt = [node("nav2_bt_navigator/bt_navigator", "bt", it, TF, odom_topic="/odom") for it in spaces]
+    made = run(*bt, *(publisher(it, TF) for it in spaces))
+    assert ("subscribes", "/odom") in names(made, "/robot1/bt")
+    assert "MG320" in codes(made)
+    right = [
+        node("nav2_bt_navigator/bt_navigator", "bt", it, TF, odom_topic="odom") for it in spaces
+    ]
+    assert "MG320" not in codes(run(*right, *(publisher(it, TF) for it in spaces)))
+
+
+def test_a_static_transform_is_that_of_the_arguments(run: Graph) -> None:
+    flags = ("--x", "1", "--frame-id", "map", "--child-frame-id", "robot1/odom")
+    words = ("1", "0", "0", "0", "0", "0", "map", "robot2/odom")
+    program = "tf2_ros/static_transform_publisher"
+    made = run(node(program, "a", "/", arguments=flags), node(program, "b", "/", arguments=words))
+    assert [(it.parent, it.child) for it in made.edges] == [
+        ("map", "robot1/odom"),
+        ("map", "robot2/odom"),
+    ]
+
+
+def test_two_clock_bridges_are_two_clocks(run: Graph) -> None:
+    clock = ("/clock@rosgraph_msgs/msg/Clock[gz.msgs.Clock",)
+    bridges = [
+        node("ros_gz_bridge/parameter_bridge", "b", it, arguments=clock)
+        for it in ("/robot1", "/robot2")
+    ]
+    assert "MG502" in codes(run(*bridges))
+    assert "MG502" not in codes(run(bridges[0]))
+
+
+def test_an_ekf_with_a_prefix_has_frames_of_its_own(run: Graph) -> None:
+    made = run(node("robot_localization/ekf_node", "ekf", "/robot1", tf_prefix="robot1"))
+    assert [(it.parent, it.child) for it in made.edges] == [("robot1/odom", "robot1/base_link")]
+
+
+@pytest.mark.parametrize(("stamped", "type_"), [(True, "TwistStamped"), (False, "Twist")])
+def test_a_parameter_chooses_the_type(run: Graph, stamped: bool, type_: str) -> None:
+    ekf = node("robot_localization/ekf_node", "ekf", use_control=True, stamped_control=stamped)
+    made = run(ekf)
+    (found,) = {it.type for it in made.ends if it.name == "/robot1/cmd_vel"}
+    assert found == f"geometry_msgs/msg/{type_}"
+
+
+@pytest.mark.parametrize(("release", "wanted"), [("jazzy", "Twist"), ("kilted", "TwistStamped")])
+def test_the_type_that_a_release_has_by_default(release: str, wanted: str) -> None:
+    """nav2_util twist_publisher.hpp: false in 1.3.13, true in 1.4.2."""
+    facts = Knowledge(built_in(release).nodes, load_known_nodes("", release), release)
+    monitor = node("nav2_collision_monitor/collision_monitor", "collision_monitor")
+    for given, type_ in (({}, wanted), ({"enable_stamped_cmd_vel": False}, "Twist")):
+        one = (
+            monitor if not given else node("nav2_collision_monitor/collision_monitor", "c", **given)
+        )
+        made = would_run(LaunchGraph((one,)), facts)
+        (found,) = {it.type for it in made.ends if it.name == "/robot1/cmd_vel"}
+        assert found == f"geometry_msgs/msg/{type_}"
+
+
+def test_a_controller_that_two_spawners_load_is_told(run: Graph) -> None:
+    """What an event starts has the launch configurations of the end: those of the last robot."""
+    both = [node("controller_manager/spawner", "", "/robot2", arguments=("drive",)) for _ in "ab"]
+    said = [it.message for it in run(*both).environment.caveats]
+    assert any("/robot2/controller_manager gets drive from 2 spawners" in it for it in said)
+    one = run(both[0], both[0]._replace(namespace="/robot1"))
+    assert not any("spawners" in it.message for it in one.environment.caveats)
+
+
+def test_a_controller_runs_beside_its_manager_with_the_rules_of_both(run: Graph) -> None:
+    manager = node(
+        *("controller_manager/ros2_control_node", "controller_manager", "/robot1", TF),
+    )
+    typed = "controller_manager: {ros__parameters: {drive: {type: diff_drive_controller/%s}}}"
+    texts = (ParameterText("", f"/**/{typed % 'DiffDriveController'}"),)
+    manager = manager._replace(parameters=texts)
+    spawner = node(
+        *("controller_manager/spawner", "", "/robot1"),
+        arguments=("drive", "--controller-ros-args", "-r ~/odom:=odom"),
+    )
+    made = run(manager, spawner)
+    own = names(made, "/robot1/drive")
+    assert {("publishes", "/robot1/odom"), ("publishes", "/robot1/tf")} <= own
+    assert not made.environment.caveats
+    (edge,) = made.edges
+    assert (edge.parent, edge.child) == ("robot1/odom", "robot1/base_link")
+    # A simulator's plugin makes the manager: its rules are not those of the launch.
+    (caveat,) = run(spawner).environment.caveats
+    assert "/robot1/controller_manager" in caveat.message
+    assert "drive" in caveat.message
+
+
+@pytest.mark.parametrize(
+    ("nodes", "notes", "said"),
+    [
+        ((node("acme/driver", "driver"),), (), "/robot1/driver (acme/driver)"),
+        ((publisher("/robot1", TF, robot_description=""),), (), "/robot1/rsp"),
+        ((), (LaunchNote(AT, "decided only at run time"),), f"{AT}: decided only at run time"),
+        ((node("gazebo_ros/spawn_entity.py", ""),), (), "plugins of Gazebo Classic make"),
+        ((publisher("/robot1", (("/tf", "1tf"),)),), (), "rcl refuses"),
+    ],
+)
+def test_what_is_not_known_is_said_and_makes_nothing_right(
+    run: Graph, nodes: tuple[LaunchedNode, ...], notes: tuple[LaunchNote, ...], said: str
+) -> None:
+    caveats = run(*nodes, notes=notes).environment.caveats
+    assert any(it.incomplete and said in it.message for it in caveats)
+
+
+def test_the_command_reports_and_compares(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "two.launch.py"
+    file.write_text("")
+    graphs = {
+        "wrong": LaunchGraph((publisher("/robot1"), publisher("/robot2"))),
+        "right": LaunchGraph((publisher("/robot1", TF), publisher("/robot2", TF))),
+        "open": LaunchGraph((publisher("/robot1", TF), node("acme/driver", "driver"))),
+    }
+    orders = []
+
+    def read(order: object) -> LaunchGraph:
+        orders.append(order)
+        return graphs[dict(order.arguments)["as"]]  # type: ignore[attr-defined]
+
+    monkeypatch.setattr(check_launch, "launch_graph", read)
+
+    def code(*words: str) -> int:
+        return main([words[0], *words[1:], "--distro", "jazzy"])
+
+    assert code("check-launch", str(file), "as:=wrong") == 1
+    assert "MG402" in capsys.readouterr().out
+    assert code("check-launch", str(file), "as:=right") == 0
+    assert code("check-launch", str(file), "as:=open") == 3
+    assert "acme/driver" in capsys.readouterr().err
+    plan = tmp_path / "plan.yaml"
+    assert code("plan", "--from-launch", str(file), "as:=right", "-o", str(plan)) == 0
+    assert code("check-launch", str(file), "as:=right", "--plan", str(plan)) == 0
+    capsys.readouterr()
+    assert code("check-launch", str(file), "as:=wrong", "--plan", str(plan)) == 1
+    assert "should publish topic /robot1/tf" in capsys.readouterr().out
+    assert code("plan", "--from-launch", str(file), "as:=right", "--stack", "nav2") == 2
+    assert "--stack" in capsys.readouterr().err
+    assert all(it.trusted for it in orders)  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["nowhere.launch.py"], "does not exist"),
+        (["no_such_package", "x.launch.py"], "no_such_package"),
+        (["a", "b", "c"], "FILE NAME:=VALUE"),
+        (["x.launch.py", "robots=2"], "NAME:=VALUE"),
+    ],
+)
+def test_bad_words_are_one_line(
+    words: list[str], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["check-launch", *words]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert said in line
+
+
+def simulated(space: str) -> str:
+    """A description with gz_ros2_control in a namespace."""
+    rules = "<remapping>~/odom:=odom</remapping><remapping>/tf:=tf</remapping>"
+    home = f"<ros><namespace>{space}</namespace>{rules}</ros>"
+    plugin = f'<plugin filename="gz_ros2_control-system" name="gz_ros2_control::\
+GazeboSimROS2ControlPlugin">{home}<parameters>/made/c.yaml</parameters></plugin>'
+    return URDF.replace("</robot>", f"<gazebo>{plugin}</gazebo></robot>")
+
+
+def controlled(known: Knowledge, space: str, asked: str) -> System:
+    """One robot in gz, and a spawner that asks for a manager."""
+    sections = {
+        "controller_manager": {"drive": {"type": "diff_drive_controller/DiffDriveController"}},
+        "drive": {"odom_frame_id": "odom", "base_frame_id": "base_link"},
+    }
+    text = yaml.safe_dump(
+        {"/**": {name: {"ros__parameters": values} for name, values in sections.items()}}
+    )
+    spawner = node("controller_manager/spawner", "s", "/robot1", arguments=("drive", "-c", asked))
+    twice = (spawner, spawner._replace(place=AT._replace(line=9)))
+    graph = LaunchGraph(
+        (publisher("/robot1", robot_description=simulated(space)), *twice),
+        (),
+        (("/made/c.yaml", ParameterText("", text)),),
+    )
+    return would_run(graph, known)
+
+
+def test_controllers_of_a_simulators_plugin_are_those_of_its_description(known: Knowledge) -> None:
+    """gz_ros2_control_plugin.cpp: the manager is in the namespace of the plugin, with its rules and its
+    file; simulated time is forced on it, and it gives that to its controllers
+    (controller_manager.cpp). A spawner skips what is loaded (spawner.py)."""
+    made = controlled(known, "robot1", "controller_manager")
+    assert [it.name for it in made.nodes].count("/robot1/drive") == 1
+    ends = names(made, "/robot1/drive")
+    assert {("publishes", "/robot1/tf"), ("publishes", "/robot1/odom")} <= ends
+    edges = {(it.parent, it.child, it.topic) for it in made.edges}
+    assert ("robot1/odom", "robot1/base_link", "/robot1/tf") in edges
+    timed = clocks(made)
+    assert timed["/robot1/drive"] is timed["/robot1/controller_manager"] is True
+    assert timed["/robot1/rsp"] is False
+    (said,) = (it.message for it in made.environment.caveats)
+    assert "/robot1/controller_manager gets drive from 2 spawners" in said
+
+
+def test_a_spawner_that_asks_for_another_manager_is_told(known: Knowledge) -> None:
+    made = controlled(known, "other", "controller_manager")
+    assert [it.name for it in made.nodes] == ["/robot1/rsp"]
+    assert any(
+        "/robot1/controller_manager is started by no node of the launch and no plugin" in it.message
+        for it in made.environment.caveats
+    )
+
+
+def test_the_bridge_of_tf_is_known(run: Graph) -> None:
+    """tf_namespace_bridge.cpp: no layout moves its topics."""
+    ends = names(run(node("tf_namespace_bridge/tf_namespace_bridge", "b")), "/robot1/b")
+    assert ends == {
+        (role, f"{above}/{topic}")
+        for role, above in (("publishes", ""), ("subscribes", "/robot1"))
+        for topic in ("tf", "tf_static")
+    }

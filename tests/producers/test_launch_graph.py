@@ -1,0 +1,582 @@
+"""What a launch file would start, read with the real launch and launch_ros; without them skipped.
+
+Expectations: what launch_ros passes to the processes, read in actions/node.py and
+actions/load_composable_nodes.py.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+from launched_programs import launched
+from paths import ROOT
+
+from multibot_rewrite import InputError
+from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.launch import missing
+from multibot_rewrite.producers.launch.child import launch_graph
+from multibot_rewrite.producers.launch.door import of_launch_ros
+from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, LaunchOrder
+
+
+def without() -> str:
+    """Why launch_ros cannot be imported here; empty if it can."""
+    try:
+        of_launch_ros("actions")
+    except ImportError as error:
+        return str(error)
+    return missing()
+
+
+REASON = f"not tried in the real launch_ros, which is not here: {without()}"
+in_launch = pytest.mark.skipif(bool(without()), reason=REASON)
+HEAD = """\
+from launch import LaunchDescription
+from launch.actions import *
+from launch.conditions import *
+from launch.event_handlers import *
+from launch.launch_description_sources import *
+from launch.substitutions import *
+from launch_ros.actions import *
+from launch_ros.descriptions import *
+from launch_ros.parameter_descriptions import ParameterValue
+from launch_ros.substitutions import *
+
+
+def generate_launch_description():
+    return LaunchDescription([
+"""
+NAMES = HEAD.count("\n")
+
+
+def read(folder: Path, actions: str, *arguments: tuple[str, str], roots: str = "") -> LaunchGraph:
+    file = folder / "bringup.launch.py"
+    file.write_text(f"{HEAD}{actions}\n    ])\n")
+    return launch_graph(LaunchOrder(str(file), arguments, (roots,) if roots else (), True))
+
+
+def one(graph: LaunchGraph) -> LaunchedNode:
+    assert graph.notes == ()
+    (node,) = graph.nodes
+    return node
+
+
+def test_a_node_is_under_the_group_that_has_it(tmp_path: Path) -> None:
+    (tmp_path / "p.yaml").write_text("/**: {ros__parameters: {a: 1}}\n")
+    found = one(
+        read(
+            tmp_path,
+            f"""\
+        DeclareLaunchArgument("robot", default_value="robot9"),
+        GroupAction([
+            PushROSNamespace(LaunchConfiguration("robot")),
+            SetRemap("scan", "front/scan"),
+            SetParameter("use_sim_time", True),
+            Node(package="acme", executable="driver", name="d", namespace="left", arguments=["-v"],
+                 parameters=[{str(tmp_path / "p.yaml")!r}, {{"rate": 5.0, "n": {{"m": "y"}}}}],
+                 remappings=[("a", "b")]),
+        ]),
+        SetLaunchConfiguration("robot", "later"),""",
+            ("robot", "robot1"),
+        )
+    )
+    assert found[:4] == ("acme", "driver", "d", "/robot1/left")
+    assert found.remappings == (("scan", "front/scan"), ("a", "b"))
+    assert found.arguments == ("-v",)
+    assert (Path(found.place.file).name, found.place.line) == ("bringup.launch.py", NAMES + 6)
+    files = [it.file for it in found.parameters]
+    assert files == ["", str(tmp_path / "p.yaml"), "", ""]
+    assert "use_sim_time: True" in found.parameters[0].text
+    assert "m: y" in found.parameters[3].text.replace("'", "")
+
+
+@in_launch
+def test_includes_get_their_arguments_and_conditions_decide(tmp_path: Path) -> None:
+    (tmp_path / "inner.launch.xml").write_text(
+        '<launch>\n  <arg name="which"/>\n'
+        "  <node pkg=\"acme\" exec=\"one\" if=\"$(eval '\\'$(var which)\\' == \\'one\\'')\"/>\n"
+        '  <node pkg="acme" exec="two" name="$(var which)"/>\n</launch>\n'
+    )
+    found = one(
+        read(
+            tmp_path,
+            f"""\
+        IncludeLaunchDescription({str(tmp_path / "inner.launch.xml")!r},
+                                 launch_arguments=[("which", "other")]),
+        Node(package="acme", executable="never", condition=IfCondition("false")),""",
+        )
+    )
+    assert (found.executable, found.name, found.namespace) == ("two", "other", "/")
+    assert (Path(found.place.file).name, found.place.line) == ("inner.launch.xml", 4)
+
+
+def test_components_are_in_their_container(tmp_path: Path) -> None:
+    graph = read(
+        tmp_path,
+        """\
+        PushROSNamespace("robot1"),
+        ComposableNodeContainer(package="rclcpp_components", executable="component_container",
+            name="box", namespace="", composable_node_descriptions=[
+                ComposableNode(package="acme", plugin="acme::One", name="one"),
+                ComposableNode(package="acme", plugin="acme::No", condition=IfCondition("0")),
+            ]),
+        LoadComposableNodes(target_container="/robot1/box", composable_node_descriptions=[
+            ComposableNode(package="acme", plugin="acme::Two", name="two", namespace="in",
+                           remappings=[("a", "b")]),
+        ]),""",
+    )
+    assert graph.notes == ()
+    box, first, second = graph.nodes
+    assert (box.name, box.namespace, box.container) == ("box", "/robot1", "")
+    assert first[1:4] == ("acme::One", "one", "/robot1")
+    assert second[1:5] == ("acme::Two", "two", "/robot1/in", (("a", "b"),))
+    assert {first.container, second.container} == {"/robot1/box"}
+
+
+def test_functions_run_and_what_starts_later_says_so(tmp_path: Path) -> None:
+    graph = read(
+        tmp_path,
+        """\
+        OpaqueFunction(function=lambda context: [Node(package="acme", executable="f")]),
+        TimerAction(period=5.0, actions=[Node(package="acme", executable="t")]),
+        RegisterEventHandler(OnProcessExit(on_exit=[Node(package="acme", executable="e")])),
+        RegisterEventHandler(OnProcessIO(on_stdout=lambda event: None)),
+        RegisterEventHandler(OnShutdown(on_shutdown=[Node(package="acme", executable="end")])),
+        LifecycleNode(package="acme", executable="l", name="l", namespace=""),
+        ExecuteProcess(cmd=["ros2 run acme r", "--ros-args", "-r", "__node:=n", "-r", "a:=b"]),
+        ExecuteProcess(cmd=["rm", "-rf", "build"]),""",
+    )
+    assert [(it.executable, bool(it.later)) for it in graph.nodes] == [
+        ("f", False),
+        ("l", False),
+        ("r", False),
+        ("t", True),
+        ("e", True),
+    ]
+    assert (graph.nodes[2].name, graph.nodes[2].remappings) == ("n", (("a", "b"),))
+    (note,) = graph.notes
+    assert (note.place.line, "run time" in note.message) == (NAMES + 4, True)
+
+
+EVENTS = """\
+from launch import LaunchDescription
+from launch.actions import *
+from launch.event_handlers import *
+from launch.substitutions import *
+from launch_ros.actions import *
+
+
+def one(robot):
+    first = Node(package="acme", executable="first")
+    late = [
+        Node(package="acme", executable="late", namespace=LaunchConfiguration("robot")),
+        Node(package="acme", executable="last"),
+    ]
+    end = Node(package="acme", executable="second", on_exit=[
+        Node(package="acme", executable="ended")])
+    return [
+        SetLaunchConfiguration("robot", robot),
+        GroupAction([
+            PushRosNamespace(robot),
+            first,
+            end,
+            RegisterEventHandler(OnProcessExit(target_action=first, on_exit=late)),
+            TimerAction(period=0.1, actions=[Node(package="acme", executable="timed")]),
+        ]),
+    ]
+
+
+def generate_launch_description():
+    return LaunchDescription([*one("robot1"), *one("robot2")])
+"""
+
+
+@in_launch
+def test_what_starts_later_is_outside_of_its_group(tmp_path: Path) -> None:
+    """As in the real launch: a group has ended by then, and a configuration has its last value."""
+    file = tmp_path / "events.launch.py"
+    file.write_text(EVENTS)
+    programs = ("first", "second", "late", "last", "ended", "timed")
+    told, _ = launched(file, tmp_path, programs=dict.fromkeys(programs, "acme"))
+    real = [
+        (
+            Path(it["words"][0]).name,
+            next((w[6:] for w in it["words"] if w.startswith("__ns:=")), "/"),
+        )
+        for it in told
+    ]
+    graph = launch_graph(LaunchOrder(str(file), (), (), True))
+    assert graph.notes == ()
+    found = [(it.executable, it.namespace) for it in graph.nodes]
+    assert sorted(found) == sorted(real)
+    assert found.count(("late", "/robot2")) == 2
+
+
+AGAIN = """\
+from launch import LaunchDescription
+from launch.actions import OpaqueFunction, TimerAction
+from launch_ros.actions import Node
+
+
+def again(context):
+    timer = TimerAction(period=1.0, actions=[OpaqueFunction(function=again)])
+    return [Node(package="acme", executable="d"), timer]
+
+
+def generate_launch_description():
+    return LaunchDescription([OpaqueFunction(function=again)])
+"""
+
+
+def test_a_timer_knows_the_folder_of_its_launch_file(tmp_path: Path) -> None:
+    """It keeps the locals of its place (timer_action.py), an event handler does not."""
+    inner = 'Node(package="acme", executable="d", arguments=[ThisLaunchFileDir()])'
+    graph = read(tmp_path, f"        TimerAction(period=1.0, actions=[{inner}]),")
+    assert one(graph).arguments == (str(tmp_path),)
+
+
+def test_a_timer_that_starts_itself_again_is_told(tmp_path: Path) -> None:
+    file = tmp_path / "again.launch.py"
+    file.write_text(AGAIN)
+    graph = launch_graph(LaunchOrder(str(file), (), (), True))
+    (note,) = graph.notes
+    assert "again and again" in note.message
+    assert 1 < len(graph.nodes) < 100
+
+
+def test_a_configuration_that_is_gone_at_an_event_is_told(tmp_path: Path) -> None:
+    late = 'Node(package="acme", executable="e", namespace=LaunchConfiguration("robot"))'
+    event = f"RegisterEventHandler(OnProcessExit(on_exit=[{late}]))"
+    actions = f'GroupAction([SetLaunchConfiguration("robot", "r"), {event}]),'
+    (note,) = read(tmp_path, f'        Node(package="a", executable="b"),\n{actions}').notes
+    assert note.message.startswith("at an event (OnProcessExit) SubstitutionFailure")
+    assert (
+        "'robot' does not exist; groups and their launch configurations have ended" in note.message
+    )
+
+
+def test_what_starts_later_is_outside_the_group_that_it_stands_in(tmp_path: Path) -> None:
+    """launch leaves the scope of a group before any event (LaunchService, GroupAction)."""
+    graph = read(
+        tmp_path,
+        """\
+        GroupAction([
+            PushRosNamespace("robot1"),
+            RegisterEventHandler(OnProcessExit(on_exit=[
+                Node(package="acme", executable="e", namespace="robot1"),
+                TimerAction(period=1.0, actions=[Node(package="acme", executable="t")])])),
+            Node(package="acme", executable="n")]),""",
+    )
+    found = {it.executable: it.namespace for it in graph.nodes}
+    assert found == {"n": "/robot1", "e": "/robot1", "t": "/"}
+
+
+def test_a_node_without_its_parameter_file_is_known(tmp_path: Path) -> None:
+    """launch_ros warns of the file and starts the node (``_perform_substitutions`` of Node)."""
+    graph = read(tmp_path, 'Node(package="acme", executable="d", parameters=["none.yaml"]),')
+    assert [it.executable for it in graph.nodes] == ["d"]
+    assert ([it.parameters for it in graph.notes], graph.whole) == ([True], True)
+
+
+def test_nothing_is_started(tmp_path: Path) -> None:
+    made = tmp_path / "made"
+    found = one(
+        read(
+            tmp_path,
+            f"""\
+        ExecuteProcess(cmd=["touch", {str(made)!r}]),
+        Node(package="acme", executable="d", parameters=[
+            {{"robot_description": Command(["touch ", {str(made)!r}]), "rate": 1}}]),""",
+        )
+    )
+    assert not made.exists()
+    assert any("rate: 1" in it.text for it in found.parameters)
+
+
+def test_a_missing_package_is_named_and_found_in_its_sources(tmp_path: Path) -> None:
+    share = 'FindPackageShare("acme_bringup")'
+    include = f'        IncludeLaunchDescription([{share}, "/launch/a.launch.py"]),'
+    (note,) = read(tmp_path, include).notes
+    assert note.place.line == NAMES + 1
+    assert "package 'acme_bringup' is not installed here" in note.message
+    sources = tmp_path / "src" / "deep" / "bringup"
+    (sources / "launch").mkdir(parents=True)
+    (sources / "package.xml").write_text("<package><name>acme_bringup</name></package>")
+    inner = HEAD + '        Node(package="acme", executable="d"),\n    ])\n'
+    (sources / "launch" / "a.launch.py").write_text(inner)
+    found = one(read(tmp_path, include, roots=str(tmp_path / "src")))
+    assert found.place == (str(sources / "launch" / "a.launch.py"), NAMES + 1)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("import acme_tools\n", "package 'acme_tools' is not installed here"),
+        ("def generate(:\n", "SyntaxError"),
+        ("print('no')\n", "generate_launch_description"),
+        ("raise SystemExit(0)\n", "SystemExit"),
+    ],
+)
+def test_a_launch_file_that_cannot_be_read_is_one_line(
+    text: str, said: str, tmp_path: Path
+) -> None:
+    file = tmp_path / "broken.launch.py"
+    file.write_text(text)
+    with pytest.raises(InputError) as caught:
+        launch_graph(LaunchOrder(str(file), trusted=True))
+    assert str(caught.value).startswith(f"{file}: ") and said in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_launch_without_nodes_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="it starts no node"):
+        read(tmp_path, '        Node(package="a", executable="b", condition=IfCondition("0")),')
+
+
+@pytest.mark.skipif(not without(), reason="launch_ros is here")
+@pytest.mark.skipif(not without(), reason="launch is here")
+def test_without_launch_a_stand_in_reads_and_says_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    found = read(tmp_path, 'Node(package="acme", executable="driver", name="d"),')
+    assert found.stood_in and one(found).name == "d"
+    main(["check-launch", str(tmp_path / "bringup.launch.py")])
+    assert (
+        "launch is not installed here: a stand-in read the launch file" in capsys.readouterr().err
+    )
+    (tmp_path / "bringup.launch.xml").write_text("<launch/>")
+    with pytest.raises(InputError, match=r"needs launch itself.*source ROS 2") as caught:
+        launch_graph(LaunchOrder(str(tmp_path / "bringup.launch.xml"), (), (), True))
+    assert "\n" not in str(caught.value)
+
+
+def test_the_command_itself_imports_no_launch() -> None:
+    assert "launch_ros" not in sys.modules or not without()
+
+
+def test_a_file_that_is_made_of_another_one_names_it(tmp_path: Path) -> None:
+    source = tmp_path / "p.yaml"
+    source.write_text("/**:\n  ros__parameters: {rate: $(var rate)}\n")
+    node = (
+        "Node(package='a', executable='b', parameters=[ParameterFile(SOURCE, allow_substs=True)])"
+    )
+    actions = f"DeclareLaunchArgument('rate', default_value='5'), {node}"
+    found = one(read(tmp_path, actions.replace("SOURCE", repr(str(source)))))
+    (given,) = found.parameters
+    assert (given.file, given.source) == ("", str(source))
+    assert "rate: 5" in given.text
+
+
+def test_the_file_of_a_rewritten_one_is_found(tmp_path: Path) -> None:
+    source, name = tmp_path / "p.yaml", repr(str(tmp_path / "p.yaml"))
+    source.write_text("/**:\n  ros__parameters: {rate: 5}\n")
+    # As nav2_common's: ``name`` is what it reads, and what it makes is a temporary file.
+    made = """
+import tempfile
+class RewrittenYaml(Substitution):
+    def __init__(self, name):
+        super().__init__()
+        self.name = [TextSubstitution(text=name)] if isinstance(name, str) else [name]
+    def perform(self, context):
+        with open(self.name[0].perform(context)) as old:
+            with tempfile.NamedTemporaryFile("w", delete=False) as new:
+                new.write("# made\\n" + old.read())
+        return new.name
+"""
+    head = f"from launch import Substitution{made}"
+    file = tmp_path / "bringup.launch.py"
+    nodes = f"Node(package='a', executable='b', parameters=[RewrittenYaml(RewrittenYaml({name}))])"
+    file.write_text(
+        f"{HEAD.partition('def generate')[0]}{head}\ndef generate_launch_description():\n"
+        f"    return LaunchDescription([{nodes}])\n"
+    )
+    (given,) = one(launch_graph(LaunchOrder(str(file), (), (), True))).parameters
+    assert (given.file, given.source) == ("", str(source))
+    assert given.text.startswith("# made\n# made\n")
+
+
+def test_the_files_of_a_spawner_are_its_parameters(tmp_path: Path) -> None:
+    source = tmp_path / "p.yaml"
+    source.write_text("a:\n  ros__parameters: {type: x/X}\n")
+    words = f"arguments=['a', '-p', {str(source)!r}]"
+    found = one(
+        read(tmp_path, f"Node(package='controller_manager', executable='spawner', {words})")
+    )
+    assert [it.source for it in found.parameters] == [str(source)]
+    assert found.arguments[0] == "a"
+
+
+def test_a_launch_file_sees_the_command_line_of_ros2_launch(tmp_path: Path) -> None:
+    """As nav2_common's ParseMultiRobotPose looks at it."""
+    file = tmp_path / "bringup.launch.py"
+    file.write_text(
+        "import sys\n"
+        "from launch import LaunchDescription\n"
+        "from launch_ros.actions import Node\n"
+        "def generate_launch_description():\n"
+        "    names = sys.argv[4].partition(':=')[2].split(';')\n"
+        "    return LaunchDescription([\n"
+        "        Node(package='a', executable='b', namespace=it) for it in names])\n"
+    )
+    order = LaunchOrder(str(file), (("robots", "r1;r2"),), (), True, "my_package")
+    assert [it.namespace for it in launch_graph(order).nodes] == ["/r1", "/r2"]
+
+
+def test_the_text_of_a_file_that_the_launch_makes_is_kept(tmp_path: Path) -> None:
+    made = "tempfile.NamedTemporaryFile('w', suffix='.yaml', delete=False)"
+    file = tmp_path / "bringup.launch.py"
+    file.write_text(
+        "import tempfile\n"
+        "from launch import LaunchDescription\n"
+        "from launch_ros.actions import Node\n"
+        "def generate_launch_description():\n"
+        f"    with {made} as out:\n"
+        "        out.write('- {topic_name: scan}\\n')\n"
+        "    bridge = {'parameters': [{'config_file': out.name}]}\n"
+        "    return LaunchDescription([\n"
+        "        Node(package='ros_gz_bridge', executable='parameter_bridge', **bridge)])\n"
+    )
+    (node,) = launch_graph(LaunchOrder(str(file), (), (), True)).nodes
+    assert "- {topic_name: scan}\n" in [it.text for it in node.parameters]
+
+
+XACRO = """\
+<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="rover"><xacro:arg name="end" default="tip"/>
+<link name="base_link"/><link name="$(arg end)"/><joint name="j" type="fixed">
+<parent link="base_link"/><child link="$(arg end)"/></joint></robot>
+"""
+COMMANDS = """\
+["xacro ", FILE, " end:=", "lidar"]
+[FindExecutable(name="xacro"), " ", FILE, " -o here.urdf end:=a"]
+["urdf-postfix ", FILE, " robot1 end:=eye --layout postfix"]
+["urdf-postfix ", FILE, " robot1 -o there.urdf"]
+["touch there.urdf"]
+["xacro /nowhere.xacro"]
+"""
+
+
+def test_the_output_of_commands_is_known_and_nothing_is_started(tmp_path: Path) -> None:
+    file, plain = tmp_path / "rover.urdf.xacro", tmp_path / "plain.txt"
+    file.write_text(XACRO)
+    plain.write_text("wheel: left: 1")
+    there = str(tmp_path / "there.urdf")
+    lines = COMMANDS.replace("FILE", repr(str(file))).replace("there.urdf", there).splitlines()
+    texts = [f"ParameterValue(Command({it}), value_type=str)" for it in lines]
+    nodes = [
+        f'        Node(package="a", executable="b", parameters=[{{"text": {it}}}]),'
+        for it in (*texts, f"Command(['cat ', {str(plain)!r}])")
+    ]
+    before = {*tmp_path.iterdir()}
+    graph = read(tmp_path, "\n".join(nodes))
+    values = [
+        yaml.safe_load(it.parameters[0].text)["/**"]["ros__parameters"]["text"]
+        for it in graph.nodes
+        if it.parameters
+    ]
+    xacro, unknown, postfix, other, touch, nowhere = values
+    assert '<child link="lidar"/>' in xacro
+    assert '<child link="eye/robot1"/>' in postfix
+    # Options that write a file, and other programs: their output is not known.
+    assert (unknown, other, touch, nowhere) == ("", "", "", "")
+    # launch_ros refuses a text that is no YAML, and says what to do.
+    note, fault = graph.notes
+    assert fault.parameters and "'xacro /nowhere.xacro'" in fault.message
+    assert "/nowhere.xacro: cannot be read" in fault.message
+    assert note.parameters and "as yaml" in note.message and "value_type=str" in note.message
+    assert {*tmp_path.iterdir()} - before == {tmp_path / "bringup.launch.py"}
+
+
+TWO = """\
+from launch import LaunchDescription
+from launch.actions import *
+from launch.substitutions import *
+from launch_ros.actions import *
+from launch_ros.parameter_descriptions import ParameterValue
+from pathlib import Path
+
+HERE = str(Path(__file__).parent / "rover.urdf.xacro")
+
+
+def state(context, robot, *rules):
+    text = ParameterValue(Command(["xacro ", HERE]), value_type=str)
+    return [GroupAction([
+        PushRosNamespace(robot),
+        Node(package="robot_state_publisher", executable="robot_state_publisher", name="rsp",
+             parameters=[{"robot_description": text}], remappings=RULES),
+    ])]
+
+
+def generate_launch_description():
+    return LaunchDescription([
+        OpaqueFunction(function=state, args=[robot]) for robot in ("robot1", "robot2")])
+"""
+
+
+@pytest.mark.parametrize(
+    ("rules", "code"),
+    [("[]", 1), ("[('/tf', 'tf'), ('/tf_static', 'tf_static')]", 0), ("[('/tf', '1tf')]", 3)],
+)
+def test_the_whole_command(
+    rules: str, code: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Two robots whose descriptions a xacro makes: on one /tf, apart, with a rule that rcl refuses."""
+    (tmp_path / "rover.urdf.xacro").write_text(XACRO)
+    file = tmp_path / "two.launch.py"
+    file.write_text(TWO.replace("RULES", rules))
+    plan = tmp_path / "plan.yaml"
+    assert main(["check-launch", str(file), "--distro", "jazzy"]) == code
+    told = capsys.readouterr()
+    assert ("MG402" in told.out) == (code == 1)
+    assert ("rcl refuses 2 nodes" in told.err) == (code == 3)
+    assert "description is not known" not in told.err
+    if code == 0:
+        words = ["plan", "--from-launch", str(file), "--distro", "jazzy", "-o", str(plan)]
+        assert main(words) == 0
+        assert "tip" in plan.read_text()
+        other = tmp_path / "other.launch.py"
+        other.write_text(TWO.replace("RULES", "[]"))
+        assert main(["check-launch", str(other), "--plan", str(plan), "--distro", "jazzy"]) == 1
+        assert "MG102" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["two.launch.py", "three.launch.py", pytest.param("three.launch.xml", marks=in_launch)],
+)
+def test_actions_for_robots_are_read_with_their_names(name: str) -> None:
+    """Their names are known when they run: of two robots with everything of their own."""
+    file = ROOT / "examples" / "launch_tutorial" / name
+    graph = launch_graph(LaunchOrder(str(file), (), (), True))
+    state = [it for it in graph.nodes if it.package == "robot_state_publisher"]
+    assert [(it.namespace, it.name) for it in state] == [
+        ("/robot1", "robot_state_publisher"),
+        ("/robot2", "robot_state_publisher"),
+    ]
+    for robot, it in zip(("robot1", "robot2"), state, strict=True):
+        assert any(f"{robot}/base_link" in text.text for text in it.parameters)
+        assert it.place.file == str(file)
+        assert it.place.line > 1 or file.suffix == ".xml"
+    placed = [it for it in graph.nodes if it.package == "tf2_ros"]
+    assert [it.name for it in placed] == ["start_pose", "start_pose"]
+    made = main(["check-launch", str(file), "--plan", str(file.with_name("fleet.yaml"))])
+    # Only what the simulator sends is not known.
+    assert made == 3
+
+
+def test_files_that_plugins_of_a_description_name_are_kept(tmp_path: Path) -> None:
+    """A launch makes them of others, and they are gone when it has been read."""
+    file = tmp_path / "controllers.yaml"
+    file.write_text("drive: {ros__parameters: {enable_odom_tf: false}}\n")
+    plugin = f"<plugin><parameters> {file} </parameters></plugin>"
+    value = f"ParameterValue({plugin!r}, value_type=str)"
+    found = read(
+        tmp_path,
+        f"""\
+        Node(package="robot_state_publisher", executable="robot_state_publisher",
+             parameters=[{{"robot_description": {value}}}]),""",
+    )
+    ((path, kept),) = found.files
+    assert (path, kept.text) == (str(file), file.read_text())

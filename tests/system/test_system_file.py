@@ -1,0 +1,102 @@
+"""The file of a system: its published schema, and what older versions wrote."""
+
+from __future__ import annotations
+
+import json
+from importlib.resources import files
+from typing import Any
+
+import pytest
+from graph_cases import CASES
+from jsonschema import Draft202012Validator
+from paths import ROOT
+
+from multibot_rewrite.model import InputError
+from multibot_rewrite.system.json import from_json, to_json
+from multibot_rewrite.system.records import (
+    MAY,
+    Controller,
+    Heard,
+    Node,
+    Parameter,
+    Robot,
+    System,
+    answering,
+    clocks,
+)
+from multibot_rewrite.system.schema import schema
+
+TEXT = files("multibot_rewrite.system").joinpath("system.schema.json").read_text()
+VALID = Draft202012Validator(json.loads(TEXT))
+ALL = System(
+    nodes=(Node("/r1/amcl", robot="r1", lifecycle="active", sure=MAY._replace(why="slam: false")),),
+    heard=(Heard("/scan", "laser"),),
+    parameters=(Parameter("/r1/amcl", "use_sim_time", "true"),),
+    controllers=(Controller("/r1/controller_manager", "arm", "active", ("j1/position",)),),
+    robots=(Robot("r1", ("r1/base_link",), "/r1/tf"),),
+)
+
+
+def test_the_published_schema_is_that_of_the_records() -> None:
+    assert json.loads(TEXT) == schema(), "python -m multibot_rewrite.system.schema > ...schema.json"
+
+
+@pytest.mark.parametrize("path", [f"{it.stem}.json" for it in CASES])
+def test_what_is_written_is_valid(path: str) -> None:
+    VALID.validate(json.loads((ROOT / path).read_bytes()))
+
+
+def test_every_kind_of_record_is_valid_and_comes_back() -> None:
+    VALID.validate(json.loads(to_json(ALL)))
+    assert from_json(to_json(ALL), "g") == ALL
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("nodes", [{"name": "amcl"}]),
+        ("nodes", [{"name": "/amcl", "pid": 3}]),
+        ("nodes", [{"name": "/amcl", "sure": {"word": "perhaps"}}]),
+        ("parameters", [{"node": "/amcl", "name": "rate", "value": 5}]),
+        ("controllers", [{"manager": "/manager", "name": "arm"}]),
+        ("ends", [{"kind": "topic"}]),
+        ("endpoints", []),
+        ("schema", 1),
+    ],
+)
+def test_the_schema_refuses_what_the_reader_refuses(key: str, value: Any) -> None:
+    wrong = {**json.loads(to_json(ALL)), key: value}
+    assert not VALID.is_valid(wrong)
+    with pytest.raises(InputError):
+        from_json(json.dumps(wrong).encode(), "g")
+
+
+def test_a_snapshot_of_schema_1_is_read() -> None:
+    old, new = "fixtures/snapshot_schema_1.json", "fixtures/graphs/both/healthy.json"
+    found = from_json((ROOT / old).read_bytes(), old)
+    assert found.ends and found.edges
+    assert found == from_json((ROOT / new).read_bytes(), new)
+
+
+def test_answers_of_schema_1_are_read() -> None:
+    states = [
+        {"node": "/a", "lifecycle": "active", "parameters": [{"name": "rate", "value": "5"}]},
+        {"node": "/m", "sim_time": True, "controllers": [{"name": "arm", "state": "active"}]},
+        {"node": "/silent"},
+    ]
+    old = json.loads((ROOT / "fixtures/snapshot_schema_1.json").read_bytes())
+    old |= {"nodes": [{"name": "/a", "process": ""}], "states": states}
+    found = from_json(json.dumps(old).encode(), "old")
+    assert found.nodes == (Node("/a", lifecycle="active"),)
+    assert (clocks(found), answering(found)) == ({"/m": True}, {"/a", "/m"})
+    assert found.controllers == (Controller("/m", "arm", "active"),)
+    assert Parameter("/a", "rate", "5") in found.parameters
+
+
+def test_what_is_wrong_in_schema_1_is_said_by_its_keys() -> None:
+    old = json.loads((ROOT / "fixtures/snapshot_schema_1.json").read_bytes())
+    with pytest.raises(InputError, match=r"old: states\[0\].sim_time: expected true or false"):
+        from_json(json.dumps({**old, "states": [{"node": "/a", "sim_time": 1}]}).encode(), "old")
+    del old["nodes"]
+    with pytest.raises(InputError, match="old: nodes: missing"):
+        from_json(json.dumps(old).encode(), "old")
