@@ -145,7 +145,7 @@ def test_a_bridged_graph_is_as_planned_and_a_leak_is_none(tmp_path: Path) -> Non
     state = next(it for it in plan.robots[0].nodes if "robot_state" in it)
     leak = End(TOPIC, PUBLISHES, "/tf", TF_TYPE, "", state, None, "")
     bare = Edge("base_link", "odom", "/tf", False, ())
-    spoiled = graph._replace(ends=(*graph.ends, leak), frames=(*graph.edges, bare))
+    spoiled = graph._replace(ends=(*graph.ends, leak), edges=(*graph.edges, bare))
     (said,) = (it for it in check(plan, sent(spoiled)) if it.code == "MG405")
     assert (said.node, said.names[0]) == (state, "/tf")
 

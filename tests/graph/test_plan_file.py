@@ -46,7 +46,7 @@ def plan(text: str = PLAN) -> bytes:
 def test_what_is_written_is_read() -> None:
     found = read_plan(plan(), "plan.yaml")
     assert found.shared_nodes == ("/map_server", "/fleet_manager", "/rviz2")
-    assert found.endpoints[0] == PlannedEndpoint(
+    assert found.ends[0] == PlannedEndpoint(
         "/map_server", "topic", "publishes", "/map", "nav_msgs/msg/OccupancyGrid", "map"
     )
     assert found.topics == (
@@ -187,7 +187,7 @@ def test_a_map_that_is_not_latched() -> None:
         else it
         for it in found.ends
     )
-    assert codes(found._replace(endpoints=ends)) == [("MG309", "/map_server")]
+    assert codes(found._replace(ends=ends)) == [("MG309", "/map_server")]
 
 
 PATTERN = PLAN.replace(
