@@ -27,7 +27,6 @@ import live_fleet  # the nodes of the tests
 import zenoh_robots  # and its sessions
 
 from multibot_rewrite.cli.files import write_all
-from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
 from multibot_rewrite.graph.plan_file import from_json as plan_from_json
 from multibot_rewrite.graph.plan_file import from_yaml, to_yaml
 from multibot_rewrite.graph.plan_file import to_json as plan_to_json
@@ -37,6 +36,7 @@ from multibot_rewrite.naming import make_naming
 from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.table import build_table
 from multibot_rewrite.rules.check import check
+from multibot_rewrite.spelling.plan import planned_end
 from multibot_rewrite.system.json import from_json, to_json
 from multibot_rewrite.system.records import (
     PUBLISHES,
@@ -45,6 +45,7 @@ from multibot_rewrite.system.records import (
     End,
     Environment,
     Node,
+    Robot,
     System,
 )
 
@@ -99,7 +100,7 @@ def spread(values: Sequence[float]) -> str:
     return f"{min(values):.3g} to {max(values):.3g}" if len(values) > 1 else ""
 
 
-def ends(size: Size) -> Iterator[PlannedEndpoint]:
+def ends(size: Size) -> Iterator[End]:
     """Every endpoint of a fleet: a topic has its publisher and its subscription in one node."""
     for robot in range(size.robots):
         for node in range(size.nodes):
@@ -108,30 +109,27 @@ def ends(size: Size) -> Iterator[PlannedEndpoint]:
                 full = f"/robot{robot}/{name}"
                 type_ = f"std_msgs/msg/{TYPES[topic % 2]}"
                 for role in (PUBLISHES, SUBSCRIBES):
-                    yield PlannedEndpoint(
-                        f"/robot{robot}/node{node}", TOPIC, role, full, type_, name
-                    )
+                    yield planned_end(f"/robot{robot}/node{node}", TOPIC, role, full, type_, name)
 
 
-def plan_of(size: Size) -> Expectation:
-    robots = tuple(
-        PlannedRobot(
-            f"robot{robot}",
-            tuple(f"/robot{robot}/node{node}" for node in range(size.nodes)),
-            (),
-            f"/robot{robot}/tf",
-        )
-        for robot in range(size.robots)
+def plan_of(size: Size) -> System:
+    names = [f"robot{robot}" for robot in range(size.robots)]
+    return System(
+        tuple(Node(f"/{it}/node{at}", robot=it) for it in names for at in range(size.nodes)),
+        tuple(ends(size)),
+        robots=tuple(Robot(it, (), f"/{it}/tf") for it in names),
+        layout="both",
+        shared_topics=("/clock",),
+        shared_frames=("map",),
+        ignored_nodes=("/early*",),
     )
-    ends_ = tuple(ends(size))
-    return Expectation("both", robots, (), ("/clock",), ("map",), ends_, ignored_nodes=("/early*",))
 
 
-def graph_of(plan: Expectation) -> System:
+def graph_of(plan: System) -> System:
     """The graph exactly as planned."""
     around = Environment(0, "LOCALHOST", (), "rmw_fastrtps_cpp", "", False, 5, "quiet", 3.5, ())
-    nodes = tuple(Node(node, "") for robot in plan.robots for node in robot.nodes)
-    found = (End(w.kind, w.role, w.name, w.type, "", w.node, None, "") for w in plan.endpoints)
+    nodes = tuple(Node(it.name, "") for it in plan.nodes)
+    found = (End(w.kind, w.role, w.name, w.type, "", w.node, None, "") for w in plan.ends)
     return System(nodes, tuple(found), (), around)
 
 

@@ -66,7 +66,7 @@ HOMES: tuple[Home, ...] = (
     Home(
         "MF6",
         "what was built",
-        ("fleets.consistency", "fleets.value_checks", "fleets.tf_conflicts"),
+        ("fleets.consistency", "fleets.value_checks"),
     ),
     Home(
         "MF7",
@@ -102,7 +102,6 @@ HOMES: tuple[Home, ...] = (
             "fleets.apart",
             "fleets.cell_outputs",
             "fleets.moveit_frames",
-            "fleets.closing_topics",
         ),
     ),
     Home(
@@ -128,6 +127,7 @@ HOMES: tuple[Home, ...] = (
             "rules.system.relays",
             "rules.system.sharing",
             "rules.system.equal_robots",
+            "rules.system.unsent",
         ),
     ),
     Home(

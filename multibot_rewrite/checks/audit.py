@@ -149,7 +149,6 @@ def included_models(inventory: Inventory, tree: Tree | None = None) -> Iterator[
 def unknown_plugins(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
     """Plugins no section knows: what their parameters name can only be guessed."""
     guesses = Guesses()
-    plugins = tree.vocabulary.names("plugin")
     for host in inventory.hosts:
         section = host.node.section
         if section is None or not is_unknown(section):
@@ -158,7 +157,8 @@ def unknown_plugins(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
         others = tree.vocabulary.releases_elsewhere("plugin", library_key(name))
         where = _not_here(tree, others) if others else "is not in the vocabulary"
         message = f"plugin {name!r} {where}: its own parameters are not renamed"
-        hint = ANOTHER_RELEASE if others else guesses.hint(library_key(name), plugins)
+        known = tree.vocabulary.names("plugin")
+        hint = ANOTHER_RELEASE if others else guesses.hint(library_key(name), known)
         yield Problem(host.element, message, None, hint, (), "MB902")
 
 
@@ -212,7 +212,6 @@ def other_ros(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
 def unknown_hardware(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
     """Hardware classes no section knows that have parameters: one may be a name, or a prefix."""
     guesses = Guesses()
-    classes = tree.vocabulary.names("hardware")
     for host in inventory.hosts:
         section = host.node.section
         if section is None or section.select != "hardware":
@@ -223,5 +222,6 @@ def unknown_hardware(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
         others = tree.vocabulary.releases_elsewhere("hardware", name)
         where = _not_here(tree, others) if others else "is not in the vocabulary"
         message = f"hardware class {name!r} {where}: its own parameters are not renamed"
-        hint = ANOTHER_RELEASE if others else guesses.hint(name, classes)
+        known = tree.vocabulary.names("hardware")
+        hint = ANOTHER_RELEASE if others else guesses.hint(name, known)
         yield Problem(host.element, message, None, hint, (), "MB903")

@@ -118,7 +118,7 @@ def _of_controllers(
     )
     rules = " ".join(f"-r {_rule(it.name, naming)}" for it in names)
     hint = (
-        f'start each controller with its spawner and --controller-ros-args "{rules}"; multibot remap'
+        f'start each controller with its spawner and --controller-ros-args "{rules}"; multibot plan'
         " and build print the lines"
     )
     return Problem(element, message, None, hint, (), CONTROLLERS)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 
 from multibot_rewrite.bounded import MAX_FLEET_BYTES
@@ -18,7 +19,6 @@ from multibot_rewrite.findings.selection import fails
 from multibot_rewrite.fleets.fleet_or_plan import is_fleet
 from multibot_rewrite.graph.bags.read import BagsUnusable, read_bag
 from multibot_rewrite.graph.bags.recording import as_snapshot, counted
-from multibot_rewrite.graph.expectation import Expectation, robot_words
 from multibot_rewrite.graph.live.request import RosUnusable
 from multibot_rewrite.graph.plan_file import is_json, read_plan
 from multibot_rewrite.live.watching import WORDS, Outcome, Verdict, final
@@ -28,6 +28,7 @@ from multibot_rewrite.releases import facts_of_release
 from multibot_rewrite.rules.check import check, doubts
 from multibot_rewrite.rules.index import NO_COUNTS
 from multibot_rewrite.sources.read import read_file
+from multibot_rewrite.spelling.plan import robot_words
 from multibot_rewrite.system.records import System, answering
 
 CODES = {Verdict.PLANNED: DONE, Verdict.WRONG: STOPPED, Verdict.INCONCLUSIVE: live.INCONCLUSIVE}
@@ -51,19 +52,22 @@ def run(options: argparse.Namespace) -> int:
         return live.NO_ROS
 
 
-def _with_files(options: argparse.Namespace, plan: Expectation) -> Expectation:
+def _with_files(options: argparse.Namespace, plan: System) -> System:
     """The plan with the parameters in the files beside it."""
     from multibot_rewrite.fleets.built_states import with_built
 
     return with_built(plan, options.built or os.path.dirname(options.plan))
 
 
-def _parameters(plan: Expectation) -> dict[str, list[str]]:
+def _parameters(plan: System) -> dict[str, list[str]]:
     """What the nodes of the plan are asked for."""
-    return {it.node: [own.name for own in it.parameters] for it in plan.states}
+    found: dict[str, list[str]] = defaultdict(list)
+    for it in plan.parameters:
+        found[it.node].append(it.name)
+    return found
 
 
-def _recorded(options: argparse.Namespace, plan: Expectation) -> int:
+def _recorded(options: argparse.Namespace, plan: System) -> int:
     recording = read_bag(options.bag)
     return conclude(options, plan, as_snapshot(recording, plan), messages=counted(recording))
 
@@ -87,7 +91,7 @@ def _check_built(options: argparse.Namespace) -> None:
         raise UsageError("--built is compared with what nodes answer: add --state")
 
 
-def plan_of(options: argparse.Namespace) -> Expectation:
+def plan_of(options: argparse.Namespace) -> System:
     """The plan that a file holds, or that follows from a fleet file."""
     path: str = options.plan
     data = read_file(path, MAX_FLEET_BYTES)
@@ -108,7 +112,7 @@ def plan_of(options: argparse.Namespace) -> Expectation:
     return expected(made)
 
 
-def _of_release(options: argparse.Namespace, plan: Expectation) -> Expectation:
+def _of_release(options: argparse.Namespace, plan: System) -> System:
     """The plan, which is of the release that ``--distro`` names, if it says so."""
     asked: str = options.distro or ""
     if asked and plan.release not in ("", asked):
@@ -119,7 +123,7 @@ def _of_release(options: argparse.Namespace, plan: Expectation) -> Expectation:
 
 def conclude(
     options: argparse.Namespace,
-    plan: Expectation,
+    plan: System,
     graph: System,
     before: Sequence[Finding] = (),
     messages: Mapping[str, int] = NO_COUNTS,
@@ -145,7 +149,7 @@ def conclude(
     return STOPPED if failed else CODES[verdict]
 
 
-def _gaps(options: argparse.Namespace, plan: Expectation) -> list[Finding]:
+def _gaps(options: argparse.Namespace, plan: System) -> list[Finding]:
     """What is open in the plan. Notes, as of what a driver that nobody names may send, are only counted
     where they are asked for."""
     found = chosen(options, plan.gaps)
@@ -174,7 +178,7 @@ def _outcome(options: argparse.Namespace, verdict: Verdict, gaps: Sequence[Findi
 
 def _sum_up(
     options: argparse.Namespace,
-    plan: Expectation,
+    plan: System,
     findings: Sequence[Finding],
     outcome: Outcome,
 ) -> None:
@@ -182,7 +186,7 @@ def _sum_up(
     note(options, f"{counted}: {outcome.words}{facts_of_release(plan.release)}")
 
 
-def _watch(options: argparse.Namespace, plan: Expectation) -> int:
+def _watch(options: argparse.Namespace, plan: System) -> int:
     gaps = _gaps(options, plan)
     print_lines(map(str, gaps))
     snapshots = live.watched(options, _parameters(plan))

@@ -61,7 +61,7 @@ def overview(colour: str) -> str:
             "examples:",
             "  multibot init rover.urdf",
             "  multibot build fleet.yaml -o out/",
-            "  multibot remap rover.urdf robot1 robot2 --stack nav2",
+            "  multibot plan rover.urdf robot1 robot2 --stack nav2 --form table",
             "  multibot explain MG102",
             "",
             "commands:",

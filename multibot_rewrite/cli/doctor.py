@@ -23,7 +23,6 @@ from multibot_rewrite.cli.watch import follow
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.graph.bags.read import BagsUnusable, read_bag
 from multibot_rewrite.graph.bags.recording import as_snapshot, counted, is_recorded
-from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.live.request import RosUnusable
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.knowledge.stacks import built_in
@@ -144,6 +143,6 @@ def _watch(options: argparse.Namespace) -> int:
     return _sum_up(options, len(last.findings), final(last))
 
 
-def _look(graph: System) -> tuple[Expectation, Sequence[Finding]]:
+def _look(graph: System) -> tuple[System, Sequence[Finding]]:
     seen = diagnose(graph)
     return seen_plan(seen), seen.findings

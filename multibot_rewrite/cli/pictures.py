@@ -9,7 +9,6 @@ from collections.abc import Iterable, Sequence
 from multibot_rewrite.cli.output import STANDARD, write_files
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.live.watching import Outcome
 from multibot_rewrite.model import MultibotError, UsageError
 from multibot_rewrite.sources.read import read_file
@@ -40,7 +39,7 @@ def check(options: argparse.Namespace) -> None:
 
 def deliver(
     options: argparse.Namespace,
-    plan: Expectation,
+    plan: System,
     graph: System,
     found: Sequence[Finding],
     outcome: Outcome,

@@ -14,7 +14,6 @@ from multibot_rewrite.cli.output import note, say, write_files
 from multibot_rewrite.cli.process import PROGRAM
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.fleets.fleet import Fleet, expected
-from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.live.child import RUN_STUBS, observe, running
 from multibot_rewrite.graph.live.request import Request, RosUnusable, to_text
 from multibot_rewrite.graph.rehearsal import (
@@ -44,7 +43,7 @@ def run(options: argparse.Namespace) -> int:
     _check_use(options)
     made = fleet.build(options)
     # Nodes that stand in for others have none of their parameters.
-    plan, table = expected(made)._replace(states=()), fleet.findings(options, made)
+    plan, table = expected(made)._replace(parameters=()), fleet.findings(options, made)
     edges, added = _edges(made)
     nodes = [
         *stub_nodes(made.table, edges, _left_out(options)),
@@ -83,7 +82,7 @@ def _check_use(options: argparse.Namespace) -> None:
         check_folder(options.save_snapshot)
 
 
-def _look(request: Request, environ: dict[str, str], plan: Expectation) -> System:
+def _look(request: Request, environ: dict[str, str], plan: System) -> System:
     """What is on the graph. The nodes do run: a look that only lacks something was too early, as on a
     busy machine where messages of the discovery were lost. So there is a second one."""
     graph = observe(request, environ)

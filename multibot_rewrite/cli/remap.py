@@ -1,13 +1,11 @@
-"""``multibot remap``: what every node of every robot must be remapped to."""
+"""``multibot plan --form``: what every node of every robot must be remapped to."""
 
 from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator
 
-from multibot_rewrite.cli import fleet
-from multibot_rewrite.cli.output import deliver, goes_to_file, note
-from multibot_rewrite.cli.process import DONE, STOPPED
+from multibot_rewrite.cli.output import deliver, note
 from multibot_rewrite.cli.tables import Grid, deliver_report
 from multibot_rewrite.fleets.fleet import NO_STATE_PUBLISHER, Fleet
 from multibot_rewrite.releases import facts_of_release
@@ -18,11 +16,8 @@ from multibot_rewrite.remap.table_formats import FORMS, given_to, standing_by_ro
 TABLE, BRIDGE = "table", "bridge"
 
 
-def run(options: argparse.Namespace) -> int:
-    """Build the table, report what is wrong with it, write it; returns the exit code."""
-    fleet.check_use(options, printed=not goes_to_file(options))
-    made = fleet.build(options)
-    failed = fleet.report_table(options, made)
+def deliver_rules(options: argparse.Namespace, made: Fleet) -> None:
+    """Write the rules in the form that is asked for."""
     _note_without_nodes(options, made)
     if options.form == TABLE:
         deliver_report(options, _parts(made.table))
@@ -30,7 +25,6 @@ def run(options: argparse.Namespace) -> int:
         deliver(options, _bridge(options, made).encode())
     else:
         deliver(options, FORMS[options.form](made.table).encode())
-    return STOPPED if failed else DONE
 
 
 def _note_without_nodes(options: argparse.Namespace, made: Fleet) -> None:

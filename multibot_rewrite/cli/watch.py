@@ -10,7 +10,6 @@ from functools import partial
 from multibot_rewrite.cli.output import print_lines
 from multibot_rewrite.cli.tables import Grid, render
 from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.live.watching import WORDS, Verdict, WatchState, with_found
 from multibot_rewrite.plural import plural
 from multibot_rewrite.system.records import CHANGING, System
@@ -19,7 +18,7 @@ from multibot_rewrite.system.records import CHANGING, System
 _SHOWN = 15
 Show = Callable[[WatchState], None]
 # The plan of a graph, and what is found in it.
-Look = Callable[[System], tuple[Expectation, Sequence[Finding]]]
+Look = Callable[[System], tuple[System, Sequence[Finding]]]
 
 
 def follow(
@@ -43,7 +42,7 @@ def follow(
     return state
 
 
-def _looked(look: Look, graph: System) -> tuple[Expectation, System, Sequence[Finding]]:
+def _looked(look: Look, graph: System) -> tuple[System, System, Sequence[Finding]]:
     plan, found = look(graph)
     return plan, graph, found
 

@@ -11,10 +11,10 @@ from multibot_rewrite.cli.output import note, write_files
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.graph.environment import settings
-from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.zenoh.configuration import Setup, configurations, file_names
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
+from multibot_rewrite.system.records import System
 
 
 def run(options: argparse.Namespace) -> int:
@@ -38,7 +38,7 @@ def run(options: argparse.Namespace) -> int:
     return DONE
 
 
-def _check_names(plan: Expectation, setup: Setup) -> None:
+def _check_names(plan: System, setup: Setup) -> None:
     """Raises UsageError where two would have one file, and so one certificate."""
     names = file_names(plan, setup)
     twice = sorted({name for name in names if names.count(name) > 1})
@@ -48,7 +48,7 @@ def _check_names(plan: Expectation, setup: Setup) -> None:
         raise UsageError(f"{twice[0]}: two of robots, operators and router are {word}; {hint}")
 
 
-def _summary(plan: Expectation, options: argparse.Namespace, setup: Setup) -> str:
+def _summary(plan: System, options: argparse.Namespace, setup: Setup) -> str:
     told = "certificate" if setup.keystore else "its own file alone"
     robots = plural(len(plan.robots), "robot")
     return f"{robots} in {options.output}, each kept to its names by {told}; domain {setup.domain}"

@@ -8,9 +8,9 @@ import yaml
 
 from multibot_rewrite.closure.gap import Gap
 from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, pairs
-from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.nearest import nearest
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.records import Place
 
 GZ_TOPIC, GZ_TYPE, GZ_WAY = "gz topic", "gz type", "gz direction"
 # Keys of a row that name the gz side, in the order in which ros_gz_bridge looks at them.

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.records import Place
 
 
 class Gap(NamedTuple):

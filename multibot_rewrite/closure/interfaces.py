@@ -11,10 +11,11 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from multibot_rewrite.closure.gap import Gap
 from multibot_rewrite.evidence.claims import Claimed, claimed_twice, claims_of
 from multibot_rewrite.evidence.hardware import COMMAND, Exported
-from multibot_rewrite.evidence.records import GivenNode, Place
+from multibot_rewrite.evidence.records import GivenNode
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.nearest import Guesses
 from multibot_rewrite.system.conventions import PLACEHOLDER
+from multibot_rewrite.system.records import Place
 
 INTERFACE, TWICE, CONTESTED = "interface", "claimed twice", "contested"
 

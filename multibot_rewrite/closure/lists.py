@@ -9,8 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.closure.gap import Gap
-from multibot_rewrite.evidence.records import Given, GivenNode, Place
+from multibot_rewrite.evidence.records import Given, GivenNode
 from multibot_rewrite.nearest import nearest
+from multibot_rewrite.system.records import Place
 
 LISTED = "listed"
 _DIGITS = str.maketrans("", "", "0123456789")

@@ -12,10 +12,10 @@ import yaml
 
 from multibot_rewrite.closure.gap import Gap
 from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, pairs
-from multibot_rewrite.evidence.records import Given, GivenNode, Place
+from multibot_rewrite.evidence.records import Given, GivenNode
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.nearest import nearest
-from multibot_rewrite.system.records import ACTION, SERVES
+from multibot_rewrite.system.records import ACTION, SERVES, Place
 
 CONTROLLER, JOINT = "controller", "joint"
 NOTHING: Mapping[str, NodeFacts] = {}

@@ -45,3 +45,8 @@ class BridgeEntry(NamedTuple):
     new_ros: str
     new_gz: str
     own: bool
+
+
+def below(name: str, above: str) -> str:
+    """A ROS name of a bridge that runs in a namespace below the robot's."""
+    return f"/{above}/{name}" if above and not name.startswith("/") else name

@@ -12,10 +12,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 
-from multibot_rewrite.evidence.records import Given, GivenNode, Place
+from multibot_rewrite.evidence.records import Given, GivenNode
 from multibot_rewrite.knowledge.conditions import Values, holds
 from multibot_rewrite.knowledge.records import Claim
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.records import Place
 
 TYPE, COMMAND = "type", "command"
 _PART = re.compile(

@@ -14,12 +14,13 @@ from importlib.resources import files
 from lxml.etree import _Element
 
 from multibot_rewrite.evidence.claims import claimed
-from multibot_rewrite.evidence.records import Given, Place
+from multibot_rewrite.evidence.records import Given
 from multibot_rewrite.knowledge.fact_words import SOURCE_KEY
 from multibot_rewrite.knowledge.node_entries import read_claims
 from multibot_rewrite.knowledge.records import MANAGER, Claim, NodeFacts
 from multibot_rewrite.knowledge.yaml_with_lines import read_yaml_with_lines, table, table_of, word
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.records import Place
 
 COMMAND, STATE = "command", "state"
 OWNERS = ("joint", "sensor", "gpio")

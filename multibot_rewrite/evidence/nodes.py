@@ -206,7 +206,7 @@ def _added(given: GivenNode, known: Mapping[str, NodeFacts], either: str) -> Nod
 
 
 def _not_declared(node: NodeFacts, beside: GivenNode) -> Finding:
-    file, line = beside.place
+    file, line, _ = beside.place
     message = f"{node.name} of the stack is declared in no file; it is left out"
     hint = f"declare it beside {beside.name}, or name a stack without it"
     return NOT_DECLARED.finding(message, hint, file=file, line=line, column=1)

@@ -24,13 +24,14 @@ from multibot_rewrite.companions.params.sections import (
     raw_sections,
 )
 from multibot_rewrite.companions.yaml_text import YamlText, line_of, pairs
-from multibot_rewrite.evidence.records import Given, GivenNode, Place
+from multibot_rewrite.evidence.records import Given, GivenNode
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.model import InputError
 from multibot_rewrite.nearest import nearest
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rosnames import check_node_name
 from multibot_rewrite.system.conventions import PLACEHOLDER
+from multibot_rewrite.system.records import Place
 
 OWN_TYPE = "type"
 TYPE = f".{OWN_TYPE}"

@@ -6,16 +6,7 @@ from collections.abc import Mapping
 
 from multibot_rewrite.companions.params.rcl_parameters import Value
 from multibot_rewrite.record import NamedTuple
-
-
-class Place(NamedTuple):
-    """Where something is written; lines count from 1."""
-
-    file: str
-    line: int
-
-    def __str__(self) -> str:
-        return f"{self.file}:{self.line}"
+from multibot_rewrite.system.records import Place
 
 
 class Given(NamedTuple):

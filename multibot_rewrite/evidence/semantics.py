@@ -13,8 +13,8 @@ from lxml.etree import _Element
 
 from multibot_rewrite.checks.links_and_joints import Robot, read_robot
 from multibot_rewrite.checks.planning_groups import groups_of, joints_of, text_of
-from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.records import Place
 
 FIXED = "fixed"
 

@@ -19,6 +19,7 @@ from multibot_rewrite.companions.bridge_entry import (
     ROS,
     SERVICE,
     BridgeEntry,
+    below,
 )
 from multibot_rewrite.companions.context import Companion, Context
 from multibot_rewrite.companions.names.placeholders import without_robot
@@ -139,11 +140,6 @@ def _entry(
     if own:
         new_gz, new_ros = _in_full(new_gz), _in_full(new_ros)
     return BridgeEntry(node, block, bare_ros, bare_gz, new_ros, new_gz, own)
-
-
-def below(name: str, above: str) -> str:
-    """A ROS name of a bridge that runs in a namespace below the robot's."""
-    return f"/{above}/{name}" if above and not name.startswith("/") else name
 
 
 def _in_full(name: str) -> str:

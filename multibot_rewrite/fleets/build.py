@@ -177,8 +177,8 @@ def _portable(plan: FleetPlan, folder: str, gap: Finding) -> Finding:
 
 
 def _remappings(table: Table) -> str:
-    """The rules of every node, in the shape of ``multibot remap --format yaml``; the names that
-    result are in the plan. Written as text: PyYAML takes longer than all the rest."""
+    """The rules of every node, in the shape of ``multibot plan --form yaml``; the names that result
+    are in the plan. Written as text: PyYAML takes longer than all the rest."""
     scalar = cache(quoted)
     robots: dict[str, list[str]] = {}
     for robot, given in standing_by_robot(table):

@@ -15,10 +15,10 @@ from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.output_file import OutputFile
 from multibot_rewrite.fleets.output_values import OutputText
 from multibot_rewrite.fleets.robot_groups import group_robots
-from multibot_rewrite.fleets.systems import BRIDGE_FILE, bridge_ends
 from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
 from multibot_rewrite.gc_pause import gc_paused
-from multibot_rewrite.graph.expectation import PlannedTopic
+from multibot_rewrite.producers.ends import BRIDGE_FILE, bridge_ends
+from multibot_rewrite.system.records import Topic
 
 # Rules about a file that names what the robot does not have.
 NAMES_NOTHING = frozenset(
@@ -42,13 +42,12 @@ def closed_plan(plan: FleetPlan) -> Fleet:
         return fleet._replace(gaps=gaps, bridged=bridged_by(demanded(plan, texts_of(rows))))
 
 
-def bridged_by(texts: Iterable[OutputText]) -> tuple[PlannedTopic, ...]:
+def bridged_by(texts: Iterable[OutputText]) -> tuple[Topic, ...]:
     """What the bridge files among the texts carry."""
     files = [it for it in texts if it.path.rpartition("/")[2] == BRIDGE_FILE]
     rows = (end for it in files for end in bridge_ends(read_yaml(it.text.encode(), it.path)))
     return once(
-        PlannedTopic(end.name, bridge=(end.role,) if end.role else BOTH, type=end.type)
-        for end in rows
+        Topic(end.name, bridge=(end.role,) if end.role else BOTH, type=end.type) for end in rows
     )
 
 

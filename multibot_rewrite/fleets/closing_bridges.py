@@ -7,7 +7,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from multibot_rewrite.closure.bridges import GZ_TYPE, GZ_WAY, GzTopic, bridge_gaps
 from multibot_rewrite.closure.gap import Gap
 from multibot_rewrite.companions.yaml_text import read_yaml
-from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.bridge_merge import as_spawned
@@ -16,9 +15,10 @@ from multibot_rewrite.fleets.gap_findings import at_gap, in_source, meant
 from multibot_rewrite.fleets.member import line_of
 from multibot_rewrite.fleets.output_values import OutputText
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
-from multibot_rewrite.fleets.systems import BRIDGE_FILE
+from multibot_rewrite.producers.ends import BRIDGE_FILE
 from multibot_rewrite.remap.bridged_topics import bridged_topics
 from multibot_rewrite.rewriters.text import text_at
+from multibot_rewrite.system.records import Place
 
 NO_GZ_TOPIC = declare(
     "MF816",

@@ -14,7 +14,7 @@ from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.gap_findings import at_gap, in_source, meant
 from multibot_rewrite.fleets.output_values import OutputText
 from multibot_rewrite.fleets.rewritten_robots import SET_PREFIX, RewrittenRobot
-from multibot_rewrite.fleets.systems import System
+from multibot_rewrite.fleets.systems import RobotSystem as System
 from multibot_rewrite.knowledge.records import NodeFacts
 
 _ARM = """\

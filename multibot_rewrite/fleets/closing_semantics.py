@@ -13,7 +13,7 @@ from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.gap_findings import at_gap, meant
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
-from multibot_rewrite.fleets.systems import System
+from multibot_rewrite.fleets.systems import RobotSystem as System
 from multibot_rewrite.steps.document import read_document
 
 _ARM = """\

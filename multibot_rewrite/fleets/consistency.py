@@ -10,7 +10,6 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.companions.names.rename_map import spell
-from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.doubled_names import doubled
@@ -35,6 +34,7 @@ from multibot_rewrite.fleets.value_checks import (
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.system.conventions import USUAL_FRAMES
+from multibot_rewrite.system.records import Place
 
 # A word twice in a row, as in robot1/robot1/scan.
 _DOUBLED = re.compile(

@@ -16,17 +16,8 @@ from multibot_rewrite.fleets.launched_robot import (
 )
 from multibot_rewrite.fleets.meeting import with_meetings
 from multibot_rewrite.fleets.member import Member, line_of, member
-from multibot_rewrite.graph.expectation import (
-    Expectation,
-    PlannedEndpoint,
-    PlannedParameter,
-    PlannedState,
-    PlannedTopic,
-    expect,
-    named_frames,
-    vacuous,
-)
-from multibot_rewrite.graph.transforms import STATE_PUBLISHER, Edge, Edges, edges_of, frames_of
+from multibot_rewrite.graph.transforms import STATE_PUBLISHER, Edges, edges_of, frames_of
+from multibot_rewrite.graph.transforms import Edge as SentEdge
 from multibot_rewrite.knowledge.node_library import with_included
 from multibot_rewrite.knowledge.nodl.facts import KnownNodes, nodes_of
 from multibot_rewrite.knowledge.nodl.lookup import find_interfaces
@@ -45,9 +36,10 @@ from multibot_rewrite.remap.records import Table
 from multibot_rewrite.remap.table import build_table, joined
 from multibot_rewrite.remap.ways import merged
 from multibot_rewrite.sources.read import Source
+from multibot_rewrite.spelling.plan import expect, from_text, named_frames, planned_end, vacuous
 from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.system.parameters import parameter_text
-from multibot_rewrite.system.records import SIM_TIME
+from multibot_rewrite.system.records import SIM_TIME, Edge, End, Parameter, System, Topic
 
 NOTHING: Mapping[str, str] = {}
 ALIKE: Mapping[str, Inventory] = {}
@@ -77,7 +69,7 @@ class Fleet(NamedTuple):
     tags: dict[str, str]
     read: tuple[str, ...]
     gaps: tuple[Finding, ...] = ()
-    bridged: tuple[PlannedTopic, ...] = ()
+    bridged: tuple[Topic, ...] = ()
     maybe_real: frozenset[str] = frozenset()
     clocks: tuple[tuple[str, bool], ...] = ()
     described: Mapping[str, Inventory] = ALIKE
@@ -187,7 +179,7 @@ def assemble(
     """The fleet of robots that run the same nodes of a release."""
     inventories = {it.robot: it.inventory for it in members}
     plugins = {it.robot: list(plugin_nodes(it.reading, it.robot)) for it in members}
-    edges: dict[tuple[str, str], list[Edge]] = {}
+    edges: dict[tuple[str, str], list[SentEdge]] = {}
     for it in members:
         own = [node for node, _ in plugins[it.robot]]
         edges |= edges_of(it.robot, it.described, facts, own, naming, it.tag, it.plain)
@@ -251,9 +243,19 @@ def merge(fleets: Sequence[Fleet]) -> Fleet:
     return first
 
 
-def expected(fleet: Fleet) -> Expectation:
+def expected(fleet: Fleet) -> System:
     """The graph that the fleet should have; UsageError where any graph would be as planned."""
-    sent: dict[str, list[Edge]] = {robot: [] for robot in fleet.inventories}
+    plan = planned(fleet)
+    nothing = vacuous(plan)
+    if nothing:
+        hint = f"name a stack of its nodes, or leave out {NO_STATE_PUBLISHER}"
+        raise UsageError(f"{nothing}, so every graph would be as planned; {hint}")
+    return plan
+
+
+def planned(fleet: Fleet) -> System:
+    """The graph that the fleet should have, be it one that any graph is like."""
+    sent: dict[str, list[SentEdge]] = {robot: [] for robot in fleet.inventories}
     for (robot, _), edges in fleet.edges.items():
         sent[robot] += edges
     frames = {
@@ -265,16 +267,19 @@ def expected(fleet: Fleet) -> Expectation:
     plan = expect(
         fleet.table, fleet.naming, frames, fleet.facts, named, places, tags, fleet.maybe_real
     )
-    plan = plan._replace(origins=tuple(fleet.origins.items()), sends=tuple(_sends(fleet)))
-    nothing = vacuous(plan)
-    if nothing:
-        hint = f"name a stack of its nodes, or leave out {NO_STATE_PUBLISHER}"
-        raise UsageError(f"{nothing}, so every graph would be as planned; {hint}")
-    plan = plan._replace(release=fleet.table.release, gaps=fleet.gaps, topics=fleet.bridged)
-    return plan._replace(states=(*plan.states, *_states(fleet)))
+    plan = plan._replace(
+        nodes=tuple(from_text(it, fleet.origins.get(it.name, "")) for it in plan.nodes),
+        edges=tuple(_sends(fleet)),
+    )
+    return plan._replace(
+        release=fleet.table.release,
+        gaps=fleet.gaps,
+        topics=fleet.bridged,
+        parameters=tuple(_parameters(fleet)),
+    )
 
 
-def _states(fleet: Fleet) -> Iterator[PlannedState]:
+def _parameters(fleet: Fleet) -> Iterator[Parameter]:
     """The clock of each node of a robot, where one in a plugin has that of the simulator, and what
     puts the robot's name before the frames of its description."""
     clocks = dict(fleet.clocks)
@@ -285,24 +290,24 @@ def _states(fleet: Fleet) -> Iterator[PlannedState]:
             given[SIM_TIME] = clocks[it.robot]
         if it.robot and it.node in described and fleet.naming.layout.at_run_time:
             given[FRAME_PREFIX] = f"{fleet.tags.get(it.robot, it.robot)}/"
-        own = tuple(PlannedParameter(name, parameter_text(value)) for name, value in given.items())
-        if own:
-            yield PlannedState(it.full_name, parameters=own)
+        for name, value in given.items():
+            yield Parameter(it.full_name, name, parameter_text(value))
 
 
-def _sends(fleet: Fleet) -> Iterator[tuple[str, str]]:
-    """By full name: the transforms that a node's parameters name."""
+def _sends(fleet: Fleet) -> Iterator[Edge]:
+    """The transforms that nodes' parameters name."""
     described = {it.name for it in fleet.facts if it.package == STATE_PUBLISHER}
     for it in fleet.table.nodes:
         edges = fleet.edges.get((it.robot, it.node), ())
         if edges and it.node not in described:
-            yield it.full_name, ", ".join(f"{edge.parent} -> {edge.child}" for edge in edges)
+            sender = (it.full_name,)
+            yield from (Edge(edge.child, edge.parent, "", edge.static, sender) for edge in edges)
 
 
-def possible(fleet: Fleet) -> tuple[PlannedEndpoint, ...]:
+def possible(fleet: Fleet) -> tuple[End, ...]:
     """Every endpoint that its nodes may have, by parameter too."""
     return tuple(
-        PlannedEndpoint(it.node, end.kind, end.role, it.name, end.type, end.name)
+        planned_end(it.node, end.kind, end.role, it.name, end.type, end.name)
         for it in fleet.table.names
         for end in [it.endpoint]
         if end.role

@@ -6,11 +6,11 @@ from collections.abc import Iterable
 from typing import Any
 
 from multibot_rewrite.closure.gap import Gap
-from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.fleets.output_values import OutputText, line_in_source
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
+from multibot_rewrite.system.records import Place
 
 
 def meant(gap: Gap) -> str:

@@ -6,7 +6,6 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.companions.params.sections import raw_sections
-from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.fleet_file import FleetFile, RobotSpec
@@ -14,6 +13,7 @@ from multibot_rewrite.fleets.launched_robot import launch_of
 from multibot_rewrite.fleets.output_file import yaml_of
 from multibot_rewrite.model import InputError
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.records import Place
 
 PARAMS = "params"
 # What launch_ros fills in a file with allow_substs.

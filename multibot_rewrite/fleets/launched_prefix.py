@@ -80,5 +80,5 @@ def _finding(robot: RewrittenRobot, given: Given, prefix: str) -> Finding:
     if not prefix:
         message = f"{starts} no frame_prefix, and layout {layout} needs {robot.frame_prefix!r}"
         hint = f"give it frame_prefix: {robot.frame_prefix}"
-    file, line = given.place
+    file, line, _ = given.place
     return OTHER_PREFIX.finding(message, hint, file=file, line=line, column=1)

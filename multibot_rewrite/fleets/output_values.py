@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import lru_cache
 
 import yaml
 from lxml import etree
@@ -78,15 +79,20 @@ def _of_yaml(node: yaml.Node, key: str) -> Iterator[OutputValue]:
 
 def line_in_source(file: OutputText, line: int) -> tuple[str, int]:
     """The source of a file, and its line that a line of the file was made from."""
+    for start, end, first, last in _changes(file):
+        if first < line <= last:
+            return file.sources[0], max(1, min(start + line - first, end))
+    return file.sources[0], 1
+
+
+@lru_cache(maxsize=16)
+def _changes(file: OutputText) -> tuple[tuple[int, int, int, int], ...]:
+    """The lines of the source, and those of the file that were made from them, piece by piece."""
     from difflib import SequenceMatcher
 
-    source = file.sources[0]
     try:
-        old = read_file(source).decode("utf-8", "replace").splitlines()
+        old = read_file(file.sources[0]).decode("utf-8", "replace").splitlines()
     except InputError:
-        return source, 1
-    new = file.text.splitlines()
-    for _, start, end, first, last in SequenceMatcher(None, old, new, False).get_opcodes():
-        if first < line <= last:
-            return source, max(1, min(start + line - first, end))
-    return source, 1
+        return ()
+    codes = SequenceMatcher(None, old, file.text.splitlines(), False).get_opcodes()
+    return tuple(it[1:] for it in codes)

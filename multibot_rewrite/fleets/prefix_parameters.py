@@ -11,11 +11,12 @@ from collections.abc import Iterable, Iterator
 from multibot_rewrite.companions.params.sections import PARAMETERS
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.evidence.parameter_files import given_nodes
-from multibot_rewrite.evidence.records import GivenNode, Place
+from multibot_rewrite.evidence.records import GivenNode
 from multibot_rewrite.fleets.output_values import OutputText
 from multibot_rewrite.knowledge.parameter_entries import PREFIX_KINDS, RUN_TIME
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.naming import Naming
+from multibot_rewrite.system.records import Place
 
 
 def at_run_time(naming: Naming, given: Iterable[GivenNode], known: KnownNodes) -> frozenset[str]:

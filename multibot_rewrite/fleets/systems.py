@@ -2,56 +2,46 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.closure.frames import Sender
-from multibot_rewrite.closure.topics import End
-from multibot_rewrite.companions.bridge_entry import BOTH, ROS
 from multibot_rewrite.companions.params.sections import PARAMETERS
-from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, pairs, read_yaml
+from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.evidence.hardware import Exported, exported
 from multibot_rewrite.evidence.nodes import children_of
 from multibot_rewrite.evidence.parameter_files import given_nodes
-from multibot_rewrite.evidence.records import GivenNode, Place
-from multibot_rewrite.fleets.bridge_file import below
-from multibot_rewrite.fleets.fleet import Fleet
+from multibot_rewrite.evidence.records import GivenNode
 from multibot_rewrite.fleets.fleet_file import REAL
-from multibot_rewrite.fleets.member import without_simulator
+from multibot_rewrite.fleets.member import line_of, without_simulator
 from multibot_rewrite.fleets.output_file import yaml_of
 from multibot_rewrite.fleets.output_values import OutputText
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_nodes import RobotEvidence
-from multibot_rewrite.graph.transforms import STATE_PUBLISHER, sent_by
+from multibot_rewrite.fleets.written_system import DRIVERS, of_robot
+from multibot_rewrite.graph.transforms import STATE_PUBLISHER, edges_in
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.readback.nodes import ReadNode
-from multibot_rewrite.readback.reading import FRAME, read
+from multibot_rewrite.producers.ends import bridge_ends, either_way, node_ends, plugin_ends
+from multibot_rewrite.producers.transforms import edges_off, joint_edges, node_edges
+from multibot_rewrite.readback.reading import FRAME, Reading, read
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.records import EndpointName
-from multibot_rewrite.rosnames import expand
 from multibot_rewrite.steps.document import read_document
-from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.records import SUBSCRIBES, Edge, Node, Place, System
 
 FIXED, MOVEIT = "fixed", "moveit_simple_controller_manager"
-BRIDGE_FILE, BRIDGE_NODE = "bridge.yaml", "ros_gz_bridge"
-ROLES = {"GZ_TO_ROS": (PUBLISHES,), "ROS_TO_GZ": (SUBSCRIBES,), "BIDIRECTIONAL": ("",)}
 
 
-class System(NamedTuple):
-    """What runs on a robot: what its files set for nodes, the interfaces of its hardware, the ends of
-    its topics and services, those of nodes for all robots, the frames that anything sends, its
-    MoveIt files, and the nodes that send transforms."""
+class RobotSystem(NamedTuple):
+    """What runs on a robot: what its files set for nodes, the interfaces of its hardware, the frames
+    that anything sends, its MoveIt files; ``system`` has its nodes, their ends and transforms."""
 
     given: tuple[GivenNode, ...]
     exports: tuple[Exported, ...]
-    ends: tuple[End, ...]
-    shared: tuple[End, ...]
     sent: frozenset[str]
     moveit: tuple[YamlText, ...]
-    senders: tuple[Sender, ...] = ()
+    system: System
 
 
-def system_before(robot: RewrittenRobot, evidence: RobotEvidence) -> System:
+def system_before(robot: RewrittenRobot, evidence: RobotEvidence) -> RobotSystem:
     """The system of a robot's sources, if it were alone: nothing is renamed or remapped but what the
     usual launch files remap."""
     source, given, bridges = robot.member.source, evidence.given, _documents(robot, "bridge")
@@ -60,67 +50,70 @@ def system_before(robot: RewrittenRobot, evidence: RobotEvidence) -> System:
     real = robot.spec.simulator == REAL
     text = without_simulator(source.source, source.file) if real else source.source
     reading = read(text, source.file, robot.member.vocabulary)
-    shared = [end for node in nodes if node.shared for end in _ends_of(node, given)]
+    sections = {it.name: it for it in given}
     ends = [
-        *(end for node in nodes if not node.shared for end in _ends_of(node, given)),
-        *(end for node in reading.nodes for end in _plugin_ends(node)),
+        *(end for node in nodes for end in node_ends(node, sections.get(node.name))),
+        *plugin_ends(reading),
         *(
             end
             for it in bridges
-            for end in bridge_ends(it, robot.spec.bridge_namespace_of(it.file))
+            for row in bridge_ends(it, robot.spec.bridge_namespace_of(it.file))
+            for end in either_way(row)
         ),
     ]
     sent = {child for node in nodes for child in children_of(node)}
     sent |= {it.name for it in reading.names if it.kind == FRAME and it.tag == "plugin"}
-    return System(
+    return RobotSystem(
         tuple(_plainly(robot, it) for it in given),
         tuple(_plain(robot, it) for it in exported(source.root, source.file)),
-        tuple(ends),
-        tuple(shared),
         frozenset(sent),
         tuple(_documents(robot, "moveit")),
-        tuple(_sender(it, given, _root(robot)) for it in nodes if it.sends),
+        System(
+            nodes=tuple(_nodes_of(nodes, reading)),
+            ends=tuple(ends),
+            edges=tuple(_edges_of(robot, nodes, evidence, sent)),
+            environment=DRIVERS,
+        ),
     )
+
+
+def _nodes_of(nodes: Iterable[NodeFacts], reading: Reading) -> Iterator[Node]:
+    yield from (Node(f"/{it.name}", known=it.name) for it in nodes)
+    yield from (Node(it.full_name, known=it.name) for it in reading.nodes)
+
+
+def _edges_of(
+    robot: RewrittenRobot, nodes: Sequence[NodeFacts], evidence: RobotEvidence, sent: Container[str]
+) -> Iterator[Edge]:
+    source = robot.member.source
+    tree = (
+        (it, Place(robot.spec.description, line_of(source, "joint", at)))
+        for at, it in enumerate(edges_in(source.root))
+    )
+    yield from joint_edges(tree)
+    yield from node_edges(nodes, evidence.given, _root(robot))
+    off = edges_off(evidence.given, evidence.known)
+    yield from (it for it in off if it.child not in sent)
 
 
 def system_after(
-    robot: RewrittenRobot, fleet: Fleet, texts: Sequence[OutputText], known: KnownNodes
-) -> System:
-    """The system of the files that were made for a robot, under its remap rules."""
+    robot: RewrittenRobot,
+    texts: Sequence[OutputText],
+    known: KnownNodes,
+    whole: System,
+) -> RobotSystem:
+    """The system of the files that were made for a robot, under its remap rules; ``whole`` is that of
+    the fleet."""
     own = [it for it in texts if it.path.startswith(f"{robot.spec.name}/")]
     params = [_read(it) for it in own if PARAMETERS in it.text]
-    bridges = [
-        _read(it) for it in texts if it.path in (BRIDGE_FILE, f"{robot.spec.name}/{BRIDGE_FILE}")
-    ]
-    file = robot.member.source.file
-    written = read_document(robot.description, file)
-    owners = {f"{it.namespace.rstrip('/')}/{it.name}": it.node for it in fleet.table.nodes}
-    ends = [end for it in bridges for end in bridge_ends(it)]
-    ends += [_planned(it, owners) for it in fleet.table.names if it.robot == robot.spec.namespace]
-    # Rules of a plugin are for its whole process: topics of controllers that the table does not have.
-    of_plugins = (end for node in robot.member.reading.nodes for end in _plugin_ends(node))
-    ends += [it for it in of_plugins if not it.role]
-    return System(
+    written = read_document(robot.description, robot.member.source.file)
+    return RobotSystem(
         tuple(given_nodes(params, known)),
-        tuple(exported(written.root, file)),
-        tuple(ends),
-        tuple(_planned(it, owners) for it in fleet.table.names if not it.robot),
+        tuple(exported(written.root, robot.member.source.file)),
         frozenset(it.child for it in robot.tree),
         tuple(_read(it) for it in own if MOVEIT in it.text),
-        tuple(_senders(fleet, robot)),
+        of_robot(whole, robot.spec.namespace),
     )
-
-
-def _senders(fleet: Fleet, robot: RewrittenRobot) -> Iterator[Sender]:
-    for (owner, node), edges in fleet.edges.items():
-        if owner == robot.spec.namespace and node != STATE_PUBLISHER:
-            yield Sender(f"/{node}", tuple(edges), None)
-
-
-def _planned(it: EndpointName, owners: Mapping[str, str]) -> End:
-    end = it.endpoint
-    own = (end.kind, end.role, it.name, end.type, end.name, owners.get(it.node, it.node))
-    return End(it.node, *own, None, not end.when, end.also)
 
 
 def _own(robot: RewrittenRobot) -> Mapping[str, str]:
@@ -151,11 +144,6 @@ def _plainly(robot: RewrittenRobot, given: GivenNode) -> GivenNode:
     return given._replace(values=values)
 
 
-def _sender(node: NodeFacts, given: Iterable[GivenNode], root: str) -> Sender:
-    place = next((it.place for it in given if it.name == node.name), None)
-    return Sender(f"/{node.name}", tuple(sent_by(node, root)), place)
-
-
 def _root(robot: RewrittenRobot) -> str:
     """The first link that no joint has as its child."""
     joints = robot.member.source.root.iter("joint")
@@ -177,39 +165,3 @@ def _runs(node: NodeFacts, moves: bool) -> NodeFacts:
     if moves or node.package != STATE_PUBLISHER:
         return node
     return node._replace(endpoints=tuple(it for it in node.endpoints if it.role != SUBSCRIBES))
-
-
-def _ends_of(node: NodeFacts, given: Iterable[GivenNode]) -> Iterator[End]:
-    """The ends of a node by the names of its code, or what the usual launch files make of them."""
-    above, _, name = f"/{node.name}".rpartition("/")
-    section = next((it for it in given if it.name == node.name), None)
-    values = section.values if section else {}
-    for it in (it for it in node.endpoints if "<" not in it.name):
-        full = expand(it.remapped or it.name, above or "/", name)
-        place = values[it.parameter].place if it.parameter in values else None
-        # A node with parameters is meant to run.
-        sure = not it.when and (section is not None or not node.when)
-        own = (it.kind, it.role, full, it.type, it.name, node.name)
-        at = section.place if section else None
-        yield End(f"/{node.name}", *own, place, sure, it.also, at)
-
-
-def _plugin_ends(node: ReadNode) -> Iterator[End]:
-    for it in node.endpoints:
-        own = (it.kind, it.role, it.full, it.type, it.name, str(node.number))
-        yield End(node.full_name, *own, None, not it.off)
-
-
-def bridge_ends(document: YamlText, above: str = "") -> Iterator[End]:
-    """The ROS ends of the rows of a ros_gz_bridge file that runs in the namespace ``above``."""
-    for row in items(document.root):
-        values = {key.value: value for key, value in pairs(row)}
-        name = values.get(ROS) or values.get(BOTH)
-        if name is None:
-            continue
-        words = {key: str(value.value) for key, value in values.items()}
-        place = Place(document.file, line_of(name))
-        full = f"/{below(str(name.value), above).lstrip('/')}"
-        for role in ROLES.get(words.get("direction", "BIDIRECTIONAL"), ("",)):
-            type_ = words.get("ros_type_name", "")
-            yield End(f"/{BRIDGE_NODE}", TOPIC, role, full, type_, full, BRIDGE_NODE, place)

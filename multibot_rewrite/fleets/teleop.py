@@ -8,11 +8,10 @@ from __future__ import annotations
 import shlex
 from collections.abc import Collection, Iterator
 
-from multibot_rewrite.companions.bridge_entry import BOTH, GZ, ROS
+from multibot_rewrite.companions.bridge_entry import BOTH, GZ, ROS, below
 from multibot_rewrite.companions.names.robot_topics import robot_topic
 from multibot_rewrite.companions.rviz.read_config import text_of
 from multibot_rewrite.companions.yaml_text import items
-from multibot_rewrite.fleets.bridge_file import below
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.output_file import yaml_of
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot

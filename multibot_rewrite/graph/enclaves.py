@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 
-from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.system.conventions import (
     READ_BY_EVERY_NODE,
@@ -25,6 +24,9 @@ from multibot_rewrite.system.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
+    End,
+    System,
+    nodes_by_robot,
 )
 
 TOOLS, SHARED = "/tools", "/shared"
@@ -70,7 +72,7 @@ def enclave_of(robot: str) -> str:
     return f"/{robot}"
 
 
-def to_policy(plan: Expectation, more: Iterable[PlannedEndpoint] = ()) -> str:
+def to_policy(plan: System, more: Iterable[End] = ()) -> str:
     """The policy file of a fleet. ``more`` are endpoints that nodes may have besides those of the plan,
     by parameter: a policy that lacks them would stop these nodes."""
     enclaves = profiles(plan, more)
@@ -80,21 +82,19 @@ def to_policy(plan: Expectation, more: Iterable[PlannedEndpoint] = ()) -> str:
     return head + "\n".join(body) + "\n"
 
 
-def profiles(
-    plan: Expectation, more: Iterable[PlannedEndpoint] = ()
-) -> Mapping[str, tuple[Profile, ...]]:
+def profiles(plan: System, more: Iterable[End] = ()) -> Mapping[str, tuple[Profile, ...]]:
     """Each enclave with what its nodes may do."""
-    ends = (*plan.endpoints, *more)
+    ends = (*plan.ends, *more)
     allowed: dict[str, dict[Allowed, None]] = defaultdict(dict)
     for end in ends:
         allowed[end.node][end.kind, end.role, end.name] = None
-    result = {}
+    result, nodes = {}, nodes_by_robot(plan)
     for robot in plan.robots:
-        tf = [(TOPIC, SUBSCRIBES, f"{robot.tf}{end}") for end in ("", "_static")]
+        tf = [(TOPIC, SUBSCRIBES, f"{robot.tf_topic}{end}") for end in ("", "_static")]
         listener = Profile(f"/{robot.name}/*", tuple(tf))
-        own = (_profile(node, allowed[node]) for node in robot.nodes)
+        own = (_profile(node, allowed[node]) for node in nodes[robot.name])
         result[enclave_of(robot.name)] = (*own, listener)
-    shared = tuple(_profile(node, allowed[node]) for node in plan.shared_nodes)
+    shared = tuple(_profile(node, allowed[node]) for node in nodes[""])
     return {**result, **({SHARED: shared} if shared else {}), TOOLS: tuple(_tools(ends))}
 
 
@@ -102,7 +102,7 @@ def _profile(node: str, own: Iterable[Allowed]) -> Profile:
     return Profile(node, tuple(sorted({*_OF_EVERY_NODE, *own})))
 
 
-def _tools(ends: Iterable[PlannedEndpoint]) -> Iterator[Profile]:
+def _tools(ends: Iterable[End]) -> Iterator[Profile]:
     """Tools read and call everything; they send what robots read and no planned node sends."""
     sides = defaultdict(set)
     for end in ends:

@@ -6,25 +6,23 @@ import re
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 
-from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint
 from multibot_rewrite.system.records import End, System
 
 ANY = "*"
 
 
-def fitted(plan: Expectation, graph: System) -> tuple[Expectation, System]:
+def fitted(plan: System, graph: System) -> tuple[System, System]:
     """Plan and graph with the same words for what is made at run time."""
     known = with_patterns(plan, graph)
     return with_names(plan, known), known
 
 
-def with_patterns(plan: Expectation, graph: System) -> System:
+def with_patterns(plan: System, graph: System) -> System:
     """The graph, with a pattern of the plan in place of each node name that it stands for.
 
     Two nodes of one process that a pattern stands for are one node of the plan.
     """
-    planned = (*plan.shared_nodes, *(it for robot in plan.robots for it in robot.nodes))
-    patterns = {it: _compiled(it) for it in planned if ANY in it}
+    patterns = {it.name: _compiled(it.name) for it in plan.nodes if ANY in it.name}
     if not patterns:
         return graph
     names = {
@@ -41,21 +39,19 @@ def with_patterns(plan: Expectation, graph: System) -> System:
     )
 
 
-def with_names(plan: Expectation, graph: System) -> Expectation:
+def with_names(plan: System, graph: System) -> System:
     """The plan, with what runs in place of each pattern of an endpoint's name; a pattern that nothing
     fits stays, and is missing. ``graph`` has its nodes as the plan calls them."""
-    if not any(ANY in it.name for it in plan.endpoints):
+    if not any(ANY in it.name for it in plan.ends):
         return plan
     by_node: dict[str, list[End]] = defaultdict(list)
     for end in graph.ends:
         by_node[end.node].append(end)
-    found = (end for it in plan.endpoints for end in _there(it, by_node))
-    return plan._replace(endpoints=tuple(dict.fromkeys(found)))
+    found = (end for it in plan.ends for end in _there(it, by_node))
+    return plan._replace(ends=tuple(dict.fromkeys(found)))
 
 
-def _there(
-    planned: PlannedEndpoint, by_node: Mapping[str, Sequence[End]]
-) -> Iterator[PlannedEndpoint]:
+def _there(planned: End, by_node: Mapping[str, Sequence[End]]) -> Iterator[End]:
     if ANY not in planned.name:
         yield planned
         return

@@ -13,9 +13,9 @@ from functools import cache
 
 from multibot_rewrite.bounded import load_json, load_yaml
 from multibot_rewrite.gc_pause import gc_paused
-from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.plan_value import REMEDY, from_value, value_of
 from multibot_rewrite.model import InputError
+from multibot_rewrite.system.records import System
 
 HEAD = """\
 # What the graph of this fleet is to look like. Endpoints: [role, kind, name, type, name in the code].
@@ -38,7 +38,7 @@ _PLAIN = re.compile(r"[A-Za-z_/~](?:[A-Za-z0-9_./~-]|:(?=[A-Za-z0-9_/])| \| )*")
 _WORDS = frozenset(["~", "null", "true", "false", "yes", "no", "on", "off", "y", "n"])
 
 
-def to_yaml(plan: Expectation) -> str:
+def to_yaml(plan: System) -> str:
     """The text of a YAML file."""
     return HEAD + "".join(_block(value_of(plan), "", cache(_quoted)))
 
@@ -67,7 +67,7 @@ def _plain(value: object, quote: Quote) -> str:
     return str(value).lower()
 
 
-def to_json(plan: Expectation) -> str:
+def to_json(plan: System) -> str:
     """The text of a JSON file, a robot a line."""
     top = value_of(plan)
     robots = top.pop("robots")
@@ -93,7 +93,7 @@ def _quoted(value: str) -> str:
     return str(yaml.dump(value, default_style='"', width=10**9)).rstrip("\n")
 
 
-def read_plan(data: bytes, file: str) -> Expectation:
+def read_plan(data: bytes, file: str) -> System:
     """Read what ``to_yaml`` or ``to_json`` wrote; raises InputError with file, place and what to write
     there."""
     with gc_paused():
@@ -105,7 +105,7 @@ def is_json(data: bytes) -> bool:
     return data.removeprefix(BOM_UTF8)[:1000].lstrip().startswith(b"{")
 
 
-def from_json(data: bytes, file: str) -> Expectation:
+def from_json(data: bytes, file: str) -> System:
     """Read what ``to_json`` wrote; raises InputError."""
     try:
         return from_value(load_json(data), file)
@@ -116,7 +116,7 @@ def from_json(data: bytes, file: str) -> Expectation:
         raise InputError(f"{file}: not valid JSON: {error}; {REMEDY}") from None
 
 
-def from_yaml(data: bytes, file: str) -> Expectation:
+def from_yaml(data: bytes, file: str) -> System:
     """Read what ``to_yaml`` wrote; raises InputError."""
     import yaml
 

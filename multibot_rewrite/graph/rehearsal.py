@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedTopic
 from multibot_rewrite.graph.transforms import Edge, Edges
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.applied_rules import (
@@ -25,6 +24,7 @@ from multibot_rewrite.remap.started import ros_arguments
 from multibot_rewrite.remap.targets import ACTION_PARTS
 from multibot_rewrite.remap.ways import Pair
 from multibot_rewrite.rosnames import resolve_bound
+from multibot_rewrite.spelling.plan import planned_end
 from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
@@ -33,6 +33,9 @@ from multibot_rewrite.system.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
+    End,
+    System,
+    Topic,
 )
 
 TF = "tf2_msgs/msg/TFMessage"
@@ -99,7 +102,7 @@ def stub_nodes(
         )
 
 
-def bridge_stub(topics: Iterable[PlannedTopic]) -> Iterator[tuple[str, StubNode]]:
+def bridge_stub(topics: Iterable[Topic]) -> Iterator[tuple[str, StubNode]]:
     """The bridge to a simulator that a plan needs, if it needs one."""
     rows = [
         StubEndpoint(TOPIC, role, topic.name, topic.type, False)
@@ -151,21 +154,19 @@ def split_over_processes(nodes: Iterable[tuple[str, StubNode]]) -> list[list[Stu
     return list(processes.values())
 
 
-def with_substitutes(plan: Expectation, replaced: Mapping[str, str]) -> Expectation:
+def with_substitutes(plan: System, replaced: Mapping[str, str]) -> System:
     """The plan with the types that replace others; an action without its type becomes its parts."""
-    endpoints = [end for planned in plan.endpoints for end in _substituted(planned, replaced)]
+    endpoints = [end for planned in plan.ends for end in _substituted(planned, replaced)]
     topics = (it._replace(type=replaced.get(it.type, it.type)) for it in plan.topics)
-    return plan._replace(endpoints=tuple(endpoints), topics=tuple(topics))
+    return plan._replace(ends=tuple(endpoints), topics=tuple(topics))
 
 
-def _substituted(
-    planned: PlannedEndpoint, replaced: Mapping[str, str]
-) -> Iterator[PlannedEndpoint]:
+def _substituted(planned: End, replaced: Mapping[str, str]) -> Iterator[End]:
     if planned.kind == ACTION and planned.type in replaced:
         action = StubEndpoint(planned.kind, planned.role, planned.name, planned.type, False)
         for kind, role, name, type_, *_ in action_parts(action):
             code_name = planned.code_name + name.removeprefix(planned.name)
-            yield PlannedEndpoint(planned.node, kind, role, name, type_, code_name)
+            yield planned_end(planned.node, kind, role, name, type_, code_name)
     else:
         also = tuple(replaced.get(type_, type_) for type_ in planned.also)
         yield planned._replace(type=replaced.get(planned.type, planned.type), also=also)

@@ -4,35 +4,36 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.live.diagnose import Diagnosis
 from multibot_rewrite.naming import DEFAULT_LAYOUT, TF_TOPICS
 from multibot_rewrite.rules.guess import GuessedRobot
 from multibot_rewrite.rules.index import tree_topic, unique
+from multibot_rewrite.spelling.plan import planned_end
 from multibot_rewrite.system.conventions import EVERYBODYS, SENT_BY_EVERY_NODE, WORLD_FRAMES
+from multibot_rewrite.system.records import End, Node, Robot, System
 
 # The robot of a graph in which no name has a robot's.
 NAMELESS = GuessedRobot("robot1", "")
 _PARAMETERS = ("rcl_interfaces/", "type_description_interfaces/")
 
 
-def seen_plan(seen: Diagnosis) -> Expectation:
+def seen_plan(seen: Diagnosis) -> System:
     """The plan: all nodes but tools, all names but what every node has."""
     nodes = unique(node.name for node in seen.graph.nodes if not is_tool(node.name))
-    planned = tuple(_robot(seen, robot, nodes) for robot in robots_to_plan(seen))
-    planned = tuple(robot for robot in planned if robot.nodes)
-    owned = {node for robot in planned for node in robot.nodes}
-    shared = tuple(node for node in nodes if node not in owned)
+    robots = {_mine(it): it for it in robots_to_plan(seen)}
+    whose = {node: seen.whose.robot(node) for node in nodes}
     topics = unique(end.name for end in seen.graph.ends if end.kind == "topic")
     bare = (it for it in topics if not seen.whose.robot(it) and "/_" not in it)
-    return Expectation(
-        seen.layout.name if seen.layout else DEFAULT_LAYOUT,
-        planned,
-        shared,
-        tuple(sorted({*bare, *EVERYBODYS})),
-        tuple(sorted(WORLD_FRAMES)),
-        tuple(dict.fromkeys(_endpoints(seen, {*owned, *shared}))),
+    return System(
+        tuple(
+            Node(it, robot=robots[whose[it]].name if whose[it] in robots else "") for it in nodes
+        ),
+        tuple(dict.fromkeys(_endpoints(seen, {*nodes}))),
+        robots=tuple(_robot(seen, it) for mine, it in robots.items() if mine in whose.values()),
+        layout=seen.layout.name if seen.layout else DEFAULT_LAYOUT,
+        shared_topics=tuple(sorted({*bare, *EVERYBODYS})),
+        shared_frames=tuple(sorted(WORLD_FRAMES)),
     )
 
 
@@ -41,10 +42,15 @@ def robots_to_plan(seen: Diagnosis) -> tuple[GuessedRobot, ...]:
     return tuple(it for it in seen.robots if not it.only_frames) or (NAMELESS,)
 
 
-def _robot(seen: Diagnosis, robot: GuessedRobot, nodes: Iterable[str]) -> PlannedRobot:
+def _mine(robot: GuessedRobot) -> str:
+    """Whose names are of the robot; empty where no name has a robot's."""
+    return "" if robot is NAMELESS else robot.name
+
+
+def _robot(seen: Diagnosis, robot: GuessedRobot) -> Robot:
     """Frames without a robot's name are those of the robot on whose topic they are."""
     whose = seen.whose
-    mine = "" if robot is NAMELESS else robot.name
+    mine = _mine(robot)
     topics = [topic for topic, _ in seen.tf if whose.robot(topic) == mine]
     shared = f"/{TF_TOPICS[0]}"
     tf = next(iter(topics), shared)
@@ -56,15 +62,10 @@ def _robot(seen: Diagnosis, robot: GuessedRobot, nodes: Iterable[str]) -> Planne
         or not mine
         or (not whose.frame_robot(it) and tree_topic(edge.topic) == tf != shared)
     }
-    return PlannedRobot(
-        robot.name,
-        tuple(node for node in nodes if whose.robot(node) == mine),
-        tuple(sorted(own - set(WORLD_FRAMES))),
-        tf,
-    )
+    return Robot(robot.name, tuple(sorted(own - set(WORLD_FRAMES))), tf)
 
 
-def _endpoints(seen: Diagnosis, nodes: Iterable[str]) -> Iterator[PlannedEndpoint]:
+def _endpoints(seen: Diagnosis, nodes: Iterable[str]) -> Iterator[End]:
     for end in seen.graph.ends:
         common = (
             end.name in SENT_BY_EVERY_NODE or end.type.startswith(_PARAMETERS) or "/_" in end.name
@@ -72,4 +73,4 @@ def _endpoints(seen: Diagnosis, nodes: Iterable[str]) -> Iterator[PlannedEndpoin
         if end.node in nodes and not common:
             code = seen.whose.plain(end.name)
             own = (end.node, end.kind, end.role, end.name)
-            yield PlannedEndpoint(*own, end.type, code)
+            yield planned_end(*own, end.type, code)

@@ -6,10 +6,9 @@ from collections.abc import Iterable
 from enum import IntEnum
 
 from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, Finding
-from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules.check import ABSENCE, doubts
-from multibot_rewrite.system.records import CHANGING, System
+from multibot_rewrite.system.records import CHANGING, System, nodes_by_robot
 
 
 class Verdict(IntEnum):
@@ -75,7 +74,7 @@ def judge(found: Iterable[Finding], graph: System) -> Verdict:
 
 
 def with_found(
-    plan: Expectation, graph: System, findings: Iterable[Finding], before: WatchState | None
+    plan: System, graph: System, findings: Iterable[Finding], before: WatchState | None
 ) -> WatchState:
     """The state of the graph in which these are the findings, after the state before.
 
@@ -124,17 +123,18 @@ def final(state: WatchState) -> Verdict:
     return max(state.worst, state.verdict)
 
 
-def progress(plan: Expectation, graph: System) -> list[Progress]:
+def progress(plan: System, graph: System) -> list[Progress]:
     """How much of each robot's plan is in the graph."""
     nodes = {node.name for node in graph.nodes}
     ends = {(end.node, end.kind, end.role, end.name) for end in graph.ends}
     planned: dict[str, list[bool]] = {}
-    for end in plan.endpoints:
+    for end in plan.ends:
         seen = (end.node, end.kind, end.role, end.name) in ends
         planned.setdefault(end.node, []).append(seen)
-    result = []
+    result, by_robot = [], nodes_by_robot(plan)
     for robot in plan.robots:
-        names = [seen for node in robot.nodes for seen in planned.get(node, ())]
-        running = sum(node in nodes for node in robot.nodes)
-        result.append(Progress(robot.name, (running, len(robot.nodes)), (sum(names), len(names))))
+        own = by_robot[robot.name]
+        names = [seen for node in own for seen in planned.get(node, ())]
+        running = sum(node in nodes for node in own)
+        result.append(Progress(robot.name, (running, len(own)), (sum(names), len(names))))
     return result

@@ -7,7 +7,6 @@ from collections.abc import Collection, Container, Iterable, Iterator, Mapping, 
 
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.grouping import with_members
-from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, robot_words
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.live.watching import WORDS, Outcome, judge
 from multibot_rewrite.pages.states import (
@@ -30,7 +29,16 @@ from multibot_rewrite.rules.check import side_by_side
 from multibot_rewrite.rules.index import EndKey, Index, by_node, types
 from multibot_rewrite.rules.pair.meeting import matches
 from multibot_rewrite.rules.planned import Planned
-from multibot_rewrite.system.records import ACTION, SERVICE, TOPIC, End, Environment, System
+from multibot_rewrite.spelling.plan import robot_words
+from multibot_rewrite.system.records import (
+    ACTION,
+    SERVICE,
+    TOPIC,
+    End,
+    Environment,
+    System,
+    alternatives,
+)
 
 # Packages with the types of endpoints that every node has: logging, parameters, life cycle; and
 # tf, which has its own picture.
@@ -146,7 +154,7 @@ class _RobotOf(NamedTuple):
 
 
 def make_scene(
-    plan: Expectation,
+    plan: System,
     graph: System,
     found: Sequence[Finding],
     outcome: Outcome | None = None,
@@ -170,24 +178,23 @@ def make_scene(
         tuple(found),
         tuple(_rows(by_plan, dict(zip(found, targets, strict=True)))),
         graph.environment,
-        plan.one_of,
+        alternatives(plan),
         frozenset(seen.nodes),
     )
 
 
 def _rows(plan: Planned, targets: Mapping[Finding, Targets]) -> Iterator[FindingRow]:
-    origins = {**dict(plan.system.origins), **plan.places}
     for finding, members in with_members(targets, robot_words(plan.system)):
         concerned = {robot for it in members for robot in robots_of(plan, it)}
         robots = tuple(robot for robot in plan.robots if robot in concerned)
         written = f"{finding.file}:{finding.line}" if finding.line else finding.file
-        place = written or origins.get(finding.node, "")
+        place = written or _origin(plan, finding.node)
         yield FindingRow(finding, merged(targets[it] for it in members), robots, place)
 
 
 def _edges(plan: Planned, seen: Index, states: States) -> Iterator[DrawnEdge]:
     """The endpoints in the graph, and those that a finding reports as missing."""
-    common_names = _common_names((*seen.system.ends, *plan.system.endpoints))
+    common_names = _common_names((*seen.system.ends, *plan.system.ends))
     bridged = {(role, it.name): it.type for it in plan.system.topics for role in it.bridge}
     for key, type_ in dict.fromkeys(
         ((e.node, e.kind, e.role, e.name), e.type) for e in seen.system.ends
@@ -216,14 +223,23 @@ def _is_expected(plan: Planned, key: EndKey, bridged: Container[tuple[str, str]]
     An action may be planned as its parts. Helpers of a robot's nodes have what these have.
     """
     node, kind, role, name = key
-    if key in plan.ends or node in plan.system.shared_nodes or (role, name) in bridged:
+    if key in plan.ends or node in plan.own[""] or (role, name) in bridged:
         return True
     if kind == ACTION and (node, SERVICE, role, f"{name}{ACTION_PART}send_goal") in plan.ends:
         return True
     return is_tool(node) and bool(plan.names.robot(node))
 
 
-def _common_names(ends: Iterable[End | PlannedEndpoint]) -> set[str]:
+def _origin(plan: Planned, node: str) -> str:
+    """Where a planned node is from: its plugin, a file, or its stack."""
+    planned = plan.nodes.get(node)
+    if planned is None:
+        return ""
+    stack = f"stack {planned.stack}" if planned.stack else ""
+    return str(planned.plugin) or str(planned.place) or stack
+
+
+def _common_names(ends: Iterable[End]) -> set[str]:
     """The names that every node has; one endpoint with a known type is enough."""
     return {
         end.name
@@ -236,7 +252,7 @@ def _robot_of(plan: Planned, seen: Index, states: States, edges: Iterable[DrawnE
     missing = (node for node, state in states.nodes.items() if state == MISSING)
     nodes = {*seen.nodes, *missing, *(edge.node for edge in edges)}
     names = {edge.name for edge in edges}
-    robot, shared = plan.names.robot, {*plan.system.shared_nodes, *plan.system.shared_topics}
+    robot, shared = plan.names.robot, {*plan.own[""], *plan.system.shared_topics}
     return _RobotOf(
         {node: "" if node in shared else robot(node) for node in sorted(nodes)},
         {name: "" if name in shared else robot(name) for name in sorted(names)},
@@ -246,7 +262,7 @@ def _robot_of(plan: Planned, seen: Index, states: States, edges: Iterable[DrawnE
 def _nodes(
     plan: Planned, seen: Index, states: States, edges: Iterable[DrawnEdge], robot_of: _RobotOf
 ) -> dict[str, DrawnNode]:
-    planned = {*plan.robot_of, *plan.system.shared_nodes}
+    planned = {*plan.robot_of, *plan.own[""]}
     edge_states: dict[str, set[str]] = defaultdict(set)
     own_states: dict[str, set[str]] = defaultdict(set)
     for edge in edges:
@@ -269,7 +285,7 @@ def _nodes(
 
 
 def _groups(
-    plan: Expectation,
+    plan: System,
     edges: Iterable[DrawnEdge],
     nodes: Mapping[str, DrawnNode],
     robot_of: _RobotOf,

@@ -11,6 +11,7 @@ from multibot_rewrite.rules.check import RULES
 from multibot_rewrite.rules.index import Index, ends_of, tree_topic
 from multibot_rewrite.rules.pair.tf_trees import tf_trees
 from multibot_rewrite.rules.planned import Planned
+from multibot_rewrite.system.records import alternatives
 
 OK, LEAK, CROSS_TALK, MISSING = "ok", "leak", "cross-talk", "missing"
 UNEXPECTED, CLASH = "unexpected", "clash"
@@ -58,7 +59,7 @@ def worst(states: Iterable[str]) -> str:
 
 def find_targets(plan: Planned, seen: Index, findings: Iterable[Finding]) -> tuple[Targets, ...]:
     """What each finding is about, by its fields and by the names in its message."""
-    homes = (tree_topic(robot.tf) for robot in plan.system.robots)
+    homes = (tree_topic(robot.tf_topic) for robot in plan.system.robots)
     topics = [*dict.fromkeys((*(tree.topic for tree in tf_trees(plan, seen)), *homes))]
     return tuple(
         Targets(
@@ -100,7 +101,7 @@ def _endpoint_targets(plan: Planned, seen: Index, finding: Finding) -> Targets:
     users = dict.fromkeys(end.node for name in names for end in ends_of(seen, name))
     if not finding.node:
         robot = plan.robots.get(finding.robot)
-        return Targets(robot.nodes if robot else tuple(sorted(users)), names, ())
+        return Targets(tuple(plan.own[robot.name] if robot else sorted(users)), names, ())
     words = words_of(finding.message)
     rule = RULES.get(finding.code)
     others = [node for node in users if node in words or (rule and rule.options["all_ends"])]
@@ -109,7 +110,7 @@ def _endpoint_targets(plan: Planned, seen: Index, finding: Finding) -> Targets:
 
 def _is_node(plan: Planned, seen: Index, name: str) -> bool:
     """Whether a finding that has this name speaks of a node: nothing else is called so."""
-    if any(name in group for group in plan.system.one_of):
+    if any(name in group for group in alternatives(plan.system)):
         return True
     return name in seen.nodes and not any(ends_of(seen, name))
 
@@ -129,7 +130,7 @@ def _frame_targets(plan: Planned, finding: Finding, topics: Sequence[str]) -> It
     """The frames on the topics that the message names; else on the robot's own, or on any topic."""
     words = {tree_topic(word) for word in words_of(finding.message)}
     robot = plan.robots.get(finding.robot)
-    own = [topic for topic in topics if robot and topic == tree_topic(robot.tf)]
+    own = [topic for topic in topics if robot and topic == tree_topic(robot.tf_topic)]
     named = [topic for topic in topics if topic in words]
     return ((topic, frame) for topic in named or own or topics for frame in finding.names)
 

@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.pages.states import CLASH, MISSING, OK, States
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules.check import RULES
 from multibot_rewrite.rules.index import Index, tree_topic
 from multibot_rewrite.rules.pair.tf_trees import tf_trees
 from multibot_rewrite.rules.planned import Planned
-from multibot_rewrite.system.records import Edge
+from multibot_rewrite.system.records import Edge, Robot
 
 
 class FrameRow(NamedTuple):
@@ -50,9 +49,9 @@ def make_frame_trees(plan: Planned, seen: Index, states: States) -> tuple[FrameT
     order = {robot: at for at, robot in enumerate(plan.robots)}
     edges = {tree.topic: tree.edges for tree in tf_trees(plan, seen)}
     found: list[FrameTree] = []
-    home_topics = (tree_topic(robot.tf) for robot in plan.system.robots)
+    home_topics = (tree_topic(robot.tf_topic) for robot in plan.system.robots)
     for topic in dict.fromkeys((*home_topics, *sorted(edges))):
-        home = [robot for robot in plan.system.robots if tree_topic(robot.tf) == topic]
+        home = [robot for robot in plan.system.robots if tree_topic(robot.tf_topic) == topic]
         forest = _forest(plan, topic, edges.get(topic, ()), home)
         trees = [FrameTree(topic, _robot(rows), True, rows) for rows in _trees(forest, states)]
         found += sorted(trees, key=lambda tree: order.get(tree.robot, len(order)))
@@ -74,9 +73,7 @@ class _Forest(NamedTuple):
     robots: Mapping[str, str]
 
 
-def _forest(
-    plan: Planned, topic: str, edges: Sequence[Edge], home: Sequence[PlannedRobot]
-) -> _Forest:
+def _forest(plan: Planned, topic: str, edges: Sequence[Edge], home: Sequence[Robot]) -> _Forest:
     static = {(edge.parent, edge.child): edge.static for edge in edges}
     children: dict[str, list[str]] = defaultdict(list)
     for parent, child in sorted(static):
@@ -132,9 +129,7 @@ def _rows(
         at += 1
 
 
-def _not_received(
-    forest: _Forest, home: Iterable[PlannedRobot], states: States
-) -> Iterator[FrameTree]:
+def _not_received(forest: _Forest, home: Iterable[Robot], states: States) -> Iterator[FrameTree]:
     for robot in home:
         missing = [frame for frame in robot.frames if frame not in forest.robots]
         faults = [_in_words(states.frames.get((forest.topic, frame), ())) for frame in missing]

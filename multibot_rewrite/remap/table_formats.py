@@ -7,7 +7,6 @@ import shlex
 from collections.abc import Callable, Iterator
 from xml.sax.saxutils import escape
 
-from multibot_rewrite.releases import facts_of_release
 from multibot_rewrite.remap.records import Table
 from multibot_rewrite.remap.started import Started, arguments, launch_arguments, started
 from multibot_rewrite.remap.ways import (
@@ -143,18 +142,6 @@ def gazebo(table: Table) -> str:
     return "".join(blocks)
 
 
-def markdown(table: Table) -> str:
-    """One Markdown table for each robot."""
-    parts = [f"# Remap table, layout {table.layout}{facts_of_release(table.release)}\n"]
-    for robot, given in standing_by_robot(table):
-        parts.append(f"\n## {robot}\n\n| node | runs as | rule | given to |\n|---|---|---|---|\n")
-        for it in given:
-            rules = [f"`{source}` -> `{target}`" for source, target in it.rules] or [""]
-            row = f"| {it.node.node} | `{it.node.full_name}` |"
-            parts += [f"{row} {rule} | {given_to(it)} |\n" for rule in rules]
-    return "".join(parts)
-
-
 def given_to(it: Delivery) -> str:
     """Where the rules of a node stand, for people."""
     if it.way == HOST:
@@ -186,5 +173,4 @@ FORMS: dict[str, Callable[[Table], str]] = {
     "yaml": as_yaml,
     "json": as_json,
     "gazebo": gazebo,
-    "markdown": markdown,
 }

@@ -27,7 +27,7 @@ NOT_TAKEN = declare(
     "(Lyrical) controllers get no rules of their controller manager, so none of a gz_ros2_control "
     "plugin. On Humble all controllers in one Gazebo get those of the first robot's plugin.",
     fix="Name the stack of the controllers (--stack gz_ros2_control), and start each with its spawner: "
-    "its line is in commands.md, and multibot remap --form ros-args prints it.",
+    "its line is in commands.md, and multibot plan --form ros-args prints it.",
     bad="""\
 <robot name="rover">
   <link name="base_link"/>

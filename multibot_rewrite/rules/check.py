@@ -14,7 +14,6 @@ from multibot_rewrite.findings.finding import INCONCLUSIVE, Finding
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.graph.bags.recording import is_recorded
-from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.patterns import fitted
 from multibot_rewrite.graph.questions import SIM_TIME
 from multibot_rewrite.rules.declaration import PAIR, SYSTEM, Finder
@@ -46,6 +45,7 @@ from multibot_rewrite.rules.system import (
     sharing,
     states,
     tf_topics,
+    unsent,
 )
 from multibot_rewrite.rules.system import nodes as running_nodes
 from multibot_rewrite.rules.system import transforms as any_transforms
@@ -53,7 +53,7 @@ from multibot_rewrite.system.records import PUBLISHES, Caveat, End, System, inco
 
 _SYSTEM = (
     *(running_nodes, names, matching, commands, relays, sharing, any_transforms, tf_topics),
-    *(frame_ids, clocks, states, equal_robots),
+    *(frame_ids, clocks, states, equal_robots, unsent),
 )
 _PAIR = (
     *(nodes, endpoints, leaks, types, publishers, demands, in_enclaves, planned_states),
@@ -89,9 +89,17 @@ def judge(seen: Index) -> list[Finding]:
         return [it for rule in SYSTEM_RULES.values() if rule.check for it in rule.check(seen)]
 
 
-def check(
-    plan: Expectation, graph: System, messages: Mapping[str, int] = NO_COUNTS
-) -> list[Finding]:
+def contradictions(seen: Index) -> list[Finding]:
+    """What two ends, senders or nodes do to each other: true whatever else runs."""
+    return [it for it in judge(seen) if it.code not in ABSENCE]
+
+
+def absences(seen: Index) -> list[Finding]:
+    """What is missing, as far as the system is known."""
+    return [it for it in judge(seen) if it.code in ABSENCE]
+
+
+def check(plan: System, graph: System, messages: Mapping[str, int] = NO_COUNTS) -> list[Finding]:
     """What is wrong with a system, and other than planned; empty for a fleet as planned. ``messages``
     counts those of each topic, where they were counted."""
     with gc_paused():
@@ -103,7 +111,7 @@ def check(
 
 
 def side_by_side(
-    plan: Expectation, graph: System, messages: Mapping[str, int] = NO_COUNTS
+    plan: System, graph: System, messages: Mapping[str, int] = NO_COUNTS
 ) -> tuple[Planned, Index]:
     """The look-ups of a plan and a system, with the same words for what is made at run time."""
     fitting, there = fitted(plan, graph)
@@ -144,8 +152,8 @@ def _is_planned(plan: Planned, end: End) -> bool:
 
 def _without_planned(plan: Planned, graph: System) -> System:
     """The graph without the states that the plan has: they are compared with it."""
-    states_ = {it.node for it in plan.system.states if it.lifecycle}
-    timed = dict(planned_states.planned_clocks(plan.system.states))
+    states_ = {it.name for it in plan.system.nodes if it.lifecycle}
+    timed = dict(planned_states.planned_clocks(plan.system))
     nodes_ = (it._replace(lifecycle="") if it.name in states_ else it for it in graph.nodes)
     parameters = (it for it in graph.parameters if it.name != SIM_TIME or it.node not in timed)
     return graph._replace(nodes=tuple(nodes_), parameters=tuple(parameters))

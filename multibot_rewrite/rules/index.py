@@ -15,6 +15,7 @@ from multibot_rewrite.system.conventions import EVERYBODYS, only_looks
 from multibot_rewrite.system.records import (
     CALLS,
     KINDS,
+    OFF,
     PUBLISHES,
     SERVES,
     SUBSCRIBES,
@@ -206,7 +207,7 @@ def _trees(system: System, names: Iterable[Ends]) -> Iterator[Tree]:
         if ends.type == TF:
             topics[tree_topic(ends.name)].append(ends)
     for frame in system.edges:
-        if "/_" not in frame.topic:
+        if "/_" not in frame.topic and frame.sure != OFF:
             edges[tree_topic(frame.topic)].append(_without_slash(frame))
     for topic in dict.fromkeys((*edges, *topics)):
         own = topics.get(topic, ())

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cache
 
-from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.records import System
 
 # What may separate a robot's name from the rest of a segment.
 SEPARATORS = "_-."
@@ -24,6 +24,10 @@ class Whose(NamedTuple):
     plain: Callable[[str], str]
     frame_robot: Callable[[str], str]
     plain_frame: Callable[[str], str]
+
+
+# Of a robot alone, which has no name in what it is called.
+ALONE = Whose((), lambda _: "", lambda name: name, lambda _: "", lambda frame: frame)
 
 
 class NameOwnership(NamedTuple):
@@ -106,9 +110,9 @@ class NameOwnership(NamedTuple):
         return slash + "/".join(segments)
 
 
-def whose_by_plan(plan: Expectation, names: NameOwnership, frames: NameOwnership) -> Whose:
+def whose_by_plan(plan: System, names: NameOwnership, frames: NameOwnership) -> Whose:
     """Whose names are by a plan; what it has for all robots is nobody's."""
-    shared = {*plan.shared_nodes, *plan.shared_topics}
+    shared = {*(it.name for it in plan.nodes if not it.robot), *plan.shared_topics}
     robot = cache(lambda name: "" if name in shared else names.robot(name))
     frame_robot = cache(frames.robot)
     return Whose(
@@ -146,33 +150,32 @@ def without_tag_once(name: str, tag: str) -> Iterator[str]:
             yield name[: -len(separator + tag)]
 
 
-def name_ownership(plan: Expectation) -> NameOwnership:
+def name_ownership(plan: System) -> NameOwnership:
     """The ownership of graph names: nodes, topics, services, actions."""
-    nodes = {node: robot.name for robot in plan.robots for node in robot.nodes}
-    planned = ((w.name, nodes[w.node]) for w in plan.endpoints if w.node in nodes)
+    nodes = {it.name: it.robot for it in plan.nodes if it.robot}
+    planned = ((w.name, nodes[w.node]) for w in plan.ends if w.node in nodes)
     robots = {robot.name: robot.name for robot in plan.robots}
-    last = _is_last(
-        (name, robot.name) for robot in plan.robots for name in (*robot.nodes, robot.tf)
-    )
+    tf = ((robot.tf_topic, robot.name) for robot in plan.robots)
+    last = _is_last((*nodes.items(), *tf))
     exact = _of_one_robot((*nodes.items(), *planned))
     levels = max((name.count("/") + 1 for name in robots), default=1)
     draft = NameOwnership(exact, nodes, robots, frozenset(), last, levels=levels)
     return draft._replace(ambiguous_words=frozenset(robots.keys() & _plain_words(plan, draft)))
 
 
-def _plain_words(plan: Expectation, draft: NameOwnership) -> set[str]:
+def _plain_words(plan: System, draft: NameOwnership) -> set[str]:
     """The words of nodes and names without their robot's name, as far as they may be a robot."""
     nodes = draft.nodes
-    likely = draft.robots.keys() & _words({w.code_name for w in plan.endpoints})
-    in_code = {(w.code_name, nodes.get(w.node, "")) for w in plan.endpoints if likely}
+    likely = draft.robots.keys() & _words({w.code_name for w in plan.ends})
+    in_code = {(w.code_name, nodes.get(w.node, "")) for w in plan.ends if likely}
     return _words({draft.without_robot(name, robot) for name, robot in (*in_code, *nodes.items())})
 
 
-def frame_ownership(plan: Expectation) -> NameOwnership:
+def frame_ownership(plan: System) -> NameOwnership:
     """The ownership of tf frames."""
     declared = [(frame, robot.name) for robot in plan.robots for frame in robot.frames]
     others = ((frame, robot.name) for robot in plan.robots for frame in robot.other_frames)
-    tags = {robot.name: robot.frame_tag for robot in plan.robots if robot.frame_tag}
+    tags = {robot.name: robot.tag for robot in plan.robots if robot.tag}
     robots = {tags.get(robot.name, robot.name): robot.name for robot in plan.robots}
     last = _is_last((frame, tags.get(robot, robot)) for frame, robot in declared)
     exact = _of_one_robot((*declared, *others))

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
-from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
-from multibot_rewrite.graph.questions import SIM_TIME
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules.index import NO_COUNTS, EndKey, Index, Known, index, tree_topic
 from multibot_rewrite.rules.ownership import (
@@ -16,7 +14,15 @@ from multibot_rewrite.rules.ownership import (
     whose_by_plan,
 )
 from multibot_rewrite.rules.pair.tf_copies import copying_nodes
-from multibot_rewrite.system.records import System
+from multibot_rewrite.system.records import (
+    SIM_TIME,
+    End,
+    Node,
+    Robot,
+    System,
+    may_miss,
+    nodes_by_robot,
+)
 
 
 class Sent(NamedTuple):
@@ -31,50 +37,47 @@ class Sent(NamedTuple):
 
 
 class Planned(NamedTuple):
-    """A plan; ``names`` and ``frames`` say whose a name is by it, ``robot_of`` of the planned nodes.
+    """A plan; ``names`` and ``frames`` say whose a name is by it.
 
-    ``ends`` are by their key, ``sent`` the transforms besides those of the descriptions. ``frames_of``
-    has the frames of each robot, ``places`` file and line of the plugin that starts a node.
-    ``may_miss`` are the nodes that need not run: optional ones, and those of which another one may run
-    in their place.
+    ``nodes`` are by their names, ``own`` the names of those of each robot, ``robot_of`` the robot of
+    those that have one. ``ends`` are by their key, ``sent`` the transforms besides those of the
+    descriptions. ``frames_of`` has the frames of each robot. ``may_miss`` are the nodes that need not
+    run: on a condition, or because another one may run instead.
     """
 
-    system: Expectation
+    system: System
     names: NameOwnership
     frames: NameOwnership
-    robots: Mapping[str, PlannedRobot]
+    robots: Mapping[str, Robot]
+    nodes: Mapping[str, Node]
+    own: Mapping[str, Sequence[str]]
     robot_of: Mapping[str, str]
-    ends: Mapping[EndKey, PlannedEndpoint]
+    ends: Mapping[EndKey, End]
     sent: tuple[Sent, ...]
     frames_of: Mapping[str, frozenset[str]]
-    places: Mapping[str, str]
     may_miss: frozenset[str]
 
 
-def planned(plan: Expectation) -> Planned:
+def planned(plan: System) -> Planned:
     """The look-ups, made once."""
-    optional = (robot.optional for robot in plan.robots)
     return Planned(
         plan,
         name_ownership(plan),
         frame_ownership(plan),
         {robot.name: robot for robot in plan.robots},
-        {node: robot.name for robot in plan.robots for node in robot.nodes},
-        # Their first four fields are the key.
-        {end[:4]: end for end in plan.endpoints},
+        {it.name: it for it in plan.nodes},
+        nodes_by_robot(plan),
+        {it.name: it.robot for it in plan.nodes if it.robot},
+        {(it.node, it.kind, it.role, it.name): it for it in plan.ends},
         tuple(_sent(plan)),
         {it.name: frozenset((*it.frames, *it.other_frames)) for it in plan.robots},
-        dict(plan.sources),
-        frozenset(node for group in (*optional, *plan.one_of) for node in group),
+        frozenset(it.name for it in plan.nodes if may_miss(it)),
     )
 
 
-def _sent(plan: Expectation) -> Iterator[Sent]:
-    for node, text in plan.sends:
-        for edge in text.split(", "):
-            parent, arrow, child = edge.partition(" -> ")
-            if arrow:
-                yield Sent(node, parent, child)
+def _sent(plan: System) -> Iterator[Sent]:
+    for edge in plan.edges:
+        yield from (Sent(node, edge.parent, edge.child) for node in edge.publishers)
 
 
 def beside(plan: Planned, graph: System, messages: Mapping[str, int] = NO_COUNTS) -> Index:
@@ -82,13 +85,12 @@ def beside(plan: Planned, graph: System, messages: Mapping[str, int] = NO_COUNTS
     senders: dict[tuple[str, str], tuple[str, ...]] = defaultdict(tuple)
     for it in plan.sent:
         senders[it.parent, it.child] += (it.node,)
-    clocks = {it.node for it in plan.system.states for own in it.parameters if own.name == SIM_TIME}
     known = Known(
-        {robot.name: tree_topic(robot.tf) for robot in plan.system.robots},
+        {robot.name: tree_topic(robot.tf_topic) for robot in plan.system.robots},
         senders,
         plan.robot_of,
         plan.system.ignored_nodes,
-        clocks,
+        {it.node for it in plan.system.parameters if it.name == SIM_TIME},
         copying_nodes(plan.system),
         messages,
         graph.environment.seconds,

@@ -33,6 +33,7 @@ from multibot_rewrite.system.records import (
     EXPECTED,
     KINDS,
     MAY,
+    OFF,
     QUIET,
     ROLES,
     RUNS,
@@ -52,11 +53,14 @@ from multibot_rewrite.system.records import (
 from multibot_rewrite.system.schema_1 import OldSnapshot, OldState, system_of
 
 SCHEMA = 2
+# Findings are in the file of a plan alone (``graph/plan_gaps.py``).
+LEFT_OUT = ("gaps",)
+_EMPTY: tuple[object, ...] = ("", ())
 
 ALLOWED_WORDS: Mapping[tuple[type, str], tuple[str, ...]] = {
     (End, "kind"): KINDS,
     (End, "role"): ROLES,
-    (Sure, "word"): tuple(it.word for it in (RUNS, MAY, UNKNOWN)),
+    (Sure, "word"): tuple(it.word for it in (RUNS, MAY, UNKNOWN, OFF)),
     (Environment, "settled"): (EXPECTED, QUIET, TIMEOUT, CHANGING),
 }
 FULL_NAMES = {
@@ -74,15 +78,22 @@ _TRANSFORM = (Edge, "transform")
 
 def to_json(system: System) -> bytes:
     """The system as JSON, one record on each line, in the order of the records."""
+    told = zip(System._fields, system, strict=True)
     parts = [f'"schema": {SCHEMA}']
-    for name, records in zip(System._fields, system, strict=True):
-        if name == "environment" and records != Environment():
-            text = json.dumps(plain_value(records), indent=1, ensure_ascii=False)
-            parts.append('"environment": ' + text.replace("\n", "\n "))
-        elif records and name != "environment":
-            lines = ",\n  ".join(map(_line, records))
-            parts.append(f'"{name}": [\n  {lines}\n ]')
+    parts += [
+        f'"{name}": {_value(value)}'
+        for name, value in told
+        if name not in LEFT_OUT and value not in (*_EMPTY, Environment())
+    ]
     return ("{\n " + ",\n ".join(parts) + "\n}\n").encode("utf-8", "backslashreplace")
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, Environment):
+        return json.dumps(plain_value(value), indent=1, ensure_ascii=False).replace("\n", "\n ")
+    if isinstance(value, str) or isinstance(value[0], str):
+        return _line(value)
+    return "[\n  " + ",\n  ".join(map(_line, value)) + "\n ]"
 
 
 def _line(record: object) -> str:

@@ -6,14 +6,13 @@ Texts for people decide nothing.
 
 from __future__ import annotations
 
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.record import NamedTuple
 
 TOPIC, SERVICE, ACTION = "topic", "service", "action"
 KINDS = (TOPIC, SERVICE, ACTION)
 PUBLISHES, SUBSCRIBES, SERVES, CALLS = "publishes", "subscribes", "serves", "calls"
 ROLES = (PUBLISHES, SUBSCRIBES, SERVES, CALLS)
-# Roles of an interface of the hardware: the hardware exports it, a controller claims it.
-EXPORTS, CLAIMS = "exports", "claims"
 # Why an observation ended: all expected nodes are there, the graph no longer changes, the timeout
 # is over. CHANGING: it has not ended, the graph is being watched.
 EXPECTED, QUIET, TIMEOUT, CHANGING = "expected", "quiet", "timeout", "changing"
@@ -40,8 +39,20 @@ class Place(NamedTuple):
 NOWHERE = Place("")
 
 
+def place_of(text: str) -> Place:
+    """The place that ``file:line`` or ``file:line:column`` is; a text without a line is a file."""
+    file, _, last = text.rpartition(":")
+    if not (file and last.isdecimal() and len(last) < 10):
+        return Place(text) if text else NOWHERE
+    above, _, line = file.rpartition(":")
+    if above and line.isdecimal():
+        return Place(above, int(line), int(last))
+    return Place(file, int(last))
+
+
 class Sure(NamedTuple):
-    """Whether something is there: ``runs`` always, ``may`` on a condition, or it is ``unknown``.
+    """Whether something is there: ``runs`` always, ``may`` on a condition, is told not to and
+    ``off``, or it is ``unknown``.
 
     ``why`` is the condition, or why it is not known, for people. Of the nodes ``instead`` exactly one
     runs.
@@ -52,7 +63,9 @@ class Sure(NamedTuple):
     instead: tuple[str, ...] = ()
 
 
-RUNS, MAY, UNKNOWN = Sure("runs"), Sure("may"), Sure("unknown")
+RUNS, MAY, UNKNOWN, OFF = Sure("runs"), Sure("may"), Sure("unknown"), Sure("off")
+# The code of a caveat: nodes that no source names may run, such as the driver of a robot.
+UNKNOWN_NODES = "unknown-nodes"
 
 
 class Qos(NamedTuple):
@@ -75,8 +88,8 @@ class Qos(NamedTuple):
 class Robot(NamedTuple):
     """One robot: its tf topic, the frames of its description.
 
-    ``namespace`` is that of its nodes, empty where it has none. ``other_frames`` are further frames
-    that its nodes may send. ``tag`` is its name in frames, where that is another one than its name.
+    ``other_frames`` are further frames that its nodes may send. ``tag`` is its name in
+    frames, where that is another one than its name.
     """
 
     name: str
@@ -84,20 +97,18 @@ class Robot(NamedTuple):
     tf_topic: str = "/tf"
     other_frames: tuple[str, ...] = ()
     tag: str = ""
-    namespace: str = ""
-    place: Place = NOWHERE
 
 
 class Node(NamedTuple):
-    """One node. Two nodes with one name are two records.
+    """One node. Two nodes with one name are two records; in a plan a ``*`` of a name is any word.
 
     ``process`` identifies its process, empty where it is not known; ``enclave`` is that of its process
     (SROS2), empty for none. ``robot`` is its robot's name, empty for a node of all robots or where that
-    is not known. ``way`` is how it gets its remap rules if not by --ros-args of its own
-    (``remap.ways``), ``taker`` the node that takes them for it. ``lifecycle`` is the label of its
-    state, empty for a node that is not managed. ``host`` is any word: nodes of one host run on one
-    machine, those of two on two. ``known`` leads to the fact about it. ``plugin_place`` has the plugin
-    that starts it, ``place`` what else names it.
+    is not known. ``lifecycle`` is the label of its state, empty for a node that is not managed.
+    ``host`` is any word: nodes of one host run on one machine, those of two on two. ``way`` is how it
+    gets its remap rules if not by --ros-args of its own (``remap.ways``), ``taker`` the node that takes
+    them for it. ``plugin`` is where a description has the plugin that starts it, ``place`` what else
+    names it, ``stack`` the stack that it is from. ``known`` is what its stack or file calls it.
     """
 
     name: str
@@ -108,17 +119,11 @@ class Node(NamedTuple):
     host: str = ""
     way: str = ""
     taker: str = ""
-    package: str = ""
-    program: str = ""
-    known: str = ""
+    stack: str = ""
     sure: Sure = RUNS
     place: Place = NOWHERE
-    plugin_place: Place = NOWHERE
-
-    @property
-    def namespace(self) -> str:
-        """Empty for the root."""
-        return self.name.rpartition("/")[0]
+    plugin: Place = NOWHERE
+    known: str = ""
 
 
 class End(NamedTuple):
@@ -128,7 +133,7 @@ class End(NamedTuple):
     ``also`` are other types that it may have, by parameter or release. ``type_hash``, ``qos`` and the
     end's own ``process`` are known only where the topic was queried; otherwise they are empty, None
     and the process of the node. ``code_name`` is the name in the node's code, before any remap rule,
-    ``parameter`` the parameter that sets it.
+    ``place`` is where a file names it, or its node.
     """
 
     kind: str
@@ -141,7 +146,6 @@ class End(NamedTuple):
     process: str
     code_name: str = ""
     also: tuple[str, ...] = ()
-    parameter: str = ""
     sure: Sure = RUNS
     place: Place = NOWHERE
 
@@ -152,6 +156,7 @@ class Edge(NamedTuple):
 
     tf messages do not say which node sent them; ``several`` is whether more than one did.
     ``transform`` is the last one: x, y, z in metres and a quaternion x, y, z, w; empty if not known.
+    One that is ``OFF`` a node would send if a parameter, at its ``place``, let it.
     """
 
     child: str
@@ -191,34 +196,21 @@ class Controller(NamedTuple):
     claims: tuple[str, ...] = ()
 
 
-class Interface(NamedTuple):
-    """An interface of the hardware, ``kind`` is command or state: its ``node`` ``exports`` it, or, a
-    controller, ``claims`` it."""
+class Topic(NamedTuple):
+    """What holds of a topic besides who has it.
 
-    kind: str
+    ``senders`` are patterns of the nodes that may publish it, empty where any may; with
+    ``one_sender`` only one node at a time does. ``qos`` are policies with the word that each publisher
+    offers, both as in ``Qos``. ``bridge`` is what a ros_gz_bridge does with it: publishes,
+    subscribes, both, or nothing; ``type`` is its type then.
+    """
+
     name: str
-    node: str
-    role: str
-    place: Place = NOWHERE
-
-
-class RemapRule(NamedTuple):
-    """A remap rule of a node, or of all nodes of its process."""
-
-    node: str
-    source: str
-    target: str
-    process_wide: bool = False
-    place: Place = NOWHERE
-
-
-class Address(NamedTuple):
-    """A port, device, file or IP that one process holds."""
-
-    kind: str
-    value: str
-    node: str
-    place: Place = NOWHERE
+    senders: tuple[str, ...] = ()
+    one_sender: bool = False
+    qos: tuple[tuple[str, str], ...] = ()
+    bridge: tuple[str, ...] = ()
+    type: str = ""
 
 
 class Caveat(NamedTuple):
@@ -252,7 +244,10 @@ class System(NamedTuple):
     """What runs, or would run, on some robots; what no source tells is empty.
 
     ``heard`` are frames that messages name, one message a topic. ``parameters`` and ``controllers`` are
-    what nodes answered, or what files set.
+    what nodes answered, or what files set. A plan has a ``layout``; ``topics`` say more of some of its
+    topics, ``ignored_nodes`` are patterns of nodes that may come and go, besides the usual tools.
+    ``release`` is the one whose facts it rests on. ``gaps`` are findings about what is open in the
+    robots as they are planned: a name that is read and not sent, for example.
     """
 
     nodes: tuple[Node, ...] = ()
@@ -263,6 +258,13 @@ class System(NamedTuple):
     parameters: tuple[Parameter, ...] = ()
     controllers: tuple[Controller, ...] = ()
     robots: tuple[Robot, ...] = ()
+    topics: tuple[Topic, ...] = ()
+    layout: str = ""
+    release: str = ""
+    shared_topics: tuple[str, ...] = ()
+    shared_frames: tuple[str, ...] = ()
+    ignored_nodes: tuple[str, ...] = ()
+    gaps: tuple[Finding, ...] = ()
 
 
 def incomplete(system: System) -> tuple[Caveat, ...]:
@@ -273,6 +275,24 @@ def incomplete(system: System) -> tuple[Caveat, ...]:
 def clocks(system: System) -> dict[str, bool]:
     """By node: whether it goes by simulated time, where that is known."""
     return {it.node: it.value == "true" for it in system.parameters if it.name == SIM_TIME}
+
+
+def nodes_by_robot(system: System) -> dict[str, list[str]]:
+    """The names of the nodes of each robot, and of all robots (empty name), each once."""
+    found: dict[str, list[str]] = {"": [], **{it.name: [] for it in system.robots}}
+    for name, robot in {it.name: it.robot for it in system.nodes}.items():
+        found.setdefault(robot, []).append(name)
+    return found
+
+
+def alternatives(system: System) -> tuple[tuple[str, ...], ...]:
+    """The groups of nodes of each of which one runs, and not more."""
+    return tuple(dict.fromkeys(it.sure.instead for it in system.nodes if it.sure.instead))
+
+
+def may_miss(node: Node) -> bool:
+    """Need the node not run: on a condition, or because another one may run in its place?"""
+    return node.sure.word != RUNS.word or bool(node.sure.instead)
 
 
 def answering(system: System) -> frozenset[str]:

@@ -6,7 +6,7 @@ import json
 from types import NoneType
 from typing import Any, get_args, get_origin, get_type_hints
 
-from multibot_rewrite.system.json import ALLOWED_WORDS, FULL_NAMES, SCHEMA
+from multibot_rewrite.system.json import ALLOWED_WORDS, FULL_NAMES, LEFT_OUT, SCHEMA
 from multibot_rewrite.system.records import System
 
 _PLAIN = {str: "string", int: "integer", bool: "boolean"}
@@ -32,7 +32,11 @@ def _record(kind: Any, found: dict[str, object]) -> dict[str, Any]:
     return {
         "type": "object",
         "description": " ".join(kind.__doc__.split()),
-        "properties": {name: _field(kind, name, hint, found) for name, hint in hints.items()},
+        "properties": {
+            name: _field(kind, name, hint, found)
+            for name, hint in hints.items()
+            if name not in LEFT_OUT
+        },
         "required": [name for name in hints if name not in usual],
         "additionalProperties": False,
     }

@@ -9,12 +9,12 @@ from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.fleets.fleet_file import Sources
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.rewritten_robots import GRAPH_KINDS, RewrittenRobot
-from multibot_rewrite.graph.expectation import tf_topic
 from multibot_rewrite.library import Prepared
 from multibot_rewrite.model import Change
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.reports.changes import list_changes
 from multibot_rewrite.rules.index import tree_topic
+from multibot_rewrite.spelling.plan import tf_topic
 from multibot_rewrite.steps.document import Document
 from multibot_rewrite.system.records import Edge, System
 from multibot_rewrite.view.heard import HeardTree, LinkFrames, heard_trees

@@ -16,7 +16,7 @@ from paths import FIXTURES
 from multibot_rewrite.catalogue import rules
 from multibot_rewrite.cli import multibot, urdf_lint, urdf_postfix
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
-from multibot_rewrite.cli.declared.fleet import REMAP_FORMS
+from multibot_rewrite.cli.declared.fleet import PLAN_FORMS
 from multibot_rewrite.cli.options import Command
 from multibot_rewrite.cli.parser import make_parser, parsed
 from multibot_rewrite.cli.usage import policy, robots, separators
@@ -41,7 +41,7 @@ NAMING = {
     "--groups",
 }
 FINDINGS = {"--select", "--ignore", "--fail-on", "--format"}
-DESCRIPTION = ("urdf-postfix", "urdf-lint", "plan", "remap", "rehearse")
+DESCRIPTION = ("urdf-postfix", "urdf-lint", "plan", "rehearse")
 # The options of a command; `help` has no result.
 HAS = {
     **{name: EVERY | OUTPUT for name in ALL if name != "help"},
@@ -76,7 +76,7 @@ def test_an_option_has_one_help_wherever_it_is() -> None:
 
 
 def test_the_choices_are_those_of_the_modules_that_know_them() -> None:
-    assert ("table", *FORMS, "bridge") == REMAP_FORMS
+    assert ("plan", "table", *FORMS, "bridge", "sros2") == PLAN_FORMS
     assert MAX_DOMAIN == environment.MAX_DOMAIN
     layouts = {name for it in LAYOUTS for name in (it.name, it.short)}
     for name in DESCRIPTION:
@@ -91,7 +91,7 @@ def given(name: str, *words: str) -> argparse.Namespace:
     return parsed(make_parser(ALL[name]), words)
 
 
-@pytest.mark.parametrize("name", ["urdf-postfix", "plan", "remap", "rehearse"])
+@pytest.mark.parametrize("name", ["urdf-postfix", "plan", "rehearse"])
 @pytest.mark.parametrize(
     "words",
     [
@@ -143,17 +143,20 @@ def said(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str
     ("line", "hint"),
     [
         ("multibot chek", "unknown command 'chek'; did you mean 'check'?"),
-        ("multibot remap --layuot L1", "unknown option --layuot; did you mean '--layout'?"),
+        (
+            "multibot plan --layuot L1",
+            "unknown option --layuot; did you mean '--layout'?",
+        ),
         ("urdf-postfix a b --stripp", "unknown option --stripp; did you mean '--strip'?"),
         ("urdf-lint a --formt json", "unknown option --formt; did you mean '--format'?"),
         ("multibot check p --format jsno", "'jsno' is not known"),
         ("multibot check p --format jsno", "did you mean 'json'?"),
-        ("multibot remap a b --form ros_args", "did you mean 'ros-args'?"),
+        ("multibot plan a b --form ros_args", "did you mean 'ros-args'?"),
         ("urdf-postfix a b --layout frames", "did you mean 'frames-per-robot'?"),
         ("urdf-postfix a b --fail-on eror", "did you mean 'error'?"),
         ("multibot build --color", "argument --color: expected one argument"),
         ("urdf-postfix a b --select MB9999", "did you mean 'MB9'?"),
-        ("multibot remap a b --ignore undeclared-link", "did you mean 'MB202'?"),
+        ("multibot plan a b --ignore undeclared-link", "did you mean 'MB202'?"),
         ("multibot explain MB20X", "did you mean 'MB20'?"),
         ("urdf-postfix --explain rover.urdf:3", "for a line: urdf-postfix --why rover.urdf:3"),
         ("multibot snapshot --expect /a /b", "unexpected /b; a list is written A,B"),
@@ -189,7 +192,7 @@ def test_an_unknown_layout_is_refused_by_the_library_too() -> None:
         ("urdf-postfix", ROVER, "r1"),
         ("urdf-lint", ROVER),
         ("multibot", "plan", ROVER, "r1"),
-        ("multibot", "remap", ROVER, "r1"),
+        ("multibot", "plan", "--form=table", ROVER, "r1"),
         ("multibot", "inspect", ROVER),
         ("multibot", "inspect", "--suggest", ROVER),
         ("multibot", "explain", "MB202"),
@@ -235,7 +238,11 @@ def test_a_vocabulary_reaches_every_command_that_reads_a_description(
 ) -> None:
     more = tmp_path / "bad.vocab"
     more.write_text("[plugin acme]\nx uses wheel\n")
-    for words in (["plan", ROVER, "r"], ["remap", ROVER, "r"], ["inspect", ROVER]):
+    for words in (
+        ["plan", ROVER, "r"],
+        ["plan", "--form=table", ROVER, "r"],
+        ["inspect", ROVER],
+    ):
         code, _, err = said(capsys, "multibot", *words, "--vocabulary", str(more))
         assert (code, "bad.vocab:2: unknown kind 'wheel'" in err) == (2, True), words
 
@@ -258,22 +265,22 @@ def test_help_begins_with_an_example_that_the_parser_takes(name: str) -> None:
 @pytest.mark.parametrize("width", [60, 100])
 def test_help_is_as_wide_as_the_terminal(width: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("COLUMNS", str(width))
-    text = make_parser(ALL["remap"]).format_help()
+    text = make_parser(ALL["plan"]).format_help()
     options = text.partition("\ninput:")[2].partition("\nexit codes:")[0]
     longest = max(map(len, options.splitlines()))
     assert width - 12 < longest <= width
 
 
 def test_help_in_colour(capsys: pytest.CaptureFixture[str]) -> None:
-    plain = said(capsys, "multibot", "remap", "--help")[1]
-    painted = said(capsys, "multibot", "remap", "--color", "always", "--help")[1]
+    plain = said(capsys, "multibot", "plan", "--help")[1]
+    painted = said(capsys, "multibot", "plan", "--color", "always", "--help")[1]
     assert "\033[1mexamples:\033[0m" in painted
     assert "\033[36m  -o, --output\033[0m PATH" in painted
     assert "\033" not in plain
 
 
 def test_help_of_a_command_by_name(capsys: pytest.CaptureFixture[str]) -> None:
-    assert said(capsys, "multibot", "help", "remap") == said(capsys, "multibot", "remap", "--help")
+    assert said(capsys, "multibot", "help", "plan") == said(capsys, "multibot", "plan", "--help")
     assert said(capsys, "multibot", "help") == said(capsys, "multibot", "--help")
 
 

@@ -110,9 +110,17 @@ LINES = (
     *(["inspect", "--suggest", FILE], ["inspect", EVIL]),
     *(["inspect", f"{EVIL}.xacro"], ["inspect", f"{EVIL}.xacro", f"a:={EVIL}"]),
     *(["urdf-postfix", f"{EVIL}.xacro", "r", f"a:={EVIL}{{robot}}"]),
-    *(["explain", EVIL], ["help", EVIL], [EVIL], ["remap", FILE, "robot1", "--stack", EVIL]),
-    *(["remap", FILE, "robot1", "robot2", "--stack", "nav2", "--form", it] for it in ("table",)),
-    *(["remap", FILE, "robot1", "--nodes", f"{EVIL}.yaml", "--stack", "nav2"],),
+    *(
+        ["explain", EVIL],
+        ["help", EVIL],
+        [EVIL],
+        ["plan", "--form=table", FILE, "robot1", "--stack", EVIL],
+    ),
+    *(
+        ["plan", "--form=table", FILE, "robot1", "robot2", "--stack", "nav2", "--form", it]
+        for it in ("table",)
+    ),
+    *(["plan", "--form=table", FILE, "robot1", "--nodes", f"{EVIL}.yaml", "--stack", "nav2"],),
     *(["plan", FILE, "robot1", "robot2", "--stack", "nav2", "-o", EVIL],),
     *(["check", "plan.yaml", "--snapshot", "graph.json"],),
     *(["check", "plan.yaml", "--snapshot", "graph.json", "--format", it] for it in ("text",)),

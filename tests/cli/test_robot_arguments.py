@@ -104,7 +104,11 @@ def test_strip_with_the_xacro(tmp_path: Path, options: list[str]) -> None:
         (urdf_postfix.main, ["--why", f"{ARM}:3", "tf_prefix:={tf}"], "placeholder {tf}, only"),
         (multibot.main, ["inspect", ARM, PREFIX], "no robot is named to fill it in for"),
         (multibot.main, ["inspect", "--suggest", ARM, PREFIX], "no robot is named"),
-        (multibot.main, ["remap", ARM, "left", "right", "tf_prefix:={tf}"], "placeholder {tf}"),
+        (
+            multibot.main,
+            ["plan", "--form=table", ARM, "left", "right", "tf_prefix:={tf}"],
+            "placeholder {tf}",
+        ),
         (multibot.main, ["plan", ARM, "left", "tf_prefix:={tf}"], "unknown placeholder {tf}"),
         (urdf_lint.main, [ARM, PREFIX], "no robot is named to fill it in for"),
     ],
@@ -146,7 +150,16 @@ def test_a_plan_has_the_names_of_the_argument(tmp_path: Path) -> None:
 
 
 def test_a_table_has_the_namespace_once(capfd: pytest.CaptureFixture[str]) -> None:
-    words = ["remap", BASE, "r1", "r2", "namespace:={robot}", "--layout", "tf-per-robot"]
+    words = [
+        "plan",
+        "--form=table",
+        BASE,
+        "r1",
+        "r2",
+        "namespace:={robot}",
+        "--layout",
+        "tf-per-robot",
+    ]
     assert multibot.main(words) == 0
     out = capfd.readouterr().out
     assert {it for it in out.split() if it.startswith("/r") and "drive" in it} == {

@@ -31,8 +31,8 @@ def test_the_files_are_what_the_options_make() -> None:
     ("words", "offered"),
     [
         (["multibot", "doc"], "doctor"),
-        (["multibot", "remap", "--layo"], "--layout"),
-        (["multibot", "remap", "--layout", "frames"], "frames-per-robot"),
+        (["multibot", "plan", "--layo"], "--layout"),
+        (["multibot", "plan", "--layout", "frames"], "frames-per-robot"),
         (["multibot", "check", "--format", "sa"], "sarif"),
         (["urdf-postfix", "--in-p"], "--in-place"),
         (["urdf-lint", "--fail-on", "w"], "warning"),

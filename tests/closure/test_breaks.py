@@ -33,21 +33,21 @@ BREAKS = [
     ("rover.urdf", '      <command_interface name="velocity"/>\n', "", "MF811", 9, ""),
     ("rover.urdf", 'state_interface name="position"', 'state_interface name="pos"', "MF811", 9, ""),
     # The filter's odometry is not that of the controller's parameters: nothing joins the two.
-    ("ekf.yaml", "base_link_frame: base_link", "base_link_frame: base_lnk", "MF813", 15, ""),
+    ("ekf.yaml", "base_link_frame: base_link", "base_link_frame: base_lnk", "MG406", 15, ""),
     # Nobody sends odom -> base_link.
-    ("ekf.yaml", "publish_tf: true", "publish_tf: false", "MF813", 15, ""),
+    ("ekf.yaml", "publish_tf: true", "publish_tf: false", "MG406", 15, ""),
     # Both send it.
-    ("controllers.yaml", "enable_odom_tf: false", "enable_odom_tf: true", "MF607", 1, ""),
-    ("controllers.yaml", "    enable_odom_tf: false\n", "", "MF607", 1, ""),
+    ("controllers.yaml", "enable_odom_tf: false", "enable_odom_tf: true", "MG408", 1, ""),
+    ("controllers.yaml", "    enable_odom_tf: false\n", "", "MG408", 1, ""),
     # The filter reads what is sent under another name.
-    ("ekf.yaml", "imu0: imu/data", "imu0: imu_0/data", "MF812", 4, ""),
-    ("ekf.yaml", "odom0: base_controller/odom", "odom0: diff_drive/odom", "MF812", 3, ""),
-    ("controllers.yaml", "base_controller", "drive_controller", "MF812", 3, ""),
+    ("ekf.yaml", "imu0: imu/data", "imu0: imu_0/data", "MG303", 4, ""),
+    ("ekf.yaml", "odom0: base_controller/odom", "odom0: diff_drive/odom", "MG303", 3, ""),
+    ("controllers.yaml", "base_controller", "drive_controller", "MG303", 3, ""),
     (
         "bridge.yaml",
         "ros_topic_name: imu/data",
         "ros_topic_name: imu_0/data",
-        "MF812",
+        "MG303",
         4,
         "bridge.yaml:1",
     ),
@@ -76,18 +76,18 @@ BREAKS = [
         "",
     ),
     # Nav2 reads a scan as points: the sender of the topic is the bridge of the lidar.
-    ("nav2.yaml", "data_type: LaserScan", "data_type: PointCloud2", "MF818", 12, ""),
-    ("nav2.yaml", "type: scan, topic: scan", "type: pointcloud, topic: scan", "MF818", 22, ""),
+    ("nav2.yaml", "data_type: LaserScan", "data_type: PointCloud2", "MG306", 12, ""),
+    ("nav2.yaml", "type: scan, topic: scan", "type: pointcloud, topic: scan", "MG306", 22, ""),
     # Nav2 reads what nobody sends.
-    ("nav2.yaml", "scan_topic: scan", "scan_topic: scan_front", "MF812", 2, "/scan"),
-    ("nav2.yaml", "topic: /scan", "topic: /front", "MF812", 12, "/scan"),
-    ("nav2.yaml", "type: scan, topic: scan", "type: scan, topic: lidar", "MF812", 22, "/scan"),
-    ("nav2.yaml", "topic: cmd_vel_smoothed", "topic: cmd_vel_smoth", "MF812", 25, ""),
+    ("nav2.yaml", "scan_topic: scan", "scan_topic: scan_front", "MG303", 2, "/scan"),
+    ("nav2.yaml", "topic: /scan", "topic: /front", "MG303", 12, "/scan"),
+    ("nav2.yaml", "type: scan, topic: scan", "type: scan, topic: lidar", "MG303", 22, "/scan"),
+    ("nav2.yaml", "topic: cmd_vel_smoothed", "topic: cmd_vel_smoth", "MG303", 25, ""),
     (
         "nav2.yaml",
         "base_link, odom_topic: odometry/filtered",
         "base_link, odom_topic: odom",
-        "MF812",
+        "MG303",
         14,
         "",
     ),
@@ -95,12 +95,12 @@ BREAKS = [
         "nav2.yaml",
         "{odom_topic: odometry/filtered, feedback",
         "{odom_topic: odom, feedback",
-        "MF812",
+        "MG303",
         16,
         "",
     ),
-    ("nav2.yaml", "{odom_topic: odometry/filtered}", "{odom_topic: odm}", "MF812", 27, ""),
-    ("rover.urdf", "<topic>scan</topic>", "<topic>front/scan</topic>", "MF812", 2, "/front/scan"),
+    ("nav2.yaml", "{odom_topic: odometry/filtered}", "{odom_topic: odm}", "MG303", 27, ""),
+    ("rover.urdf", "<topic>scan</topic>", "<topic>front/scan</topic>", "MG303", 2, "/front/scan"),
     # A source in the list without a topic of its own: it reads what it is called.
     (
         "nav2.yaml",
@@ -111,8 +111,8 @@ BREAKS = [
         "",
     ),
     # Two trees of frames, with both lines.
-    ("nav2.yaml", "odom_frame: odom,", "odom_frame: odom_slam,", "MF817", 1, "nav2.yaml:1"),
-    ("ekf.yaml", "frame: odom", "frame: odom_combined", "MF817", 1, "nav2.yaml:1"),
+    ("nav2.yaml", "odom_frame: odom,", "odom_frame: odom_slam,", "MG406", 1, "nav2.yaml:1"),
+    ("ekf.yaml", "frame: odom", "frame: odom_combined", "MG406", 1, "nav2.yaml:1"),
     # Frames that nothing sends.
     ("nav2.yaml", "base_frame: base_link,", "base_frame: base_lnk,", "MF112", 2, "base_link"),
     ("nav2.yaml", "global_frame: odom", "global_frame: odomm", "MF112", 6, ""),
@@ -133,7 +133,7 @@ BREAKS = [
         5,
         "DiffDriveController",
     ),
-    ("controllers.yaml", "base_controller:\n  ros", "base_controler:\n  ros", "MF607", 22, ""),
+    ("controllers.yaml", "base_controller:\n  ros", "base_controler:\n  ros", "MG408", 5, ""),
     # The joint of the hardware is called otherwise than the controller's.
     (
         "rover.urdf",
@@ -158,7 +158,7 @@ BREAKS = [
         '<link name="finger_link"/>\n',
         '<link name="finger_link"/>\n  <joint name="second" type="fixed"><parent link="lidar_link"/>'
         '<child link="imu_link"/></joint>\n',
-        "MF607",
+        "MG401",
         15,
         "rover.urdf:8",
     ),
@@ -167,12 +167,12 @@ BREAKS = [
         "ekf.yaml",
         "base_link_frame: base_link",
         "base_link_frame: lidar_link",
-        "MF607",
+        "MG401",
         1,
         "rover.urdf:19",
     ),
     # The filter of the map sends map -> odom, and nothing odom -> base_link.
-    ("ekf.yaml", "world_frame: odom\n", "world_frame: map\n", "MF813", 15, ""),
+    ("ekf.yaml", "world_frame: odom\n", "world_frame: map\n", "MG406", 15, ""),
     # The costmap's source and its plugin are called otherwise than their parameters.
     ("nav2.yaml", "sources: scan\n", "sources: scn\n", "MF819", 11, "nav2.yaml:12"),
     (
@@ -186,13 +186,13 @@ BREAKS = [
     # The bridge of an IMU, reversed, or of another type.
     ("bridge.yaml", "GZ_TO_ROS", "ROS_TO_GZ", "MF816", 2, "rover.urdf:43"),
     ("bridge.yaml", "gz.msgs.IMU", "gz.msgs.Magnetometer", "MF816", 2, "rover.urdf:43"),
-    ("bridge.yaml", "msg/Imu", "msg/MagneticField", "MF818", 4, "bridge.yaml:1"),
+    ("bridge.yaml", "msg/Imu", "msg/MagneticField", "MG306", 4, "bridge.yaml:1"),
     # twist_mux has a topic that nobody sends.
     (
         "nav2.yaml",
         "{topic: cmd_vel_smoothed, timeout",
         "{topic: nav_vel, timeout",
-        "MF812",
+        "MG303",
         25,
         "/cmd_vel",
     ),
@@ -238,20 +238,20 @@ ARM_BREAKS = [
         "sensors.yaml",
         "imu_broadcaster/imu",
         "imu_sensor_broadcaster/imu",
-        "MF812",
+        "MG303",
         3,
         "controllers.yaml:7",
     ),
-    ("controllers.yaml", "imu_broadcaster", "imu_sensor", "MF812", 3, "controllers.yaml:7"),
+    ("controllers.yaml", "imu_broadcaster", "imu_sensor", "MG303", 3, "controllers.yaml:7"),
     # Sources that nobody sends: behind a laser filter, of joint_state_publisher.
-    ("sensors.yaml", "topic: scan_filtered", "topic: scan_filtred", "MF812", 15, "sensors.yaml:7"),
-    ("sensors.yaml", "[joint_states]", "[arm_joint_states]", "MF812", 17, "controllers.yaml:4"),
+    ("sensors.yaml", "topic: scan_filtered", "topic: scan_filtred", "MG303", 15, "sensors.yaml:7"),
+    ("sensors.yaml", "[joint_states]", "[arm_joint_states]", "MG303", 17, "controllers.yaml:4"),
     # The laser filter reads scan.
     (
         "bridge.yaml",
         "ros_topic_name: scan",
         "ros_topic_name: scan_raw",
-        "MF812",
+        "MG303",
         7,
         "bridge.yaml:1",
     ),
@@ -261,7 +261,7 @@ ARM_BREAKS = [
     ("bridge.yaml", "GZ_TO_ROS", "ROS_TO_GZ", "MF816", 2, "arm.urdf:57"),
     ("bridge.yaml", "gz.msgs.LaserScan", "gz.msgs.PointCloudPacked", "MF816", 2, "arm.urdf:57"),
     ("bridge.yaml", "msg/LaserScan", "msg/PointCloud2", "MF510", 1, "sensor_msgs/msg/LaserScan"),
-    ("bridge.yaml", "msg/LaserScan", "msg/PointCloud2", "MF818", 7, "bridge.yaml:1"),
+    ("bridge.yaml", "msg/LaserScan", "msg/PointCloud2", "MG306", 7, "bridge.yaml:1"),
     ("arm.urdf", "<topic>scan</topic>", "<topic>lidar</topic>", "MF816", 2, "arm.urdf:57"),
     # MoveIt uses a joint of another controller, an action that is not served, or another type of it.
     (

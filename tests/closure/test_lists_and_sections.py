@@ -1,11 +1,10 @@
-"""Lists without parameters, sections of no controller, topics of another type: each step alone."""
+"""Lists without parameters, sections of no controller: each step alone."""
 
 from __future__ import annotations
 
 from closed_robot import FILES
 
 from multibot_rewrite.closure.lists import list_gaps
-from multibot_rewrite.closure.topics import End, type_gaps
 from multibot_rewrite.closure.undeclared import undeclared_gaps
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.evidence.parameter_files import given_nodes
@@ -58,20 +57,3 @@ def test_a_section_that_nobody_declares() -> None:
 def test_a_section_with_its_own_type_is_declared_by_it() -> None:
     own = "spare: {ros__parameters: {type: diff_drive_controller/DiffDriveController}}\n"
     assert undeclared(CONTROLLERS + own) == []
-
-
-READS = End("/n", "topic", "subscribes", "/cmd", "a/msg/A", "cmd", "n")
-SENDS = READS._replace(node="/m", role="publishes", type="a/msg/B")
-
-
-def test_a_topic_of_another_type() -> None:
-    (gap,) = type_gaps([READS, SENDS])
-    assert (gap.name, gap.near) == ("/cmd as a/msg/A", "/m sends a/msg/B")
-
-
-def test_types_that_may_be_the_same() -> None:
-    assert list(type_gaps([READS._replace(also=("a/msg/B",)), SENDS])) == []
-    assert list(type_gaps([READS, SENDS._replace(also=("a/msg/A",))])) == []
-    assert list(type_gaps([READS, SENDS, SENDS._replace(type="")])) == []
-    assert list(type_gaps([READS, SENDS, SENDS._replace(type="a/msg/A")])) == []
-    assert list(type_gaps([READS._replace(sure=False), SENDS])) == []

@@ -40,7 +40,7 @@ def test_an_optional_node_needs_nothing_until_it_has_parameters(
         (tmp_path / name).write_text(text)
     (tmp_path / "fleet.yaml").write_text(fleet)
     plan = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "jazzy", {}))
-    found = [it.message for it in make_outputs(plan).findings if it.code == "MF814"]
+    found = [it.message for it in make_outputs(plan).findings if it.code == "MG316"]
     assert bool(found) is told
     assert not told or "light" in found[0]
 
@@ -60,4 +60,4 @@ stacks:
         (tmp_path / name).write_text(text)
     plan = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "jazzy", {}))
     found = [it.code for it in make_outputs(plan).findings if "start_motor" in it.message]
-    assert found == ["MF812" if meant else "MF814"]
+    assert found == ["MG304" if meant else "MG316"]

@@ -6,6 +6,7 @@ slam_toolbox slam_toolbox_common.cpp (subscribes to scan as LaserScan).
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -49,12 +50,16 @@ SCOUT = """\
     ("output", "codes"),
     [
         ("<output_type>sensor_msgs/LaserScan</output_type>", set()),
-        ("<output_type>sensor_msgs/PointCloud2</output_type>", {"MF818"}),
-        ("", {"MF818"}),
+        ("<output_type>sensor_msgs/PointCloud2</output_type>", {"MG306"}),
+        ("", {"MG306"}),
     ],
 )
 def test_a_lidar_of_another_type(tmp_path: Path, layout: str, output: str, codes: set[str]) -> None:
     robot = SCOUT.replace("<output_type>sensor_msgs/LaserScan</output_type>", output)
     built, planned = found(tmp_path, {"fleet.yaml": FLEET, "scout.urdf": robot}, layout)
     assert {it.code for it in built} == {it.code for it in planned} == codes
-    assert all("/lidar_driver sends sensor_msgs/msg/PointCloud2" in it.message for it in planned)
+    for it in planned:
+        assert re.search(
+            r"but \S*/lidar_driver\S* has it as sensor_msgs/msg/PointCloud2", it.message
+        )
+        assert "scout.urdf:" in f"{it.file}:{it.line} {it.hint}"

@@ -11,9 +11,10 @@ from multibot_rewrite.closure.interfaces import claims_any, contested_gaps
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.evidence.hardware import Exported
 from multibot_rewrite.evidence.parameter_files import given_nodes
-from multibot_rewrite.evidence.records import GivenNode, Place
+from multibot_rewrite.evidence.records import GivenNode
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.stacks import load_nodes
+from multibot_rewrite.system.records import Place
 
 FORWARD = "forward_command_controller/ForwardCommandController"
 CONTROLLERS = f"""\

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from multibot_rewrite.evidence.alternatives import alternatives
-from multibot_rewrite.evidence.records import Given, GivenNode, Place
+from multibot_rewrite.evidence.records import Given, GivenNode
+from multibot_rewrite.system.records import Place
 
 HERE = Place("c.yaml", 3)
 

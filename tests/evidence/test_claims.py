@@ -8,10 +8,11 @@ import pytest
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.evidence.claims import claimed, claims_of
 from multibot_rewrite.evidence.parameter_files import given_nodes
-from multibot_rewrite.evidence.records import Given, Place
+from multibot_rewrite.evidence.records import Given
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.records import Claim
 from multibot_rewrite.knowledge.stacks import load_nodes
+from multibot_rewrite.system.records import Place
 
 HERE = Place("c.yaml", 1)
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 import pytest
 
 from multibot_rewrite.evidence.claims import claimed
-from multibot_rewrite.evidence.records import Given, Place
+from multibot_rewrite.evidence.records import Given
 from multibot_rewrite.knowledge.records import Claim
+from multibot_rewrite.system.records import Place
 
 JOINTS, KINDS = Place("c.yaml", 3), Place("c.yaml", 4)
 VALUES = {

@@ -23,14 +23,15 @@ from fleet_folder import SMALL, fleet_folder, mixed
 from hypothesis import given
 from hypothesis import strategies as st
 from lxml import etree
+from plans import PlannedRobot, from_plugin, planned
 
 from multibot_rewrite.cli import folders
 from multibot_rewrite.cli.files import write_new
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleets.manifest import MANIFEST, NOTE, read_manifest
-from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
 from multibot_rewrite.graph.plan_file import from_yaml, to_yaml
 from multibot_rewrite.model import InputError
+from multibot_rewrite.spelling.plan import planned_end
 
 COMMAND = [sys.executable, "-m", "multibot_rewrite.cli.multibot", "build"]
 Files = dict[str, bytes]
@@ -706,9 +707,10 @@ ODD = st.one_of(WORD, st.sampled_from(["yes", "y", "~", "null", "1e3", "0x1", "a
 @pytest.mark.slow
 @given(ODD, ODD, st.lists(ODD, max_size=3))
 def test_any_words_in_a_plan_read_back(word: str, other: str, frames: list[str]) -> None:
-    robot = PlannedRobot(word, (f"/{other}",), tuple(frames), "/tf", frame_tag=other)
-    end = PlannedEndpoint(f"/{other}", "topic", "publishes", f"/{word}", other, other)
-    plan = Expectation("both", (robot,), (), (), tuple(frames), (end,), (), ((f"/{other}", word),))
+    robot = PlannedRobot(word, (f"/{other}",), tuple(frames), "/tf", tag=other)
+    end = planned_end(f"/{other}", "topic", "publishes", f"/{word}", other, other)
+    plan = planned("both", (robot,), (), (), tuple(frames), (end,))
+    plan = from_plugin(plan, f"/{other}", word)
     text = to_yaml(plan)
     with contextlib.suppress(InputError):
         assert from_yaml(text.encode(), "p") == plan

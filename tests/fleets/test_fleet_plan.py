@@ -12,6 +12,7 @@ import pytest
 import yaml
 from fleet_folder import SMALL, fleet_folder, mixed
 from lxml import etree
+from plans import own
 
 from multibot_rewrite.fleets.build import make_outputs
 from multibot_rewrite.fleets.fleet import expected
@@ -46,8 +47,8 @@ def test_a_section_in_the_namespace_of_its_robot_is_for_that_robot(tmp_path: Pat
         own__yaml=text,
     )
     plan = expected(plan_fleet(read_fleet(str(folder), "", {})).fleet)
-    assert {"/r1/controller_manager", "/r1/base"} <= {*plan.robots[0].nodes}
-    assert [it for it in plan.robots[0].nodes if it.startswith("/r1/r1")] == []
+    assert {"/r1/controller_manager", "/r1/base"} <= {*own(plan, plan.robots[0].name)}
+    assert [it for it in own(plan, plan.robots[0].name) if it.startswith("/r1/r1")] == []
 
 
 def spell(layout: str, name: str, word: str, separator: str = "/") -> str:
@@ -173,10 +174,12 @@ def test_the_plan_reads_back_and_holds_each_robots_nodes(
     plan = from_yaml(files["plan.yaml"].encode(), "plan.yaml")
     by_name = {it.name: it for it in plan.robots}
     assert set(by_name) == {"fleet_scout", "reach", "grip", "bare"}
-    assert all(any("robot_state_publisher" in node for node in it.nodes) for it in plan.robots)
-    assert any("amcl" in it for it in by_name["fleet_scout"].nodes)
-    assert any("move_group" in it for it in by_name["reach"].nodes)
-    assert not any("amcl" in it for it in by_name["reach"].nodes)
+    assert all(
+        any("robot_state_publisher" in node for node in own(plan, it.name)) for it in plan.robots
+    )
+    assert any("amcl" in it for it in own(plan, "fleet_scout"))
+    assert any("move_group" in it for it in own(plan, "reach"))
+    assert not any("amcl" in it for it in own(plan, "reach"))
     frames = {frame for it in plan.robots for frame in it.frames}
     assert layout == "L1" or spell(layout, "base_link", "s1") in frames
 
@@ -191,7 +194,7 @@ def test_remappings_hold_every_node_of_the_plan(fleet: tuple[str, dict[str, str]
         for it in own.values()
     }
     # What a node makes for itself is a pattern, and gets its rules from that node.
-    own = {node for robot in plan.robots for node in robot.nodes if "*" not in node}
+    own = {it.name for it in plan.nodes if it.robot and "*" not in it.name}
     assert own <= full
 
 

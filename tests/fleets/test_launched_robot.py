@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from plans import sends
 from rule_examples import DESCRIPTION
 
 from multibot_rewrite import InputError
@@ -127,10 +128,8 @@ def test_the_plan_has_what_a_static_transform_publisher_sends(
         for name, words in (("dock", "odom, dock"), ("laser", "robot1/base_link, laser"))
     )
     (tmp_path / "system_model.yaml").write_text(model)
-    sends = dict(expected(plan_fleet(read_fleet(file, "", {})).fleet).sends)
-    where = [
-        next(sends[it] for it in sends if "robot1" in it and w in it) for w in ("dock", "laser")
-    ]
+    sent = sends(expected(plan_fleet(read_fleet(file, "", {})).fleet))
+    where = [next(sent[it] for it in sent if "robot1" in it and w in it) for w in ("dock", "laser")]
     assert where == [moved, other]
 
 

@@ -10,10 +10,10 @@ from nav2_graphs import ROVER, healthy, moved, with_end, without_node
 from multibot_rewrite.fleets.fleet import expected
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import plan_fleet
-from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.plan_file import from_yaml, to_yaml
 from multibot_rewrite.model import InputError
 from multibot_rewrite.rules.check import check
+from multibot_rewrite.system.records import System
 
 NAMESPACED = ("tf-per-robot", "frames-per-robot", "both")
 # Two fleets with robots of one name, and a robot beside them.
@@ -29,7 +29,7 @@ robots:
 """
 
 
-def planned(folder: Path, layout: str) -> Expectation:
+def planned(folder: Path, layout: str) -> System:
     """The plan of the fleet, through its file."""
     file = folder / "fleet.yaml"
     file.write_text(FLEET.format(layout=layout, rover=ROVER))
@@ -43,13 +43,16 @@ def test_a_fleet_as_planned_has_no_findings(tmp_path: Path, layout: str) -> None
     names = [robot.name for robot in plan.robots]
     assert names == ["fleet_a/robot1", "fleet_b/robot1", "guard"]
     assert check(plan, healthy(plan)) == []
-    scans = {it.name for it in plan.endpoints if it.code_name in {"/scan", "scan"}}
+    scans = {it.name for it in plan.ends if it.code_name in {"/scan", "scan"}}
     assert scans == {"/fleet_a/robot1/scan", "/fleet_b/robot1/scan", "/guard/scan"}
 
 
 def test_frames_have_the_robots_word_and_not_its_path(tmp_path: Path) -> None:
     plan = planned(tmp_path, "both")
-    assert [robot.tf for robot in plan.robots][:2] == ["/fleet_a/robot1/tf", "/fleet_b/robot1/tf"]
+    assert [robot.tf_topic for robot in plan.robots][:2] == [
+        "/fleet_a/robot1/tf",
+        "/fleet_b/robot1/tf",
+    ]
     assert [robot.frames[0].rpartition("/")[2] for robot in plan.robots] == ["a1", "b1", "guard"]
 
 

@@ -9,6 +9,7 @@ import yaml
 from fleet_folder import ROVER, fleet_folder
 from graph_cases import as_planned
 from paths import FIXTURES
+from plans import own
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleets.fleet import NO_STATE_PUBLISHER, expected, facts_of, make_fleet
@@ -84,7 +85,7 @@ def test_the_frames_of_another_robot_are_not_missed_but_its_node_is(
 
 
 def nodes_of(plan: str) -> set[str]:
-    return {node for it in from_yaml(plan.encode(), "plan").robots for node in it.nodes}
+    return {it.name for it in from_yaml(plan.encode(), "plan").nodes if it.robot}
 
 
 @pytest.mark.parametrize("poses", ["", "one", "both"])
@@ -95,7 +96,7 @@ def test_all_commands_have_the_same_robots(
     text = text.replace("{name: b}", "{name: b, pose: {x: 2}}") if poses == "both" else text
     file = str(fleet_folder(tmp_path, text))
     _, planned, _ = run(capsys, "plan", file)
-    _, table, _ = run(capsys, "remap", file, "--form", "json")
+    _, table, _ = run(capsys, "plan", "--form=table", file, "--form", "json")
     assert main(["build", file, "-o", str(tmp_path / "out")]) == 0
     assert (tmp_path / "out" / "plan.yaml").read_text() == planned
     wanted = {f"/{robot}/{PUBLISHER}" for robot in "ab"}
@@ -172,11 +173,11 @@ def test_one_such_robot_among_others_is_an_error_of_every_command(
 
 
 def test_a_table_of_nothing_says_so(rover: str, capsys: pytest.CaptureFixture[str]) -> None:
-    words = ("remap", rover, "robot1", "--stack", NO_STATE_PUBLISHER)
+    words = ("plan", "--form=table", rover, "robot1", "--stack", NO_STATE_PUBLISHER)
     code, _, err = run(capsys, *words)
     assert (code, err.count("\n")) == (0, 1)
     assert "no node of robot1 is known, so no rule is for it" in err
-    assert run(capsys, "remap", rover, "robot1")[2] == ""
+    assert run(capsys, "plan", "--form=table", rover, "robot1")[2] == ""
 
 
 # ---------------------------------------------------------------- files of plans
@@ -229,7 +230,7 @@ def test_a_plan_of_nodes_that_may_all_be_missing(
 
 def test_a_fleet_file_of_no_robot(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = str(fleet_folder(tmp_path, "robots: []\ndescription: rover.urdf\n"))
-    for command in ("plan", "check", "remap", "rehearse"):
+    for command in ("plan", "check", "rehearse"):
         code, out, err = run(capsys, command, file)
         assert (code, out, err.count("\n")) == (2, "", 1), command
 
@@ -253,7 +254,7 @@ def test_no_public_description_makes_an_empty_plan(corpus: dict[str, Path]) -> N
         plan = expected(fleet)
         made += 1
         assert [it.name for it in plan.robots] == ["robot1", "robot2"]
-        assert all(any(PUBLISHER in node for node in it.nodes) for it in plan.robots)
+        assert all(any(PUBLISHER in node for node in own(plan, it.name)) for it in plan.robots)
         found = {it.code for it in check(plan, graph) if it.level == "error"}
         assert found, path
         frames = plan.robots[0].frames

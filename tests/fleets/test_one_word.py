@@ -17,11 +17,11 @@ from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import GivenNode
 from multibot_rewrite.fleets.fleet import expected
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
-from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.remap.records import NodeTable
 from multibot_rewrite.rosnames import bind, parse_remap, resolve_bound
+from multibot_rewrite.system.records import Robot
 
 
 def written(files: dict[str, str], node: NodeTable) -> GivenNode | None:
@@ -53,9 +53,7 @@ def differences(plan: FleetPlan, files: dict[str, str]) -> Iterator[str]:
         yield from _frames(node, given, robots)
 
 
-def _frames(
-    node: NodeTable, given: GivenNode | None, robots: Sequence[PlannedRobot]
-) -> Iterator[str]:
+def _frames(node: NodeTable, given: GivenNode | None, robots: Sequence[Robot]) -> Iterator[str]:
     """Frames that a node sends by its written file, and the plan does not know of."""
     facts = built_in(RELEASE).nodes.get(given.known) if given else None
     if facts is None or given is None:

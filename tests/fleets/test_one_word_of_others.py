@@ -16,10 +16,10 @@ from multibot_rewrite.fleets.closed_plan import closed_plan
 from multibot_rewrite.fleets.fleet import expected
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import plan_fleet
-from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.rules.check import check
+from multibot_rewrite.system.records import System
 
 # Rules about names: one node under another topic, of another robot, or not there. In random files two
 # nodes of other types may have one topic, which is told, and is right.
@@ -56,9 +56,7 @@ robots: [{{name: robot1}}, {{name: robot2}}]
 """
 
 
-def bridged(
-    folder: Path, layout: str, affix: str, row: str, read: str
-) -> tuple[Expectation, list[str]]:
+def bridged(folder: Path, layout: str, affix: str, row: str, read: str) -> tuple[System, list[str]]:
     """The plan of a fleet with a bridge and a node that reads, and the names in the written rows."""
     (folder / "robot.urdf").write_text(ROVER.format(row))
     (folder / "p.yaml").write_text(f"slam_toolbox:\n  ros__parameters: {{scan_topic: {read}}}\n")
@@ -82,9 +80,7 @@ def test_who_met_the_bridge_before_meets_it_after(layout: str, seed: int, tmp_pa
     row = draw.choice(SENSORS)
     read = draw.choice((row, row.strip("/"), *SENSORS))
     plan, rows = bridged(tmp_path, layout, draw.choice(("prefix", "postfix")), row, read)
-    readers = {
-        it.name for it in plan.endpoints if it.node.endswith("slam_toolbox") or "slam" in it.node
-    }
+    readers = {it.name for it in plan.ends if it.node.endswith("slam_toolbox") or "slam" in it.node}
     meet = row.lstrip("/") == read.lstrip("/")
     assert len(set(rows)) == 2
     assert (set(rows) <= readers) == meet, (row, read, rows)

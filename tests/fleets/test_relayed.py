@@ -12,13 +12,13 @@ from pathlib import Path
 import pytest
 from graph_cases import as_planned, sent
 from paths import ROBOTS
+from plans import own
 
 from multibot_rewrite import UsageError, load_fleet
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.findings.finding import NOTE
 from multibot_rewrite.fleets.fleet import expected
 from multibot_rewrite.fleets.scripts import LoadedFleet
-from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.remap.bridged_topics import TF_TYPE
 from multibot_rewrite.rules.check import check
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Edge, End, System
@@ -44,7 +44,7 @@ def fleet(folder: Path, layout: str) -> LoadedFleet:
     return load_fleet(folder / "fleet.yaml")
 
 
-def relayed(plan: Expectation) -> System:
+def relayed(plan: System) -> System:
     """The graph as planned, with what the relays send."""
     graph = as_planned(plan)
     copies = (it._replace(topic="/tf_static" if it.static else "/tf") for it in graph.edges)
@@ -69,7 +69,7 @@ def test_a_relay_reads_the_robots_tf_and_writes_tf(
     # A rule for the name that it reads would move /tf as well.
     assert robot.table.for_node("tf_relay") == []
     plan = expected(robot._fleet.plan.fleet)
-    ends = {(it.role, it.name) for it in plan.endpoints if it.node == name}
+    ends = {(it.role, it.name) for it in plan.ends if it.node == name}
     assert ends == {(SUBSCRIBES, source), (PUBLISHES, "/tf")}
 
 
@@ -78,7 +78,7 @@ def test_a_relayed_graph_is_as_planned_and_a_leak_is_none(tmp_path: Path, layout
     plan = expected(fleet(tmp_path, layout).plan.fleet)
     graph = relayed(plan)
     assert [it for it in check(plan, graph) if it.level != NOTE] == []
-    state = next(it for it in plan.robots[0].nodes if "robot_state" in it)
+    state = next(it for it in own(plan, plan.robots[0].name) if "robot_state" in it)
     leak = End(TOPIC, PUBLISHES, "/tf", TF_TYPE, "", state, None, "")
     spoiled = sent(graph._replace(ends=(*graph.ends, leak)))
     assert {"MG405"} <= {it.code for it in check(plan, spoiled)}
@@ -116,7 +116,7 @@ def test_bare_frames_are_bridged(tmp_path: Path) -> None:
         "/robot2/bridged_world",
     )
     plan = expected(robot._fleet.plan.fleet)
-    ends = {(it.role, it.name) for it in plan.endpoints if it.node == bridge.table.full_name}
+    ends = {(it.role, it.name) for it in plan.ends if it.node == bridge.table.full_name}
     assert ends == {
         *((SUBSCRIBES, f"/robot2/{it}") for it in ("tf", "tf_static")),
         *((PUBLISHES, f"/{it}") for it in ("tf", "tf_static")),
@@ -125,7 +125,7 @@ def test_bare_frames_are_bridged(tmp_path: Path) -> None:
     assert world.arguments == ("--frame-id", "map", "--child-frame-id", "robot2/map")
 
 
-def bridged(plan: Expectation) -> System:
+def bridged(plan: System) -> System:
     """The graph as planned, with what the bridges and the transforms beside them send."""
     graph = as_planned(plan)
     copies = [
@@ -142,7 +142,7 @@ def test_a_bridged_graph_is_as_planned_and_a_leak_is_none(tmp_path: Path) -> Non
     graph = bridged(plan)
     assert [it for it in check(plan, graph) if it.level != NOTE] == []
     # Without the remap rule a robot's frames are on /tf, with bare names.
-    state = next(it for it in plan.robots[0].nodes if "robot_state" in it)
+    state = next(it for it in own(plan, plan.robots[0].name) if "robot_state" in it)
     leak = End(TOPIC, PUBLISHES, "/tf", TF_TYPE, "", state, None, "")
     bare = Edge("base_link", "odom", "/tf", False, ())
     spoiled = graph._replace(ends=(*graph.ends, leak), edges=(*graph.edges, bare))

@@ -6,12 +6,13 @@ from pathlib import Path
 
 import pytest
 from nav2_graphs import ROVER
+from plans import own
 
 from multibot_rewrite.fleets.fleet import expected
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import plan_fleet
-from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.model import InputError
+from multibot_rewrite.system.records import System
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
 FLEET = """\
@@ -25,7 +26,7 @@ robots: [{{name: robot1}}, {{name: robot2}}]
 """
 
 
-def planned(folder: Path, layout: str, shared: str = "map_server") -> Expectation:
+def planned(folder: Path, layout: str, shared: str = "map_server") -> System:
     file = folder / "fleet.yaml"
     file.write_text(FLEET.format(layout=layout, rover=ROVER, shared=shared))
     made = plan_fleet(read_fleet(str(file), "", {})).fleet
@@ -36,25 +37,25 @@ def planned(folder: Path, layout: str, shared: str = "map_server") -> Expectatio
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_each_amcl_reads_the_map_of_the_one_map_server(tmp_path: Path, layout: str) -> None:
     plan = planned(tmp_path, layout)
-    assert plan.shared_nodes == ("/map_server",)
-    ends = [it for it in plan.endpoints if it.name == "/map"]
+    assert own(plan) == ("/map_server",)
+    ends = [it for it in plan.ends if it.name == "/map"]
     senders = [it.node for it in ends if it.role == "publishes"]
     readers = {it.node for it in ends if it.role == "subscribes" and "amcl" in it.node}
     assert senders == ["/map_server"]
     assert len(readers) == 2
-    assert not [it.name for it in plan.endpoints if it.name.endswith("/map") and it.name != "/map"
+    assert not [it.name for it in plan.ends if it.name.endswith("/map") and it.name != "/map"
                 and it.kind == "topic"]  # fmt: skip
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_no_robot_has_a_copy_of_it_or_manages_it(tmp_path: Path, layout: str) -> None:
     plan = planned(tmp_path, layout)
-    below = {it.name for it in plan.endpoints if "map_server" in it.name}
+    below = {it.name for it in plan.ends if "map_server" in it.name}
     assert below
     assert all(name.startswith("/map_server/") for name in below)
-    managers = {it.node for it in plan.endpoints if "amcl" in it.name and it.role == "calls"}
+    managers = {it.node for it in plan.ends if "amcl" in it.name and it.role == "calls"}
     assert len(managers) == 2
-    callers = {it.node for it in plan.endpoints if "map_server" in it.name and it.role == "calls"}
+    callers = {it.node for it in plan.ends if "map_server" in it.name and it.role == "calls"}
     assert callers == set()
 
 
@@ -72,7 +73,7 @@ def test_a_client_of_a_shared_node_calls_the_one_there_is(tmp_path: Path) -> Non
         text = FLEET.format(layout=layout, rover=ROVER, shared="atlas")
         file.write_text(text.replace("stack: nav2", "stack: acme\nnodes: nodes.yaml"))
         plan = expected(plan_fleet(read_fleet(str(file), "", {})).fleet)
-        names = {it.name for it in plan.endpoints if "load" in it.name}
+        names = {it.name for it in plan.ends if "load" in it.name}
         assert names == {"/atlas/load"}, layout
 
 

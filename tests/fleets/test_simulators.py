@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from nav2_graphs import environment
+from plans import optional, own
 
 from multibot_rewrite import InputError
 from multibot_rewrite.findings.finding import Finding
@@ -14,9 +15,8 @@ from multibot_rewrite.fleets.closed_plan import closed_plan
 from multibot_rewrite.fleets.fleet import expected
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
-from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.system.records import Node, System
+from multibot_rewrite.system.records import RUNS, Node, System
 
 # A drive that is a ROS node, and a sensor whose topic a bridge has to carry.
 DESCRIPTION = """\
@@ -51,7 +51,7 @@ def plan_of(folder: Path, more: str = "", launched: str = AMCL, fleet: str = FLE
     return plan_fleet(read_fleet(str(folder / "fleet.yaml"), "", {}))
 
 
-def expectation(folder: Path, more: str = "", launched: str = AMCL) -> Expectation:
+def expectation(folder: Path, more: str = "", launched: str = AMCL) -> System:
     return expected(closed_plan(plan_of(folder, more, launched)))
 
 
@@ -59,15 +59,15 @@ def asked(plan: FleetPlan) -> list[Finding]:
     return [it for it in plan.fleet.table.problems if it.code == "MF828"]
 
 
-def bridged(plan: Expectation) -> list[str]:
+def bridged(plan: System) -> list[str]:
     return [it.name for it in plan.topics if it.bridge]
 
 
 def test_a_real_robot_has_nothing_that_is_for_a_simulator(tmp_path: Path) -> None:
     plan = expectation(tmp_path, "simulator: none\n")
-    assert [DRIVE in it.nodes for it in plan.robots] == [False, False]
+    assert [DRIVE in own(plan, it.name) for it in plan.robots] == [False, False]
     assert bridged(plan) == []
-    assert not [it for it in plan.endpoints if it.node == DRIVE]
+    assert not [it for it in plan.ends if it.node == DRIVE]
     # Its links are there all the same.
     assert "base_link" in plan.robots[0].frames
 
@@ -75,14 +75,14 @@ def test_a_real_robot_has_nothing_that_is_for_a_simulator(tmp_path: Path) -> Non
 @pytest.mark.parametrize("more", ["", "simulator: gazebo\n", f"simulator: gazebo\n{LAUNCH}"])
 def test_a_simulated_robot_has_it(more: str, tmp_path: Path) -> None:
     plan = expectation(tmp_path, more)
-    assert DRIVE in plan.robots[0].nodes and DRIVE not in plan.robots[0].optional
+    assert {it.name: it for it in plan.nodes}[DRIVE].sure == RUNS
     assert {SCAN, "/r2/scan", "/clock"} <= set(bridged(plan))
     assert asked(plan_of(tmp_path, more)) == []
 
 
 def test_launch_files_without_a_simulator_leave_it_open(tmp_path: Path) -> None:
     plan = expectation(tmp_path, LAUNCH)
-    assert [it.optional for it in plan.robots] == [(DRIVE,), ("/r2/drive",)]
+    assert [optional(plan, it.name) for it in plan.robots] == [(DRIVE,), ("/r2/drive",)]
     assert bridged(plan) == []
     (found,) = asked(plan_of(tmp_path, LAUNCH))
     assert (found.level, found.line) == ("note", 4)
@@ -94,35 +94,35 @@ def test_launch_files_with_a_simulator_or_a_bridge_say_that_it_is_one(
     launched: str, tmp_path: Path
 ) -> None:
     plan = expectation(tmp_path, LAUNCH, launched)
-    assert DRIVE not in plan.robots[0].optional
+    assert DRIVE not in optional(plan, plan.robots[0].name)
     assert SCAN in bridged(plan)
     assert asked(plan_of(tmp_path, LAUNCH, launched)) == []
 
 
 def test_launch_files_that_are_not_known_whole_say_nothing(tmp_path: Path) -> None:
     plan = expectation(tmp_path, LAUNCH, AMCL + "    /d: {exec: ./start.sh}\n")
-    assert DRIVE not in plan.robots[0].optional and SCAN in bridged(plan)
+    assert DRIVE not in optional(plan, plan.robots[0].name) and SCAN in bridged(plan)
 
 
 def test_a_bridge_file_says_that_robots_are_simulated(tmp_path: Path) -> None:
     row = "{ros_topic_name: scan, gz_topic_name: scan, ros_type_name: sensor_msgs/msg/LaserScan"
     (tmp_path / "b.yaml").write_text(f"- {row}, gz_type_name: gz.msgs.LaserScan}}\n")
     more = f"{LAUNCH}companions: {{bridge: b.yaml}}\n"
-    assert DRIVE not in expectation(tmp_path, more).robots[0].optional
+    assert DRIVE not in optional(expectation(tmp_path, more), "r1")
     assert asked(plan_of(tmp_path, more)) == []
 
 
 def test_one_robot_may_be_real_and_another_simulated(tmp_path: Path) -> None:
     fleet = FLEET.replace("{name: r1,", "{name: r1, simulator: none,")
     plan = expected(closed_plan(plan_of(tmp_path, fleet=fleet)))
-    assert [len(it.nodes) for it in plan.robots] == [1, 2]
+    assert [len(own(plan, it.name)) for it in plan.robots] == [1, 2]
     assert SCAN not in bridged(plan) and "/r2/scan" in bridged(plan)
 
 
 def test_what_is_open_for_one_robot_is_not_for_another(tmp_path: Path) -> None:
     fleet = FLEET.replace("{name: r2,", "{name: r2, simulator: gazebo,")
     plan = expected(closed_plan(plan_of(tmp_path, LAUNCH, fleet=fleet)))
-    assert [it.optional for it in plan.robots] == [(DRIVE,), ()]
+    assert [optional(plan, it.name) for it in plan.robots] == [(DRIVE,), ()]
     assert SCAN not in bridged(plan) and {"/r2/scan", "/clock"} <= set(bridged(plan))
 
 

@@ -306,7 +306,7 @@ def test_a_tf_topic_of_one_robot_alone_needs_no_endpoint_of_the_plan() -> None:
     """A plan that somebody wrote names a robot's tf, and no node that sends it."""
     name = "/robot1/tf"
     topic = RecordedTopic(name, TF, 100)
-    wanted = plan()._replace(endpoints=())
+    wanted = plan()._replace(ends=())
     seen = as_snapshot(Recording((topic,), (), 10.0), wanted)
     assert [(it.code, it.names) for it in check(wanted, seen)] == [("MG102", ("/robot2/tf",))]
 

@@ -155,5 +155,5 @@ def test_what_is_called_after_a_robot_inside_another_namespace_is_not_its_own() 
 
 def test_the_plan_of_what_is_seen_leaves_out_what_every_node_has() -> None:
     plan = seen_plan(diagnose(nav2_with_tools()))
-    assert [it for it in plan.endpoints if it.type.startswith("rcl_interfaces/")] == []
-    assert "/rosout" not in {it.name for it in plan.endpoints}
+    assert [it for it in plan.ends if it.type.startswith("rcl_interfaces/")] == []
+    assert "/rosout" not in {it.name for it in plan.ends}

@@ -23,17 +23,19 @@ from graph_cases import (
     with_type,
     without_node,
 )
+from plans import from_plugin, more, own, told, without
 from small_fleet import LINKS, NODES, ROBOTS, healthy, plan
 
 from multibot_rewrite.findings.finding import INCONCLUSIVE
-from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, expect
 from multibot_rewrite.naming import make_naming, spelled
 from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.table import build_table
 from multibot_rewrite.rules.check import ABSENCE, RULES, check, side_by_side
 from multibot_rewrite.rules.ownership import name_ownership
 from multibot_rewrite.rules.pair.in_enclaves import without_enclave
+from multibot_rewrite.spelling.plan import expect, planned_end
 from multibot_rewrite.system.records import (
+    MAY,
     PUBLISHES,
     SERVES,
     SERVICE,
@@ -120,12 +122,10 @@ def test_a_misspelled_name_is_found_by_similarity() -> None:
 
 def test_a_name_that_the_plan_has_for_two_robots_is_a_leak_too() -> None:
     ends = [
-        PlannedEndpoint(
-            f"/{robot}/driver", TOPIC, PUBLISHES, "/alarm", "std_msgs/msg/Bool", "/alarm"
-        )
+        planned_end(f"/{robot}/driver", TOPIC, PUBLISHES, "/alarm", "std_msgs/msg/Bool", "/alarm")
         for robot in ROBOTS
     ]
-    wanted = plan()._replace(endpoints=(*plan().endpoints, *ends))
+    wanted = plan()._replace(ends=(*plan().ends, *ends))
     graph = healthy()
     for robot in ROBOTS:
         end = End(TOPIC, PUBLISHES, "/alarm", "std_msgs/msg/Bool", "", f"/{robot}/driver", None, "")
@@ -144,7 +144,7 @@ def test_one_robot_listening_to_another() -> None:
 
 
 def test_an_endpoint_with_a_condition_is_not_planned() -> None:
-    assert not [w for w in plan().endpoints if w.code_name == "extra"]
+    assert not [w for w in plan().ends if w.code_name == "extra"]
 
 
 def test_two_nodes_of_one_name() -> None:
@@ -277,9 +277,8 @@ def test_the_owner_of_a_name(name: str, robot: str) -> None:
 
 
 def test_a_plugin_is_named_with_its_line() -> None:
-    place = (("/robot1/driver", "rover.urdf:120"),)
     graph = moved(healthy(), "/robot1/cmd_vel", "/cmd_vel")
-    missing, leak = check(plan()._replace(sources=place), graph)
+    missing, leak = check(from_plugin(plan(), "/robot1/driver", "rover.urdf:120"), graph)
     assert missing.hint == (
         "it subscribes to /cmd_vel instead: no remap rule /cmd_vel:=cmd_vel of plugin driver is "
         "applied, see rover.urdf:120"
@@ -304,13 +303,13 @@ def test_a_plugin_is_named_with_its_line() -> None:
 )
 def test_the_place_of_a_plan_may_be_written_by_hand(place: str, expected: tuple[str, int]) -> None:
     graph = moved(healthy(), "/robot1/cmd_vel", "/cmd_vel")
-    _, leak = check(plan()._replace(sources=(("/robot1/driver", place),)), graph)
+    _, leak = check(from_plugin(plan(), "/robot1/driver", place), graph)
     assert (leak.file, leak.line) == expected
     assert leak.hint.endswith(f"see {place}")
 
 
 def test_a_finding_with_another_cause_has_no_line() -> None:
-    wanted = plan()._replace(sources=(("/robot1/driver", "rover.urdf:120"),))
+    wanted = from_plugin(plan(), "/robot1/driver", "rover.urdf:120")
     found = check(wanted, moved(healthy(), "/robot1/joint_states", "/robot1/joint_state", "driver"))
     assert {it.file for it in found} == {""}
     cut = Caveat("participants", True, "cut off")
@@ -321,7 +320,7 @@ def test_a_finding_with_another_cause_has_no_line() -> None:
 
 def test_a_plugin_without_a_namespace_is_named_with_its_line() -> None:
     graph = renamed_node(healthy(), "/robot1/driver", "/driver")
-    wanted = plan()._replace(sources=(("/robot1/driver", "rover.urdf:120"),))
+    wanted = from_plugin(plan(), "/robot1/driver", "rover.urdf:120")
     (found,) = check(wanted, graph)
     assert found.hint == "/driver is running: plugin driver has no namespace, see rover.urdf:120"
     assert (found.file, found.line) == ("rover.urdf", 120)
@@ -334,7 +333,7 @@ def test_a_silent_robot_of_plugins_names_the_line_too() -> None:
     graph = healthy()
     for node in ("driver", "robot_state_publisher"):
         graph = renamed_node(graph, f"/robot1/{node}", f"/{node}")
-    wanted = plan()._replace(sources=(("/robot1/robot_state_publisher", "rover.urdf:120"),))
+    wanted = from_plugin(plan(), "/robot1/robot_state_publisher", "rover.urdf:120")
     (found,) = check(wanted, graph)
     assert (found.code, found.robot) == ("MG109", "robot1")
     assert "has no namespace, see rover.urdf:120; the same for 1 more of its nodes" in found.hint
@@ -342,14 +341,13 @@ def test_a_silent_robot_of_plugins_names_the_line_too() -> None:
 
 
 def test_a_robot_of_conditions_only_is_never_silent() -> None:
-    first, second = plan().robots
-    wanted = plan()._replace(robots=(first._replace(optional=first.nodes), second))
+    wanted = told(plan(), *own(plan(), "robot1"), sure=MAY)
     graph = without_node(healthy(), "/robot1/driver")
     assert check(wanted, without_node(graph, "/robot1/robot_state_publisher")) == []
 
 
 def test_a_plugin_of_the_postfix_layout() -> None:
-    wanted = plan("L4")._replace(sources=(("/driver_robot1", "rover.urdf:120"),))
+    wanted = from_plugin(plan("L4"), "/driver_robot1", "rover.urdf:120")
     (found,) = check(wanted, renamed_node(healthy("L4"), "/driver_robot1", "/driver"))
     assert found.code == "MG101"
     assert "plugin driver has no separate name for each robot, see rover.urdf:120" in found.hint
@@ -362,8 +360,8 @@ def test_the_rule_of_the_postfix_layout() -> None:
 
 
 def test_an_action_needs_more_than_one_rule() -> None:
-    end = PlannedEndpoint("/robot1/driver", "action", "serves", "/robot1/go", "a/action/B", "/go")
-    wanted = plan()._replace(endpoints=(*plan().endpoints, end))
+    end = planned_end("/robot1/driver", "action", "serves", "/robot1/go", "a/action/B", "/go")
+    wanted = plan()._replace(ends=(*plan().ends, end))
     there = End("action", "serves", "/go", "a/action/B", "", end.node, None, "")
     hidden = there._replace(
         kind="service", name="/go/_action/send_goal", type="a/action/B_SendGoal"
@@ -376,8 +374,8 @@ def test_an_action_needs_more_than_one_rule() -> None:
 
 def test_a_managed_node_may_not_be_configured() -> None:
     name = "/robot1/driver/get_state"
-    end = PlannedEndpoint("/robot1/driver", SERVICE, SERVES, name, "", "~/get_state")
-    wanted = plan()._replace(endpoints=(*plan().endpoints, end))
+    end = planned_end("/robot1/driver", SERVICE, SERVES, name, "", "~/get_state")
+    wanted = plan()._replace(ends=(*plan().ends, end))
     state = End(SERVICE, SERVES, name, "", "", "/robot1/driver", None, "")
     kept = (e for e in healthy().ends if e.name != "/robot1/reset")
     (found,) = check(wanted, healthy()._replace(ends=(*kept, state)))
@@ -422,7 +420,7 @@ def test_one_more_of_a_planned_node_is_called_that() -> None:
 
 
 def test_a_shared_node_is_no_surprise_and_missed_mildly() -> None:
-    wanted = plan()._replace(shared_nodes=("/fleet_manager",))
+    wanted = more(plan(), "", "/fleet_manager")
     assert check(wanted, with_node(healthy(), "/fleet_manager")) == []
     (found,) = check(wanted, healthy())
     assert (found.code, found.level, found.node) == ("MG101", "warning", "/fleet_manager")
@@ -452,10 +450,7 @@ def test_a_container_is_no_surprise_but_a_second_one_gets_its_components() -> No
 
 
 def test_a_tool_may_be_the_planned_one_without_its_namespace() -> None:
-    first, second = plan().robots
-    wanted = plan()._replace(
-        robots=(first._replace(nodes=(*first.nodes, "/robot1/joy_node")), second)
-    )
+    wanted = more(plan(), "robot1", "/robot1/joy_node")
     (found,) = check(wanted, with_node(healthy(), "/joy_node"))
     assert (found.code, found.node) == ("MG101", "/robot1/joy_node")
     assert found.hint.startswith("/joy_node is running")
@@ -471,22 +466,19 @@ def test_a_plan_has_its_own_patterns() -> None:
 
 
 def test_a_plan_of_nothing_finds_nothing_unplanned() -> None:
-    robots = tuple(robot._replace(nodes=()) for robot in plan().robots)
-    assert check(plan()._replace(robots=robots, endpoints=()), healthy()) == []
+    assert check(plan()._replace(nodes=(), ends=()), healthy()) == []
 
 
 def test_a_robot_without_planned_nodes_may_have_any() -> None:
-    first, second = plan().robots
-    some = plan()._replace(
-        robots=(first, second._replace(nodes=())),
-        endpoints=tuple(w for w in plan().endpoints if w.node in first.nodes),
+    first = own(plan(), "robot1")
+    some = without(plan(), "robot2")._replace(
+        ends=tuple(w for w in plan().ends if w.node in first),
     )
     assert check(some, healthy()) == []
 
 
 def test_a_node_under_a_condition_is_not_missed() -> None:
-    first, second = plan().robots
-    wanted = plan()._replace(robots=(first._replace(optional=("/robot1/driver",)), second))
+    wanted = told(plan(), "/robot1/driver", sure=MAY)
     assert check(wanted, without_node(healthy(), "/robot1/driver")) == []
     graph = renamed_node(healthy(), "/robot1/driver", "/driver")
     assert [f.code for f in check(wanted, graph)] == ["MG101"]
@@ -505,10 +497,10 @@ def test_another_type_than_planned() -> None:
 def test_a_type_that_it_may_have_as_well() -> None:
     stamped = "geometry_msgs/msg/TwistStamped"
     ends = tuple(
-        w._replace(also=(stamped,)) if w.name == "/robot1/cmd_vel" else w for w in plan().endpoints
+        w._replace(also=(stamped,)) if w.name == "/robot1/cmd_vel" else w for w in plan().ends
     )
     graph = with_type(healthy(), "/robot1/cmd_vel", "/robot1/driver", stamped)
-    assert check(plan()._replace(endpoints=ends), graph) == []
+    assert check(plan()._replace(ends=ends), graph) == []
 
 
 def test_stamped_and_plain_commands_have_a_known_cause() -> None:
@@ -626,14 +618,10 @@ def test_a_teleop_of_one_robot_is_no_fault_of_the_other() -> None:
     assert check(plan(), with_node(healthy(), "/teleop_twist_keyboard", twist)) == []
 
 
-def with_pilot(name: str) -> tuple[Expectation, System]:
+def with_pilot(name: str) -> tuple[System, System]:
     """A planned pilot of robot1 that is not there, and one that is, with another topic."""
-    first, second = plan().robots
-    end = PlannedEndpoint("/robot1/pilot", TOPIC, PUBLISHES, "/robot1/cmd_vel", "", "cmd_vel")
-    wanted = plan()._replace(
-        robots=(first._replace(nodes=(*first.nodes, "/robot1/pilot")), second),
-        endpoints=(*plan().endpoints, end),
-    )
+    end = planned_end("/robot1/pilot", TOPIC, PUBLISHES, "/robot1/cmd_vel", "", "cmd_vel")
+    wanted = more(plan(), "robot1", "/robot1/pilot")._replace(ends=(*plan().ends, end))
     twist = (PUBLISHES, name, "geometry_msgs/msg/Twist")
     return wanted, with_node(healthy(), "/robot1/controller_server", twist)
 
@@ -641,8 +629,8 @@ def with_pilot(name: str) -> tuple[Expectation, System]:
 @pytest.mark.parametrize(("name", "code"), [("/robot2/cmd_vel", "MG311"), ("/cmd_vel", "MG303")])
 def test_a_publisher_of_nearly_that_name(name: str, code: str) -> None:
     wanted, graph = with_pilot(name)
-    told = [f for f in check(plan(), graph) if f.code == code]
-    assert any(name in f.message for f in told)
+    said = [f for f in check(plan(), graph) if f.code == code]
+    assert any(name in f.message for f in said)
     # Where the pilot is planned, it is what is missing.
     assert "/robot1/pilot" in {f.node for f in check(wanted, graph) if f.code == "MG101"}
 
@@ -664,10 +652,9 @@ SCAN = "sensor_msgs/msg/LaserScan"
 COSTMAP = "/robot1/local_costmap/local_costmap"
 
 
-def with_costmap(*names: str, published: str = "/robot1/scan") -> tuple[Expectation, System]:
+def with_costmap(*names: str, published: str = "/robot1/scan") -> tuple[System, System]:
     """A planned costmap that hears these, and somebody who publishes."""
-    first, second = plan().robots
-    wanted = plan()._replace(robots=(first._replace(nodes=(*first.nodes, COSTMAP)), second))
+    wanted = more(plan(), "robot1", COSTMAP)
     graph = with_node(healthy(), COSTMAP, *((SUBSCRIBES, name, SCAN) for name in names))
     end = End(TOPIC, PUBLISHES, published, SCAN, "", "/robot1/driver", None, "")
     return wanted, graph._replace(ends=(*graph.ends, end))
@@ -686,16 +673,16 @@ def test_a_topic_that_fell_below_a_costmap() -> None:
 def test_a_topic_that_is_planned_above_is_enough() -> None:
     wanted, graph = with_costmap("/robot1/local_costmap/scan", published="/robot1/other")
     assert check(wanted, graph) == []
-    end = PlannedEndpoint(COSTMAP, TOPIC, SUBSCRIBES, "/robot1/scan", SCAN, "/scan")
-    found = check(wanted._replace(endpoints=(*wanted.endpoints, end)), graph)
+    end = planned_end(COSTMAP, TOPIC, SUBSCRIBES, "/robot1/scan", SCAN, "/scan")
+    found = check(wanted._replace(ends=(*wanted.ends, end)), graph)
     assert [f.code for f in found] == ["MG102", "MG303"]
     assert "resolves a relative name in its own namespace" in found[0].hint
 
 
 def test_a_costmap_with_a_wrong_plan_is_reported_too() -> None:
     wanted, graph = with_costmap("/robot1/local_costmap/scan")
-    end = PlannedEndpoint(COSTMAP, TOPIC, SUBSCRIBES, "/robot1/local_costmap/scan", SCAN, "scan")
-    (found,) = check(wanted._replace(endpoints=(*wanted.endpoints, end)), graph)
+    end = planned_end(COSTMAP, TOPIC, SUBSCRIBES, "/robot1/local_costmap/scan", SCAN, "scan")
+    (found,) = check(wanted._replace(ends=(*wanted.ends, end)), graph)
     assert found.code == "MG303"
 
 
@@ -705,13 +692,9 @@ def test_a_costmap_that_is_not_planned() -> None:
 
 
 def test_a_planned_name_below_a_namespace_of_another_node_is_meant_so() -> None:
-    first, second = plan().robots
     arm = "/robot1/arm/controller"
-    end = PlannedEndpoint(arm, TOPIC, SUBSCRIBES, "/robot1/arm/joint_states", "", "joint_states")
-    wanted = plan()._replace(
-        robots=(first._replace(nodes=(*first.nodes, arm)), second),
-        endpoints=(*plan().endpoints, end),
-    )
+    end = planned_end(arm, TOPIC, SUBSCRIBES, "/robot1/arm/joint_states", "", "joint_states")
+    wanted = more(plan(), "robot1", arm)._replace(ends=(*plan().ends, end))
     graph = with_node(healthy(), arm, (SUBSCRIBES, "/robot1/arm/joint_states", ""))
     assert check(wanted, graph) == []
 
@@ -851,7 +834,7 @@ def test_a_tf_listener_that_no_rule_reached() -> None:
 # ---------------------------------------------------------------- odd robots
 
 
-def robots_called(*names: str, layout: str = "L2") -> Expectation:
+def robots_called(*names: str, layout: str = "L2") -> System:
     naming = make_naming(layout)
     declared = {name: [spelled(naming, name, "frame", link) for link in LINKS] for name in names}
     return expect(build_table(names, NODES, naming, release=NEWEST_LTS), naming, declared)

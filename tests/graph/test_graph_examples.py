@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 from graph_examples import read_example
+from plans import own
 
 from multibot_rewrite import catalogue
 from multibot_rewrite.rules.check import RULES, check
@@ -23,10 +24,14 @@ running: /robot1/nav
 def test_the_plan_of_an_example() -> None:
     plan, _ = read_example(EXAMPLE)
     (robot,) = plan.robots
-    assert (robot.name, robot.tf, robot.frames) == ("robot1", "/robot1/tf", ("base_link", "laser"))
-    assert (robot.nodes, plan.shared_nodes) == (("/robot1/nav",), ("/map_server",))
+    assert (robot.name, robot.tf_topic, robot.frames) == (
+        "robot1",
+        "/robot1/tf",
+        ("base_link", "laser"),
+    )
+    assert (own(plan, "robot1"), own(plan)) == (("/robot1/nav",), ("/map_server",))
     assert "/map" in plan.shared_topics and "/robot1/plan" not in plan.shared_topics
-    _, goal = plan.endpoints
+    _, goal = plan.ends
     assert (goal.kind, goal.role, goal.name, goal.code_name) == (ACTION, CALLS, "/robot1/go", "/go")
 
 
@@ -48,7 +53,7 @@ def test_two_lines_of_a_node_are_two_nodes() -> None:
 
 def test_a_service_needs_no_type() -> None:
     plan, graph = read_example("as planned: /robot1/nav serves /robot1/stop\n")
-    assert plan.endpoints[0].kind == graph.ends[0].kind == SERVICE
+    assert plan.ends[0].kind == graph.ends[0].kind == SERVICE
     assert check(plan, graph) == []
 
 

@@ -8,13 +8,9 @@ import pytest
 from graph_cases import as_planned, environment, qos, sent
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from plans import PlannedRobot, planned
+from plans import own as nodes_of
 
-from multibot_rewrite.graph.expectation import (
-    Expectation,
-    PlannedEndpoint,
-    PlannedRobot,
-    expect,
-)
 from multibot_rewrite.graph.plan_file import read_plan, to_yaml
 from multibot_rewrite.graph.plan_file import to_json as plan_to_json
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
@@ -22,6 +18,7 @@ from multibot_rewrite.naming import Naming, affix, make_naming, spelled
 from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.table import build_table
 from multibot_rewrite.rules.check import check
+from multibot_rewrite.spelling.plan import expect, planned_end
 from multibot_rewrite.system.json import from_json, to_json
 from multibot_rewrite.system.records import (
     CALLS,
@@ -62,7 +59,7 @@ TYPES = {
 class Fleet(NamedTuple):
     """A plan, and the graph that is as planned."""
 
-    plan: Expectation
+    plan: System
     graph: System
 
 
@@ -92,9 +89,9 @@ def fleets(draw: st.DrawFn) -> Fleet:
     return Fleet(plan, beside(plan, as_planned(plan), naming))
 
 
-def beside(plan: Expectation, graph: System, naming: Naming) -> System:
+def beside(plan: System, graph: System, naming: Naming) -> System:
     """What every node brings, a topic of its own that nobody planned, and people's tools."""
-    robot_of = {node: robot.name for robot in plan.robots for node in robot.nodes}
+    robot_of = {it.name: it.robot for it in plan.nodes if it.robot}
     more = [
         End(kind, role, name, type_, "", node.name, None, "")
         for node in graph.nodes
@@ -129,7 +126,7 @@ def own(topic: str, robot: str, naming: Naming) -> str:
 @given(fleets())
 def test_a_fleet_as_planned_is_silent(fleet: Fleet) -> None:
     """But where the plan itself has a reader whose topic nobody sends."""
-    sent_by_plan = {it.name for it in fleet.plan.endpoints if it.role == PUBLISHES}
+    sent_by_plan = {it.name for it in fleet.plan.ends if it.role == PUBLISHES}
     found = check(fleet.plan, fleet.graph)
     assert [it for it in found if it.code != "MG303"] == []
     assert not {it.names[0] for it in found} & sent_by_plan
@@ -138,7 +135,7 @@ def test_a_fleet_as_planned_is_silent(fleet: Fleet) -> None:
 @settings(max_examples=150, deadline=None)
 @given(fleets(), st.data())
 def test_a_name_that_was_moved_is_found_at_its_node(fleet: Fleet, data: st.DataObject) -> None:
-    planned = [(w.node, w.kind, w.role, w.name) for w in fleet.plan.endpoints]
+    planned = [(w.node, w.kind, w.role, w.name) for w in fleet.plan.ends]
     end = data.draw(st.sampled_from(planned))
     new = data.draw(st.sampled_from(("/elsewhere", "/scan", "/robot2/cmd_vel", f"{end[3]}_raw")))
     moved = tuple(
@@ -156,13 +153,15 @@ def test_a_name_that_was_moved_is_found_at_its_node(fleet: Fleet, data: st.DataO
 @given(fleets(), st.data())
 def test_a_node_that_is_taken_away_is_found(fleet: Fleet, data: st.DataObject) -> None:
     robot = data.draw(st.sampled_from(fleet.plan.robots))
-    node = data.draw(st.sampled_from(robot.nodes))
+    node = data.draw(st.sampled_from(nodes_of(fleet.plan, robot.name)))
     graph = fleet.graph._replace(
         nodes=tuple(n for n in fleet.graph.nodes if n.name != node),
         ends=tuple(e for e in fleet.graph.ends if e.node != node),
     )
     found = [(f.code, f.robot) for f in check(fleet.plan, graph) if f.code in ("MG101", "MG109")]
-    assert found == [("MG101" if len(robot.nodes) > 1 else "MG109", robot.name)]
+    assert found == [
+        ("MG101" if len(nodes_of(fleet.plan, robot.name)) > 1 else "MG109", robot.name)
+    ]
 
 
 @settings(max_examples=100, deadline=None)
@@ -221,16 +220,17 @@ def anything(draw: st.DrawFn) -> Fleet:
     there = st.sampled_from([node for robot in robots for node in robot.nodes] or ["/else"])
     node = st.one_of(full_names, there)
     wanted = st.builds(
-        lambda n, end, *rest: PlannedEndpoint(n, *end, *rest),
+        lambda n, end, *rest: planned_end(n, *end, *rest),
         there,
         ends,
         full_names,
         types,
         any_names,
     )
-    plan = Expectation(
+    plan = planned(
         "any", tuple(robots), draw(nodes), draw(nodes), draw(some),
-        tuple(draw(st.lists(wanted, max_size=5, unique_by=lambda w: w[:4]))), draw(some),
+        tuple(draw(st.lists(wanted, max_size=5, unique_by=lambda w: (w.node, *w[:3])))),
+        ignored_nodes=draw(some),
     )  # fmt: skip
     seen = st.builds(
         lambda end, *rest: End(*end, *rest), ends, full_names, types,

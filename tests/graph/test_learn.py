@@ -707,7 +707,7 @@ def test_what_is_learned_gives_the_whole_table(
     assert names == ["driver", "eye"]
     rover = str(FIXTURES / "robots" / "rover.urdf")
     fleet = [rover, "robot1", "robot2", "--nodes", mine, "--stack", "mine", "--layout"]
-    assert main(["remap", *fleet, "frames-per-robot"]) == 0
+    assert main(["plan", "--form=table", *fleet, "frames-per-robot"]) == 0
     out, err = capsys.readouterr()
     assert err == ""
     for rule in ("/cmd_vel -> cmd_vel", "/dock/_action/feedback -> dock/_action/feedback"):

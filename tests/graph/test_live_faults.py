@@ -18,8 +18,8 @@ import live_fleet
 import pytest
 import tf2_build
 from paths import ROOT
+from plans import own
 
-from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.plan_file import from_yaml
 from multibot_rewrite.graph.transforms import edges_in
 from multibot_rewrite.library import rewrite
@@ -27,7 +27,7 @@ from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.steps.collect import collect
 from multibot_rewrite.steps.document import read_document
-from multibot_rewrite.system.records import PUBLISHES, SERVES, SUBSCRIBES
+from multibot_rewrite.system.records import PUBLISHES, SERVES, SUBSCRIBES, System
 
 pytestmark = pytest.mark.live
 
@@ -62,20 +62,24 @@ def fleet_of(layout: str) -> Fleet:
     plan = from_yaml(path.read_bytes(), str(path))
     nodes: dict[str, dict[str, Any]] = {}
     for robot in plan.robots:
-        for node in robot.nodes:
+        for node in own(plan, robot.name):
             space, _, name = node.rpartition("/")
             nodes[node] = {"name": name, "namespace": space, **_lists()}
-    for it in plan.endpoints:
+    for it in plan.ends:
         if it.type != TF:
             nodes[it.node][LISTS[it.role]].append([it.name, it.type])
-    fleet = {robot.name: {node: nodes[node] for node in robot.nodes} for robot in plan.robots}
+    fleet = {
+        robot.name: {node: nodes[node] for node in own(plan, robot.name)} for robot in plan.robots
+    }
     for robot in plan.robots:
-        state, drive = (next(n for n in robot.nodes if w in n) for w in ("state_pub", "diff_drive"))
+        state, drive = (
+            next(n for n in own(plan, robot.name) if w in n) for w in ("state_pub", "diff_drive")
+        )
         moving, fixed = edges(robot.name, layout)
         root = moving.pop()
-        static = f"{robot.tf}_static"
-        nodes[state]["frames"] = [[robot.tf, False, *moving], [static, True, *fixed]]
-        nodes[drive]["frames"] = [[robot.tf, False, root]]
+        static = f"{robot.tf_topic}_static"
+        nodes[state]["frames"] = [[robot.tf_topic, False, *moving], [static, True, *fixed]]
+        nodes[drive]["frames"] = [[robot.tf_topic, False, root]]
     return fleet
 
 
@@ -260,6 +264,6 @@ def test_the_same_is_found_many_times_in_a_row(needed: Mapping[str, str]) -> Non
 
 
 def test_the_plans_are_those_of_the_rover() -> None:
-    plan: Expectation = from_yaml(plan_of(L2).read_bytes(), "plan.yaml")
+    plan: System = from_yaml(plan_of(L2).read_bytes(), "plan.yaml")
     links = {child for moving_or_not in edges("robot1", L2) for _, child in moving_or_not}
     assert links | {"odom/robot1"} == set(plan.robots[0].frames)

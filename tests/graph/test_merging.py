@@ -9,6 +9,7 @@ import pytest
 from graph_cases import as_planned, environment, read_plan
 from live_commands import write_plan
 from looks import ONE, QOS, TWO, end, look, node
+from plans import own
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.graph.merging import Look, merged
@@ -122,7 +123,7 @@ def test_the_command_joins_and_check_takes_all(
     whole = as_planned(plan)
     files = []
     for robot in plan.robots:
-        mine = set(robot.nodes)
+        mine = set(own(plan, robot.name))
         half = whole._replace(
             nodes=tuple(it for it in whole.nodes if it.name in mine),
             ends=tuple(it for it in whole.ends if it.node in mine),

@@ -21,10 +21,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from lxml import html
 from paths import ROOT
+from plans import own as nodes_of
+from plans import told
 
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.findings.finding import INCONCLUSIVE
-from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.plan_file import to_yaml
 from multibot_rewrite.live.watching import Verdict
 from multibot_rewrite.pages.layout import NODE_ROW, ROW, lay_out
@@ -43,7 +44,7 @@ from multibot_rewrite.pages.states import (
 from multibot_rewrite.pages.text import clipped, columns, visible
 from multibot_rewrite.rules.check import RULES
 from multibot_rewrite.system.json import to_json
-from multibot_rewrite.system.records import PUBLISHES, Caveat, Edge, Node, System
+from multibot_rewrite.system.records import MAY, PUBLISHES, Caveat, Edge, Node, System
 
 LEAKY = ("/robot1/cmd_vel", "/cmd_vel", "collision_monitor")
 CROSSED = ("/robot2/scan", "/robot1/scan", "amcl")
@@ -90,7 +91,7 @@ def section(tree: html.HtmlElement, id_: str) -> html.HtmlElement:
     return tree.get_element_by_id(id_)
 
 
-def swarm() -> Expectation:
+def swarm() -> System:
     return nav2_graphs.fleet(30, 4)
 
 
@@ -107,14 +108,14 @@ def test_a_healthy_fleet_has_nothing_in_red(layout: str) -> None:
     assert [group.robot for group in scene.groups] == ["robot1", "robot2", ""]
     assert scene.crossings == ()
     for robot in plan.robots:
-        own = {n.name for n in group(scene, robot.name).nodes if n.robot == robot.name}
-        assert own == set(robot.nodes)
+        drawn = {n.name for n in group(scene, robot.name).nodes if n.robot == robot.name}
+        assert drawn == set(nodes_of(plan, robot.name))
 
 
 @pytest.mark.parametrize("layout", nav2_graphs.LAYOUTS)
 def test_a_leak_is_red_at_its_robot_and_among_what_is_shared(layout: str) -> None:
     plan = nav2_graphs.nav2(layout)
-    own = next(w for w in plan.endpoints if "collision_monitor" in w.node and "scan" in w.code_name)
+    own = next(w for w in plan.ends if "collision_monitor" in w.node and "scan" in w.code_name)
     scene = nav2_graphs.scene(
         plan, nav2_graphs.moved(nav2_graphs.healthy(plan), own.name, "/scan", own.node)
     )
@@ -149,7 +150,7 @@ def test_a_node_that_is_not_there_is_drawn_with_its_names() -> None:
     plan = nav2_graphs.nav2()
     scene = nav2_graphs.scene(plan, nav2_graphs.without_node(nav2_graphs.healthy(plan), ABSENT))
     assert node_states(scene)[ABSENT] == MISSING
-    own = {e.name for e in plan.endpoints if e.node == ABSENT}
+    own = {e.name for e in plan.ends if e.node == ABSENT}
     missing = {e.name for e in group(scene, "robot2").edges if e.state == MISSING}
     assert missing == {name for name in own if "robot2" in name} | {"/tf", "/tf_static"}
     shown = {
@@ -169,8 +170,7 @@ def test_a_silent_robot_is_drawn_as_missing_whole() -> None:
 
 def test_what_a_plan_leaves_open_is_not_drawn_as_missing() -> None:
     plan = nav2_graphs.nav2()
-    first, *others = plan.robots
-    loose = plan._replace(robots=(first._replace(optional=("/robot1/amcl",)), *others))
+    loose = told(plan, "/robot1/amcl", sure=MAY)
     scene = nav2_graphs.scene(
         loose, nav2_graphs.without_node(nav2_graphs.healthy(plan), "/robot1/amcl")
     )
@@ -348,7 +348,7 @@ def test_a_tf_topic_a_robot_is_a_tree_a_robot() -> None:
     assert [row.static for row in trees[0].rows[:3]] == [False, False, True]
 
 
-def with_frames(plan: Expectation, *more: Edge) -> Scene:
+def with_frames(plan: System, *more: Edge) -> Scene:
     graph = nav2_graphs.healthy(plan)
     return nav2_graphs.scene(plan, graph._replace(edges=(*graph.edges, *more)))
 
@@ -541,7 +541,7 @@ def test_a_hundred_robots_are_a_small_page() -> None:
 
 
 def test_a_plan_without_robots_is_drawn() -> None:
-    empty = Expectation("L2", (), (), (), (), ())
+    empty = System(layout="L2")
     scene = nav2_graphs.scene(empty, System((), (), (), nav2_graphs.environment()))
     assert pick(page(scene), "header") and not pick(page(scene), "svg", "overview")
 
@@ -620,7 +620,12 @@ def test_any_text_may_be_a_name(words: list[str]) -> None:
     ends = tuple(e._replace(type=type_) if e.name == f"/{topic}" else e for e in graph.ends)
     frame = Edge(child, parent, f"/{topic}", True, (node,))
     odd = graph._replace(ends=ends, edges=(*graph.edges, frame))
-    assert_harmless(nav2_graphs.scene(plan._replace(robots=(first, *plan.robots[1:])), odd))
+    nodes = tuple(
+        it._replace(robot=first.name) if it.robot == plan.robots[0].name else it
+        for it in plan.nodes
+    )
+    named = plan._replace(robots=(first, *plan.robots[1:]), nodes=nodes)
+    assert_harmless(nav2_graphs.scene(named, odd))
 
 
 @given(st.text(max_size=60), st.integers(4, 40))

@@ -10,6 +10,7 @@ import pytest
 from graph_cases import as_planned as planned_graph
 from graph_cases import environment, moved, without_node
 from paths import FIXTURES
+from plans import optional, places
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.graph.plan_file import from_yaml, read_plan, to_yaml
@@ -55,7 +56,7 @@ def test_a_plan_is_read_back_as_it_was_written(plan: Path) -> None:
     wanted = from_yaml(plan.read_bytes(), "plan")
     assert to_yaml(wanted).encode() == plan.read_bytes()
     assert [robot.name for robot in wanted.robots] == ["robot1", "robot2"]
-    assert len(wanted.endpoints) > 200
+    assert len(wanted.ends) > 200
     assert "base_link/robot1" in wanted.robots[0].frames
 
 
@@ -188,7 +189,7 @@ def test_a_file_that_is_not_a_snapshot(plan: Path, capsys: pytest.CaptureFixture
 
 
 def sources(path: Path) -> dict[str, str]:
-    return dict(from_yaml(path.read_bytes(), "plan").sources)
+    return places(from_yaml(path.read_bytes(), "plan"))
 
 
 def test_the_plan_has_the_lines_of_the_users_file(plan: Path) -> None:
@@ -233,7 +234,7 @@ def test_a_plan_from_before_is_read(plan: Path, capsys: pytest.CaptureFixture[st
     kept = re.sub(r"^    (other_frames|optional): \[[^]]*\]\n", "", text, flags=re.MULTILINE)
     assert len(kept) < len(plan.read_text())
     plan.write_text(kept)
-    assert from_yaml(plan.read_bytes(), "plan").sources == ()
+    assert places(from_yaml(plan.read_bytes(), "plan")) == {}
     assert held(plan, graph, capsys)[:2] == (0, "")
 
 
@@ -244,12 +245,12 @@ def test_a_node_under_a_condition_is_optional(
     command = ["plan", str(ROVER), "robot1", "--stack", "robot_state", "--layout", "L2"]
     assert main([*command, "-o", str(plan)]) == 0
     node = "/robot1/joint_state_publisher"
-    assert from_yaml(plan.read_bytes(), "plan").robots[0].optional == (node,)
+    assert optional(from_yaml(plan.read_bytes(), "plan"), "robot1") == (node,)
     assert held(plan, without_node(as_planned(plan), node), capsys)[0] == 0
 
 
 def test_types_by_parameter_are_all_in_the_plan(plan: Path) -> None:
-    ends = from_yaml(plan.read_bytes(), "plan").endpoints
+    ends = from_yaml(plan.read_bytes(), "plan").ends
     (end,) = (e for e in ends if (e.node, e.code_name) == ("/robot1/velocity_smoother", "cmd_vel"))
     assert (end.type, *end.also) == ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 
@@ -275,6 +276,6 @@ def test_a_node_that_another_one_makes_is_optional_with_it(when: str, tmp_path: 
     )
     words = ["--nodes", str(nodes), "--stack", "own", "--layout", "frames-per-robot"]
     assert main(["plan", str(ROVER), "robot1", "robot2", *words, "-o", str(plan)]) == 0
-    optional = from_yaml(plan.read_bytes(), "plan").robots[0].optional
+    may_miss = optional(from_yaml(plan.read_bytes(), "plan"), "robot1")
     made = ("/robot1/planner", "/robot1/planner_private_*")
-    assert set(made) & set(optional) == (set(made) if when else set())
+    assert set(made) & set(may_miss) == (set(made) if when else set())

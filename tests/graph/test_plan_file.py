@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import pytest
 from graph_cases import environment, qos
+from plans import own
 
-from multibot_rewrite.graph.expectation import PlannedEndpoint, PlannedTopic
 from multibot_rewrite.graph.plan_file import read_plan, to_json, to_yaml
 from multibot_rewrite.model import InputError
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.system.records import End, Node, System
+from multibot_rewrite.spelling.plan import planned_end
+from multibot_rewrite.system.records import End, Node, System, Topic, alternatives
 
 PLAN = """\
 layout: both
@@ -45,15 +46,15 @@ def plan(text: str = PLAN) -> bytes:
 
 def test_what_is_written_is_read() -> None:
     found = read_plan(plan(), "plan.yaml")
-    assert found.shared_nodes == ("/map_server", "/fleet_manager", "/rviz2")
-    assert found.ends[0] == PlannedEndpoint(
+    assert own(found) == ("/map_server", "/fleet_manager", "/rviz2")
+    assert found.ends[0] == planned_end(
         "/map_server", "topic", "publishes", "/map", "nav_msgs/msg/OccupancyGrid", "map"
     )
     assert found.topics == (
-        PlannedTopic("/robot1/cmd_vel", ("/robot1/mux", "/robot1/teleop_*"), True),
-        PlannedTopic("/map", qos=(("durability", "TRANSIENT_LOCAL"), ("reliability", "RELIABLE"))),
+        Topic("/robot1/cmd_vel", ("/robot1/mux", "/robot1/teleop_*"), True),
+        Topic("/map", qos=(("durability", "TRANSIENT_LOCAL"), ("reliability", "RELIABLE"))),
     )
-    assert found.one_of == (("/robot1/amcl", "/robot1/slam_toolbox"),)
+    assert alternatives(found) == (("/robot1/amcl", "/robot1/slam_toolbox"),)
     assert read_plan(to_yaml(found).encode(), "again.yaml") == found
     assert read_plan(to_json(found).encode(), "again.json") == found
 
@@ -62,7 +63,7 @@ def test_shared_nodes_may_be_names_alone() -> None:
     text = PLAN.replace("  /rviz2: []\n", "")
     start, end = text.index("shared_nodes"), text.index("shared_topics")
     short = text[:start] + "shared_nodes: [/map_server, /rviz2]\n" + text[end:]
-    assert read_plan(plan(short), "plan.yaml").shared_nodes == ("/map_server", "/rviz2")
+    assert own(read_plan(plan(short), "plan.yaml")) == ("/map_server", "/rviz2")
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,6 @@ from paths import FIXTURES, ROBOTS
 
 from multibot_rewrite.cli import rehearse
 from multibot_rewrite.fleets.fleet import make_fleet
-from multibot_rewrite.graph.expectation import expect
 from multibot_rewrite.graph.live.request import Request
 from multibot_rewrite.graph.plan_file import read_plan
 from multibot_rewrite.graph.rehearsal import (
@@ -38,6 +37,7 @@ from multibot_rewrite.remap.records import Home, NodeRule, NodeTable, Table
 from multibot_rewrite.remap.table import build_table
 from multibot_rewrite.remap.ways import WAYS
 from multibot_rewrite.rewriters.builtin import builtin_tree
+from multibot_rewrite.spelling.plan import expect
 from multibot_rewrite.steps.collect import Inventory, collect
 from multibot_rewrite.steps.document import read_document
 from multibot_rewrite.system.json import from_json
@@ -158,7 +158,7 @@ def test_an_action_without_its_type_is_three_services_and_two_topics(role: str, 
 def test_the_plan_has_the_substituted_types(layout: str) -> None:
     plan = expect(table(layout), make_naming(layout), {})
     replaced = {"nav2_msgs/action/Spin": "", LASER: substitute_type(TOPIC, LASER)}
-    played = with_substitutes(plan, replaced).endpoints
+    played = with_substitutes(plan, replaced).ends
     assert {it.type for it in played if "mapper" in it.node} == {"std_msgs/msg/Empty"}
     there = [it for it in played if "_action" in it.name and "robot2" in it.node]
     action = "/robot2/go" if layout == "L2" else "/go/robot2"

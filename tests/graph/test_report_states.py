@@ -219,7 +219,7 @@ def test_a_frame_that_is_not_received_is_drawn_with_its_finding() -> None:
 def test_the_action_of_a_stand_in_is_as_planned() -> None:
     """Where its type is not installed, a stub has the parts of an action, and rcl counts an action."""
     plan = nav2_graphs.nav2()
-    types = {it.type: "std_msgs/msg/Empty" for it in plan.endpoints if it.kind == ACTION}
+    types = {it.type: "std_msgs/msg/Empty" for it in plan.ends if it.kind == ACTION}
     stubs = with_substitutes(plan, types)
     node, name = "/robot1/behavior_server", "/robot1/backup"
     action = End(ACTION, SERVES, name, "std_msgs/msg/Empty", "", node, None, "")

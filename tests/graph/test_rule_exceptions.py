@@ -7,18 +7,20 @@ from collections.abc import Sequence
 import pytest
 from graph_cases import CASES, Case, as_planned, environment, read_plan, sent, with_node
 from graph_cases import healthy as planned
+from plans import PlannedRobot
+from plans import planned as as_plan
 
 from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, WARNING
-from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
 from multibot_rewrite.live.watching import Verdict, WatchState, with_found
 from multibot_rewrite.rules.check import check
+from multibot_rewrite.spelling.plan import planned_end
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, Caveat, Edge, System
 
 TEXT, TF = "std_msgs/msg/String", "tf2_msgs/msg/TFMessage"
 CUT_OFF = environment(Caveat("participants", True, "the view may be cut off"))
 
 
-def fleet(tf: str, **frames: Sequence[str]) -> Expectation:
+def fleet(tf: str, **frames: Sequence[str]) -> System:
     """A plan: each robot with one node, which publishes its tf topics, and its frames.
 
     ``ROBOT`` in ``tf`` stands for the robot.
@@ -28,14 +30,14 @@ def fleet(tf: str, **frames: Sequence[str]) -> Expectation:
         node, topic = f"/{name}/driver", tf.replace("ROBOT", name)
         robots.append(PlannedRobot(name, (node,), tuple(own), topic))
         both = (topic, topic.replace("tf", "tf_static"))
-        ends += [PlannedEndpoint(node, TOPIC, PUBLISHES, it, TF, it) for it in both]
-    return Expectation("frames-per-robot", tuple(robots), (), ("/rosout",), ("map",), tuple(ends))
+        ends += [planned_end(node, TOPIC, PUBLISHES, it, TF, it) for it in both]
+    return as_plan("frames-per-robot", tuple(robots), (), ("/rosout",), ("map",), tuple(ends))
 
 
-def graph(plan: Expectation, *more: Edge) -> System:
+def graph(plan: System, *more: Edge) -> System:
     """As planned: each robot's frames below its first one, and transforms besides."""
     edges = [
-        Edge(frame, robot.frames[0], robot.tf.replace("tf", "tf_static"), True, ())
+        Edge(frame, robot.frames[0], robot.tf_topic.replace("tf", "tf_static"), True, ())
         for robot in plan.robots
         for frame in robot.frames[1:]
     ]
@@ -46,7 +48,7 @@ def below(parent: str, *frames: str, topic: str = "/tf_static") -> list[Edge]:
     return [Edge(frame, parent, topic, True, ()) for frame in frames]
 
 
-def found(plan: Expectation, seen: System) -> list[tuple[str, str, tuple[str, ...]]]:
+def found(plan: System, seen: System) -> list[tuple[str, str, tuple[str, ...]]]:
     return [(it.code, it.robot, tuple(it.names)) for it in check(plan, seen)]
 
 
@@ -229,7 +231,7 @@ def test_nothing_is_called_missing_in_an_incomplete_view(case: Case) -> None:
     assert [it.level for it in partial] == expected
 
 
-def _state(plan: Expectation, graph: System, before: WatchState | None) -> WatchState:
+def _state(plan: System, graph: System, before: WatchState | None) -> WatchState:
     return with_found(plan, graph, check(plan, graph), before)
 
 

@@ -20,11 +20,11 @@ from graph_cases import (
     without_node,
 )
 from graph_examples import read_example
+from plans import places, told
 
 from multibot_rewrite.findings.finding import ERROR, Finding
-from multibot_rewrite.graph.expectation import Expectation, PlannedTopic
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Edge, System
+from multibot_rewrite.system.records import MAY, PUBLISHES, SUBSCRIBES, TOPIC, Edge, System, Topic
 
 LAYOUTS = ("frames-per-robot", "tf-per-robot", "both", "postfix")
 # Those in which frames have the robot's name.
@@ -88,10 +88,9 @@ def test_no_joint_states_of_a_publisher_that_may_be_missing(layout: str) -> None
     plan = read_plan(layout)
     node = named(layout, "joint_states")
     node = node if layout != "postfix" else "/joint_states_robot2"
-    robots = tuple(it._replace(optional=(*it.optional, node)) for it in plan.robots)
     graph = without_node(healthy(layout), node)
     wheels = reframed(lambda it: None if is_of("robot2", it) and "wheel" in it.child else it)(graph)
-    (finding,) = (it for it in check(plan._replace(robots=robots), wheels) if it.code == "MG208")
+    (finding,) = (it for it in check(told(plan, node, sure=MAY), wheels) if it.code == "MG208")
     assert f"nothing publishes {named(layout, 'joint_states')}" in finding.hint
     assert finding.robot == "robot2"
 
@@ -121,18 +120,18 @@ def test_another_type_where_nobody_reads_it_is_the_plugins(layout: str) -> None:
     driver = named(layout, "imu_driver")
     graph = with_type(healthy(layout), named(layout, "imu"), driver, CLOUD)
     (finding,) = hints(layout, graph, "MG306")
-    place = dict(read_plan(layout).sources)[driver]
+    place = places(read_plan(layout))[driver]
     assert f"plugin imu_driver, see {place}" in finding.hint
     assert finding.line == int(place.rpartition(":")[2])
 
 
-def bridged(plan: Expectation, names: Iterable[str]) -> Expectation:
+def bridged(plan: System, names: Iterable[str]) -> System:
     """The plan with topics that a bridge has to carry."""
     roles = {"cmd_vel": (SUBSCRIBES, TWIST), "scan": (PUBLISHES, SCAN)}
     topics = []
     for name in names:
         role, type_ = next(it for key, it in roles.items() if key in name)
-        topics.append(PlannedTopic(name, bridge=(role,), type=type_))
+        topics.append(Topic(name, bridge=(role,), type=type_))
     return plan._replace(topics=tuple(topics))
 
 
@@ -161,7 +160,7 @@ def torn(layout: str, change: Callable[[Edge], Edge | None]) -> list[Finding]:
     """Findings where robot2 has a pose in the world, so that its odom is in the tree."""
     plan = read_plan(layout)
     odom = next(it for it in plan.robots[1].frames if "odom" in it)
-    tf = plan.robots[1].tf.replace("tf", "tf_static", 1)
+    tf = plan.robots[1].tf_topic.replace("tf", "tf_static", 1)
     graph = reframed(change, Edge(odom, "world", tf, True, ()))(healthy(layout))
     return check(plan, sent(graph))
 
@@ -235,7 +234,7 @@ def test_a_drive_that_does_not_run(layout: str) -> None:
     footprint = spelled(layout, "base_footprint")
     plan = read_plan(layout)
     odom = spelled(layout, "odom")
-    own = plan.robots[1].tf
+    own = plan.robots[1].tf_topic
     graph = reframed(
         lambda it: None if (it.child, it.topic) == (footprint, own) else it,
         Edge(odom, "world", own.replace("tf", "tf_static", 1), True, ()),
@@ -248,10 +247,10 @@ def test_a_drive_that_does_not_run(layout: str) -> None:
 @pytest.mark.parametrize("type_", ["tf2_msgs/msg/TFMessage", "sensor_msgs/msg/JointState"])
 def test_a_bridge_that_was_not_started(layout: str, type_: str) -> None:
     """In gz odometry and joint states come over the bridge; the plan has no node that sends them."""
-    footprint, own = spelled(layout, "base_footprint"), read_plan(layout).robots[1].tf
+    footprint, own = spelled(layout, "base_footprint"), read_plan(layout).robots[1].tf_topic
     name = named(layout, "pose/tf")
-    topic = PlannedTopic(name, bridge=(PUBLISHES,), type=type_)
-    plan = read_plan(layout)._replace(topics=(topic,), sends=())
+    topic = Topic(name, bridge=(PUBLISHES,), type=type_)
+    plan = read_plan(layout)._replace(topics=(topic,), edges=())
     odom = Edge(spelled(layout, "odom"), "world", own.replace("tf", "tf_static", 1), True, ())
     graph = reframed(lambda it: None if (it.child, it.topic) == (footprint, own) else it, odom)
     (finding,) = (it for it in check(plan, graph(healthy(layout))) if it.code == "MG406")
@@ -261,7 +260,7 @@ def test_a_bridge_that_was_not_started(layout: str, type_: str) -> None:
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_two_parents_name_the_robots_own_nodes_first(layout: str) -> None:
     plan = read_plan(layout)
-    footprint, own = spelled(layout, "base_footprint"), plan.robots[1].tf
+    footprint, own = spelled(layout, "base_footprint"), plan.robots[1].tf_topic
     graph = reframed(lambda it: it, Edge(footprint, "map", own, False, ()))(healthy(layout))
     (finding,) = (it for it in check(plan, graph) if it.code == "MG401")
     publishers = finding.hint.partition(f"send on {own}: ")[2]
@@ -272,9 +271,10 @@ def test_two_parents_name_the_robots_own_nodes_first(layout: str) -> None:
 def test_two_parents_name_senders_of_this_topic_alone() -> None:
     """Frames without the robot are alike in all robots; each has a topic of its own."""
     plan = read_plan("tf-per-robot")
-    added = [(f"/{robot}/base_again", "base -> base_footprint") for robot in ("robot1", "robot2")]
-    plan = plan._replace(sends=(*plan.sends, *added))
-    own, node = plan.robots[1].tf, named("tf-per-robot", "diff_drive")
+    again = [f"/{robot}/base_again" for robot in ("robot1", "robot2")]
+    added = [Edge("base_footprint", "base", "", False, (it,)) for it in again]
+    plan = plan._replace(edges=(*plan.edges, *added))
+    own, node = plan.robots[1].tf_topic, named("tf-per-robot", "diff_drive")
     both = (node, "/robot2/base_again")
 
     graph = healthy("tf-per-robot")
@@ -308,7 +308,7 @@ def test_a_frame_prefix_where_the_tag_is_another_word() -> None:
     plan = read_plan("postfix")
     last = plan.robots[1]
     frames = tuple(f"{it}_tf" for it in last.frames)
-    other = last._replace(frames=frames, other_frames=(), frame_tag="robot2_tf")
+    other = last._replace(frames=frames, other_frames=(), tag="robot2_tf")
     plan = plan._replace(robots=(plan.robots[0], other))
 
     def change(frame: Edge) -> Edge:

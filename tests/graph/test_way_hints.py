@@ -9,21 +9,22 @@ import pytest
 from paths import ROBOTS
 
 from multibot_rewrite.fleets.fleet import expected, make_fleet
-from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint
 from multibot_rewrite.graph.plan_file import from_yaml, to_yaml
 from multibot_rewrite.rules.pair.causes import how_to_remap, why_other_name
+from multibot_rewrite.spelling.plan import planned_end
+from multibot_rewrite.system.records import System
 
 GZ = str(ROBOTS / "rover_gz.urdf")
 
 
-def plan(release: str, stack: str) -> Expectation:
+def plan(release: str, stack: str) -> System:
     fleet = make_fleet(GZ, ["robot1"], [stack], {"layout": "tf-per-robot"}, release=release)
     return from_yaml(to_yaml(expected(fleet)).encode(), "plan.yaml")
 
 
-def hint(of: Expectation, node: str) -> str:
-    view: Any = SimpleNamespace(system=of, places={})
-    end = PlannedEndpoint(f"/robot1/{node}", "topic", "publishes", "/robot1/tf", "", "/tf")
+def hint(of: System, node: str) -> str:
+    view: Any = SimpleNamespace(system=of, nodes={it.name: it for it in of.nodes})
+    end = planned_end(f"/robot1/{node}", "topic", "publishes", "/robot1/tf", "", "/tf")
     return how_to_remap(view, end)
 
 
@@ -82,6 +83,9 @@ def test_a_node_under_another_name_is_told_where_its_name_is_given(
     of = plan("lyrical", stack)
     ownership = SimpleNamespace(without_robot=lambda name, robot: name.removeprefix(f"/{robot}"))
     view: Any = SimpleNamespace(
-        system=of, places={}, robot_of={f"/robot1/{node}": "robot1"}, names=ownership
+        system=of,
+        nodes={it.name: it for it in of.nodes},
+        robot_of={f"/robot1/{node}": "robot1"},
+        names=ownership,
     )
     assert words in why_other_name(view, f"/robot1/{node}", f"/{node}").hint

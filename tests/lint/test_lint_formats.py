@@ -18,6 +18,7 @@ import pytest
 from junitparser import Failure, JUnitXml
 from lxml import etree
 from markdown_it import MarkdownIt
+from no_workers import lint_in_this_process
 from pydantic import BaseModel
 from sarif_pydantic import Sarif
 
@@ -89,8 +90,9 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.fixture
-def nasty(here: Path) -> Linted:
+def nasty(here: Path, monkeypatch: pytest.MonkeyPatch) -> Linted:
     """Nasty files with findings of every level, one without any, and one through macros."""
+    lint_in_this_process(monkeypatch)
     for name in FILES:
         Path(name).write_text(pieces(*NASTY), encoding="utf-8")
     Path("clean.urdf").write_text(pieces())

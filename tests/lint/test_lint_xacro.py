@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
+from no_workers import lint_in_this_process
 
 from multibot_rewrite.cli.urdf_lint import main
 from multibot_rewrite.findings.finding import NOTE, Finding
@@ -19,6 +20,11 @@ TAKES_SIM = '<xacro:arg name="sim" default=""/>'
 LOST = '<joint name="j" type="fixed"><parent link="gone"/><child link="a"/></joint>'
 MACRO = '<xacro:macro name="arm" params="side">\n  <link name="${side}_arm"/>\n</xacro:macro>'
 MANIFEST = "<package><name>%s</name></package>"
+
+
+@pytest.fixture(autouse=True)
+def without_workers(monkeypatch: pytest.MonkeyPatch) -> None:
+    lint_in_this_process(monkeypatch)
 
 
 def xacro(body: str, name: str = "r") -> str:

@@ -50,7 +50,7 @@ def test_a_fifth_layout_builds(word: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     "command",
-    [("urdf_postfix",), ("urdf_lint",), ("multibot", "plan"), ("multibot", "remap")],
+    [("urdf_postfix",), ("urdf_lint",), ("multibot", "plan")],
     ids=" ".join,
 )
 def test_the_help_lists_a_fifth_layout(command: tuple[str, ...]) -> None:

@@ -39,7 +39,7 @@ SOURCES = (
 SHELL_FILES = (
     "bash-completion/completions/multibot",
     "zsh/site-functions/_urdf-lint",
-    "man/man1/multibot-remap.1",
+    "man/man1/multibot-plan.1",
     "man/man1/urdf-postfix.1",
 )
 NAMES = ("multibot_rewrite", "multibot_example")

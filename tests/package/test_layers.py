@@ -31,6 +31,7 @@ FLOORS = (
     ("rewriters",),
     ("readback", "steps"),
     ("checks", "sources", "remap"),
+    ("spelling",),
     ("pipeline", "reports", "graph", "companions"),
     ("rules",),
     ("library", "evidence", "live"),

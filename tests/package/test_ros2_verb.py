@@ -31,7 +31,7 @@ def ros2(*words: str) -> int:
 
 def test_words_reach_the_command(capsys: pytest.CaptureFixture[str]) -> None:
     rover = str(FIXTURES / "robots" / "rover.urdf")
-    words = ["remap", rover, "robot1", "--stack", "nav2", "--form", "ros-args"]
+    words = ["plan", rover, "robot1", "--stack", "nav2", "--form", "ros-args"]
     assert ros2(*words) == main(words) == 0
     first, second = capsys.readouterr().out.split("# robot1: map_server", 1)
     assert second.count("# robot1: map_server") == 1
@@ -54,7 +54,7 @@ def test_help_lists_the_commands(words: list[str], capsys: pytest.CaptureFixture
 
 def test_help_of_a_command_is_its_own(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as caught:
-        ros2("remap", "--help")
+        ros2("plan", "--help")
     assert caught.value.code == 0
     assert "--stack" in capsys.readouterr().out
 

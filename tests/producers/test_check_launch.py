@@ -250,12 +250,12 @@ def test_the_command_reports_and_compares(
     assert code("check-launch", str(file), "as:=open") == 3
     assert "acme/driver" in capsys.readouterr().err
     plan = tmp_path / "plan.yaml"
-    assert code("plan", "--from-launch", str(file), "as:=right", "-o", str(plan)) == 0
+    assert code("plan", str(file), "as:=right", "-o", str(plan)) == 0
     assert code("check-launch", str(file), "as:=right", "--plan", str(plan)) == 0
     capsys.readouterr()
     assert code("check-launch", str(file), "as:=wrong", "--plan", str(plan)) == 1
     assert "should publish topic /robot1/tf" in capsys.readouterr().out
-    assert code("plan", "--from-launch", str(file), "as:=right", "--stack", "nav2") == 2
+    assert code("plan", str(file), "as:=right", "--stack", "nav2") == 2
     assert "--stack" in capsys.readouterr().err
     assert all(it.trusted for it in orders)  # type: ignore[attr-defined]
 

@@ -533,7 +533,7 @@ def test_the_whole_command(
     assert ("rcl refuses 2 nodes" in told.err) == (code == 3)
     assert "description is not known" not in told.err
     if code == 0:
-        words = ["plan", "--from-launch", str(file), "--distro", "jazzy", "-o", str(plan)]
+        words = ["plan", str(file), "--distro", "jazzy", "-o", str(plan)]
         assert main(words) == 0
         assert "tip" in plan.read_text()
         other = tmp_path / "other.launch.py"

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 from launched_nodes import launched, started
 
-from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.producers.launch.records import LaunchNote
+from multibot_rewrite.system.records import Place
 
 MANAGER = started("controller_manager", "ros2_control_node", namespace="/robot1")
 

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite import InputError
-from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.producers.launch.child import launch_graph
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder, ParameterText
+from multibot_rewrite.system.records import Place
 
 MODEL = """\
 meta: {version: 1}

@@ -346,13 +346,6 @@ def test_gazebo_form_is_xml_a_plugin_takes() -> None:
     assert (block.findtext("namespace"), block.findtext("remapping")) == ("/robot1", "/tf:=tf")
 
 
-def test_markdown_has_a_row_for_each_rule() -> None:
-    found = table("L4")
-    text = FORMS["markdown"](found)
-    assert text.count(" -> ") == sum(len(node.rules) for node in found.nodes)
-    assert "\n## robot2\n" in text
-
-
 @pytest.mark.parametrize(
     ("parameters", "off", "sends"),
     [

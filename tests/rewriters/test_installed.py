@@ -325,9 +325,9 @@ def test_a_user_file_called_like_a_built_in_one_hides_nothing(
 ) -> None:
     (tmp_path / "hardware.vocab").write_text(SECTION.format(name="aa"))
     monkeypatch.chdir(tmp_path)
-    builtin = load_vocabulary((), NEWEST_LTS, packages=False).names("hardware")
+    builtin = list(load_vocabulary((), NEWEST_LTS, packages=False).names("hardware"))
     vocabulary = load_vocabulary(("hardware.vocab",), NEWEST_LTS, packages=False)
-    assert vocabulary.names("hardware") == builtin
+    assert list(vocabulary.names("hardware")) == builtin
     assert [found.file for found in vocabulary.find("plugin", "aa")] == ["./hardware.vocab"]
 
 

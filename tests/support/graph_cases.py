@@ -15,7 +15,6 @@ from typing import NamedTuple
 from paths import ROOT
 
 from multibot_rewrite.cli.multibot import main as multibot
-from multibot_rewrite.graph.expectation import Expectation, PlannedRobot
 from multibot_rewrite.graph.plan_file import from_yaml
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.records import (
@@ -28,6 +27,7 @@ from multibot_rewrite.system.records import (
     Environment,
     Node,
     Qos,
+    Robot,
     System,
 )
 
@@ -65,7 +65,7 @@ class Case(NamedTuple):
         return f"{FOLDERS[self.layout]}/{self.code}"
 
 
-def read_plan(layout: str) -> Expectation:
+def read_plan(layout: str) -> System:
     """The plan of a folder."""
     path = f"{FOLDERS[layout]}/plan.yaml"
     return from_yaml((ROOT / path).read_bytes(), path)
@@ -78,23 +78,22 @@ def environment(*caveats: Caveat) -> Environment:
     return Environment(0, "LOCALHOST", (), "rmw_fastrtps_cpp", "", False, 4, "quiet", 3.5, caveats)
 
 
-def as_planned(plan: Expectation) -> System:
+def as_planned(plan: System) -> System:
     """The graph that a plan is of; a type that is not known is that of the other end."""
     types: dict[tuple[str, str], str] = {}
-    for wanted in plan.endpoints:
+    for wanted in plan.ends:
         both = (wanted.kind, wanted.name)
         types[both] = types.get(both) or wanted.type
     ends = [
-        End(w.kind, w.role, w.name, types[w.kind, w.name], "", w.node, None, "")
-        for w in plan.endpoints
+        End(w.kind, w.role, w.name, types[w.kind, w.name], "", w.node, None, "") for w in plan.ends
     ]
-    nodes = [Node(node, "") for robot in plan.robots for node in robot.nodes]
+    nodes = [Node(it.name, "") for it in plan.nodes if it.robot]
     edges = [edge for robot in plan.robots for edge in robot_edges(robot)]
     ends += bridge(plan)
     return sent(System(tuple(nodes), tuple(ends), tuple(edges), environment()))
 
 
-def bridge(plan: Expectation) -> Iterable[End]:
+def bridge(plan: System) -> Iterable[End]:
     """The ends of a bridge that carries what the plan has for it."""
     for topic in plan.topics:
         for role in topic.bridge:
@@ -102,7 +101,7 @@ def bridge(plan: Expectation) -> Iterable[End]:
             yield End(TOPIC, role, topic.name, topic.type, "", node, None, "")
 
 
-def robot_edges(robot: PlannedRobot) -> Iterator[Edge]:
+def robot_edges(robot: Robot) -> Iterator[Edge]:
     """Its frames in one tree: a rover's as its description has them, else all below the first."""
     bare = {unspelled(frame, robot.name): frame for frame in robot.frames}
     root = bare.get("odom") or robot.frames[0]
@@ -110,7 +109,7 @@ def robot_edges(robot: PlannedRobot) -> Iterator[Edge]:
         if frame != root:
             parent = bare.get(PARENTS.get(name, "base_link"), root)
             static = name not in MOVING
-            topic = robot.tf.replace("tf", "tf_static", 1) if static else robot.tf
+            topic = robot.tf_topic.replace("tf", "tf_static", 1) if static else robot.tf_topic
             yield Edge(frame, root if parent == frame else parent, topic, static, ())
 
 

@@ -4,7 +4,8 @@ Each line begins with ``planned:`` (it is in the plan), ``running:`` (it is in t
 ``as planned:`` (it is in both). Behind it comes one of:
 
     NODE                                a node; a second such line is a second node of that name
-    NODE ROLE NAME [TYPE] [QOS ...]     the node publishes, subscribes, serves or calls NAME
+    NODE ROLE NAME [TYPE] [as CODE_NAME] [QOS ...]     the node publishes, subscribes, serves or calls
+                                        NAME, which is CODE_NAME in its code
     frames of ROBOT on TOPIC: FRAMES    the frames of a robot's description, and its tf topic
     shared topic NAME, shared frame NAME    what all robots use
     topic NAME from NODES [QOS ...]     who may publish a topic, and what they offer
@@ -34,21 +35,17 @@ from collections.abc import Iterable, Iterator
 
 from graph_cases import environment, qos
 from node_answers import told
+from plans import PlannedRobot, planned
+from plans import told as planned_told
 
-from multibot_rewrite.graph.expectation import (
-    Expectation,
-    PlannedEndpoint,
-    PlannedParameter,
-    PlannedRobot,
-    PlannedState,
-    PlannedTopic,
-)
 from multibot_rewrite.rules.guess import GuessedRobot, whose_by_guess, with_frames
 from multibot_rewrite.rules.index import Index, Known, index
+from multibot_rewrite.spelling.plan import planned_end
 from multibot_rewrite.system.answers import Answer, with_answers
 from multibot_rewrite.system.conventions import SENT_BY_EVERY_NODE
 from multibot_rewrite.system.records import (
     ACTION,
+    MAY,
     PUBLISHES,
     SERVICE,
     SUBSCRIBES,
@@ -57,13 +54,15 @@ from multibot_rewrite.system.records import (
     End,
     Heard,
     Node,
+    Parameter,
     Qos,
     System,
+    Topic,
 )
 
 LINE = re.compile(r"(planned|running|as planned): (.+)")
 NODE = re.compile(
-    r"(/\S+)(?: (publishes|subscribes|serves|calls) (\S+)(?: (\w+/\w+/\w+))?((?: \w+)*))?"
+    r"(/\S+)(?: (publishes|subscribes|serves|calls) (\S+)(?: (\w+/\w+/\w+))?(?: as (\S+))?((?: \w+)*))?"
 )
 FRAMES = re.compile(r"frames of (\w+) on (\S+): (.+)")
 SHARED = re.compile(r"shared (topic|frame) (\S+)")
@@ -95,7 +94,7 @@ POLICIES = {
 }
 
 
-def read_example(text: str) -> tuple[Expectation, System]:
+def read_example(text: str) -> tuple[System, System]:
     """The plan and the graph of an example; AssertionError for a line that is not in the language."""
     lines = [LINE.fullmatch(line) for line in text.splitlines()]
     assert all(lines), f"a line does not begin with planned:, running: or as planned:\n{text}"
@@ -110,7 +109,7 @@ def read_example(text: str) -> tuple[Expectation, System]:
 def read_system(text: str) -> Index:
     """The graph of an example without a plan."""
     plan, graph = read_example(text)
-    assert not plan.endpoints, "a danger needs no plan: begin its lines with running:"
+    assert not plan.ends, "a danger needs no plan: begin its lines with running:"
     robots = sorted({*ROBOT.findall(text)})
     frames = [name for frame in graph.edges for name in (frame.child, frame.parent)]
     guessed = (with_frames(GuessedRobot(it, f"/{it}"), frames) for it in robots)
@@ -142,15 +141,19 @@ def _text(value: str) -> str:
     return value if plain else f'"{value}"'
 
 
-def planned_states(lines: list[str]) -> tuple[PlannedState, ...]:
-    """What the nodes of an example are planned to answer."""
-    states = (PlannedState(node, lifecycle=it) for node, it in _words(PLANNED_STATE, lines))
-    hosts = (PlannedState(node, host=it) for node, it in _words(HOST, lines))
-    having = (
-        PlannedState(node, parameters=(PlannedParameter(name, _text(value)),))
-        for name, node, value in _words(PLANNED_PARAMETER, lines)
-    )
-    return (*states, *hosts, *having)
+def in_states(plan: System, lines: list[str]) -> System:
+    """The plan with what its nodes are planned to answer, and where they run."""
+    for node, state in _words(PLANNED_STATE, lines):
+        plan = planned_told(_with_node(plan, node), node, lifecycle=state)
+    for node, host in _words(HOST, lines):
+        plan = planned_told(_with_node(plan, node), node, host=host)
+    return plan
+
+
+def _with_node(plan: System, name: str) -> System:
+    if any(it.name == name for it in plan.nodes):
+        return plan
+    return plan._replace(nodes=(*plan.nodes, Node(name, robot=name.split("/")[1], sure=MAY)))
 
 
 def _is_known(line: str) -> bool:
@@ -165,7 +168,7 @@ def _words(pattern: re.Pattern[str], lines: Iterable[str]) -> Iterator[tuple[str
     return (it.groups(default="") for it in found)
 
 
-def read_plan(lines: list[str]) -> Expectation:
+def read_plan(lines: list[str]) -> System:
     """What the lines plan."""
     shared = defaultdict(list, {"topic": [*SENT_BY_EVERY_NODE, "/clock"], "frame": ["map"]})
     for kind, name in _words(SHARED, lines):
@@ -176,7 +179,7 @@ def read_plan(lines: list[str]) -> Expectation:
     for name in sorted({found for line in lines for found in ROBOT.findall(line)}):
         tf, own = frames.get(name, ("/tf", []))
         robots.append(PlannedRobot(name, tuple(it for it in nodes if name in it), tuple(own), tf))
-    return Expectation(
+    made = planned(
         "an example",
         tuple(robots),
         tuple(it for it in nodes if not ROBOT.search(it)),
@@ -186,26 +189,28 @@ def read_plan(lines: list[str]) -> Expectation:
         topics=(
             *(_planned_topic(*words) for words in _words(TOPIC_OF, lines)),
             *(
-                PlannedTopic(name, bridge=(role,), type=type_)
+                Topic(name, bridge=(role,), type=type_)
                 for name, role, type_ in _words(BRIDGED, lines)
             ),
         ),
         one_of=tuple(tuple(words[0].split(", ")) for words in _words(ONE_OF, lines)),
-        states=planned_states(lines),
+        parameters=tuple(
+            Parameter(node, name, _text(value))
+            for name, node, value in _words(PLANNED_PARAMETER, lines)
+        ),
     )
+    return in_states(made, lines)
 
 
-def _planned_topic(name: str, senders: str, qos_words: str) -> PlannedTopic:
+def _planned_topic(name: str, senders: str, qos_words: str) -> Topic:
     offered = tuple((POLICIES[word], word.upper()) for word in qos_words.split())
     if senders == "one node":
-        return PlannedTopic(name, (), True, offered)
-    return PlannedTopic(name, tuple(senders.split(", ")), False, offered)
+        return Topic(name, (), True, offered)
+    return Topic(name, tuple(senders.split(", ")), False, offered)
 
 
-def _planned_endpoint(node: str, role: str, name: str, type_: str) -> PlannedEndpoint:
-    return PlannedEndpoint(
-        node, _kind(role, type_), role, name, type_, re.sub("/robot\\d+", "", name)
-    )
+def _planned_endpoint(node: str, role: str, name: str, type_: str) -> End:
+    return planned_end(node, _kind(role, type_), role, name, type_, re.sub("/robot\\d+", "", name))
 
 
 def _kind(role: str, type_: str) -> str:
@@ -234,8 +239,8 @@ def read_graph(lines: list[str]) -> System:
     return with_answers(seen, read_states(lines))
 
 
-def _endpoint(node: str, role: str, name: str, type_: str, words: str) -> End:
-    return End(_kind(role, type_), role, name, type_, "", node, _qos(words.split()), "")
+def _endpoint(node: str, role: str, name: str, type_: str, code: str, words: str) -> End:
+    return End(_kind(role, type_), role, name, type_, "", node, _qos(words.split()), "", code)
 
 
 def _qos(words: list[str]) -> Qos | None:

@@ -12,7 +12,6 @@ from graph_faults import FAULTS, LIVE
 from healthy_systems import SYSTEMS, plan
 
 from multibot_rewrite.findings.finding import ERROR, Finding
-from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.plural import plural
 from multibot_rewrite.rules.check import check
@@ -67,7 +66,7 @@ def _checked(fault: Fault, graph: System) -> str:
 
 
 @cache
-def _healthy_findings(planned: Expectation, graph: System) -> frozenset[Finding]:
+def _healthy_findings(planned: System, graph: System) -> frozenset[Finding]:
     return frozenset(check(planned, graph))
 
 

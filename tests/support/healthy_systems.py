@@ -15,7 +15,6 @@ from nav2_graphs import EVERYDAY, ROVER
 from nav2_graphs import healthy as as_planned
 
 from multibot_rewrite.cli import multibot
-from multibot_rewrite.graph.expectation import Expectation, PlannedRobot
 from multibot_rewrite.graph.plan_file import from_yaml
 from multibot_rewrite.system.records import (
     ACTION,
@@ -28,6 +27,7 @@ from multibot_rewrite.system.records import (
     Edge,
     End,
     Node,
+    Robot,
     System,
 )
 
@@ -47,7 +47,7 @@ TWO = ("robot1", "robot2")
 
 
 @cache
-def plan(stacks: tuple[str, ...], layout: str = "L1", robots: tuple[str, ...] = TWO) -> Expectation:
+def plan(stacks: tuple[str, ...], layout: str = "L1", robots: tuple[str, ...] = TWO) -> System:
     """The plan of rovers with these stacks, as the command writes it."""
     with TemporaryDirectory() as folder:
         file = f"{folder}/plan.yaml"
@@ -56,6 +56,7 @@ def plan(stacks: tuple[str, ...], layout: str = "L1", robots: tuple[str, ...] = 
         return from_yaml(Path(file).read_bytes(), file)
 
 
+@cache
 def started(stacks: tuple[str, ...], layout: str = "L1", robots: tuple[str, ...] = TWO) -> System:
     """The graph of such a plan, each robot with its tree of frames."""
     planned = plan(stacks, layout, robots)
@@ -64,10 +65,10 @@ def started(stacks: tuple[str, ...], layout: str = "L1", robots: tuple[str, ...]
     return sent(graph._replace(edges=tuple(edges)))
 
 
-def _edges(robot: PlannedRobot) -> Iterator[Edge]:
+def _edges(robot: Robot) -> Iterator[Edge]:
     """The rover's tree, which localization hangs below the map."""
     odom = next(it for it in robot.frames if unspelled(it, robot.name) == "odom")
-    yield Edge(odom, "map", robot.tf, False, ())
+    yield Edge(odom, "map", robot.tf_topic, False, ())
     yield from robot_edges(robot)
 
 
@@ -128,10 +129,12 @@ def _rviz(space: str) -> Iterator[Row]:
     yield CALLS, f"{space}/lifecycle_manager_slam/is_active", TRIGGER
 
 
+@cache
 def nav2_with_tools(layout: str = "L1") -> System:
     return with_tools(started(("nav2",), layout), TWO)
 
 
+@cache
 def simulated(*robots: str) -> System:
     """All nodes of the robots on the time of one Gazebo, whose bridge sends all sensors."""
     graph = started(("nav2",), "L1", robots)
@@ -157,6 +160,7 @@ def respelled(graph: System, spelled: Callable[[str], str]) -> System:
     return sent(graph._replace(nodes=tuple(nodes), ends=tuple(ends), edges=tuple(frames)))
 
 
+@cache
 def two_levels() -> System:
     """Robots of two fleets; one name is there in both."""
     spaces = {"/robot1": "/fleet_a/robot1", "/robot2": "/fleet_b/robot1"}

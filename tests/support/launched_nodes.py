@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.fleets.fleet import facts_of, known_nodes
 from multibot_rewrite.fleets.launched_robot import given_with, nodes_with
 from multibot_rewrite.knowledge.parameters import load_known_nodes
@@ -12,6 +11,7 @@ from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.launch.of_robot import Launched, with_launched
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, LaunchNote
 from multibot_rewrite.releases import NEWEST_LTS
+from multibot_rewrite.system.records import Place
 
 AT = Place("/ws/bringup.launch.py", 12)
 

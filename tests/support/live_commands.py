@@ -9,9 +9,18 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
+from plans import PlannedRobot, planned
+
 from multibot_rewrite.graph.plan_file import to_yaml
-from multibot_rewrite.system.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
+from multibot_rewrite.spelling.plan import planned_end
+from multibot_rewrite.system.records import (
+    PUBLISHES,
+    SERVES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+    End,
+)
 
 COMMAND = [sys.executable, "-m", "multibot_rewrite.cli.multibot"]
 TEXT, TRIGGER = "std_msgs/msg/String", "std_srvs/srv/Trigger"
@@ -43,15 +52,15 @@ def write_plan(path: Path, robots: Iterable[str], nodes: Sequence[str] = NODES) 
     full = {robot: tuple(f"/{robot}/{name}" for name in nodes) for robot in robots}
     fleet = tuple(PlannedRobot(robot, there, (), f"/{robot}/tf") for robot, there in full.items())
     ends = tuple(end for robot, there in full.items() for it in there for end in _wanted(robot, it))
-    path.write_text(to_yaml(Expectation("both", fleet, (), SHARED, ("map",), ends)))
+    path.write_text(to_yaml(planned("both", fleet, (), SHARED, ("map",), ends)))
     return path
 
 
-def _wanted(robot: str, name: str) -> list[PlannedEndpoint]:
+def _wanted(robot: str, name: str) -> list[End]:
     return [
-        PlannedEndpoint(name, TOPIC, SUBSCRIBES, f"/{robot}/cmd_vel", TEXT, "/cmd_vel"),
-        PlannedEndpoint(name, TOPIC, PUBLISHES, f"/{robot}/odom", TEXT, "odom"),
-        PlannedEndpoint(name, SERVICE, SERVES, f"/{robot}/reset", TRIGGER, "reset"),
+        planned_end(name, TOPIC, SUBSCRIBES, f"/{robot}/cmd_vel", TEXT, "/cmd_vel"),
+        planned_end(name, TOPIC, PUBLISHES, f"/{robot}/odom", TEXT, "odom"),
+        planned_end(name, SERVICE, SERVES, f"/{robot}/reset", TRIGGER, "reset"),
     ]
 
 

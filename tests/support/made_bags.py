@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from plans import PlannedRobot, planned
 from rosbags.interfaces import (
     Qos,
     QosDurability,
@@ -18,8 +19,8 @@ from rosbags.interfaces import (
 from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 
-from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
-from multibot_rewrite.system.records import PUBLISHES, TOPIC
+from multibot_rewrite.spelling.plan import planned_end
+from multibot_rewrite.system.records import PUBLISHES, TOPIC, System
 
 STORE = get_typestore(Stores.ROS2_HUMBLE)
 SCAN, ODOM = "sensor_msgs/msg/LaserScan", "nav_msgs/msg/Odometry"
@@ -58,7 +59,7 @@ def healthy() -> dict[str, Made]:
     return {it.name: it for it in found}
 
 
-def plan() -> Expectation:
+def plan() -> System:
     """The plan of the healthy bag."""
     robots = tuple(
         PlannedRobot(
@@ -70,7 +71,7 @@ def plan() -> Expectation:
         for robot in ROBOTS
     )
     ends = tuple(
-        PlannedEndpoint(f"/{robot}/driver", TOPIC, PUBLISHES, f"/{robot}/{name}", type_, name)
+        planned_end(f"/{robot}/driver", TOPIC, PUBLISHES, f"/{robot}/{name}", type_, name)
         for robot in ROBOTS
         for name, type_ in (
             *((name, usual[0]) for name, usual in USUAL.items()),
@@ -78,7 +79,7 @@ def plan() -> Expectation:
             ("tf_static", TF),
         )
     )
-    return Expectation("both", robots, (), ("/clock", "/rosout"), ("map",), ends)
+    return planned("both", robots, (), ("/clock", "/rosout"), ("map",), ends)
 
 
 def _text(value: str) -> bytes:

@@ -355,10 +355,12 @@ def looked_at(order: str, out: Path) -> Outcome:
         plan = with_built(read_plan((out / "plan.yaml").read_bytes(), "plan.yaml"), str(out))
         plan = with_substitutes(plan, replaced)
         graph = observe(Request(LOOK_SECONDS, substitutes=True), environ)
-        asked = {it.node: [own.name for own in it.parameters] for it in plan.states}
+        asked: dict[str, list[str]] = {}
+        for it in plan.parameters:
+            asked.setdefault(it.node, []).append(it.name)
         graph = with_answers(graph, answers(graph, asked, environ))
     found = tuple(it for it in check(plan, graph) if it.level != "note")
-    nodes = {name for it in plan.robots for name in it.nodes} & {it.name for it in graph.nodes}
+    nodes = {it.name for it in plan.nodes if it.robot} & {it.name for it in graph.nodes}
     answered = Counter(it.node for it in graph.parameters if it.name != SIM_TIME)
     compared = sum(answered[node] for node in asked)
     wanted = sum(len(own) for node, own in asked.items() if node in nodes)

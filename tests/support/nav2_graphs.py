@@ -9,12 +9,13 @@ from tempfile import TemporaryDirectory
 
 from graph_cases import bridge
 from paths import ROBOTS
+from plans import PlannedRobot, planned
 
 from multibot_rewrite.cli import multibot
-from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
 from multibot_rewrite.graph.plan_file import from_yaml
 from multibot_rewrite.pages.scene import Scene, make_scene
 from multibot_rewrite.rules.check import check
+from multibot_rewrite.spelling.plan import planned_end
 from multibot_rewrite.system.records import (
     PUBLISHES,
     SERVES,
@@ -26,6 +27,7 @@ from multibot_rewrite.system.records import (
     End,
     Environment,
     Node,
+    Robot,
     System,
 )
 
@@ -55,7 +57,7 @@ NASTY = (
 
 
 @cache
-def nav2(layout: str = "L2", *robots: str) -> Expectation:
+def nav2(layout: str = "L2", *robots: str) -> System:
     """The plan of two rovers with Nav2, as the command writes it."""
     with TemporaryDirectory() as folder:
         file = f"{folder}/plan.yaml"
@@ -65,10 +67,10 @@ def nav2(layout: str = "L2", *robots: str) -> Expectation:
         return from_yaml(Path(file).read_bytes(), file)
 
 
-def fleet(robots: int, topics: int) -> Expectation:
+def fleet(robots: int, topics: int) -> System:
     """The plan of a large fleet of small robots: two nodes with ``topics`` between them."""
     names = [f"robot{number}" for number in range(1, robots + 1)]
-    return Expectation(
+    return planned(
         "both",
         tuple(
             PlannedRobot(
@@ -86,20 +88,20 @@ def fleet(robots: int, topics: int) -> Expectation:
     )
 
 
-def _topic(robot: str, at: int) -> tuple[PlannedEndpoint, PlannedEndpoint]:
+def _topic(robot: str, at: int) -> tuple[End, End]:
     ends = (f"/{robot}/driver", f"/{robot}/planner")
     name = f"/{robot}/topic{at}"
     giver, taker = ends if at % 2 else ends[::-1]
     return (
-        PlannedEndpoint(giver, TOPIC, PUBLISHES, name, TEXT, f"topic{at}"),
-        PlannedEndpoint(taker, TOPIC, SUBSCRIBES, name, TEXT, f"topic{at}"),
+        planned_end(giver, TOPIC, PUBLISHES, name, TEXT, f"topic{at}"),
+        planned_end(taker, TOPIC, SUBSCRIBES, name, TEXT, f"topic{at}"),
     )
 
 
-def healthy(plan: Expectation) -> System:
+def healthy(plan: System) -> System:
     """The graph exactly as planned, with what every node has."""
-    nodes = [*plan.shared_nodes, *(node for robot in plan.robots for node in robot.nodes)]
-    planned = (End(w.kind, w.role, w.name, w.type, "", w.node, None, "") for w in plan.endpoints)
+    nodes = [it.name for it in plan.nodes]
+    every = (End(w.kind, w.role, w.name, w.type, "", w.node, None, "") for w in plan.ends)
     usual = (
         End(kind, role, name.format(node), type_, "", node, None, "")
         for node in nodes
@@ -108,16 +110,16 @@ def healthy(plan: Expectation) -> System:
     frames = (frame for robot in plan.robots for frame in _chain(robot))
     return System(
         tuple(Node(node, node) for node in nodes),
-        (*planned, *usual, *bridge(plan)),
+        (*every, *usual, *bridge(plan)),
         tuple(frames),
         environment(),
     )
 
 
-def _chain(robot: PlannedRobot) -> Iterable[Edge]:
+def _chain(robot: Robot) -> Iterable[Edge]:
     """map, then the robot's frames below one another."""
-    static = "/".join("tf_static" if word == "tf" else word for word in robot.tf.split("/"))
-    yield Edge(robot.frames[0], "map", robot.tf, False, ())
+    static = "/".join("tf_static" if word == "tf" else word for word in robot.tf_topic.split("/"))
+    yield Edge(robot.frames[0], "map", robot.tf_topic, False, ())
     for parent, child in zip(robot.frames, robot.frames[1:], strict=False):
         yield Edge(child, parent, static, True, ())
 
@@ -151,7 +153,7 @@ def with_end(graph: System, node: str, name: str, role: str = SUBSCRIBES) -> Sys
     return graph._replace(nodes=nodes, ends=(*graph.ends, end))
 
 
-def spoiled(plan: Expectation) -> System:
+def spoiled(plan: System) -> System:
     """Two rovers of which one leaks, one listens to the other, and a node is not there."""
     graph = moved(healthy(plan), "/robot1/cmd_vel", "/cmd_vel", "collision_monitor")
     graph = moved(graph, "/robot2/scan", "/robot1/scan", "amcl")
@@ -161,16 +163,17 @@ def spoiled(plan: Expectation) -> System:
     return graph._replace(edges=(*graph.edges, second))
 
 
-def nasty(plan: Expectation) -> tuple[Expectation, System]:
+def nasty(plan: System) -> tuple[System, System]:
     """A plan and a graph where robots, nodes, topics, types, frames and caveats have names that
     bite; the odd robot talks across."""
-    odd = PlannedRobot(f'"></title>{NASTY[1]}', ("/odd",), (NASTY[2],), NASTY[0])
-    first = plan.robots[0].nodes[0]
-    missed = (
-        PlannedEndpoint(first, TOPIC, PUBLISHES, f"{name}/missed", name, name) for name in NASTY
-    )
+    odd = Robot(f'"></title>{NASTY[1]}', (NASTY[2],), NASTY[0])
+    first = plan.nodes[0].name
+    missed = (planned_end(first, TOPIC, PUBLISHES, f"{name}/missed", name, name) for name in NASTY)
     worse = plan._replace(
-        layout=odd.name, robots=(*plan.robots, odd), endpoints=(*plan.endpoints, *missed)
+        layout=odd.name,
+        robots=(*plan.robots, odd),
+        ends=(*plan.ends, *missed),
+        nodes=(*plan.nodes, Node("/odd", robot=odd.name)),
     )
     graph = with_end(healthy(plan), "/odd", NASTY[1])
     for name in NASTY:
@@ -180,5 +183,5 @@ def nasty(plan: Expectation) -> tuple[Expectation, System]:
     return worse, graph._replace(edges=(*graph.edges, *frames), environment=around)
 
 
-def scene(plan: Expectation, graph: System) -> Scene:
+def scene(plan: System, graph: System) -> Scene:
     return make_scene(plan, graph, check(plan, graph))

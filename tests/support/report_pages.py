@@ -4,20 +4,23 @@ from __future__ import annotations
 
 import nav2_graphs
 from nav2_graphs import TEXT
+from plans import PlannedRobot, planned
 
 from multibot_rewrite.findings.finding import WARNING, Finding
-from multibot_rewrite.graph.expectation import (
-    Expectation,
-    PlannedEndpoint,
-    PlannedRobot,
-    PlannedTopic,
-)
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.live.seen_plan import seen_plan
 from multibot_rewrite.live.watching import Outcome, Verdict
 from multibot_rewrite.pages.scene import Scene, make_scene
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Caveat, System
+from multibot_rewrite.spelling.plan import planned_end
+from multibot_rewrite.system.records import (
+    PUBLISHES,
+    SUBSCRIBES,
+    TOPIC,
+    Caveat,
+    System,
+    Topic,
+)
 
 FIRST, SECOND = "/fleet_a/robot1", "/fleet_a/robot2"
 OPEN_END = Finding("MF801", WARNING, "/robot2/amcl reads scan2, which nothing sends")
@@ -75,7 +78,7 @@ def doctors(graph: System) -> Scene:
     return make_scene(seen_plan(seen), graph, seen.findings, outcome)
 
 
-def rich_plan() -> Expectation:
+def rich_plan() -> System:
     """Namespaces of two levels, alternatives, topics over a bridge, shared nodes with endpoints."""
     small = nav2_graphs.fleet(2, 4)
     robots = tuple(
@@ -85,29 +88,29 @@ def rich_plan() -> Expectation:
             small.robots[at].frames,
             f"{space}/tf",
             optional=tuple(f"{space}/{it}" for it in _OF_ONE),
-            frame_tag=f"robot{at + 1}",
+            tag=f"robot{at + 1}",
         )
         for at, space in enumerate((FIRST, SECOND))
     )
-    moved = (
-        it._replace(node=f"/fleet_a{it.node}", name=f"/fleet_a{it.name}") for it in small.endpoints
-    )
+    moved = (it._replace(node=f"/fleet_a{it.node}", name=f"/fleet_a{it.name}") for it in small.ends)
     shared = (
-        PlannedEndpoint("/map_server", TOPIC, PUBLISHES, "/map", TEXT, "map"),
-        PlannedEndpoint("/manager", TOPIC, SUBSCRIBES, f"{FIRST}/topic0", TEXT, "topic0"),
+        planned_end("/map_server", TOPIC, PUBLISHES, "/map", TEXT, "map"),
+        planned_end("/manager", TOPIC, SUBSCRIBES, f"{FIRST}/topic0", TEXT, "topic0"),
     )
     bridged = (
-        PlannedTopic(f"{space}/{name}", bridge=(role,), type=TEXT)
+        Topic(f"{space}/{name}", bridge=(role,), type=TEXT)
         for space in (FIRST, SECOND)
         for name, role in (("scan", PUBLISHES), ("cmd_vel", SUBSCRIBES))
     )
-    return small._replace(
-        robots=robots,
-        endpoints=(*moved, *shared),
+    return planned(
+        small.layout,
+        robots,
+        ("/map_server", "/manager"),
+        (*small.shared_topics, "/map"),
+        small.shared_frames,
+        (*moved, *shared),
         topics=tuple(bridged),
         one_of=tuple(tuple(f"{space}/{it}" for it in _OF_ONE) for space in (FIRST, SECOND)),
-        shared_nodes=("/map_server", "/manager"),
-        shared_topics=(*small.shared_topics, "/map"),
     )
 
 

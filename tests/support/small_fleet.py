@@ -7,11 +7,11 @@ from graph_cases import (
     sent,
 )
 
-from multibot_rewrite.graph.expectation import Expectation, expect
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.naming import make_naming, spelled
 from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.table import build_table
+from multibot_rewrite.spelling.plan import expect
 from multibot_rewrite.system.records import (
     PUBLISHES,
     SERVES,
@@ -47,7 +47,7 @@ NODES = (
 LINKS = ("base_link", "laser")
 
 
-def plan(layout: str = "L2") -> Expectation:
+def plan(layout: str = "L2") -> System:
     naming = make_naming(layout)
     return expect(build_table(ROBOTS, NODES, naming, release=NEWEST_LTS), naming, frames(layout))
 
@@ -62,7 +62,9 @@ def healthy(layout: str = "L2") -> System:
     graph = as_planned(plan(layout))
     naming = make_naming(layout)
     odometry = tuple(
-        Edge(robot.frames[0], spelled(naming, robot.name, "frame", "odom"), robot.tf, False, ())
+        Edge(
+            robot.frames[0], spelled(naming, robot.name, "frame", "odom"), robot.tf_topic, False, ()
+        )
         for robot in plan(layout).robots
     )
     return sent(graph._replace(edges=(*graph.edges, *odometry)))

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from plans import sends
 from vendor_rows import (
     Rows,
     bridge_argument,
@@ -22,11 +23,11 @@ from vendor_systems import Vendors, started_by
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.build import Outputs
 from multibot_rewrite.fleets.fleet import Fleet
-from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.remap.table import parsed
 from multibot_rewrite.rosnames import BoundNode, bind, check_topic_name, resolve_bound
 from multibot_rewrite.rosnames.rules import RemapRule, parse_remap
+from multibot_rewrite.system.records import RUNS, System
 
 DESCRIPTION = "robot_description"
 BRIDGES = ("parameter_bridge", "bridge_node")
@@ -55,7 +56,7 @@ class Built(NamedTuple):
     layout: str
     robots: tuple[str, ...]
     fleet: Fleet | None
-    plan: Expectation | None
+    plan: System | None
     outputs: Outputs | None
     refused: str = ""
 
@@ -89,10 +90,8 @@ def compare(built: Built, robot: str, rows: list[dict[str, Any]], vendors: Vendo
 
 def _planned(built: Built, robot: str, theirs: Rows) -> list[str]:
     """The nodes of a robot that have to run by the plan, and those that may and do."""
-    found = next(it for it in built.plan.robots if it.name == robot) if built.plan else None
-    nodes = found.nodes if found else ()
-    optional = found.optional if found else ()
-    return [it for it in nodes if it not in optional or f"node {it}" in theirs]
+    nodes = [it for it in built.plan.nodes if it.robot == robot] if built.plan else []
+    return [it.name for it in nodes if it.sure == RUNS or f"node {it.name}" in theirs]
 
 
 def _names(rows: list[dict[str, Any]], vendors: Vendors) -> Iterator[str]:
@@ -182,7 +181,7 @@ def _special(
     program = row["executable"]
     if program == "static_transform_publisher":
         theirs[f"{name} sends"] = static_edge(row["own"])
-        ours[f"{name} sends"] = dict(built.plan.sends).get(name, "-") if built.plan else "-"
+        ours[f"{name} sends"] = sends(built.plan).get(name, "-") if built.plan else "-"
     if program == "rviz2":
         _rviz(row, name, robot, built, theirs, ours)
     if program in BRIDGES:
@@ -242,7 +241,7 @@ def _bridge_arguments(
     """The ROS side of what a bridge is told by arguments: the launch file of the vendor runs it."""
     namespace, _, node = name.rpartition("/")
     bound = bind(node, namespace or "/", rules_of(row))
-    ends = built.plan.endpoints if built.plan else ()
+    ends = built.plan.ends if built.plan else ()
     mine = {it.name for it in ends if it.node == name}
     for topic, _ in (it for it in map(bridge_argument, row["own"]) if it):
         full = resolve_bound(topic, "topic", bound)

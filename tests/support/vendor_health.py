@@ -15,7 +15,6 @@ from nav2_graphs import environment
 from vendor_systems import OTHER, ROBOT, Outcome, Started
 
 from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.remap.records import NodeRule, NodeTable
 from multibot_rewrite.rules.check import check
@@ -92,8 +91,8 @@ def placed(node: Started, short: str, more: tuple[NodeRule, ...]) -> NodeTable:
     return NodeTable("", short, namespace or "/", name, (*rules, *more))
 
 
-def _of(plan: Expectation, nodes: Iterable[str]) -> Expectation:
+def _of(plan: System, nodes: Iterable[str]) -> System:
     """The plan without the endpoints of other nodes than these and those that they make."""
     mine = tuple(nodes)
-    ends = tuple(it for it in plan.endpoints if it.node.startswith(mine))
-    return plan._replace(endpoints=ends)
+    ends = tuple(it for it in plan.ends if it.node.startswith(mine))
+    return plan._replace(ends=ends)

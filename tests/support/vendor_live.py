@@ -15,7 +15,6 @@ from pathlib import Path
 from typing import NamedTuple
 
 from multibot_rewrite.findings.finding import NOTE, Finding
-from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.plan_file import from_yaml
 from multibot_rewrite.graph.rehearsal import substitute_type, with_substitutes
 from multibot_rewrite.rules.check import check
@@ -64,7 +63,7 @@ def look(file: Path, built: Mapping[str, bytes], robots: Iterable[str]) -> Looke
         raise SystemExit(f"{file}: {done.stderr}")
     rehearsed = [_finding(it) for it in json.loads(done.stdout)["findings"]]
     seen = from_json(graph.read_bytes(), str(graph))
-    plan = _substituted(from_yaml(built[PLAN], PLAN)._replace(states=()), seen)
+    plan = _substituted(from_yaml(built[PLAN], PLAN)._replace(parameters=()), seen)
     found = check(plan, seen)
     return Looked(said(rehearsed, names), said(found, names))
 
@@ -80,14 +79,14 @@ def _finding(row: Mapping[str, str]) -> Finding:
     return Finding(row["code"], row["level"], row["message"])
 
 
-def _substituted(plan: Expectation, graph: System) -> Expectation:
+def _substituted(plan: System, graph: System) -> System:
     """The plan with the types that the rehearsal has in place of those that are not installed: no
     stand-in has these."""
     there = {it.type for it in graph.ends}
     return with_substitutes(plan, {t: new for t, new in _substitutes(plan) if t not in there})
 
 
-def _substitutes(plan: Expectation) -> Iterator[tuple[str, str]]:
-    ends = [(it.kind, type_) for it in plan.endpoints for type_ in (it.type, *it.also)]
+def _substitutes(plan: System) -> Iterator[tuple[str, str]]:
+    ends = [(it.kind, type_) for it in plan.ends for type_ in (it.type, *it.also)]
     ends += [(TOPIC, it.type) for it in plan.topics]
     yield from ((type_, substitute_type(kind, type_)) for kind, type_ in ends if type_)

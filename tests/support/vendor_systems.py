@@ -27,7 +27,7 @@ from vendor_sources import WITHOUT, install, packages_below, sources_folder
 from multibot_rewrite.fleets.fleet import Fleet, expected
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import plan_fleet
-from multibot_rewrite.graph.expectation import Expectation
+from multibot_rewrite.system.records import RUNS, System
 
 HERE = Path(__file__).parent
 PAGE = HERE.parent.parent / "docs" / "vendors.md"
@@ -83,8 +83,8 @@ class Outcome(NamedTuple):
     name: str
     before: str
     started: Mapping[str, Started]
-    own: Expectation
-    launched: Expectation
+    own: System
+    launched: System
     fleet: Fleet
 
 
@@ -234,21 +234,20 @@ def outcome(name: str, vendors: Vendors, folder: Path) -> Outcome:
     return Outcome(name, str(system.get("before", "")), nodes, *plans, launched)
 
 
-def nodes_of(plan: Expectation) -> dict[str, bool]:
+def nodes_of(plan: System) -> dict[str, bool]:
     """The nodes of a plan that belong to the first robot or to all, and whether each has to run."""
-    mine = next(it for it in plan.robots if it.name == ROBOT)
-    own = {it: it not in mine.optional for it in mine.nodes}
-    return {**own, **dict.fromkeys(plan.shared_nodes, False)}
+    own = {it.name: it.sure == RUNS for it in plan.nodes if it.robot == ROBOT}
+    return {**own, **{it.name: False for it in plan.nodes if not it.robot}}
 
 
-def wrong(plan: Expectation, there: Mapping[str, Started]) -> list[str]:
+def wrong(plan: System, there: Mapping[str, Started]) -> list[str]:
     """Nodes that have to run by the plan, and that nothing starts."""
     return [it for it, runs in nodes_of(plan).items() if runs and it not in there]
 
 
-def with_topics(plan: Expectation, there: Mapping[str, Started]) -> list[str]:
+def with_topics(plan: System, there: Mapping[str, Started]) -> list[str]:
     """Nodes that run, and whose topics, services and actions the plan has."""
-    known = {it.node for it in plan.endpoints}
+    known = {it.node for it in plan.ends}
     return [it for it in nodes_of(plan) if it in there and it in known]
 
 
@@ -267,7 +266,13 @@ def _row(it: Outcome) -> str:
 
 
 def _table(it: Outcome) -> Iterator[str]:
-    plans = [(nodes_of(plan), dict(plan.origins)) for plan in (it.own, it.launched)]
+    plans = [
+        (
+            nodes_of(plan),
+            {it.name: f"stack {it.stack}" if it.stack else str(it.place) for it in plan.nodes},
+        )
+        for plan in (it.own, it.launched)
+    ]
     yield from ("", f"## {it.name}", "")
     yield "| node | started by | by its files | by its launch files | topics |"
     yield "|---|---|---|---|---|"

@@ -10,7 +10,6 @@ import pytest
 from declared_graph import endpoints, facts
 from nav2_graphs import environment
 
-from multibot_rewrite.graph.expectation import Expectation, expect
 from multibot_rewrite.knowledge.node_library import stack_of
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in
@@ -19,6 +18,7 @@ from multibot_rewrite.releases import NEWEST_LTS, RELEASES
 from multibot_rewrite.remap.records import Table
 from multibot_rewrite.remap.table import build_table
 from multibot_rewrite.rules.check import check
+from multibot_rewrite.spelling.plan import expect
 from multibot_rewrite.system.records import Node, System
 
 SYSTEMS = {
@@ -47,7 +47,7 @@ UNFED = {
 }
 
 
-def system(release: str, name: str) -> tuple[list[tuple[str, NodeFacts]], Table, Expectation]:
+def system(release: str, name: str) -> tuple[list[tuple[str, NodeFacts]], Table, System]:
     """The nodes with the names that they have in the tables, the remap table, the plan."""
     library = built_in(release)
     nodes = tuple(dict.fromkeys(it for stack in SYSTEMS[name] for it in stack_of(library, stack)))
@@ -57,7 +57,7 @@ def system(release: str, name: str) -> tuple[list[tuple[str, NodeFacts]], Table,
     return kinds, table, expect(table, naming, {"robot1": (), "robot2": ()}, nodes)
 
 
-def graph(release: str, name: str) -> tuple[Expectation, System]:
+def graph(release: str, name: str) -> tuple[System, System]:
     kinds, table, plan = system(release, name)
     by_name = {(it.name): (kind, it) for kind, it in kinds}
     ends = []

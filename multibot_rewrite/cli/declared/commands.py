@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from multibot_rewrite.cli.declared.description import LINT, POSTFIX
-from multibot_rewrite.cli.declared.fleet import BUILD, INIT, PLAN, REHEARSE, REMAP
+from multibot_rewrite.cli.declared.fleet import BUILD, INIT, PLAN, REHEARSE
 from multibot_rewrite.cli.declared.graph import (
     CHECK,
     CHECK_LAUNCH,
@@ -34,7 +34,6 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             LEARN,
             PLAN,
             REHEARSE,
-            REMAP,
             SNAPSHOT,
             VIEW,
             ZENOH_FILES,
@@ -48,6 +47,7 @@ INSTEAD: Mapping[str, str] = MappingProxyType(
         "coverage": "multibot inspect PATH...",
         "vocabulary": "multibot inspect [NAME]",
         "lint": "urdf-lint PATH...",
+        "remap": "multibot plan INPUT ROBOT... --form table",
         "rewrite": "urdf-postfix INPUT ROBOT...",
     }
 )

@@ -1,4 +1,4 @@
-"""The commands about a fleet: build, plan, rehearse, remap."""
+"""The commands about a fleet: build, init, plan, rehearse."""
 
 from __future__ import annotations
 
@@ -15,7 +15,6 @@ from multibot_rewrite.cli.declared.shared import (
     LIVE_CODES,
     NAMING,
     PICTURES,
-    RESULT_OUTPUT,
     ROBOTS,
     TRUST,
     VOCABULARY,
@@ -36,8 +35,8 @@ from multibot_rewrite.cli.options import (
 )
 from multibot_rewrite.findings.finding import ERROR
 
-# Those of ``remap.table_formats``, which a help text does not import.
-REMAP_FORMS = ("table", "ros-args", "launch", "yaml", "json", "gazebo", "markdown", "bridge")
+# The plan, and besides those of ``remap.table_formats``, which a help text does not import.
+PLAN_FORMS = ("plan", "table", "ros-args", "launch", "yaml", "json", "gazebo", "bridge", "sros2")
 # Those of the fleet file's ``params_style``.
 PARAMS_STYLES = ("full", "bringup")
 # Those of ``fleets/shapes.yaml``.
@@ -194,39 +193,27 @@ PLAN = Command(
     "plan",
     "plan",
     "%(prog)s INPUT ROBOT... [NAME:=VALUE...] [options]",
-    "Write what the ROS graph of a fleet should look like, for multibot check.",
+    "Write what the ROS graph of a fleet should look like, or the remap rules that make it so.",
     (
-        Example("multibot plan fleet.yaml -o plan.yaml"),
-        Example("multibot plan rover.urdf robot1 robot2 --stack nav2 -o plan.yaml"),
-        Example("multibot plan fleet.yaml -o plan.yaml --sros2 policy.xml", "docs/security.md"),
-        Example(
-            "multibot plan --from-launch my_bringup two.launch.py -o plan.yaml",
-            "of the robots that a launch file starts, as they are",
-        ),
+        Example("multibot plan fleet.yaml -o plan.yaml", "for multibot check"),
+        Example("multibot plan rover.urdf robot1 robot2 --stack nav2 --form table", "the rules"),
+        Example("multibot plan rover.urdf robot1 --stack nav2,slam_toolbox --form ros-args"),
+        Example("multibot plan fleet.yaml --form sros2 -o policy.xml", "docs/security.md"),
+        Example("multibot plan my_bringup two.launch.py -o plan.yaml", "what a launch file starts"),
     ),
     (
         _DESCRIPTION,
-        OptionGroup(
-            "instead of a description",
-            (
-                switch(
-                    "--from-launch",
-                    about="INPUT and what follows are a launch file of several robots with its"
-                    " arguments, as ros2 launch takes it: the plan has what it starts (docs/launch.md)",
-                ),
-            ),
-        ),
         output_group(
             output(
-                "write the plan there, not to standard output: YAML to read and edit, or, if FILE ends"
-                " in .json, JSON, which is read ten times faster"
+                "write it there, not to standard output; a plan is YAML to read and edit, or, if FILE"
+                " ends in .json, JSON, which is read ten times faster"
             ),
-            value(
-                "--sros2",
-                metavar="FILE",
-                about="write a policy of SROS2, too: an enclave for each robot, so that DDS refuses"
-                " what crosses them",
-                type=values.path,
+            form(
+                PLAN_FORMS,
+                "plan, for multibot check; the remap rules of each node as a table, as lines for a"
+                " shell (ros-args), for launch_ros (launch), for programs (yaml, json), for tags of"
+                " plugins (gazebo); topics for ros_gz_bridge (bridge); a policy of SROS2, an enclave"
+                " for each robot",
             ),
         ),
         NAMING,
@@ -234,7 +221,9 @@ PLAN = Command(
         GENERAL,
     ),
     _TABLE_CODES,
-    more=_FLEET_FILE + _BESIDE,
+    more=_FLEET_FILE
+    + " A launch file is read as ros2 launch takes it, and nothing is started."
+    + _BESIDE,
     fail_on=ERROR,
 )
 REHEARSE = Command(
@@ -282,36 +271,8 @@ REHEARSE = Command(
     ),
     LIVE_CODES,
     more=_FLEET_FILE + " Starts a stub for every node of each robot's plugins and stack with the"
-    " names of its code, applies the rules of multibot remap, and looks at the graph as multibot"
+    " names of its code, applies the rules of multibot plan, and looks at the graph as multibot"
     " check does. A type that is not installed is replaced.",
     fail_on=ERROR,
     findings_first=True,
-)
-
-REMAP = Command(
-    "remap",
-    "remap",
-    "%(prog)s INPUT ROBOT... [NAME:=VALUE...] [options]",
-    "List what every node of every robot must be remapped to.",
-    (
-        Example("multibot remap rover.urdf robot1 robot2 --stack nav2 --layout frames-per-robot"),
-        Example("multibot remap rover.urdf robot1 --stack nav2,slam_toolbox --form ros-args"),
-        Example("multibot remap rover.urdf robot1 robot2 --form launch -o remaps.py"),
-    ),
-    (
-        _DESCRIPTION,
-        output_group(
-            RESULT_OUTPUT,
-            form(
-                REMAP_FORMS,
-                "how rules are written (launch is for launch_ros, bridge for ros_gz_bridge)",
-            ),
-        ),
-        NAMING,
-        FINDINGS,
-        GENERAL,
-    ),
-    _TABLE_CODES,
-    more=_FLEET_FILE + _BESIDE,
-    fail_on=ERROR,
 )

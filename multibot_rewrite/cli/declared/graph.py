@@ -189,13 +189,13 @@ LEARN = Command(
     "learn",
     "learn",
     "%(prog)s [options]",
-    "Make a file of nodes and stacks, for remap and plan, from nodes that are running now.",
+    "Make a file of nodes and stacks, for multibot plan, from nodes that are running now.",
     (
         Example("multibot learn --node /my_driver,/my_planner --stack mine -o mine.yaml"),
         Example("multibot learn --namespace /robot1 --stack mine -o mine.yaml", "a whole robot"),
         Example("multibot learn --node /my_driver -o my_driver.nodl.yaml", "as NoDL"),
         Example("multibot learn --snapshot graph.json --stack mine", "needs no ROS"),
-        Example("multibot remap rover.urdf robot1 robot2 --nodes mine.yaml --stack mine"),
+        Example("multibot plan rover.urdf robot1 robot2 --nodes mine.yaml --stack mine"),
     ),
     (
         OptionGroup(

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable
 
-from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.system.records import (
     PUBLISHES,
@@ -54,12 +53,12 @@ def is_recorded(graph: System) -> bool:
     return graph.environment.rmw == ROSBAG
 
 
-def as_snapshot(found: Recording, plan: Expectation | None = None) -> System:
+def as_snapshot(found: Recording, plan: System | None = None) -> System:
     """The recording as a snapshot. A transform does not say who sent it:
     those that publish its topic by the plan."""
     seconds = round(found.seconds, 2)
     senders: dict[str, dict[str, None]] = defaultdict(dict)
-    for end in plan.endpoints if plan else ():
+    for end in plan.ends if plan else ():
         if end.role == PUBLISHES:
             senders[end.name][end.node] = None
     frames = tuple(

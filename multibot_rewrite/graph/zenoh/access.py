@@ -8,13 +8,20 @@ with ``@adv`` (zenoh-ext ``advanced_publisher.rs``); ``**`` does not match a par
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
 from multibot_rewrite.graph.zenoh.tokens import SPACE
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.system.conventions import OF_EVERY_NODE, SENT_BY_ANY_NODE
-from multibot_rewrite.system.records import ACTION, PUBLISHES, SERVES
+from multibot_rewrite.system.records import (
+    ACTION,
+    PUBLISHES,
+    SERVES,
+    End,
+    Robot,
+    System,
+    nodes_by_robot,
+)
 
 Rule = dict[str, object]
 IN, OUT = "ingress", "egress"
@@ -39,36 +46,45 @@ class Rights(NamedTuple):
     hears: tuple[str, ...]
 
 
-def rights(plan: Expectation, domain: int) -> list[Rights]:
+def rights(plan: System, domain: int) -> list[Rights]:
     """What each robot of the plan may do in this domain.
 
     All below its namespace is its own, unless another robot has names there too. Of all other names
     it has those that its nodes have in the plan.
     """
-    owner = {node: robot.name for robot in plan.robots for node in robot.nodes}
-    by_robot: dict[str, list[PlannedEndpoint]] = {robot.name: [] for robot in plan.robots}
-    for end in plan.endpoints:
+    owner = {it.name: it.robot for it in plan.nodes}
+    by_robot: dict[str, list[End]] = {robot.name: [] for robot in plan.robots}
+    for end in plan.ends:
         if robot := owner.get(end.node):
             by_robot[robot].append(end)
-    spaces = _own_spaces(plan, by_robot)
+    nodes = nodes_by_robot(plan)
+    spaces = _own_spaces(nodes, by_robot)
     return [
-        _rights(robot, by_robot[robot.name], spaces.get(robot.name, ""), plan.shared_topics, domain)
+        _rights(
+            robot,
+            nodes[robot.name],
+            by_robot[robot.name],
+            spaces.get(robot.name, ""),
+            plan.shared_topics,
+            domain,
+        )
         for robot in plan.robots
     ]
 
 
-def _own_spaces(plan: Expectation, by_robot: dict[str, list[PlannedEndpoint]]) -> dict[str, str]:
+def _own_spaces(
+    nodes: Mapping[str, Sequence[str]], by_robot: Mapping[str, Sequence[End]]
+) -> dict[str, str]:
     """The namespace that all nodes of a robot are in, where no other robot has a name."""
     names = {
-        robot.name: [*robot.nodes, *(end.name for end in by_robot[robot.name])]
-        for robot in plan.robots
+        robot: [*nodes[robot], *(end.name for end in ends)] for robot, ends in by_robot.items()
     }
     found = {}
-    for robot in plan.robots:
-        space = _common_space(robot.nodes)
-        others = (name for other, mine in names.items() if other != robot.name for name in mine)
+    for robot in by_robot:
+        space = _common_space(nodes[robot])
+        others = (name for other, mine in names.items() if other != robot for name in mine)
         if space and not any(name.startswith(space) for name in others):
-            found[robot.name] = space
+            found[robot] = space
     return found
 
 
@@ -83,28 +99,29 @@ def _common_space(nodes: Sequence[str]) -> str:
 
 
 def _rights(
-    robot: PlannedRobot,
-    ends: Iterable[PlannedEndpoint],
+    robot: Robot,
+    nodes: Iterable[str],
+    ends: Iterable[End],
     space: str,
     shared: Iterable[str],
     domain: int,
 ) -> Rights:
     """Every node may listen to tf and to what all robots share, whether or not the plan says so."""
     # Without a namespace at least the parameter and lifecycle services of its nodes are its own.
-    own = [f"{domain}{space}**"] if space else [f"{domain}{it}/*/*/*" for it in robot.nodes]
+    own = [f"{domain}{space}**"] if space else [f"{domain}{it}/*/*/*" for it in nodes]
     sends: set[str] = set()
     hears: set[str] = set()
     for end in ends:
         if not (space and end.name.startswith(space)):
             (sends if end.role in (PUBLISHES, SERVES) else hears).add(_key(domain, end))
-    static = "/".join("tf_static" if word == "tf" else word for word in robot.tf.split("/"))
-    tf = () if space and robot.tf.startswith(space) else (robot.tf, static)
+    static = "/".join("tf_static" if word == "tf" else word for word in robot.tf_topic.split("/"))
+    tf = () if space and robot.tf_topic.startswith(space) else (robot.tf_topic, static)
     sends |= {f"{domain}{name}/*/*" for name in (*SENT_BY_ANY_NODE, *tf)}
     hears |= {f"{domain}{name}/*/*" for name in (*OF_EVERY_NODE, *shared, *tf)}
     return Rights(robot.name, _latched(own), _latched(sorted(sends)), _latched(sorted(hears)))
 
 
-def _key(domain: int, end: PlannedEndpoint) -> str:
+def _key(domain: int, end: End) -> str:
     """An action has its services and topics below ``_action``."""
     return f"{domain}{end.name}/_action/*/*/*" if end.kind == ACTION else f"{domain}{end.name}/*/*"
 

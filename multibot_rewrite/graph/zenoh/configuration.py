@@ -14,7 +14,6 @@ import json
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.zenoh.access import (
     FLEET_ROUTER,
     OWN_ROUTER,
@@ -25,6 +24,7 @@ from multibot_rewrite.graph.zenoh.access import (
     robot_rules,
 )
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.records import System
 
 ROUTER_FILE = "router.json5"
 # Where rmw_zenoh's sessions look for a router.
@@ -46,7 +46,7 @@ class Setup(NamedTuple):
     own_routers: bool = False
 
 
-def configurations(plan: Expectation, setup: Setup) -> Iterator[tuple[str, bytes]]:
+def configurations(plan: System, setup: Setup) -> Iterator[tuple[str, bytes]]:
     """Each file by name: the router's, one for the nodes of each robot, one for each operator."""
     known = rights(plan, setup.domain)
     yield ROUTER_FILE, _text(_router(known, setup), _about_router(setup))
@@ -65,7 +65,7 @@ def configurations(plan: Expectation, setup: Setup) -> Iterator[tuple[str, bytes
         yield name, _text(_client(enclave, setup), about)
 
 
-def file_names(plan: Expectation, setup: Setup) -> list[str]:
+def file_names(plan: System, setup: Setup) -> list[str]:
     """What the files are called."""
     words = [robot.name for robot in plan.robots] + [operator_word(it) for it in setup.operators]
     words += [f"{robot.name}_router" for robot in plan.robots if setup.own_routers]

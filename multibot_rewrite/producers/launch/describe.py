@@ -15,7 +15,6 @@ from typing import Any
 
 import yaml
 
-from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 from multibot_rewrite.producers.launch.made_files import source_of
 from multibot_rewrite.producers.launch.places import place_of
@@ -23,6 +22,7 @@ from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchNote, 
 from multibot_rewrite.producers.launch.ros_arguments import params_text, ros2_run, ros_arguments
 from multibot_rewrite.producers.launch.spawners import controller_files
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.records import Place
 
 _LIMIT = 1 << 24
 # launch_ros says so of a text that is no YAML or value (jazzy, utilities/evaluate_parameters.py:82).

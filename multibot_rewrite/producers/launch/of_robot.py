@@ -19,7 +19,7 @@ from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.controller_ways import controller_way
 from multibot_rewrite.evidence.nodes import MANAGER
 from multibot_rewrite.evidence.parameter_files import given_nodes
-from multibot_rewrite.evidence.records import GivenNode, Place
+from multibot_rewrite.evidence.records import GivenNode
 from multibot_rewrite.evidence.remapped import remapped
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.knowledge.parameters import KnownNodes
@@ -33,6 +33,7 @@ from multibot_rewrite.producers.launch.spawners import Spawned, is_spawner, spaw
 from multibot_rewrite.producers.launch.static_transforms import with_static_transform
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rosnames import expand
+from multibot_rewrite.system.records import Place
 
 _CAMEL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
 # The name of a file for what a launch file gives itself.

@@ -9,9 +9,9 @@ from functools import lru_cache, wraps
 from types import FrameType
 from typing import Any
 
-from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 from multibot_rewrite.producers.launch.launch_files import launched_nodes
+from multibot_rewrite.system.records import Place
 
 _KEPT = "multibot_place"
 # What makes actions for a launch file, and what reads launch files: neither is one.

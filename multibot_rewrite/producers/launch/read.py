@@ -6,7 +6,6 @@ import os
 import sys
 from typing import Any
 
-from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.producers.launch.commands import faults, read_commands
 from multibot_rewrite.producers.launch.describe import Visit, failure
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
@@ -15,6 +14,7 @@ from multibot_rewrite.producers.launch.places import keep_places
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder
 from multibot_rewrite.producers.launch.source_packages import add_sources
 from multibot_rewrite.producers.launch.visit import visit_all
+from multibot_rewrite.system.records import Place
 
 
 class UnreadableError(Exception):

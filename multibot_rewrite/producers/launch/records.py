@@ -9,10 +9,10 @@ from collections.abc import Mapping, Sequence
 from itertools import takewhile
 from typing import Any
 
-from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.producers.launch.package_files import file_of_package
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.system.records import Place
 
 
 class LaunchOrder(NamedTuple):

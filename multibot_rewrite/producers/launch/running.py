@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from multibot_rewrite.controller_ways import controller_way
 from multibot_rewrite.evidence.filling import filled
 from multibot_rewrite.evidence.parameter_files import given_nodes
-from multibot_rewrite.evidence.records import Given, GivenNode, Place
+from multibot_rewrite.evidence.records import Given, GivenNode
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
 from multibot_rewrite.producers.launch.of_robot import document_of, has_sections, known_node, passes
@@ -23,6 +23,7 @@ from multibot_rewrite.producers.launch.spawners import Spawned, spawned_in, text
 from multibot_rewrite.producers.launch.static_transforms import with_static_transform
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rosnames import expand
+from multibot_rewrite.system.records import Place
 
 Rules = tuple[tuple[str, str], ...]
 DESCRIPTION = "robot_description"

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
 
-from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.model import InputError
 from multibot_rewrite.producers.launch.records import LaunchedNode, ParameterText
 from multibot_rewrite.readback.nodes import ReadNode
@@ -17,6 +16,7 @@ from multibot_rewrite.readback.reading import read
 from multibot_rewrite.readback.xml import read_xml, values_at
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rewriters.vocabulary import load_vocabulary
+from multibot_rewrite.system.records import Place
 
 _NAMED = "controller_manager_name"
 _PROGRAM = ("controller_manager", "ros2_control_node")

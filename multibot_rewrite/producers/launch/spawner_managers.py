@@ -71,7 +71,7 @@ def _findings(lost: Iterable[Spawned], meant: str) -> Iterator[Finding]:
     """One a spawner."""
     spawners: dict[tuple[str, int, str], list[str]] = {}
     for it in lost:
-        spawners.setdefault((*it.place, it.manager), []).append(it.name)
+        spawners.setdefault((it.place.file, it.place.line, it.manager), []).append(it.name)
     for (file, line, manager), names in spawners.items():
         message = f"the spawner of {', '.join(names)} asks for {manager}, which nothing starts"
         hint = f"{meant} is started; give the namespace once; the plan has them there"

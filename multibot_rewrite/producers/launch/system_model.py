@@ -16,7 +16,6 @@ import yaml
 
 from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.companions.yaml_text import line_of, pairs, read_yaml
-from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.model import InputError
 from multibot_rewrite.producers.launch.records import (
     LaunchedNode,
@@ -26,6 +25,7 @@ from multibot_rewrite.producers.launch.records import (
 )
 from multibot_rewrite.producers.launch.spawners import controller_files
 from multibot_rewrite.sources.read import read_file
+from multibot_rewrite.system.records import Place
 
 _ENDS = (".yaml", ".yml")
 _HEAD = re.compile(rb"^structure:", re.MULTILINE)

@@ -192,9 +192,9 @@ class Vocabulary:
         """Is there a section of that type and name, in this release or another?"""
         return (type_, name) in self._raw
 
-    def names(self, type_: str) -> list[str]:
+    def names(self, type_: str) -> Iterator[str]:
         """Every name and alias of that type."""
-        return [name for of, name in self._raw if of == type_]
+        return (name for of, name in self._raw if of == type_)
 
     def rows_elsewhere(self, type_: str, name: str) -> Iterator[Site]:
         """The rows that this release lacks, each with the words for the releases that have it."""

@@ -50,7 +50,7 @@ def _in_nodl(node: KnownNode) -> Iterator[Declared]:
 @outside
 def nodl_parameters(package: str, node: str) -> tuple[tuple[str, str], ...]:
     """Names and types of the parameters in the installed NoDL document of a node; none without one, or
-    where it cannot be read, which ``multibot remap`` tells."""
+    where it cannot be read, which ``multibot plan`` tells."""
     try:
         installed = find_interfaces(())
         file = file_of(installed, Identity(package, node))

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import re
 
-from multibot_rewrite.graph.expectation import PlannedEndpoint, PlannedRobot
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.ways import COMPONENT, HOST, PLUGIN, SPAWNER
 from multibot_rewrite.rosnames import check_topic_name, expand
 from multibot_rewrite.rules.planned import Planned
-from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SERVES, SUBSCRIBES
+from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SERVES, SUBSCRIBES, End, Robot
 
 # What a node does with a name, by the role of its endpoint.
 DOES = {
@@ -41,14 +40,14 @@ def caused(hint: str, place: str) -> Cause:
 
 def plugin_of(plan: Planned, node: str) -> tuple[str, str]:
     """The plugin that starts a node, and its place in the description; both empty without one."""
-    place = plan.places.get(node, "")
+    place = plugin_place(plan, node)
     if not place:
         return "", ""
     plain = plan.names.without_robot(node, plan.robot_of.get(node, ""))
     return f"plugin {plain.rpartition('/')[2]}", place
 
 
-def remap_rule(planned: PlannedEndpoint) -> str:
+def remap_rule(planned: End) -> str:
     """The remap rule that gives the node's name its planned form; empty where none is needed."""
     if not planned.code_name or name_without_rules(planned) == planned.name:
         return ""
@@ -56,7 +55,7 @@ def remap_rule(planned: PlannedEndpoint) -> str:
     return f"{planned.code_name}:={planned.name.removeprefix(namespace)}"
 
 
-def name_without_rules(planned: PlannedEndpoint) -> str:
+def name_without_rules(planned: End) -> str:
     """The full name that the name in the node's code has without any remap rule."""
     if check_topic_name(planned.code_name):
         return ""
@@ -64,7 +63,7 @@ def name_without_rules(planned: PlannedEndpoint) -> str:
     return expand(planned.code_name, namespace or "/", node)
 
 
-def names_without_rules(plan: Planned, planned: PlannedEndpoint) -> tuple[str, ...]:
+def names_without_rules(plan: Planned, planned: End) -> tuple[str, ...]:
     """The names an endpoint may have where no remap rule and no namespace is applied."""
     in_root = f"/{planned.code_name.strip('/').removeprefix('~/')}"
     robot = plan.robot_of.get(planned.node) or plan.names.robot(planned.name)
@@ -78,7 +77,7 @@ def use_absolute(name: str) -> str:
     return f"the node resolves a relative name in its own namespace: write {name} in its parameters"
 
 
-def why_not_remapped(plan: Planned, planned: PlannedEndpoint) -> Cause:
+def why_not_remapped(plan: Planned, planned: End) -> Cause:
     """Why a name is still the one in the code, although a rule should remap it."""
     rule = remap_rule(planned)
     plugin, place = plugin_of(plan, planned.node)
@@ -92,10 +91,10 @@ def why_not_remapped(plan: Planned, planned: PlannedEndpoint) -> Cause:
     return Cause(f"the remap rule {rule} is not applied")
 
 
-def how_to_remap(plan: Planned, planned: PlannedEndpoint) -> str:
+def how_to_remap(plan: Planned, planned: End) -> str:
     """How to pass the rule to a node of the stack; empty for a plugin's node, which has a file."""
     rule = remap_rule(planned)
-    if not rule or planned.node in plan.places:
+    if not rule or plugin_place(plan, planned.node):
         return ""
     parts = ", and one rule for each of its _action/ names" if planned.kind == ACTION else ""
     return f"; pass {how_to_pass(plan, planned.node, rule, 'it')}{parts}"
@@ -103,20 +102,33 @@ def how_to_remap(plan: Planned, planned: PlannedEndpoint) -> str:
 
 def how_to_pass(plan: Planned, node: str, rule: str, what: str = "") -> str:
     """Where a rule for a node stands, and how it is written there; ``what`` is what to call it."""
-    ways = dict(plan.system.ways)
-    way, _, taker = ways.get(node, "").partition(" ")
+    way, taker = _way(plan, node)
     what = what or rule
     if way == PLUGIN:
         return f"{what} in the description: <remapping>{rule}</remapping> of the plugin of {taker}"
     if way == HOST:
         # In the process of another node a rule says whose it is.
         led = f"{node.rpartition('/')[2]}:{rule}"
-        return f"{what} to {taker}, whose process it is in: {_as_written(ways.get(taker, ''), led)}"
+        return (
+            f"{what} to {taker}, whose process it is in: {_as_written(_way(plan, taker)[0], led)}"
+        )
     if way == SPAWNER:
         return f"{what} to its spawner: {_as_written(way, rule)}"
     if way == COMPONENT:
         return f"{what} where it is loaded into its container: {_as_written(way, rule)}"
     return f"{what} with {_as_written(way, rule)}"
+
+
+def plugin_place(plan: Planned, node: str) -> str:
+    """The ``file:line`` of the plugin that starts a planned node; empty for any other node."""
+    planned = plan.nodes.get(node)
+    return str(planned.plugin) if planned else ""
+
+
+def _way(plan: Planned, node: str) -> tuple[str, str]:
+    """How a planned node gets its rules, and which one takes them for it."""
+    planned = plan.nodes.get(node)
+    return (planned.way, planned.taker) if planned else ("", "")
 
 
 def _as_written(way: str, rule: str) -> str:
@@ -129,10 +141,10 @@ def _as_written(way: str, rule: str) -> str:
     return f"--ros-args -r {rule}, or with {pair} in the launch file"
 
 
-def tf_rule(robot: PlannedRobot, topic: str) -> str:
+def tf_rule(plan: Planned, robot: Robot, topic: str) -> str:
     """The remap rule for a tf topic; its target is relative in the robot's own namespace."""
-    namespaced = any(node.startswith(f"/{robot.name}/") for node in robot.nodes)
-    place = robot.tf.removeprefix(f"/{robot.name}/") if namespaced else robot.tf
+    namespaced = any(node.startswith(f"/{robot.name}/") for node in plan.own[robot.name])
+    place = robot.tf_topic.removeprefix(f"/{robot.name}/") if namespaced else robot.tf_topic
     return f"/{topic}:={'/'.join(topic if it == 'tf' else it for it in place.split('/'))}"
 
 
@@ -147,7 +159,7 @@ def why_other_name(plan: Planned, node: str, match: str) -> Cause:
     if plugin:
         missing = "namespace" if namespaced else "separate name for each robot"
         return caused(f"{match} is running: {plugin} has no {missing}, see {place}", place)
-    way, _, taker = dict(plan.system.ways).get(node, "").partition(" ")
+    way, taker = _way(plan, node)
     if way == HOST:
         return Cause(f"{match} is running: {taker} makes it; start that as the plan says")
     if namespaced and way == COMPONENT:

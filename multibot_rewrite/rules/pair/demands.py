@@ -7,7 +7,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.graph.expectation import PlannedTopic
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import found_by_plan, pair_rule
 from multibot_rewrite.rules.index import Index, ends_of
@@ -15,7 +14,7 @@ from multibot_rewrite.rules.pair.causes import DOES
 from multibot_rewrite.rules.planned import Planned
 from multibot_rewrite.rules.system.matching import not_latched
 from multibot_rewrite.system.conventions import ANY
-from multibot_rewrite.system.records import PUBLISHES, TOPIC, End
+from multibot_rewrite.system.records import PUBLISHES, TOPIC, End, Topic, alternatives
 
 # How the nodes of ros_gz_bridge are called.
 _BRIDGES = ("bridge", "parameter_bridge")
@@ -57,7 +56,7 @@ def sender_not_planned(plan: Planned, seen: Index) -> Iterator[Finding]:
                 yield sender_not_planned.finding(message, hint, **_about(plan, topic, node))
 
 
-def _may_send(topic: PlannedTopic, node: str) -> bool:
+def _may_send(topic: Topic, node: str) -> bool:
     return any(fnmatchcase(node, pattern) for pattern in topic.senders)
 
 
@@ -66,7 +65,7 @@ def _publishers(seen: Index, name: str) -> Sequence[End]:
     return ends.publishers if ends else ()
 
 
-def _about(plan: Planned, topic: PlannedTopic, node: str) -> dict[str, object]:
+def _about(plan: Planned, topic: Topic, node: str) -> dict[str, object]:
     robot = plan.names.robot(topic.name) or plan.robot_of.get(node, "")
     return {"robot": robot, "node": node, "names": (topic.name,)}
 
@@ -116,7 +115,7 @@ def other_qos_offered(plan: Planned, seen: Index) -> Iterator[Finding]:
                 yield not_latched.finding(message, hint, **_about(plan, topic, end.node))
 
 
-def _different(topic: PlannedTopic, end: End) -> Iterator[str]:
+def _different(topic: Topic, end: End) -> Iterator[str]:
     """Each policy that is not as planned; one whose word is not known is none."""
     for policy, word in topic.qos if end.qos else ():
         offered = getattr(end.qos, policy)
@@ -148,7 +147,7 @@ as planned: /robot1/slam_toolbox
 )
 def no_alternative_runs(plan: Planned, seen: Index) -> Iterator[Finding]:
     """A robot of which nothing runs has a finding of its own."""
-    for group in plan.system.one_of:
+    for group in alternatives(plan.system):
         robot = _robot_of(plan, group)
         if not (robot and _absent(plan, seen, robot)) and seen.nodes.keys().isdisjoint(group):
             message = f"none of {shorten(group, SEVERAL)} is in the graph; the plan has one of them"
@@ -178,7 +177,7 @@ planned: /robot1/slam_toolbox
 )
 def several_alternatives_run(plan: Planned, seen: Index) -> Iterator[Finding]:
     """One finding a group."""
-    for group in plan.system.one_of:
+    for group in alternatives(plan.system):
         running = [node for node in group if node in seen.nodes]
         if len(running) > 1:
             message = f"{shorten(running, SEVERAL)} run at once; the plan has one of them"
@@ -226,7 +225,7 @@ def bridged_topic_missing(plan: Planned, seen: Index) -> Iterator[Finding]:
         running = not all(_absent(plan, seen, it.name) for it in plan.system.robots)
         yield from [_not_carried(plan, seen, "", missing, WARNING)] * running
         return
-    by_robot: dict[str, list[tuple[PlannedTopic, str]]] = defaultdict(list)
+    by_robot: dict[str, list[tuple[Topic, str]]] = defaultdict(list)
     for topic, role in missing:
         by_robot[plan.names.robot(topic.name)].append((topic, role))
     for robot, own in by_robot.items():
@@ -236,17 +235,17 @@ def bridged_topic_missing(plan: Planned, seen: Index) -> Iterator[Finding]:
 
 def _absent(plan: Planned, seen: Index, robot: str) -> bool:
     """A robot of which nothing runs has a finding of its own."""
-    return seen.nodes.keys().isdisjoint(plan.robots[robot].nodes)
+    return seen.nodes.keys().isdisjoint(plan.own[robot])
 
 
-def _is_carried(seen: Index, topic: PlannedTopic, role: str) -> bool:
+def _is_carried(seen: Index, topic: Topic, role: str) -> bool:
     """Whether anything does with a topic what a bridge has to do."""
     ends = (it for it in ends_of(seen, topic.name) if (it.kind, it.role) == (TOPIC, role))
     return any(topic.type in ("", it.type) for it in ends)
 
 
 def _not_carried(
-    plan: Planned, seen: Index, robot: str, rows: Sequence[tuple[PlannedTopic, str]], level: str
+    plan: Planned, seen: Index, robot: str, rows: Sequence[tuple[Topic, str]], level: str
 ) -> Finding:
     topic, role = rows[0]
     more = f"; so it is with {len(rows) - 1} more of the bridge" if len(rows) > 1 else ""

@@ -6,7 +6,6 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping
 
 from multibot_rewrite.findings.finding import ERROR, Finding
-from multibot_rewrite.graph.expectation import PlannedEndpoint
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import found_by_plan, pair_rule
 from multibot_rewrite.rules.index import Index, by_node, in_namespaces_above
@@ -22,7 +21,15 @@ from multibot_rewrite.rules.pair.meeting import missing
 from multibot_rewrite.rules.pair.similar_names import similar
 from multibot_rewrite.rules.planned import Planned
 from multibot_rewrite.system.conventions import EVERYBODYS
-from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.records import (
+    CALLS,
+    PUBLISHES,
+    SERVES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+    End,
+)
 
 TO_DO = {
     PUBLISHES: "publish",
@@ -64,7 +71,7 @@ def missing_endpoint(plan: Planned, seen: Index) -> Iterator[Finding]:
         )
 
 
-def _why_missing(plan: Planned, seen: Index, planned: PlannedEndpoint) -> Cause:
+def _why_missing(plan: Planned, seen: Index, planned: End) -> Cause:
     """Answers the most common question: why do we never get the topic /robot1/cmd_vel?"""
     used = _used_instead(plan, seen, planned)
     if not used:
@@ -78,7 +85,7 @@ def _why_missing(plan: Planned, seen: Index, planned: PlannedEndpoint) -> Cause:
     return Cause(f"{instead}{_why_remapped(plan, seen, planned, used)}")
 
 
-def _why_remapped(plan: Planned, seen: Index, planned: PlannedEndpoint, used: str) -> str:
+def _why_remapped(plan: Planned, seen: Index, planned: End, used: str) -> str:
     """Why an endpoint has a name that comes from a rule or parameter."""
     if not plan.names.robot(planned.name):
         return f": a rule remaps it, but the plan has one {planned.name} for all robots"
@@ -90,7 +97,7 @@ def _why_remapped(plan: Planned, seen: Index, planned: PlannedEndpoint, used: st
     return ": is the name misspelled in a remap rule or parameter?"
 
 
-def _used_instead(plan: Planned, seen: Index, planned: PlannedEndpoint) -> str:
+def _used_instead(plan: Planned, seen: Index, planned: End) -> str:
     """The name that the node probably uses in place of a planned one, or an empty string."""
     unplanned = _unplanned_names(plan, seen, planned)
     likely = [name for name in names_without_rules(plan, planned) if name in unplanned]
@@ -110,7 +117,7 @@ def _used_instead(plan: Planned, seen: Index, planned: PlannedEndpoint) -> str:
     return similar(planned.name, unplanned)
 
 
-def _moved_down(plan: Planned, seen: Index, planned: PlannedEndpoint) -> list[str]:
+def _moved_down(plan: Planned, seen: Index, planned: End) -> list[str]:
     """The unplanned names that are a relative name resolved below the node's own namespace."""
     return [
         name
@@ -119,7 +126,7 @@ def _moved_down(plan: Planned, seen: Index, planned: PlannedEndpoint) -> list[st
     ]
 
 
-def _unplanned_names(plan: Planned, seen: Index, planned: PlannedEndpoint) -> list[str]:
+def _unplanned_names(plan: Planned, seen: Index, planned: End) -> list[str]:
     """The names that the node uses in the role of a planned endpoint without being planned."""
     node, kind, role = planned.node, planned.kind, planned.role
     return [
@@ -147,7 +154,7 @@ def _sent_by_each(plan: Planned) -> Mapping[str, Mapping[str, str]]:
     """Name without the robot's -> robot -> topic that is published by the plan; tf is of each."""
     shared = {*plan.system.shared_topics, *EVERYBODYS}
     sent = [name for _, kind, role, name in plan.ends if (kind, role) == (TOPIC, PUBLISHES)]
-    trees = [it.tf for it in plan.system.robots if it.frames]
+    trees = [it.tf_topic for it in plan.system.robots if it.frames]
     found: dict[str, dict[str, str]] = defaultdict(dict)
     for name in (*sent, *trees):
         robot = plan.names.robot(name)

@@ -6,7 +6,6 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.rules.declaration import found_by_plan, pair_rule
 from multibot_rewrite.rules.index import Index
@@ -18,7 +17,7 @@ from multibot_rewrite.rules.pair.tf_senders import sent_by_robot, state_publishe
 from multibot_rewrite.rules.pair.tf_trees import TfTree, frames_in, tf_trees
 from multibot_rewrite.rules.planned import Planned
 from multibot_rewrite.rules.system.transforms import robots_name_twice
-from multibot_rewrite.system.records import Edge
+from multibot_rewrite.system.records import Edge, Robot
 
 
 @pair_rule(
@@ -56,7 +55,7 @@ def frame_without_robot_name(plan: Planned, seen: Index) -> Iterator[Finding]:
             )
 
 
-def _why_bare(plan: Planned, tree: TfTree, robot: PlannedRobot, names: Sequence[str]) -> Cause:
+def _why_bare(plan: Planned, tree: TfTree, robot: Robot, names: Sequence[str]) -> Cause:
     """The node that sends all of them by the plan, besides the description; else the description."""
     by_name = _by_plain_name(plan, robot)
     expected = {by_name[name] for name in names}
@@ -86,13 +85,13 @@ def _frames_without_robot(plan: Planned, tree: TfTree) -> dict[str, list[str]]:
     return found
 
 
-def _has_plain_frames(plan: Planned, robot: PlannedRobot) -> bool:
+def _has_plain_frames(plan: Planned, robot: Robot) -> bool:
     """Whether the layout has the same frames for every robot; one of them may hold its name."""
     ownership = plan.frames
     return any(ownership.without_robot(frame, robot.name) == frame for frame in robot.frames)
 
 
-def _by_plain_name(plan: Planned, robot: PlannedRobot) -> dict[str, str]:
+def _by_plain_name(plan: Planned, robot: Robot) -> dict[str, str]:
     """The robot's frames by their name without the robot's."""
     if _has_plain_frames(plan, robot):
         return {frame: frame for frame in robot.frames}
@@ -134,7 +133,7 @@ def undeclared_frame(plan: Planned, seen: Index) -> Iterator[Finding]:
                 yield _undeclared(plan, plan.robots[robot], found)
 
 
-def _undeclared(plan: Planned, robot: PlannedRobot, names: Sequence[str]) -> Finding:
+def _undeclared(plan: Planned, robot: Robot, names: Sequence[str]) -> Finding:
     verb = "is" if len(names) == 1 else "are"
     message = f"{_frames(names).rpartition(' ')[0]} {verb} not in the description of {robot.name}"
     declared = _by_plain_name(plan, robot)
@@ -182,7 +181,7 @@ def robot_name_twice(plan: Planned, seen: Index) -> Iterator[Finding]:
             prefixed = added_prefixes(robot, names)
             others = [it for it in prefixed if it not in twice]
             if others:
-                yield _prefixed(robot, others, prefixed[others[0]])
+                yield _prefixed(plan, robot, others, prefixed[others[0]])
 
 
 def _behind_prefixes(plan: Planned, tree: TfTree) -> Iterator[tuple[str, str]]:
@@ -207,18 +206,18 @@ def _not_in_a_description(
     return found
 
 
-def _prefixed(robot: PlannedRobot, names: Sequence[str], prefix: str) -> Finding:
+def _prefixed(plan: Planned, robot: Robot, names: Sequence[str], prefix: str) -> Finding:
     verb = "is" if len(names) == 1 else "are"
     what = f"{_frames(names).rpartition(' ')[0]} {verb}"
     message = f"{what} planned without {prefix!r} in front"
-    sender = state_publisher(robot) or f"the robot_state_publisher of {robot.name}"
+    sender = state_publisher(plan, robot) or f"the robot_state_publisher of {robot.name}"
     cause = (
         f"frame_prefix of {sender} is {prefix!r}, on top of a rewritten description: set it to ''"
     )
     return robots_name_twice.finding(message, cause, robot=robot.name, names=tuple(names))
 
 
-def _doubled(plan: Planned, robot: PlannedRobot, names: Sequence[str]) -> Finding:
+def _doubled(plan: Planned, robot: Robot, names: Sequence[str]) -> Finding:
     cause = (
         "frame_prefix of robot_state_publisher or tf_frame_prefix_enable of a controller (on by "
     )
@@ -235,7 +234,7 @@ def _frames(names: Sequence[str]) -> str:
     return f"frame {names[0]} has" if len(names) == 1 else f"frames {shorten(names)} have"
 
 
-def _has_name_twice(plan: Planned, robot: PlannedRobot, name: str) -> bool:
+def _has_name_twice(plan: Planned, robot: Robot, name: str) -> bool:
     ownership = plan.frames
     tag = ownership.tag(robot.name)
     if not plan.frames_of[robot.name].isdisjoint(without_tag_once(name, tag)):

@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable
 
-from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.rules.ownership import NameOwnership
+from multibot_rewrite.system.records import Robot
 
 
-def added_prefixes(robot: PlannedRobot, names: Iterable[str]) -> dict[str, str]:
+def added_prefixes(robot: Robot, names: Iterable[str]) -> dict[str, str]:
     """Of frames that are not planned: those that are a planned one behind a prefix, with the prefix.
 
     One frame may be another one of its own (``front_laser`` beside ``laser``); robot_state_publisher
@@ -37,7 +37,7 @@ def robot_behind_prefix(ownership: NameOwnership, name: str) -> str:
     return next((ownership.exact[it] for it in ends if it in ownership.exact), "")
 
 
-def _prefix(robot: PlannedRobot, name: str) -> str:
+def _prefix(robot: Robot, name: str) -> str:
     """What is in front of the longest planned frame that the name ends with."""
     ends = [frame for frame in robot.frames if name.endswith(frame) and name != frame]
     return name.removesuffix(max(ends, key=len)) if ends else ""

@@ -6,7 +6,6 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence, Set
 
 from multibot_rewrite.findings.finding import ERROR, Finding
-from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.rules.declaration import pair_rule
@@ -19,7 +18,7 @@ from multibot_rewrite.rules.pair.tf_senders import described_robots, sent_by_rob
 from multibot_rewrite.rules.pair.tf_trees import frames_in, tf_trees
 from multibot_rewrite.rules.planned import Planned
 from multibot_rewrite.system.conventions import USUAL_FRAMES
-from multibot_rewrite.system.records import PUBLISHES, TOPIC
+from multibot_rewrite.system.records import PUBLISHES, TOPIC, Robot
 
 
 @pair_rule(
@@ -73,8 +72,10 @@ def _senders(plan: Planned) -> Mapping[str, set[str]]:
     return found
 
 
-def _tf_topics(robot: PlannedRobot) -> tuple[str, str]:
-    return robot.tf, "/".join("tf_static" if it == "tf" else it for it in robot.tf.split("/"))
+def _tf_topics(robot: Robot) -> tuple[str, str]:
+    return robot.tf_topic, "/".join(
+        "tf_static" if it == "tf" else it for it in robot.tf_topic.split("/")
+    )
 
 
 def _trees_of(plan: Planned, seen: Index) -> Mapping[str, list[Set[str]]]:
@@ -103,7 +104,7 @@ def _strays(plan: Planned, seen: Index) -> Mapping[str, list[str]]:
 
 def _is_heard(
     plan: Planned,
-    robot: PlannedRobot,
+    robot: Robot,
     frame: str,
     heard: Sequence[Set[str]],
     prefixes: Set[str],
@@ -117,9 +118,7 @@ def _is_heard(
     return any(not frames.isdisjoint(variants) for frames in heard)
 
 
-def _not_received(
-    plan: Planned, seen: Index, robot: PlannedRobot, missing: Sequence[str]
-) -> Finding:
+def _not_received(plan: Planned, seen: Index, robot: Robot, missing: Sequence[str]) -> Finding:
     several = f"{len(missing)} of the {len(robot.frames)} frames of {robot.name} are"
     what = several if len(missing) > 1 else f"frame {missing[0]} of {robot.name} is"
     message = f"{what} in no transform: {shorten(missing)}"
@@ -127,13 +126,11 @@ def _not_received(
     return frame_not_received.finding(message, hint, robot=robot.name, names=tuple(missing))
 
 
-def _plain(plan: Planned, robot: PlannedRobot, frame: str) -> str:
+def _plain(plan: Planned, robot: Robot, frame: str) -> str:
     return plan.frames.without_robot(frame, robot.name)
 
 
-def _why_not_received(
-    plan: Planned, seen: Index, robot: PlannedRobot, missing: Sequence[str]
-) -> str:
+def _why_not_received(plan: Planned, seen: Index, robot: Robot, missing: Sequence[str]) -> str:
     silent = min(silent_topics(plan, seen, robot, JOINT_STATES), default="")
     if silent:
         source = "joint_state_publisher, joint_state_broadcaster or the bridge"
@@ -143,7 +140,7 @@ def _why_not_received(
     # The root of a description comes with the odometry, too.
     described = {it for it in described if _plain(plan, robot, it) not in USUAL_FRAMES}
     if described and described.issubset(missing):
-        publisher = state_publisher(robot) or STATE_PUBLISHER
+        publisher = state_publisher(plan, robot) or STATE_PUBLISHER
         whose = next(described_robots(plan, seen, robot), "")
         if whose:
             return f"{publisher} has the description of {whose}, whose transforms it sends"

@@ -7,7 +7,6 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import Rule
-from multibot_rewrite.graph.expectation import PlannedEndpoint
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import found_by_plan
 from multibot_rewrite.rules.index import TF, Index, ends_of, types
@@ -31,7 +30,7 @@ from multibot_rewrite.rules.system.names import service_of_two_nodes
 from multibot_rewrite.rules.system.sharing import data_of_another_robot, topic_of_several_robots
 from multibot_rewrite.rules.words import is_order
 from multibot_rewrite.system.conventions import EVERYBODYS
-from multibot_rewrite.system.records import SUBSCRIBES, TOPIC
+from multibot_rewrite.system.records import SUBSCRIBES, TOPIC, End
 
 
 @found_by_plan(
@@ -74,9 +73,7 @@ def _how_many(seen: Index, name: str) -> str:
     return ", and is not in shared_topics: robots that do the same meet there"
 
 
-def _missing_by_name_without_rules(
-    plan: Planned, seen: Index
-) -> dict[tuple[str, str], PlannedEndpoint]:
+def _missing_by_name_without_rules(plan: Planned, seen: Index) -> dict[tuple[str, str], End]:
     """The planned endpoints that are missing, by node and the name they have without a rule."""
     return {
         (planned.node, name): planned
@@ -86,7 +83,7 @@ def _missing_by_name_without_rules(
     }
 
 
-def _why_leaked(plan: Planned, node: str, name: str, planned: PlannedEndpoint | None) -> Cause:
+def _why_leaked(plan: Planned, node: str, name: str, planned: End | None) -> Cause:
     if planned:
         return why_not_remapped(plan, planned)
     plugin, place = plugin_of(plan, node)
@@ -150,7 +147,7 @@ def _names_of_robots(plan: Planned) -> Mapping[str, Sequence[str]]:
 
 def _shared_tf(plan: Planned) -> set[str]:
     """The tf topics that robots share in their layout."""
-    times = Counter(robot.tf for robot in plan.system.robots)
+    times = Counter(robot.tf_topic for robot in plan.system.robots)
     return {f"{tf}{end}" for tf, count in times.items() if count > 1 for end in ("", "_static")}
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Mapping, Sequence, Set
 
-from multibot_rewrite.graph.expectation import PlannedEndpoint
 from multibot_rewrite.rules.index import EndKey, Index, once, types
 from multibot_rewrite.rules.pair.similar_names import probable_matches
 from multibot_rewrite.rules.planned import Planned
@@ -13,7 +12,7 @@ from multibot_rewrite.system.records import End
 
 
 @once
-def missing(plan: Planned, seen: Index) -> Mapping[EndKey, PlannedEndpoint]:
+def missing(plan: Planned, seen: Index) -> Mapping[EndKey, End]:
     """The planned ends that are not there."""
     there = types(seen)
     return {key: end for key, end in plan.ends.items() if key not in there}
@@ -42,9 +41,7 @@ def unplanned_nodes(plan: Planned, seen: Index) -> Sequence[str]:
 @once
 def _others(plan: Planned, seen: Index) -> Set[str]:
     return dict.fromkeys(
-        node
-        for node in seen.nodes
-        if node not in plan.robot_of and node not in plan.system.shared_nodes
+        node for node in seen.nodes if node not in plan.robot_of and node not in plan.own[""]
     ).keys()
 
 

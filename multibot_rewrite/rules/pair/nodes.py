@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding
-from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.graph.reach import hidden_from_here, why_not_seen
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.rules.declaration import pair_rule
@@ -14,6 +13,7 @@ from multibot_rewrite.rules.pair.causes import Cause, caused, plugin_of, why_oth
 from multibot_rewrite.rules.pair.meeting import matches, unplanned_nodes
 from multibot_rewrite.rules.planned import Planned
 from multibot_rewrite.system.conventions import EVERYBODYS
+from multibot_rewrite.system.records import Robot
 
 
 @pair_rule(
@@ -47,23 +47,23 @@ def missing_node(plan: Planned, seen: Index) -> Iterator[Finding]:
             cause = why_other_name(plan, node, match) if match else _not_started(plan, node)
             message = f"node {node} is in the plan, but not in the graph"
             yield missing_node.finding(message, **cause._asdict(), robot=robot.name, node=node)
-    for node in dict.fromkeys(plan.system.shared_nodes):
+    for node in dict.fromkeys(plan.own[""]):
         if node not in seen.nodes and node not in plan.may_miss:
             message = f"node {node} for all robots is in the plan, but not in the graph"
             yield missing_node.finding(message, "is it started?", level=WARNING, node=node)
 
 
-def _missing(plan: Planned, seen: Index, robot: PlannedRobot) -> list[str]:
+def _missing(plan: Planned, seen: Index, robot: Robot) -> list[str]:
     """An optional node is missing only where it runs under another name."""
     return [
         node
-        for node in robot.nodes
+        for node in plan.own[robot.name]
         if node not in seen.nodes and (node not in plan.may_miss or node in matches(plan, seen))
     ]
 
 
-def _is_absent(plan: Planned, seen: Index, robot: PlannedRobot) -> bool:
-    return seen.nodes.keys().isdisjoint(robot.nodes) and bool(_missing(plan, seen, robot))
+def _is_absent(plan: Planned, seen: Index, robot: Robot) -> bool:
+    return seen.nodes.keys().isdisjoint(plan.own[robot.name]) and bool(_missing(plan, seen, robot))
 
 
 def _not_started(plan: Planned, node: str) -> Cause:
@@ -98,7 +98,7 @@ def unplanned_node(plan: Planned, seen: Index) -> Iterator[Finding]:
     if not unplanned_nodes(plan, seen):
         return
     meant = set(matches(plan, seen).values())
-    planned = {robot.name for robot in plan.system.robots if robot.nodes}
+    planned = {robot.name for robot in plan.system.robots if plan.own[robot.name]}
     without_robot = plan.names.without_robot
     originals = {without_robot(node, robot): node for node, robot in plan.robot_of.items()}
     for node in unplanned_nodes(plan, seen) if planned else ():
@@ -150,20 +150,22 @@ def missing_robot(plan: Planned, seen: Index) -> Iterator[Finding]:
     """One finding in place of one for each node."""
     for robot in plan.system.robots:
         if _is_absent(plan, seen, robot):
-            message = f"none of the {len(robot.nodes)} nodes of {robot.name} is in the graph"
+            message = (
+                f"none of the {len(plan.own[robot.name])} nodes of {robot.name} is in the graph"
+            )
             cause = _why_absent(plan, seen, robot)
             hidden = not _matches(plan, seen, robot) and hidden_from_here(seen.system)
             level = INCONCLUSIVE if hidden else ERROR
             yield missing_robot.finding(message, **cause._asdict(), robot=robot.name, level=level)
 
 
-def _matches(plan: Planned, seen: Index, robot: PlannedRobot) -> list[tuple[str, str]]:
+def _matches(plan: Planned, seen: Index, robot: Robot) -> list[tuple[str, str]]:
     """Its nodes, and those that probably run in their place."""
     found = matches(plan, seen)
-    return [(node, found[node]) for node in robot.nodes if node in found]
+    return [(node, found[node]) for node in plan.own[robot.name] if node in found]
 
 
-def _why_absent(plan: Planned, seen: Index, robot: PlannedRobot) -> Cause:
+def _why_absent(plan: Planned, seen: Index, robot: Robot) -> Cause:
     matches = _matches(plan, seen, robot)
     if not matches:
         return Cause(why_not_seen(seen.system, robot.name))

@@ -6,7 +6,6 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.graph.expectation import PlannedParameter, PlannedState
 from multibot_rewrite.graph.reach import machines
 from multibot_rewrite.graph.wording import FEW, SEVERAL, shorten
 from multibot_rewrite.rules.declaration import found_by_plan, pair_rule
@@ -16,24 +15,24 @@ from multibot_rewrite.rules.system.clocks import clocks_mixed
 from multibot_rewrite.rules.system.states import not_active
 from multibot_rewrite.system.conventions import CLOCK
 from multibot_rewrite.system.parameters import parameter_text, parameter_value
-from multibot_rewrite.system.records import SIM_TIME, SUBSCRIBES, clocks
+from multibot_rewrite.system.records import SIM_TIME, SUBSCRIBES, Parameter, System, clocks
 
 # A planned parameter, and its value there.
-Difference = tuple[PlannedParameter, str]
+Difference = tuple[Parameter, str]
 
 
 @found_by_plan(not_active)
 def state_not_planned(plan: Planned, seen: Index) -> Iterator[Finding]:
     """A node that did not answer is not known."""
     states = {it.name: it.lifecycle for it in seen.system.nodes if it.lifecycle}
-    for planned in plan.system.states:
-        state = states.get(planned.node, planned.lifecycle)
+    for planned in plan.system.nodes:
+        state = states.get(planned.name, planned.lifecycle)
         if planned.lifecycle and state != planned.lifecycle:
             yield not_active.finding(
                 f"is {state}, planned is {planned.lifecycle}",
-                f"ros2 lifecycle get {planned.node}; see the log of its lifecycle manager",
-                robot=plan.robot_of.get(planned.node, ""),
-                node=planned.node,
+                f"ros2 lifecycle get {planned.name}; see the log of its lifecycle manager",
+                robot=planned.robot,
+                node=planned.name,
             )
 
 
@@ -63,19 +62,26 @@ running: /robot1/amcl has base_frame_id robot1/base_link
 def parameter_not_planned(plan: Planned, seen: Index) -> Iterator[Finding]:
     """One finding a node; a parameter that it does not have is not known."""
     values = {(it.node, it.name): it.value for it in seen.system.parameters}
-    for planned in plan.system.states:
+    for node, planned in _by_node(plan.system.parameters).items():
         found = [*_differences(planned, values)]
         # What makes it an error comes first.
-        found.sort(key=lambda it: not _is_serious(plan, planned.node, it[0]))
+        found.sort(key=lambda it: not _is_serious(plan, it[0]))
         if found:
-            yield _differs(plan, planned.node, found)
+            yield _differs(plan, node, found)
+
+
+def _by_node(parameters: Iterable[Parameter]) -> dict[str, list[Parameter]]:
+    found: dict[str, list[Parameter]] = defaultdict(list)
+    for it in parameters:
+        found[it.node].append(it)
+    return found
 
 
 def _differences(
-    planned: PlannedState, values: Mapping[tuple[str, str], str]
+    planned: Iterable[Parameter], values: Mapping[tuple[str, str], str]
 ) -> Iterator[Difference]:
-    for it in planned.parameters:
-        value = values.get((planned.node, it.name))
+    for it in planned:
+        value = values.get((it.node, it.name))
         if value is not None and not _is_same(it.value, value):
             yield it, value
 
@@ -89,10 +95,10 @@ def _is_same(planned: str, value: str) -> bool:
     return bool(parameter_value(planned) == parameter_value(value))
 
 
-def _is_serious(plan: Planned, node: str, it: PlannedParameter) -> bool:
+def _is_serious(plan: Planned, it: Parameter) -> bool:
     """Whether the plan itself says it, or it is a frame of a robot."""
-    frames = plan.frames_of.get(plan.robot_of.get(node, ""), frozenset())
-    return not it.place or parameter_value(it.value) in [
+    frames = plan.frames_of.get(plan.robot_of.get(it.node, ""), frozenset())
+    return not it.place.file or parameter_value(it.value) in [
         *frames,
         *(f"/{frame}" for frame in frames),
     ]
@@ -101,11 +107,11 @@ def _is_serious(plan: Planned, node: str, it: PlannedParameter) -> bool:
 def _differs(plan: Planned, node: str, found: Sequence[Difference]) -> Finding:
     listed = [f"{it.name} is {value}, planned is {it.value}{_at(it)}" for it, value in found]
     robot, (first, _) = plan.robot_of.get(node, ""), found[0]
-    file = first.place.rpartition(":")[0]
+    file = first.place.file
     start = f"start it with {file}" if file else "change it, or states of the plan"
     other = _whose(plan, node, found)
     hint = f"has it the parameters of {other}? {start}" if other else start
-    serious = _is_serious(plan, node, first)
+    serious = _is_serious(plan, first)
     level = ERROR if serious else WARNING
     names = tuple(it.name for it, _ in found)
     message = "; ".join(listed[:FEW]) + (f"; {len(found) - FEW} more" if len(found) > FEW else "")
@@ -114,8 +120,8 @@ def _differs(plan: Planned, node: str, found: Sequence[Difference]) -> Finding:
     )
 
 
-def _at(it: PlannedParameter) -> str:
-    return f" ({it.place})" if it.place else ""
+def _at(it: Parameter) -> str:
+    return f" ({it.place})" if it.place.file else ""
 
 
 def _whose(plan: Planned, node: str, found: Sequence[Difference]) -> str:
@@ -124,11 +130,11 @@ def _whose(plan: Planned, node: str, found: Sequence[Difference]) -> str:
     robot = plan.robot_of.get(node, "")
     plain = whose.without_robot(node, robot)
     wanted = {(it.name, value) for it, value in found}
-    for other in plan.system.states:
-        theirs = plan.robot_of.get(other.node, "")
-        if not theirs or whose.without_robot(other.node, theirs) != plain:
+    for other, planned in _by_node(plan.system.parameters).items():
+        theirs = plan.robot_of.get(other, "")
+        if not theirs or whose.without_robot(other, theirs) != plain:
             continue
-        if wanted <= {(it.name, it.value) for it in other.parameters}:
+        if wanted <= {(it.name, it.value) for it in planned}:
             return theirs
     return ""
 
@@ -139,7 +145,7 @@ def clock_not_planned(plan: Planned, seen: Index) -> Iterator[Finding]:
     timed = {it.node for it in ends_of(seen, CLOCK) if it.role == SUBSCRIBES}
     asked = clocks(seen.system)
     differing: dict[tuple[str, str], list[str]] = defaultdict(list)
-    for node, wanted in planned_clocks(plan.system.states):
+    for node, wanted in planned_clocks(plan.system):
         if node in seen.nodes and node not in asked and wanted != parameter_text(node in timed):
             differing[plan.robot_of.get(node, ""), wanted].append(node)
     for (robot, wanted), nodes in differing.items():
@@ -154,10 +160,9 @@ def clock_not_planned(plan: Planned, seen: Index) -> Iterator[Finding]:
         )
 
 
-def planned_clocks(states: Iterable[PlannedState]) -> Iterator[tuple[str, str]]:
+def planned_clocks(plan: System) -> Iterator[tuple[str, str]]:
     """By node: the clock that it is planned to have."""
-    for state in states:
-        yield from ((state.node, it.value) for it in state.parameters if it.name == SIM_TIME)
+    return ((it.node, it.value) for it in plan.parameters if it.name == SIM_TIME)
 
 
 @pair_rule(
@@ -209,9 +214,9 @@ def host_not_planned(plan: Planned, seen: Index) -> Iterator[Finding]:
 def _hosts(plan: Planned, machine_of: Mapping[str, str]) -> Mapping[str, dict[str, list[str]]]:
     """Host of the plan -> machine -> the nodes that run there."""
     found: dict[str, dict[str, list[str]]] = defaultdict(lambda: defaultdict(list))
-    for it in plan.system.states:
-        if it.host and it.node in machine_of:
-            found[it.host][machine_of[it.node]].append(it.node)
+    for it in plan.system.nodes:
+        if it.host and it.name in machine_of:
+            found[it.host][machine_of[it.name]].append(it.name)
     return found
 
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.rules.index import Index, published
 from multibot_rewrite.rules.planned import Planned
-from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, Robot
 
 
-def silent_topics(plan: Planned, seen: Index, robot: PlannedRobot, type_: str) -> set[str]:
+def silent_topics(plan: Planned, seen: Index, robot: Robot, type_: str) -> set[str]:
     """Those of a type that its nodes read, or that a bridge has to publish for it."""
     read = {
         name

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence, Set
 
-from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.rules.index import Index, ends_of, tree_topic
 from multibot_rewrite.rules.pair.causes import Cause, caused
@@ -18,14 +17,12 @@ from multibot_rewrite.rules.pair.tf_senders import (
 )
 from multibot_rewrite.rules.pair.tf_trees import TfTree, tf_trees
 from multibot_rewrite.rules.planned import Planned, Sent
-from multibot_rewrite.system.records import PUBLISHES, Edge
+from multibot_rewrite.system.records import PUBLISHES, Edge, Robot
 
 JOINT_STATES, TF = "sensor_msgs/msg/JointState", "tf2_msgs/msg/TFMessage"
 
 
-def why_disconnected(
-    plan: Planned, seen: Index, robot: PlannedRobot, roots: Sequence[str]
-) -> Cause:
+def why_disconnected(plan: Planned, seen: Index, robot: Robot, roots: Sequence[str]) -> Cause:
     """The node that sends a frame under another name, or does not send what it should."""
     edges = [edge for tree in _trees(plan, seen, robot) for edge in tree.edges]
     unsent = [it for it in sent_by_robot(plan, robot) if not _is_sent(it, edges)]
@@ -39,8 +36,8 @@ def why_disconnected(
     return next(filter(None, causes), Cause(f"{general} localization"))
 
 
-def _trees(plan: Planned, seen: Index, robot: PlannedRobot) -> Iterator[TfTree]:
-    return (tree for tree in tf_trees(plan, seen) if tree.topic == tree_topic(robot.tf))
+def _trees(plan: Planned, seen: Index, robot: Robot) -> Iterator[TfTree]:
+    return (tree for tree in tf_trees(plan, seen) if tree.topic == tree_topic(robot.tf_topic))
 
 
 def _is_sent(planned: Sent, edges: Sequence[Edge]) -> bool:
@@ -49,7 +46,7 @@ def _is_sent(planned: Sent, edges: Sequence[Edge]) -> bool:
 
 def _two_names(
     plan: Planned,
-    robot: PlannedRobot,
+    robot: Robot,
     roots: Sequence[str],
     edges: Sequence[Edge],
 ) -> Cause | None:
@@ -65,7 +62,7 @@ def _two_names(
     return None
 
 
-def _wrongly_named(plan: Planned, robot: PlannedRobot, right: str, wrong: str) -> Cause:
+def _wrongly_named(plan: Planned, robot: Robot, right: str, wrong: str) -> Cause:
     names = f"{wrong} and {right} are one frame with two names"
     node = sender_of(plan, robot, right)
     if not node:
@@ -75,7 +72,7 @@ def _wrongly_named(plan: Planned, robot: PlannedRobot, right: str, wrong: str) -
     return caused(f"{names}: by the plan {node} sends the second, {right}{see}", place)
 
 
-def _not_sent(plan: Planned, seen: Index, robot: PlannedRobot, planned: Sent) -> Cause:
+def _not_sent(plan: Planned, seen: Index, robot: Robot, planned: Sent) -> Cause:
     place = where_set(plan, planned.node)
     see = f" (see {place})" if place else ""
     if planned.node not in seen.nodes:
@@ -88,7 +85,7 @@ def _not_sent(plan: Planned, seen: Index, robot: PlannedRobot, planned: Sent) ->
     )
 
 
-def _whose(plan: Planned, seen: Index, robot: PlannedRobot, planned: Sent) -> Iterator[str]:
+def _whose(plan: Planned, seen: Index, robot: Robot, planned: Sent) -> Iterator[str]:
     """The robots of whom this transform is, and is sent for this one."""
     plain = _plain(plan, planned.parent, planned.child, robot.name)
     for other, edge in foreign(plan, seen, robot):
@@ -100,10 +97,10 @@ def _plain(plan: Planned, parent: str, child: str, robot: str) -> tuple[str, ...
     return tuple(plan.frames.without_robot(it, robot) for it in (parent, child))
 
 
-def _bridged(plan: Planned, seen: Index, robot: PlannedRobot) -> Cause | None:
+def _bridged(plan: Planned, seen: Index, robot: Robot) -> Cause | None:
     """The odometry of a simulated robot, which a bridge carries beside the transforms of others."""
-    carried = [it for it in plan.system.topics if it.bridge and it.name == robot.tf]
-    ends = ends_of(seen, robot.tf) if carried else ()
+    carried = [it for it in plan.system.topics if it.bridge and it.name == robot.tf_topic]
+    ends = ends_of(seen, robot.tf_topic) if carried else ()
     bridges = sorted({it.node for it in ends if it.role == PUBLISHES and "bridge" in it.node})
     if not bridges:
         return None
@@ -113,7 +110,7 @@ def _bridged(plan: Planned, seen: Index, robot: PlannedRobot) -> Cause | None:
     )
 
 
-def _silent(plan: Planned, seen: Index, robot: PlannedRobot, type_: str) -> Cause | None:
+def _silent(plan: Planned, seen: Index, robot: Robot, type_: str) -> Cause | None:
     silent: Set[str] = silent_topics(plan, seen, robot, type_)
     if not silent:
         return None

@@ -5,39 +5,42 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
 
-from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.rules.index import tree_topic
-from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, Edge
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, Edge, System, nodes_by_robot
 
 _TF, _GLOBAL = "/tf", ("/tf", "/tf_static")
 
 
-def copying_nodes(plan: Expectation) -> Mapping[str, str]:
+def copying_nodes(plan: System) -> Mapping[str, str]:
     """The nodes that, by the plan, do nothing but send their robot's tf on ``/tf`` as well, or send a
     transform beside such a node; by each its robot."""
-    home = {it.name: tree_topic(it.tf) for it in plan.robots if tree_topic(it.tf) != _TF}
+    home = {
+        it.name: tree_topic(it.tf_topic) for it in plan.robots if tree_topic(it.tf_topic) != _TF
+    }
     if not home:
         return {}
-    senders = {it.node for it in plan.endpoints if it.role == PUBLISHES and it.name in _GLOBAL}
+    senders = {it.node for it in plan.ends if it.role == PUBLISHES and it.name in _GLOBAL}
     trees: dict[str, set[tuple[str, str]]] = defaultdict(set)
-    for end in plan.endpoints if senders else ():
+    for end in plan.ends if senders else ():
         if end.node in senders:
             trees[end.node].add((end.role, tree_topic(end.name)))
-    writes = {(PUBLISHES, _TF)}
+    writes, nodes = {(PUBLISHES, _TF)}, nodes_by_robot(plan) if senders else {}
     found: dict[str, str] = {}
     for robot in plan.robots if senders else ():
         copies = {(SUBSCRIBES, home.get(robot.name, "")), *writes}
-        own = [node for node in robot.nodes if trees.get(node) in (copies, writes)]
+        own = [node for node in nodes[robot.name] if trees.get(node) in (copies, writes)]
         if any(trees[node] == copies for node in own):
             found |= dict.fromkeys(own, robot.name)
     return found
 
 
-def without_bridged(plan: Expectation, frames: Iterable[Edge]) -> tuple[Edge, ...]:
+def without_bridged(plan: System, frames: Iterable[Edge]) -> tuple[Edge, ...]:
     """The transforms without those on ``/tf`` that are a robot's own with its namespace in front of
     both frames, and without what joins its world to that of the fleet."""
     seen, copied = tuple(frames), set(copying_nodes(plan).values())
-    home = {tree_topic(it.tf): _prefix(it.tf) for it in plan.robots if it.name in copied}
+    home = {
+        tree_topic(it.tf_topic): _prefix(it.tf_topic) for it in plan.robots if it.name in copied
+    }
     if not home:
         return seen
     known = {(f"{above}{world}", world) for above in home.values() for world in plan.shared_frames}

@@ -4,24 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER
 from multibot_rewrite.rules.index import Index, tree_topic
 from multibot_rewrite.rules.pair.tf_trees import tf_trees
 from multibot_rewrite.rules.planned import Planned, Sent
-from multibot_rewrite.system.records import Edge
+from multibot_rewrite.system.records import Edge, Robot
 
 
-def sent_by_robot(plan: Planned, robot: PlannedRobot) -> list[Sent]:
+def sent_by_robot(plan: Planned, robot: Robot) -> list[Sent]:
     """Those of one robot's nodes."""
     return [it for it in plan.sent if plan.robot_of.get(it.node) == robot.name]
 
 
-def foreign(plan: Planned, seen: Index, robot: PlannedRobot) -> Iterator[tuple[str, Edge]]:
+def foreign(plan: Planned, seen: Index, robot: Robot) -> Iterator[tuple[str, Edge]]:
     """Transforms of other robots, each with its robot, that a node of this one may send: all on a tf
     topic of its own, else what several nodes send."""
     for tree in tf_trees(plan, seen):
-        if tree.topic != tree_topic(robot.tf):
+        if tree.topic != tree_topic(robot.tf_topic):
             continue
         for edge in tree.edges:
             other = plan.frames.robot(edge.child)
@@ -29,24 +28,23 @@ def foreign(plan: Planned, seen: Index, robot: PlannedRobot) -> Iterator[tuple[s
                 yield other, edge
 
 
-def described_robots(plan: Planned, seen: Index, robot: PlannedRobot) -> Iterator[str]:
+def described_robots(plan: Planned, seen: Index, robot: Robot) -> Iterator[str]:
     """The robots whose description a node of this one seems to have, by fixed transforms of theirs."""
     return (other for other, edge in foreign(plan, seen, robot) if edge.static)
 
 
-def sender_of(plan: Planned, robot: PlannedRobot, frame: str) -> str:
+def sender_of(plan: Planned, robot: Robot, frame: str) -> str:
     """The node that sends a planned frame of the robot: a node of its own, else the description's."""
     found = (it.node for it in sent_by_robot(plan, robot) if frame in (it.parent, it.child))
-    return next(found, "") or state_publisher(robot)
+    return next(found, "") or state_publisher(plan, robot)
 
 
-def state_publisher(robot: PlannedRobot) -> str:
+def state_publisher(plan: Planned, robot: Robot) -> str:
     """The robot's robot_state_publisher by the plan; empty where it has none."""
-    return next((it for it in robot.nodes if STATE_PUBLISHER in it), "")
+    return next((it for it in plan.own[robot.name] if STATE_PUBLISHER in it), "")
 
 
 def where_set(plan: Planned, node: str) -> str:
     """The file that holds a node's frames: its plugin's line, or that of its parameters; or empty."""
-    place = plan.places.get(node, "")
-    origin = dict(plan.system.origins).get(node, "")
-    return place or ("" if origin.startswith("stack ") else origin)
+    planned = plan.nodes.get(node)
+    return str(planned.plugin) or str(planned.place) if planned else ""

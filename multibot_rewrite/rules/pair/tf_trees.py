@@ -31,7 +31,7 @@ def tf_trees(plan: Planned, seen: Index) -> Sequence[TfTree]:
     """Those with transforms."""
     home: dict[str, list[str]] = defaultdict(list)
     for robot in plan.system.robots:
-        home[tree_topic(robot.tf)].append(robot.name)
+        home[tree_topic(robot.tf_topic)].append(robot.name)
     there = (it for it in seen.trees if it.edges)
     return [_tree(plan, it, tuple(home.get(it.topic, ()))) for it in there]
 

@@ -6,7 +6,6 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 
 from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.rules.declaration import found_by_plan
 from multibot_rewrite.rules.index import Index, tree_topic
@@ -15,7 +14,7 @@ from multibot_rewrite.rules.pair.tf_causes import why_disconnected
 from multibot_rewrite.rules.pair.tf_trees import TfTree, tf_trees
 from multibot_rewrite.rules.planned import Planned
 from multibot_rewrite.rules.system.tf_topics import in_pieces, tf_on_two_topics, tf_tree_in_pieces
-from multibot_rewrite.system.records import PUBLISHES, Edge
+from multibot_rewrite.system.records import PUBLISHES, Edge, Robot
 
 
 @found_by_plan(tf_tree_in_pieces, nodes=False)
@@ -53,11 +52,11 @@ def _robot_at_home(plan: Planned, tree: TfTree, frame: str) -> str:
     if len(tree.home) == 1:
         return tree.home[0] if frame in plan.frames_of[tree.home[0]] else ""
     robot = plan.frames.exact.get(frame, "")
-    return robot if robot and tree_topic(plan.robots[robot].tf) == tree.topic else ""
+    return robot if robot and tree_topic(plan.robots[robot].tf_topic) == tree.topic else ""
 
 
-def _disconnected(plan: Planned, seen: Index, robot: PlannedRobot, roots: Sequence[str]) -> Finding:
-    message = in_pieces(robot.name, tree_topic(robot.tf), roots)
+def _disconnected(plan: Planned, seen: Index, robot: Robot, roots: Sequence[str]) -> Finding:
+    message = in_pieces(robot.name, tree_topic(robot.tf_topic), roots)
     cause = why_disconnected(plan, seen, robot, roots)
     return tf_tree_in_pieces.finding(
         message, **cause._asdict(), robot=robot.name, names=tuple(roots)
@@ -72,10 +71,10 @@ def wrong_tf_topic(plan: Planned, seen: Index) -> Iterator[Finding]:
         misplaced: dict[str, list[Edge]] = defaultdict(list)
         for edge in tree.edges:
             robot = _sending_robot(plan, tree, edge.child)
-            if robot and tree_topic(plan.robots[robot].tf) != tree.topic:
+            if robot and tree_topic(plan.robots[robot].tf_topic) != tree.topic:
                 misplaced[robot].append(edge)
         for robot, edges in misplaced.items():
-            home = tree_topic(plan.robots[robot].tf)
+            home = tree_topic(plan.robots[robot].tf_topic)
             # A copy that a relay or another node makes, for RViz for example: the robot is as planned.
             copied = all(edge.child in children.get(home, ()) for edge in edges)
             if not (
@@ -94,11 +93,11 @@ def _only_planned(plan: Planned, tree: TfTree, robot: str, edges: Iterable[Edge]
     return planned.issuperset(tree.senders.get(robot, ()))
 
 
-def _wrong_topic(
-    plan: Planned, tree: TfTree, robot: PlannedRobot, edges: Sequence[Edge]
-) -> Finding:
+def _wrong_topic(plan: Planned, tree: TfTree, robot: Robot, edges: Sequence[Edge]) -> Finding:
     frames = tuple(dict.fromkeys(edge.child for edge in edges))
-    message = f"frame {frames[0]} of {robot.name} is on {edges[0].topic}, expected on {robot.tf}"
+    message = (
+        f"frame {frames[0]} of {robot.name} is on {edges[0].topic}, expected on {robot.tf_topic}"
+    )
     if len(frames) > 1:
         message += f"; so are {len(frames) - 1} more of its frames"
     cause = _why_wrong_topic(plan, tree, robot, edges)
@@ -114,16 +113,14 @@ def _sending_robot(plan: Planned, tree: TfTree, frame: str) -> str:
     return only if frame in plan.robots[only].frames else ""
 
 
-def _why_wrong_topic(
-    plan: Planned, tree: TfTree, robot: PlannedRobot, edges: Iterable[Edge]
-) -> Cause:
+def _why_wrong_topic(plan: Planned, tree: TfTree, robot: Robot, edges: Iterable[Edge]) -> Cause:
     every = [node for nodes in tree.senders.values() for node in nodes]
     senders = tree.senders.get(robot.name) or every
     who = shorten(senders) or "its publisher"
     places = [place for _, place in (plugin_of(plan, node) for node in senders) if place]
     see = f", see {shorten(places)}" if places else ""
-    rule = tf_rule(robot, "tf_static" if all(edge.static for edge in edges) else "tf")
+    rule = tf_rule(plan, robot, "tf_static" if all(edge.static for edge in edges) else "tf")
     hint = f"the remap rule {rule} is missing for {who}{see}"
-    if robot.tf == "/tf":
+    if robot.tf_topic == "/tf":
         hint = f"the layout has one /tf for all robots: remove the rule /tf:=... from {who}{see}"
     return caused(hint, next(iter(places), ""))

@@ -11,6 +11,7 @@ from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.index import TF, Ends, Index, is_viewer, nodes_of
+from multibot_rewrite.rules.places import see, where
 from multibot_rewrite.rules.words import DESCRIPTION, MAP
 from multibot_rewrite.system.conventions import EVERYBODYS
 from multibot_rewrite.system.records import TOPIC, ZENOH, End, Qos
@@ -51,39 +52,46 @@ def types_differ(seen: Index) -> Iterator[Finding]:
         givers, takers = (ends.publishers, ends.subscribers)
         if ends.kind != TOPIC:
             givers, takers = ends.servers, ends.clients
-        every = (*givers, *takers)
-        if len({(end.type, end.type_hash) for end in every}) < 2:
+        if len({(end.type, end.type_hash) for end in (*givers, *takers)}) < 2:
             continue
         # Of a side alone the first one counts.
-        lost = _apart(takers, givers) or _apart(givers, takers or givers[:1])
-        for node, own, others in lost:
-            message, cause = _difference(ends.name, others[0].node, own, dict(map(_type, others)))
+        others = givers
+        lost = _apart(takers, givers)
+        if not lost:
+            others = takers or givers[:1]
+            lost = _apart(givers, others)
+        for node, own in lost.items():
+            given = {it for end in others for it in _types(end)}
+            asked = {it for end in own for it in _types(end)}
+            message, cause = _difference(ends.name, others[0].node, dict(asked), dict(given))
             level = WARNING if is_viewer(node) else ERROR
             robot = seen.robot(node) or seen.robot(ends.name)
+            both = (*others, *own)
             yield types_differ.finding(
-                message, cause, level=level, robot=robot, node=node, names=(ends.name,)
-            )
+                message, cause + see(both),
+                level=level, robot=robot, node=node, names=(ends.name,), **where(both),
+            )  # fmt: skip
 
 
-def _type(end: End) -> tuple[str, str]:
-    """With its hash, where that is valid."""
-    return end.type, end.type_hash if end.type_hash.startswith(HASH) else ""
-
-
-def _apart(
-    ends: Iterable[End], others: Sequence[End]
-) -> list[tuple[str, dict[str, str], Sequence[End]]]:
-    """The nodes of some ends that connect with none of the others, with their types."""
-    known = [end for end in others if end.type]
-    there = {_type(end) for end in known}
-    by_node: dict[str, dict[str, str]] = defaultdict(dict)
-    for end in ends if known else ():
-        by_node[end.node] |= dict([_type(end)])
-    return [
-        (node, own, known)
+def _apart(ends: Iterable[End], others: Sequence[End]) -> Mapping[str, Sequence[End]]:
+    """By node: the ends that connect with none of the others, where all types are known."""
+    given = {it for end in others for it in _types(end)}
+    by_node: dict[str, list[End]] = defaultdict(list)
+    for end in ends if given and all(end.type for end in others) else ():
+        by_node[end.node].append(end)
+    return {
+        node: own
         for node, own in by_node.items()
-        if all(own) and not _meet(own.items(), there)
-    ]
+        if all(end.type for end in own)
+        and not _meet((it for end in own for it in _types(end)), given)
+    }
+
+
+def _types(end: End) -> Iterator[tuple[str, str]]:
+    """The type of an end with its hash, if that is valid, and the others that it may have."""
+    if end.type:
+        yield end.type, end.type_hash if end.type_hash.startswith(HASH) else ""
+    yield from ((it, "") for it in end.also)
 
 
 def _meet(asked: Iterable[tuple[str, str]], given: set[tuple[str, str]]) -> bool:

@@ -23,6 +23,8 @@ from multibot_rewrite.rules.index import (
     nodes_of,
     robots_of,
 )
+from multibot_rewrite.rules.places import see, where
+from multibot_rewrite.rules.system.unsent import meant
 from multibot_rewrite.system.conventions import EVERYBODYS, chooses
 from multibot_rewrite.system.records import ACTION, SERVES, SERVICE, TOPIC, End
 
@@ -71,9 +73,10 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
                 continue
             # What chooses between several inputs seldom has all of them.
             offered = unheard if chooses(end.node) else published
-            other = _published_instead(seen, end, offered, unheard)
+            other = published.get(_published_instead(seen, end, offered, unheard))
+            other = other or meant(seen, end)
             if other:
-                yield _missed_topic(seen, end, published[other])
+                yield _missed_topic(seen, end, other)
 
 
 def _each_node(ends: Iterable[End]) -> Iterator[End]:
@@ -198,8 +201,9 @@ def _missed_topic(seen: Index, end: End, other: Ends) -> Finding:
     level = NOTE if clicked else ERROR
     robot = seen.robot(end.node) or seen.robot(end.name)
     return topic_names_miss.finding(
-        message, cause, level=level, robot=robot, node=end.node, names=(end.name, other.name)
-    )
+        message, cause + see((other.publishers[0], end)),
+        level=level, robot=robot, node=end.node, names=(end.name, other.name), **where([end]),
+    )  # fmt: skip
 
 
 @system_rule(
@@ -231,7 +235,9 @@ def server_names_miss(seen: Index) -> Iterator[Finding]:
         if kind == TOPIC or ends.servers:
             continue
         for end in _each_node(ends.clients):
+            by_type = meant(seen, end)
             other = _served_instead(seen, end, served[kind, end.type])
+            other = other or (by_type.name if by_type else "")
             does = "sends goals to" if kind == ACTION else "calls"
             absent = (
                 not other
@@ -251,8 +257,9 @@ def server_names_miss(seen: Index) -> Iterator[Finding]:
             robot = seen.robot(end.node) or seen.robot(other)
             level = NOTE if is_viewer(end.node) and not is_spawner(end.node) else ERROR
             yield server_names_miss.finding(
-                message, cause, level=level, robot=robot, node=end.node, names=(name, other)
-            )
+                message, cause + see((seen.names[kind, other].servers[0], end)),
+                level=level, robot=robot, node=end.node, names=(name, other), **where([end]),
+            )  # fmt: skip
 
 
 def _served_instead(seen: Index, end: End, served: Sequence[str]) -> str:

@@ -116,15 +116,19 @@ def _mux_left_out(seen: Index) -> Iterator[Finding]:
         for mux in filter(chooses, nodes_of(ends.publishers)):
             for given in _velocities(seen):
                 readers = nodes_of(at_work(given.subscribers))
-                drivers = [it for it in readers if it != mux]
+                drivers = [it for it in readers if it != mux and _word(seen, it) not in _LIMITS]
                 if mux in readers and drivers and given.publishers:
                     yield limits_left_out.finding(
                         f"obeys {given.name}, an input of {mux}, whose output {ends.name} nobody reads",
-                        f"pass it the rule {last_word(given.name)}:={last_word(ends.name)}",
+                        f"pass it the rule {_word(seen, given.name)}:={_word(seen, ends.name)}",
                         robot=seen.robot(drivers[0]),
                         node=drivers[0],
                         names=(given.name, ends.name),
                     )
+
+
+def _word(seen: Index, name: str) -> str:
+    return last_word(seen.plain(name))
 
 
 def _velocities(seen: Index) -> Iterator[Ends]:

@@ -3,25 +3,36 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.findings.finding import ERROR, Finding
+from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.index import (
     Index,
+    Tree,
     is_viewer,
     last_word,
     only,
     robots_of,
+    tree_topic,
     unique,
 )
+from multibot_rewrite.rules.places import see, where
 from multibot_rewrite.rules.system.transforms import collide
 from multibot_rewrite.system.conventions import BODY_FRAMES
-from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
+from multibot_rewrite.system.records import (
+    NOWHERE,
+    OFF,
+    PUBLISHES,
+    SUBSCRIBES,
+    UNKNOWN_NODES,
+    Edge,
+)
 
 TF = "tf"
 _REMAP = "/tf:=tf and /tf_static:=tf_static"
+_STATE_PUBLISHER = "robot_state_publisher"
 
 
 @system_rule(
@@ -156,7 +167,15 @@ running: transform base_link -> laser on /robot1/tf_static by /robot1/robot_stat
     line=1,
 )
 def tf_tree_in_pieces(seen: Index) -> Iterator[Finding]:
-    """By the usual names of these frames (REP 105); other pieces may be meant."""
+    """By the usual names of these frames (REP 105); other pieces may be meant.
+
+    Where nodes may run that are not known, one of them may join what is in pieces.
+    """
+    yield from told_not_to(seen)
+    if any(it.code == UNKNOWN_NODES for it in seen.system.environment.caveats):
+        for tree in seen.trees:
+            yield from _senders_apart(seen, tree)
+        return
     bases = BODY_FRAMES[::-1]
     for tree in seen.trees:
         above: dict[str, str] = {edge.child: edge.parent for edge in tree.edges}
@@ -185,6 +204,77 @@ def in_pieces(robot: str, topic: str, roots: Sequence[str]) -> str:
     """The sentence for a tree of several roots."""
     whose = f"the tf tree of {robot}" if robot else "the tf tree"
     return f"{whose} on {topic} has {len(roots)} roots: {', '.join(roots)}"
+
+
+def told_not_to(seen: Index) -> Iterator[Finding]:
+    """Transforms that nobody sends, and that nodes could which are told not to."""
+    sent = {(tree.topic, edge.child) for tree in seen.trees for edge in tree.edges}
+    off: dict[tuple[str, str], list[Edge]] = defaultdict(list)
+    for it in (it for it in seen.system.edges if it.sure == OFF):
+        off[tree_topic(it.topic), it.child].append(it)
+    others = [it for tree in seen.trees for it in tree.edges if not _is_of_description(seen, it)]
+    beside = next((it for it in others if it.place != NOWHERE), None)
+    for (topic, child), (first, *more) in off.items():
+        if (topic, child) in sent:
+            continue
+        also = f", and so is {more[0].publishers[0]}" if more else ""
+        cause = "let one node send it: the controller (enable_odom_tf) or the filter (publish_tf)"
+        if beside:
+            cause += f"; {beside.publishers[0]} ({beside.place}) sends {beside.child}"
+        yield tf_tree_in_pieces.finding(
+            f"is told not to send {first.parent} -> {child}, which nobody sends{also}",
+            cause + see((*more, first)), level=ERROR if more else WARNING,
+            robot=seen.robot(first.publishers[0]), node=first.publishers[0], names=(child,),
+            **where([first]),
+        )  # fmt: skip
+
+
+def _senders_apart(seen: Index, tree: Tree) -> Iterator[Finding]:
+    """Nodes whose transforms are in another tree than those of the robot's first node.
+
+    If nobody sends the root of the description, a driver that is not known may: that joins the two.
+    """
+    for robot in unique(seen.robot(node) for it in tree.edges for node in it.publishers[:1]):
+        edges = [it for it in tree.edges if {*map(seen.robot, it.publishers)} == {robot}]
+        moving = {it.publishers: it for it in edges[::-1] if not _is_of_description(seen, it)}
+        if not moving:
+            continue
+        first, *others = [*moving.values()][::-1]
+        children = {it.child for it in edges}
+        roots = {it.parent for it in edges if _is_of_description(seen, it)} - children
+        joined = _joined(
+            [*((it.parent, it.child) for it in edges), *((first.parent, it) for it in roots)]
+        )
+        for it in others:
+            if joined(it.child) != joined(first.child):
+                message = (
+                    f"sends {it.parent} -> {it.child}, apart from {first.parent} -> {first.child}"
+                )
+                cause = "use the same odometry frame in both, or add what joins them"
+                yield tf_tree_in_pieces.finding(
+                    f"{message} of {first.publishers[0]}", cause + see((first, it)), level=WARNING,
+                    robot=robot, node=it.publishers[0], names=(it.child,), **where([it]),
+                )  # fmt: skip
+
+
+def _is_of_description(seen: Index, edge: Edge) -> bool:
+    return any(last_word(seen.plain(it)).startswith(_STATE_PUBLISHER) for it in edge.publishers)
+
+
+def _joined(pairs: Iterable[tuple[str, str]]) -> Callable[[str], str]:
+    """For a frame: one that stands for all that are joined with it."""
+    above: dict[str, str] = {}
+
+    def root(frame: str) -> str:
+        while frame in above:
+            frame = above[frame]
+        return frame
+
+    for one, other in pairs:
+        first, second = root(one), root(other)
+        if first != second:
+            above[second] = first
+    return root
 
 
 def root_of(frame: str, above: Mapping[str, str]) -> str:

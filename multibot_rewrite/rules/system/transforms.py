@@ -18,7 +18,9 @@ from multibot_rewrite.rules.index import (
     robots_of,
     unique,
 )
+from multibot_rewrite.rules.places import see, where
 from multibot_rewrite.system.conventions import WORLD_FRAMES
+from multibot_rewrite.system.records import Edge
 
 _STATIC = "static_transform_publisher"
 
@@ -48,12 +50,11 @@ def frame_with_two_parents(seen: Index) -> Iterator[Finding]:
                 continue
             both = and_then(sorted(parents))
             message = f"frame {child} has {len(parents)} parents on {tree.topic}: {both}"
-            robot = seen.frame_robot(child) or only(robots_of(seen, tree.senders))
+            own = [it for it in tree.edges if it.child == child]
+            robot = seen.frame_robot(child) or only(robots_of(seen, _senders(tree, own)))
+            cause = _who_sends(seen, tree, [(it, child) for it in sorted(parents)]) + see(own)
             yield frame_with_two_parents.finding(
-                message,
-                _who_sends(seen, tree, [(it, child) for it in sorted(parents)]),
-                robot=robot,
-                names=(child,),
+                message, cause, robot=robot, names=(child,), **where(own)
             )
 
 
@@ -64,15 +65,21 @@ def _parents(tree: Tree) -> dict[str, set[str]]:
     return found
 
 
+def _senders(tree: Tree, edges: Iterable[Edge]) -> Sequence[str]:
+    """The nodes that send these transforms: all on the topic where it is not known which."""
+    return unique(node for it in edges for node in it.publishers) or tree.senders
+
+
 def _who_sends(seen: Index, tree: Tree, edges: Sequence[tuple[str, str]]) -> str:
     """The nodes that may have sent these: who is known to first, then those of the frame's robot."""
     frame = edges[0][1]
-    robots = robots_of(seen, tree.senders)
+    senders = _senders(tree, (it for it in tree.edges if it.child == frame))
+    robots = robots_of(seen, senders)
     owner = seen.frame_robot(frame) or seen.robot(tree.topic)
     planned = [(node, it) for it in edges for node in seen.known.senders.get(it, ())]
-    there = [it for it in planned if it[0] in tree.senders] or planned[:1]
+    there = [it for it in planned if it[0] in senders] or planned[:1]
     known = [node for node, _ in there]
-    nodes = sorted(tree.senders, key=lambda it: (it not in known, seen.robot(it) != owner))
+    nodes = sorted(senders, key=lambda it: (it not in known, seen.robot(it) != owner))
     sent = f"two of the nodes that send on {tree.topic}: {shorten(nodes, SEVERAL)}" if nodes else ""
     if there:
         by_plan = " and ".join(f"{node} sends {above} -> {it}" for node, (above, it) in there)
@@ -260,22 +267,33 @@ def transform_of_two_senders(seen: Index) -> Iterator[Finding]:
     for tree in seen.trees:
         if collide(seen, tree):
             continue
-        edges = [it for it in tree.edges if it.several]
+        edges = _sent_twice(tree)
         for robot in unique(seen.frame_robot(it.child) for it in edges):
             own = [it for it in edges if seen.frame_robot(it.child) == robot]
-            listed = shorten(f"{it.parent} -> {it.child}" for it in own)
+            listed = shorten(unique(f"{it.parent} -> {it.child}" for it in own))
             message = f"several nodes send {listed} on {tree.topic}"
-            who = robot or only(robots_of(seen, tree.senders))
-            nodes = [it for it in tree.senders if seen.robot(it) in ("", who)] or tree.senders
+            senders = _senders(tree, own)
+            who = robot or only(robots_of(seen, senders))
+            nodes = [it for it in senders if seen.robot(it) in ("", who)] or senders
             right = {it for edge in own for it in seen.known.senders.get(edge[1::-1], ())}
             nodes = sorted(nodes, key=lambda it: it not in right)
             listed_nodes = shorten(nodes, SEVERAL)
             cause = f"stop one, or its tf (publish_tf, enable_odom_tf): two of {listed_nodes}"
-            others = [it for it in tree.senders if it not in nodes]
+            others = [it for it in senders if it not in nodes]
             if others:
                 cause += f"; or {shorten(others)} with the description or parameters of {who}"
-            names = tuple(it.child for it in own)
-            yield transform_of_two_senders.finding(message, cause, robot=who, names=names)
+            yield transform_of_two_senders.finding(
+                message, cause + see(own),
+                robot=who, names=unique(it.child for it in own), **where(own),
+            )  # fmt: skip
+
+
+def _sent_twice(tree: Tree) -> list[Edge]:
+    """The transforms of which several senders are heard, or known."""
+    known: dict[tuple[str, ...], set[tuple[str, ...]]] = defaultdict(set)
+    for it in tree.edges:
+        known[it.parent, it.child, it.topic].add(it.publishers)
+    return [it for it in tree.edges if it.several or len(known[it.parent, it.child, it.topic]) > 1]
 
 
 @system_rule(

@@ -25,11 +25,11 @@ from zenoh_robots import (
     router,
 )
 
-from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.live.request import Request
 from multibot_rewrite.graph.plan_file import read_plan as plan_in
 from multibot_rewrite.graph.zenoh.configuration import Setup, configurations
 from multibot_rewrite.graph.zenoh.observe import Router, look
+from multibot_rewrite.system.records import System
 
 zenoh = pytest.importorskip("zenoh", reason="no zenoh: pip install '.[zenoh]'")
 pytestmark = pytest.mark.live
@@ -42,12 +42,12 @@ def key(topic: str, domain: int = 0) -> str:
 
 
 @pytest.fixture
-def plan(tmp_path: Path) -> Expectation:
+def plan(tmp_path: Path) -> System:
     path = write_plan(tmp_path / "plan.yaml", ("robot1", "robot2"))
     return plan_in(path.read_bytes(), str(path))
 
 
-def written(folder: Path, plan: Expectation, setup: Setup) -> dict[str, Path]:
+def written(folder: Path, plan: System, setup: Setup) -> dict[str, Path]:
     files = {}
     for name, data in configurations(plan, setup):
         files[name] = folder / name
@@ -99,7 +99,7 @@ def reaches(sender: Any, listener: Any, name: str, witness: str) -> None:
     wait_until(lambda: arrives(sender, listener, name, witness))
 
 
-def test_a_robot_commands_itself_and_no_other(tmp_path: Path, plan: Expectation) -> None:
+def test_a_robot_commands_itself_and_no_other(tmp_path: Path, plan: System) -> None:
     """By its own file: what it says to another robot does not leave its session."""
     with router() as address:
         files = written(tmp_path, plan, Setup(address, 0))
@@ -116,7 +116,7 @@ def test_a_robot_commands_itself_and_no_other(tmp_path: Path, plan: Expectation)
             assert not arrives(anybody, one, key("/robot1/cmd_vel", 7), key("/robot1/cmd_vel"))
 
 
-def test_what_is_latched_and_the_graph_pass(tmp_path: Path, plan: Expectation) -> None:
+def test_what_is_latched_and_the_graph_pass(tmp_path: Path, plan: System) -> None:
     """tf_static of a robot with rules reaches who comes later; so do its tokens."""
     with router() as address:
         files = written(tmp_path, plan, Setup(address, 0))
@@ -166,9 +166,7 @@ def _openssl(*arguments: object) -> None:
     subprocess.run(["openssl", *map(str, arguments)], check=True, capture_output=True)
 
 
-def test_the_router_refuses_by_certificate(
-    tmp_path: Path, plan: Expectation, keystore: Path
-) -> None:
+def test_the_router_refuses_by_certificate(tmp_path: Path, plan: System, keystore: Path) -> None:
     """Even a session of robot1 that has thrown away its rules drives no other robot."""
     setup = Setup("tcp/127.0.0.1:17647", 0, str(keystore), (OPERATOR,))
     files = written(tmp_path, plan, setup)
@@ -197,7 +195,7 @@ def test_the_router_refuses_by_certificate(
 
 
 def test_a_router_on_the_robot_lets_out_what_is_its_own(
-    tmp_path: Path, plan: Expectation, keystore: Path
+    tmp_path: Path, plan: System, keystore: Path
 ) -> None:
     """Two routers between robot1 and who looks after it; its session keeps no rules."""
     setup = Setup("tcp/127.0.0.1:17649", 0, str(keystore), (OPERATOR,), own_routers=True)

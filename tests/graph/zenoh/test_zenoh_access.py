@@ -6,9 +6,9 @@ import json
 from pathlib import Path
 
 import pytest
+from plans import PlannedRobot, planned
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
 from multibot_rewrite.graph.zenoh.access import (
     FLEET_ROUTER,
     OWN_ROUTER,
@@ -17,19 +17,21 @@ from multibot_rewrite.graph.zenoh.access import (
     robot_rules,
 )
 from multibot_rewrite.graph.zenoh.configuration import Setup, configurations
+from multibot_rewrite.spelling.plan import planned_end
+from multibot_rewrite.system.records import End, System
 
 
-def made(*robots: tuple[str, str, str], ends: tuple[PlannedEndpoint, ...] = ()) -> Expectation:
+def made(*robots: tuple[str, str, str], ends: tuple[End, ...] = ()) -> System:
     """Robots as (name, node, tf topic)."""
-    planned = tuple(PlannedRobot(name, (node,), (), tf) for name, node, tf in robots)
-    return Expectation("both", planned, (), ("/clock", "/map"), (), ends)
+    fleet = tuple(PlannedRobot(name, (node,), (), tf) for name, node, tf in robots)
+    return planned("both", fleet, (), ("/clock", "/map"), (), ends)
 
 
-def end(node: str, kind: str, role: str, name: str) -> PlannedEndpoint:
-    return PlannedEndpoint(node, kind, role, name, "", "")
+def end(node: str, kind: str, role: str, name: str) -> End:
+    return planned_end(node, kind, role, name, "", "")
 
 
-def of(plan: Expectation, domain: int = 0) -> Rights:
+def of(plan: System, domain: int = 0) -> Rights:
     return rights(plan, domain)[0]
 
 

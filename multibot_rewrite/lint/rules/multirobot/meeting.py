@@ -97,7 +97,7 @@ controllers_apart = rule(
     "the tree of each robot jumps between them. The rule in the plugin is applied to the controller "
     "manager alone.",
     fix="Start each controller with its spawner and its option --controller-ros-args "
-    '"-r /tf:=tf"; multibot remap and build print the lines if a stack names the controllers '
+    '"-r /tf:=tf"; multibot plan and build print the lines if a stack names the controllers '
     "(--stack gz_ros2_control).",
     bad='<link name="a"/>\n'
     "<gazebo>\n"

@@ -1,4 +1,4 @@
-"""``multibot remap`` as a person meets it."""
+"""``multibot plan --form table`` as a person meets it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ GZ = str(FIXTURES / "robots" / "rover_gz.urdf")
 
 
 def run(capture: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str]:
-    code = main(["remap", *words])
+    code = main(["plan", "--form=table", *words])
     return code, *capture.readouterr()
 
 

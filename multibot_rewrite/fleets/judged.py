@@ -1,0 +1,119 @@
+"""What the rules of any system find in a fleet as it is written, and whether its sources have it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import cast
+
+from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.fleets.fleet import Fleet, planned
+from multibot_rewrite.fleets.fleet_plan import FleetPlan
+from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
+from multibot_rewrite.producers.ends import NEEDS
+from multibot_rewrite.rules.check import absences, contradictions
+from multibot_rewrite.rules.index import Index, index
+from multibot_rewrite.rules.ownership import (
+    ALONE,
+    Whose,
+    frame_ownership,
+    name_ownership,
+    whose_by_plan,
+)
+from multibot_rewrite.rules.system.tf_topics import tf_tree_in_pieces
+from multibot_rewrite.rules.system.unsent import no_longer_sent, open_ends
+from multibot_rewrite.system.records import NOWHERE, RUNS, End, System
+
+Key = tuple[str, ...]
+
+
+def whose_names(fleet: Fleet) -> Whose:
+    """Whose the names of a fleet are, by its plan."""
+    plan = planned(fleet)
+    return whose_by_plan(plan, name_ownership(plan), frame_ownership(plan))
+
+
+def contradicted(plan: FleetPlan, whole: System, whose: Whose) -> Iterator[Finding]:
+    """What nodes that surely run do to each other; in one robot they did so before its rewrite.
+
+    What all robots are told to share is meant.
+    """
+    shared = {f"/{it}" for it in plan.fleet.naming.shared_topics}
+    robots = {it.spec.namespace: it for it in plan.robots}
+    sure = tuple(it for it in whole.ends if it.sure == RUNS)
+    found = contradictions(index(whole._replace(ends=sure), whose))
+    for it in (it for it in found if not it.names or not shared.issuperset(it.names)):
+        level = WARNING if it.robot and it.level == ERROR else it.level
+        yield in_file(it._replace(level=level), robots.get(it.robot) or plan.robots[-1])
+
+
+def missing(
+    robot: RewrittenRobot, before: System, after: System, whose: Whose
+) -> Iterator[Finding]:
+    """What a robot needs and nothing gives, as it is written: an error where its sources had it.
+
+    What the sources need is asked for; what the build adds, such as rows of a bridge, may give it.
+    """
+    old, new = index(before, ALONE), index(_asked(before, after), whose)
+    was_open = _by_key(before, open_ends(old))
+    lost = {
+        (it.node, it.name): it
+        for key, it in _by_key(after, open_ends(new)).items()
+        if key not in was_open
+    }
+    in_sources = {_about(it, before): it for it in absences(old) if it.node}
+    for it in (it for it in absences(new) if it.code != tf_tree_in_pieces.code):
+        if it.node and (it.node, it.names[0]) in lost:
+            del lost[it.node, it.names[0]]
+            yield in_file(it, robot)
+            continue
+        # Names as the sources have them, where these have both.
+        source = in_sources.get(_about(it, after)) if it.node else None
+        said = source if source and _is_placed(before, source.names[-1]) else it
+        yield in_file(said._replace(level=WARNING if said.level == ERROR else said.level), robot)
+    yield from (in_file(no_longer_sent(it), robot) for it in lost.values())
+
+
+def apart(robot: RewrittenRobot, before: System, after: System, whose: Whose) -> Iterator[Finding]:
+    """Where the robot's frames are in pieces by its sources, and where only its rewrite cuts them."""
+    check = cast(Callable[[Index], Iterator[Finding]], tf_tree_in_pieces.check)
+    found = [*check(index(before, ALONE))]
+    known = {it.name: it.known for it in after.nodes}
+    told = {it.node.lstrip("/") for it in found}
+    yield from (in_file(it, robot) for it in found)
+    for it in check(index(after, whose)):
+        if known.get(it.node, it.node) not in told:
+            yield in_file(it._replace(level=ERROR), robot)
+
+
+def _asked(before: System, after: System) -> System:
+    """The system as it is written, with the needs that its sources have."""
+    needed = _by_key(before, (it for it in before.ends if it.role in NEEDS))
+    keys = {id(it): key for key, it in _by_key(after, after.ends).items()}
+    ends = (it for it in after.ends if it.role not in NEEDS or keys.get(id(it)) in needed)
+    return after._replace(ends=tuple(ends))
+
+
+def _by_key(system: System, ends: Iterable[End]) -> Mapping[Key, End]:
+    """Ends by what is the same before and after a rewrite: the node, and the name in its code."""
+    known = {it.name: it.known for it in system.nodes}
+    return {(it.kind, it.role, known.get(it.node, it.node), it.code_name): it for it in ends}
+
+
+def _about(finding: Finding, system: System) -> Key | None:
+    """The key of the end that a finding is about."""
+    ends = (it for it in system.ends if (it.node, it.name) == (finding.node, finding.names[0]))
+    return next(iter(_by_key(system, ends)), None)
+
+
+def _is_placed(system: System, name: str) -> bool:
+    return any(it.name == name and it.place != NOWHERE for it in system.ends)
+
+
+def in_file(finding: Finding, robot: RewrittenRobot) -> Finding:
+    """The finding as one of its file, else of the robot's line in the fleet file: who it is about is in
+    the message."""
+    it = finding
+    place = (it.file, it.line, it.column) if it.file else (robot.spec.file, robot.spec.line, 1)
+    message = f"{it.node} {it.message}" if it.node else it.message
+    file, line, column = place
+    return it._replace(message=message, node="", robot="", file=file, line=line, column=column)

@@ -1,0 +1,75 @@
+"""The ends that a robot's sources name: its stacks with their parameters, plugins, bridges."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from multibot_rewrite.companions.bridge_entry import BOTH, ROS, below
+from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, pairs
+from multibot_rewrite.evidence.records import GivenNode
+from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.readback.reading import Reading
+from multibot_rewrite.rosnames import expand
+from multibot_rewrite.system.records import (
+    CALLS,
+    MAY,
+    NOWHERE,
+    PUBLISHES,
+    RUNS,
+    SUBSCRIBES,
+    TOPIC,
+    End,
+    Place,
+)
+
+NEEDS = (SUBSCRIBES, CALLS)
+BRIDGE_FILE, BRIDGE_NODE = "bridge.yaml", "ros_gz_bridge"
+_ROLES = {"GZ_TO_ROS": PUBLISHES, "ROS_TO_GZ": SUBSCRIBES}
+
+
+def either_way(end: End) -> Iterator[End]:
+    """The end; one of which the role is not known may be on both sides."""
+    if end.role:
+        yield end
+        return
+    yield from (end._replace(role=it, sure=MAY) for it in (PUBLISHES, SUBSCRIBES))
+
+
+def node_ends(node: NodeFacts, section: GivenNode | None) -> Iterator[End]:
+    """The ends of a node by the names of its code, or what the usual launch files make of them;
+    ``section`` is what a file sets for it. A node for all robots needs nothing of this one."""
+    above, _, name = f"/{node.name}".rpartition("/")
+    values = section.values if section else {}
+    at = section.place if section else NOWHERE
+    for it in (it for it in node.endpoints if "<" not in it.name):
+        if node.shared and it.role in NEEDS:
+            continue
+        full = expand(it.remapped or it.name, above or "/", name)
+        place = values[it.parameter].place if it.parameter in values else at
+        # A node with parameters is meant to run.
+        sure = RUNS if not it.when and (section or not node.when) else MAY
+        own = (it.kind, it.role, full, it.type, "", f"/{node.name}", None, "")
+        yield from either_way(End(*own, it.name, it.also, sure, place))
+
+
+def plugin_ends(reading: Reading) -> Iterator[End]:
+    """The ends of the nodes that a description starts."""
+    for node in reading.nodes:
+        for it in node.endpoints:
+            own = (it.kind, it.role, it.full, it.type, "", node.full_name, None, "", it.name)
+            yield from either_way(End(*own, sure=MAY if it.off else RUNS))
+
+
+def bridge_ends(document: YamlText, above: str = "") -> Iterator[End]:
+    """The ROS ends of the rows of a ros_gz_bridge file that runs in the namespace ``above``; a row for
+    both ways has no role."""
+    for row in items(document.root):
+        values = {key.value: value for key, value in pairs(row)}
+        name = values.get(ROS) or values.get(BOTH)
+        if name is None:
+            continue
+        words = {key: str(value.value) for key, value in values.items()}
+        full = f"/{below(str(name.value), above).lstrip('/')}"
+        role = _ROLES.get(words.get("direction", ""), "")
+        own = (TOPIC, role, full, words.get("ros_type_name", ""), "", f"/{BRIDGE_NODE}", None, "")
+        yield End(*own, full, place=Place(document.file, line_of(name)))

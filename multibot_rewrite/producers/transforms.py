@@ -1,0 +1,60 @@
+"""The transforms that a robot's sources name, and those that they tell nodes not to send."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+
+from multibot_rewrite.evidence.filling import filled, lookup
+from multibot_rewrite.evidence.records import GivenNode
+from multibot_rewrite.graph.transforms import STATE_PUBLISHER, sent_by
+from multibot_rewrite.graph.transforms import Edge as Pair
+from multibot_rewrite.knowledge.conditions import AND, holds, parse_condition
+from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.system.records import NOWHERE, OFF, RUNS, Edge, Place, Sure
+
+TOPIC = "/tf"
+
+
+def edge(
+    pair: Pair, node: str, place: Place = NOWHERE, topic: str = TOPIC, sure: Sure = RUNS
+) -> Edge:
+    """A transform on the tf topic of its robot, or on the static one beside it."""
+    on = "/".join("tf_static" if it == "tf" and pair.static else it for it in topic.split("/"))
+    return Edge(pair.child, pair.parent, on, pair.static, (node,), sure=sure, place=place)
+
+
+def joint_edges(tree: Iterable[tuple[Pair, Place]]) -> Iterator[Edge]:
+    """What robot_state_publisher sends for the joints of a description."""
+    yield from (edge(pair, f"/{STATE_PUBLISHER}", place) for pair, place in tree)
+
+
+def node_edges(nodes: Iterable[NodeFacts], given: Iterable[GivenNode], root: str) -> Iterator[Edge]:
+    """What nodes send; ``root`` is the robot's first link."""
+    places = {it.name: it.place for it in given}
+    for node in nodes:
+        for pair in sent_by(node, root):
+            yield edge(pair, f"/{node.name}", places.get(node.name, NOWHERE))
+
+
+def edges_off(given: Iterable[GivenNode], known: Mapping[str, NodeFacts]) -> Iterator[Edge]:
+    """What nodes would send, with the parameter that alone switches it off."""
+    for it in given:
+        node = known.get(it.known)
+        runs = filled(node, it) if node and node.sends else None
+        if node is None or runs is None or runs.sends:
+            continue
+        frames = {frame.parameter: frame.default for frame in runs.frames}
+        for send in node.sends:
+            place = _switch(send.condition, runs, it)
+            if place:
+                pair = Pair(frames[send.parent], frames[send.child], False)
+                yield edge(pair, f"/{it.name}", place, sure=OFF)
+
+
+def _switch(condition: str, runs: NodeFacts, given: GivenNode) -> Place | None:
+    """Where the parameter is that alone switches it off."""
+    value_of = lookup(runs, given.values)
+    off = [it for it in condition.split(AND) if not holds(it, value_of)]
+    parts = parse_condition(off[0]) if len(off) == 1 else ()
+    found = (given.values[it.parameter] for it in parts if it.parameter in given.values)
+    return next((it.place for it in found), None)

@@ -1,0 +1,214 @@
+"""The plan of a fleet: what should run, by its remap table and its descriptions."""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence, Set
+from typing import TYPE_CHECKING
+
+from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.naming import NAMESPACE, TF_TOPICS, Naming, spelled
+from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.remap.records import EndpointName, Table
+from multibot_rewrite.remap.ways import HOST, PLUGIN, PROCESS, deliveries
+from multibot_rewrite.system.conventions import SENT_BY_EVERY_NODE, USUAL_FRAMES
+from multibot_rewrite.system.records import MAY, RUNS, End, Node, Robot, System, place_of
+
+if TYPE_CHECKING:
+    from multibot_rewrite.steps.collect import Inventory
+
+NOTHING: Mapping[str, Sequence[str]] = {}
+NOWHERE: Mapping[str, str] = {}
+# What names a node, if no file does.
+STACK = "stack "
+
+
+def planned_end(
+    node: str,
+    kind: str,
+    role: str,
+    name: str,
+    type_: str = "",
+    code_name: str = "",
+    also: tuple[str, ...] = (),
+) -> End:
+    """An end of which nothing is known that only a running system shows."""
+    return End(kind, role, name, type_, "", node, None, "", code_name, also)
+
+
+def from_text(node: Node, origin: str) -> Node:
+    """The node with what names it: a text such as ``stack nav2``, or a place."""
+    if origin.startswith(STACK):
+        return node._replace(stack=origin.removeprefix(STACK))
+    return node._replace(place=place_of(origin))
+
+
+def robot_words(plan: System) -> dict[str, str]:
+    """The words that stand for robots, in names and in frames, and the robot of each."""
+    return {word: it.name for it in plan.robots for word in (it.name, it.tag) if word}
+
+
+def vacuous(plan: System) -> str:
+    """Why a graph without any node would be as planned; empty for a plan that tests something."""
+    if not plan.robots:
+        return "no robot is planned"
+    needed = {it.robot for it in plan.nodes if it.sure.word == RUNS.word or it.sure.instead}
+    idle = [it.name for it in plan.robots if it.name not in needed]
+    verb = "has" if len(idle) == 1 else "have"
+    return f"{', '.join(idle)} {verb} no node that must run" if idle else ""
+
+
+def expect(
+    table: Table,
+    naming: Naming,
+    frames: Mapping[str, Sequence[str]],
+    facts: Sequence[NodeFacts] = (),
+    named: Mapping[str, Sequence[str]] = NOTHING,
+    sources: Mapping[str, str] = NOWHERE,
+    words: Mapping[str, str] = NOWHERE,
+    maybe_real: Container[str] = (),
+) -> System:
+    """The plan that follows from a remap table.
+
+    ``frames`` are the declared frames of each robot, ``named`` further frames in its description.
+    ``facts`` describe the nodes that every robot runs, ``sources`` has ``file:line`` of the plugin of a
+    node. ``words`` has the name of a robot in its frames, where that is another one than its name;
+    plugins of ``maybe_real`` robots may be missing.
+    """
+    usual = dict.fromkeys((*_defaults(facts), *USUAL_FRAMES))
+
+    def robot(name: str) -> Robot:
+        word, own = words.get(name, name), tuple(frames.get(name, ()))
+        others = (*named.get(name, ()), *(spelled(naming, word, "frame", frame) for frame in usual))
+        tag = word if word != name else ""
+        return Robot(name, own, tf_topic(name, naming), _further(others, own, naming), tag)
+
+    may_run = _may_run(table, facts, maybe_real)
+    names = dict.fromkeys((*frames, *filter(None, may_run.nodes)))
+    nodes = (it for name in (*names, "") for it in _nodes_of(name, may_run))
+    return System(
+        nodes=tuple(_placed(nodes, table, sources)),
+        ends=tuple(dict.fromkeys(_planned(table.names))),
+        robots=tuple(map(robot, names)),
+        layout=table.layout,
+        shared_topics=tuple(sorted(f"/{topic}" for topic in naming.shared_topics)),
+        shared_frames=tuple(sorted(naming.shared_frames)),
+        # What nodes for all robots make for themselves.
+        ignored_nodes=tuple(may_run.made.get("", ())),
+    )
+
+
+class _MayRun(NamedTuple):
+    """The nodes of each robot (name in the stack, full name), those that its nodes make, those of them
+    that are always there, and the nodes that run under a condition, by robot and name in the stack."""
+
+    nodes: Mapping[str, Sequence[tuple[str, str]]]
+    made: Mapping[str, Sequence[str]]
+    always: Mapping[str, Sequence[str]]
+    conditional: Set[tuple[str, str]]
+
+
+def _may_run(table: Table, facts: Sequence[NodeFacts], maybe_real: Container[str]) -> _MayRun:
+    optional = {node.name for node in facts if node.when}
+    plugins = {
+        (it.robot, it.node) for it in table.nodes if it.home.written and it.robot in maybe_real
+    }
+    return _MayRun(
+        _nodes(table),
+        _private_nodes(table.names),
+        _private_nodes(it for it in table.names if not it.endpoint.when),
+        plugins | {(it.robot, it.node) for it in table.nodes if it.node in optional},
+    )
+
+
+def _nodes_of(robot: str, may_run: _MayRun) -> Iterator[Node]:
+    """The nodes of a robot, and those that these make for themselves; of all robots only the former."""
+    of_stack = may_run.nodes.get(robot, ())
+    optional = tuple(full for name, full in of_stack if (robot, name) in may_run.conditional)
+    always, own = may_run.always.get(robot, ()), dict.fromkeys(full for _, full in of_stack)
+    for full in own:
+        yield Node(full, robot=robot, sure=MAY if robot and full in optional else RUNS)
+    for full in (it for it in may_run.made.get(robot, ()) if robot and it not in own):
+        sure = full in always and not full.startswith(optional)
+        yield Node(full, robot=robot, sure=RUNS if sure else MAY)
+
+
+def _further(others: Iterable[str], own: Iterable[str], naming: Naming) -> tuple[str, ...]:
+    """Frames that may come besides a robot's own and those that all share."""
+    known = {*own, *naming.shared_frames}
+    return tuple(frame for frame in dict.fromkeys(others) if frame not in known)
+
+
+def _placed(nodes: Iterable[Node], table: Table, sources: Mapping[str, str]) -> Iterator[Node]:
+    """Each node with its plugin, and its way and taker, where it has no --ros-args of its own."""
+    ways = dict(_ways(table))
+    for it in nodes:
+        way, taker = ways.get(it.name, ("", ""))
+        yield it._replace(way=way, taker=taker, plugin=place_of(sources.get(it.name, "")))
+
+
+def _ways(table: Table) -> Iterator[tuple[str, tuple[str, str]]]:
+    found = {it.node.full_name: it for it in reversed(deliveries(table))}
+    full = {(it.robot, it.node): it.full_name for it in table.nodes}
+    for node in table.nodes:
+        it = found.get(node.full_name)
+        if it is None or it.way == PROCESS or node.home.plugin:
+            continue
+        taker = full.get((node.robot, it.taker), "")
+        yield node.full_name, (it.way, taker if it.way in (HOST, PLUGIN) else "")
+
+
+def _nodes(table: Table) -> dict[str, list[tuple[str, str]]]:
+    """By robot: the name of each node in the stack, and its full name."""
+    found: dict[str, list[tuple[str, str]]] = {}
+    for node in table.nodes:
+        full = f"{node.namespace.rstrip('/')}/{node.name}"
+        found.setdefault(node.robot, []).append((node.node, full))
+    return found
+
+
+def _defaults(facts: Iterable[NodeFacts]) -> Iterator[str]:
+    """The default frames of parameters; a name in <> stands for another parameter."""
+    for node in facts:
+        names = (frame.default.strip("/") for frame in node.frames)
+        yield from (name for name in names if name and "<" not in name)
+
+
+def named_frames(inventory: Inventory) -> tuple[str, ...]:
+    """The frames that a description names anywhere, such as those of its plugins' messages."""
+    values = (
+        claim.value.strip()
+        for claim in inventory.claims
+        if "frame" in claim.site.kinds and claim.site.form == "whole"
+    )
+    return tuple(dict.fromkeys(filter(None, values)))
+
+
+def _private_nodes(names: Iterable[EndpointName]) -> dict[str, tuple[str, ...]]:
+    """By robot: patterns of the nodes that its nodes make for themselves."""
+    found: dict[str, tuple[str, ...]] = {}
+    for name in names:
+        full = f"{name.node}{name.endpoint.by}"
+        if name.endpoint.by and full not in found.get(name.robot, ()):
+            found[name.robot] = (*found.get(name.robot, ()), full)
+    return found
+
+
+def _planned(names: Iterable[EndpointName]) -> Iterator[End]:
+    """The endpoints that do not depend on parameters."""
+    for name in names:
+        end = name.endpoint
+        if end.when or (end.helper and not end.by):
+            continue
+        if end.role and name.name not in SENT_BY_EVERY_NODE:
+            own = (f"{name.node}{end.by}", end.kind, end.role, name.name)
+            yield planned_end(*own, end.type, end.name, end.also)
+
+
+def tf_topic(robot: str, naming: Naming) -> str:
+    """The tf topic of a robot in this layout."""
+    topic = f"/{TF_TOPICS[0]}"
+    if not naming.layout.tf_per_robot:
+        return topic
+    if naming.topics == NAMESPACE:
+        return f"/{robot}{topic}"
+    return spelled(naming, robot, "topic", topic)
