@@ -55,12 +55,8 @@ def types_differ(seen: Index) -> Iterator[Finding]:
         if len({(end.type, end.type_hash) for end in (*givers, *takers)}) < 2:
             continue
         # Of a side alone the first one counts.
-        others = givers
-        lost = _apart(takers, givers)
-        if not lost:
-            others = takers or givers[:1]
-            lost = _apart(givers, others)
-        for node, own in lost.items():
+        others = givers if takers else givers[:1]
+        for node, own in _apart(takers or givers, others).items():
             given = {it for end in others for it in _types(end)}
             asked = {it for end in own for it in _types(end)}
             message, cause = _difference(ends.name, others[0].node, dict(asked), dict(given))
