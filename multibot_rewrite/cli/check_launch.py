@@ -6,7 +6,7 @@ import argparse
 import shlex
 from collections.abc import Sequence
 
-from multibot_rewrite.cli import check, doctor, pictures
+from multibot_rewrite.cli import check, pictures, unplanned
 from multibot_rewrite.cli.output import note
 from multibot_rewrite.cli.report import check_report
 from multibot_rewrite.cli.walk import check_target
@@ -32,9 +32,9 @@ def run(options: argparse.Namespace) -> int:
             note(options, it.message)
     if plan is not None:
         return check.conclude(options, plan, made)
-    # What doctor is told besides: there is no snapshot, and nothing to begin.
+    # What a check is told besides: there is no snapshot, and nothing to begin.
     whole = argparse.Namespace(**vars(options), snapshot=[], suggest=None)
-    return doctor.report_on(whole, diagnose(made))
+    return unplanned.report_on(whole, diagnose(made))
 
 
 def order_of(options: argparse.Namespace, words: Sequence[str]) -> LaunchOrder:

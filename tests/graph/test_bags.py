@@ -201,8 +201,8 @@ def test_the_command(made: Path, capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_the_doctor(made: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(capsys, "doctor", "--bag", made / "healthy")[0] == 0
-    code, out, _ = run(capsys, "doctor", "--bag", made / "collision")
+    assert run(capsys, "check", "--bag", made / "healthy")[0] == 0
+    code, out, _ = run(capsys, "check", "--bag", made / "collision")
     assert (code, "MG401" in out) == (1, True)
 
 
@@ -215,7 +215,7 @@ def test_the_doctor_finds_what_needs_no_plan(
     change, (wanted,), _ = FAULTS[fault]
     topics = healthy()
     change(topics)
-    _, out, _ = run(capsys, "doctor", "--bag", write(tmp_path / "bag", topics.values()))
+    _, out, _ = run(capsys, "check", "--bag", write(tmp_path / "bag", topics.values()))
     assert wanted in out
 
 
@@ -314,6 +314,6 @@ def test_a_tf_topic_of_one_robot_alone_needs_no_endpoint_of_the_plan() -> None:
 def test_the_robots_of_a_recording_are_told_by_its_topics(
     made: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    _, _, err = run(capsys, "doctor", "--bag", made / "healthy")
+    _, _, err = run(capsys, "check", "--bag", made / "healthy")
     assert "2 robots by their namespaces: robot1, robot2" in err
     assert "of no robot" not in err

@@ -212,7 +212,7 @@ def test_a_controller_runs_beside_its_manager_with_the_rules_of_both(run: Graph)
         ((node("acme/driver", "driver"),), (), "/robot1/driver (acme/driver)"),
         ((publisher("/robot1", TF, robot_description=""),), (), "/robot1/rsp"),
         ((), (LaunchNote(AT, "decided only at run time"),), f"{AT}: decided only at run time"),
-        ((node("gazebo_ros/spawn_entity.py", ""),), (), "plugins of Gazebo Classic make"),
+        ((node("gazebo_ros/spawn_entity.py", ""),), (), "plugins of a spawned model make"),
         ((publisher("/robot1", (("/tf", "1tf"),)),), (), "rcl refuses"),
     ],
 )
@@ -339,3 +339,65 @@ def test_the_bridge_of_tf_is_known(run: Graph) -> None:
         for role, above in (("publishes", ""), ("subscribes", "/robot1"))
         for topic in ("tf", "tf_static")
     }
+
+
+DRIVE = """<robot name="r"><link name="base_link"/><gazebo><plugin name="gz::sim::systems::DiffDrive"
+ filename="gz-sim-diff-drive-system"><topic>{0}/cmd_vel</topic><tf_topic>{0}/tf</tf_topic>
+ <frame_id>{0}/odom</frame_id><child_frame_id>{0}/base_link</child_frame_id></plugin></gazebo></robot>"""
+CREATE = ("-name", "robot1", "-topic", "/robot1/robot_description")
+TF_ROW = "/{}/tf@tf2_msgs/msg/TFMessage[gz.msgs.Pose_V"
+
+
+def bridged_model(run: Graph, bridged: str, *words: str) -> System:
+    state = publisher("/robot1", TF, robot_description=DRIVE.format("robot1"))
+    create = node("ros_gz_sim/create", "", "/", arguments=words)
+    row = (TF_ROW.format(bridged),)
+    return run(state, create, node("ros_gz_bridge/parameter_bridge", "b", "/", arguments=row))
+
+
+def test_a_bridge_sends_what_systems_of_the_spawned_model_do(run: Graph) -> None:
+    """gz-sim DiffDrive.cc: frame_id to child_frame_id on tf_topic."""
+    made = bridged_model(run, "robot1", *CREATE)
+    (edge,) = made.edges
+    assert (edge.parent, edge.child, edge.topic) == (
+        "robot1/odom",
+        "robot1/base_link",
+        "/robot1/tf",
+    )
+    # tf messages do not say who of a topic sent them.
+    assert edge.publishers == ("/robot1/rsp", "/b")
+    assert made.environment.caveats == ()
+
+
+@pytest.mark.parametrize(
+    ("bridged", "words", "said"),
+    [
+        ("other", CREATE, "the transforms that the simulator sends are not known: /b"),
+        ("robot1", (), "the transforms that the simulator sends are not known: /b"),
+        ("robot1", ("-topic", "/other"), "its description is not"),
+    ],
+)
+def test_a_model_that_is_not_known_is_said(
+    bridged: str, words: tuple[str, ...], said: str, run: Graph
+) -> None:
+    made = bridged_model(run, bridged, *words)
+    assert made.edges == ()
+    assert any(said in it.message for it in made.environment.caveats)
+
+
+LASER = """<robot name="r"><link name="base_link"/><gazebo reference="base_link"><sensor name="s"
+ type="ray"><plugin name="laser" filename="libgazebo_ros_ray_sensor.so"><ros>
+ <namespace>{0}</namespace><remapping>~/out:=scan</remapping></ros></plugin></sensor></gazebo></robot>"""
+
+
+def test_plugins_of_gazebo_classic_are_nodes_and_it_has_the_clock(run: Graph) -> None:
+    """gazebo_ros node.cpp: the plugin's name is the node's; gazebo_ros_init.cpp: /clock."""
+    state = publisher("/robot1", TF, robot_description=LASER.format("/robot1"))
+    words = ("-entity", "robot1", "-topic", "/robot1/robot_description")
+    spawner = node("gazebo_ros/spawn_entity.py", "", "/", arguments=words)
+    made = run(state, spawner, node("gazebo_ros/gzserver", "", "/"))
+    assert ("publishes", "/robot1/scan") in names(made, "/robot1/laser")
+    assert names(made, "/gazebo") == {("publishes", "/clock")}
+    assert made.environment.caveats == ()
+    alone = run(state, node("gazebo_ros/gzserver", "", "/"))
+    assert "/robot1/laser" not in {it.name for it in alone.nodes}, "nothing spawns it"

@@ -10,7 +10,6 @@ from multibot_rewrite.cli.declared.fleet import BUILD, INIT, PLAN, REHEARSE
 from multibot_rewrite.cli.declared.graph import (
     CHECK,
     CHECK_LAUNCH,
-    DOCTOR,
     LEARN,
     SNAPSHOT,
     ZENOH_FILES,
@@ -27,7 +26,6 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             BUILD,
             CHECK,
             CHECK_LAUNCH,
-            DOCTOR,
             EXPLAIN,
             INIT,
             INSPECT,
@@ -46,6 +44,7 @@ INSTEAD: Mapping[str, str] = MappingProxyType(
         "arguments": "multibot inspect FILE.xacro",
         "coverage": "multibot inspect PATH...",
         "vocabulary": "multibot inspect [NAME]",
+        "doctor": "multibot check without a PLAN",
         "lint": "urdf-lint PATH...",
         "remap": "multibot plan INPUT ROBOT... --form table",
         "rewrite": "urdf-postfix INPUT ROBOT...",

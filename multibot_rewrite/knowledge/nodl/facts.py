@@ -27,7 +27,7 @@ from multibot_rewrite.system.records import SERVES, SERVICE, SUBSCRIBES, TOPIC
 
 EVERY_NODE = "every_node"
 # An endpoint of the library alone keeps its rule, and is not asked for: the document may be partial.
-NOT_IN_NODL = "not in the NoDL file of the node"
+NOT_IN_NODL = "nodl: no"
 TYPE_DESCRIPTION = Endpoint(SERVICE, SERVES, "~/get_type_description")
 _TF = ("/tf", "/tf_static")
 _TF_TYPE = "tf2_msgs/msg/TFMessage"

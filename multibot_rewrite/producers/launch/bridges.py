@@ -24,7 +24,7 @@ _BRIDGE = "ros_gz_bridge"
 _WORD = re.compile(r"(?P<topic>[^@]+)@(?P<type>[^@\[\]]+)(?P<way>[@\[\]])[^@\[\]]+")
 _ROLES = {"[": (PUBLISHES,), "]": (SUBSCRIBES,), "@": (PUBLISHES, SUBSCRIBES)}
 _WAYS = {"GZ_TO_ROS": "[", "ROS_TO_GZ": "]", "BIDIRECTIONAL": "@"}
-Row = tuple[str, str, str]
+Row = tuple[str, str, str, str]
 
 
 def is_bridge(it: RunningNode) -> bool:
@@ -33,11 +33,11 @@ def is_bridge(it: RunningNode) -> bool:
 
 
 def bridged_by(it: RunningNode) -> Iterator[Row]:
-    """Role, topic and type of all that a bridge passes on."""
+    """Role, topic and type in ROS, and the topic in the simulator, of all that a bridge passes on."""
     for word in it.arguments:
         found = _WORD.fullmatch(word)
         if found:
-            yield from _rows(found["topic"], found["type"], found["way"])
+            yield from _rows(found["topic"], found["type"], found["way"], found["topic"])
     given = it.values.get("config_file")
     path = str(given.value) if given else ""
     if path and os.path.isfile(path):
@@ -55,11 +55,12 @@ def _of_text(text: str) -> Iterator[Row]:
         if isinstance(entry, Mapping):
             topic = entry.get("ros_topic_name") or entry.get("topic_name")
             way = _WAYS.get(str(entry.get("direction", "BIDIRECTIONAL")), "@")
+            inside = entry.get("gz_topic_name") or topic
             if topic:
-                yield from _rows(str(topic), str(entry.get("ros_type_name", "")), way)
+                yield from _rows(str(topic), str(entry.get("ros_type_name", "")), way, str(inside))
 
 
-def _rows(topic: str, type_: str, way: str) -> Iterator[Row]:
+def _rows(topic: str, type_: str, way: str, inside: str) -> Iterator[Row]:
     package, _, name = type_.partition("/")
     full = type_ if "/msg/" in type_ or not name else f"{package}/msg/{name}"
-    yield from ((role, topic, full) for role in _ROLES[way])
+    yield from ((role, topic, full, inside) for role in _ROLES[way])

@@ -25,11 +25,16 @@ from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.system.records import Place
 
 _LIMIT = 1 << 24
+SIMULATOR = "gzserver"
 # launch_ros says so of a text that is no YAML or value (jazzy, utilities/evaluate_parameters.py:82).
 _FAILS = "try wrapping it"
-# The commands of Gazebo, and what ROS starts it with.
-_SIMULATORS = ("gz", "ign", "gazebo", "gzserver")
-_GAZEBO = ("ros_gz_sim", "gzserver")
+# The commands of Gazebo, and the package that ROS starts it with.
+_GAZEBO = {
+    "gz": "ros_gz_sim",
+    "ign": "ros_gz_sim",
+    "gazebo": "gazebo_ros",
+    "gzserver": "gazebo_ros",
+}
 # ament_index_python and Python say it so.
 _OF_PLUGIN = re.compile(r"<parameters>\s*([^<\s]+)\s*</parameters>")
 _NOT_FOUND = re.compile(r"package '(\w+)' not found|No module named '(\w+)")
@@ -62,6 +67,14 @@ def failure(error: BaseException) -> str:
         hint = "source its workspace, or give the folder of its sources with --launch-roots"
         return f"package {name!r} is not installed here; {hint}"
     return " ".join(f"{type(error).__name__}: {error}".split())
+
+
+def simulator(error: BaseException, here: Visit) -> LaunchedNode | None:
+    """The simulator of a package that is missing here: that it starts one is known without it."""
+    found = _NOT_FOUND.search(str(error))
+    if found is None or found[1] not in _GAZEBO.values():
+        return None
+    return LaunchedNode(found[1], SIMULATOR, "", "/", (), (), "", (), here.later, here.place)
 
 
 def is_wanted(action: Any, context: Any) -> bool:
@@ -136,8 +149,8 @@ def process(action: Any, here: Visit) -> Iterator[LaunchedNode]:
 
 
 def _simulator(words: list[str]) -> tuple[str, str, list[str]] | None:
-    program = os.path.basename(words[0]) if words else ""
-    return (*_GAZEBO, []) if program in _SIMULATORS else None
+    package = _GAZEBO.get(os.path.basename(words[0]) if words else "")
+    return (package, SIMULATOR, []) if package else None
 
 
 def _kept(action: Any, name: str) -> Any:

@@ -9,11 +9,9 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from functools import cache, lru_cache
-from importlib.resources import files
+from functools import lru_cache
 from typing import Any
 
-from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.companions.params.sections import raw_sections
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.controller_ways import controller_way
@@ -27,6 +25,7 @@ from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.model import InputError
 from multibot_rewrite.producers.launch.bridge_rows import bridge_rows
 from multibot_rewrite.producers.launch.findings import launch_findings
+from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, ParameterText
 from multibot_rewrite.producers.launch.spawner_managers import under_managers
 from multibot_rewrite.producers.launch.spawners import Spawned, is_spawner, spawned_in, texts_of
@@ -39,18 +38,6 @@ _CAMEL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
 # The name of a file for what a launch file gives itself.
 _OWN = "parameters of a launch file"
 NO_NAME = "the launch file gives it no name"
-
-
-class Programs(NamedTuple):
-    """Executables whose node is known under another word, those whose node has another name, and those
-    that are no node of a robot. ``simulators`` are packages that only a simulated robot needs,
-    ``stamped`` parameters that are true by default, with their releases."""
-
-    nodes: Mapping[str, str]
-    names: Mapping[str, str]
-    passing: Collection[str]
-    simulators: Collection[str]
-    stamped: Mapping[str, str]
 
 
 class Launched(NamedTuple):
@@ -71,15 +58,6 @@ class _Pair(NamedTuple):
     node: LaunchedNode
     facts: NodeFacts
     known: bool
-
-
-@cache
-def programs() -> Programs:
-    """Those of ``programs.yaml``."""
-    text = files(__package__).joinpath("programs.yaml").read_text("utf-8")
-    data = load_yaml(text)
-    passing, simulators = (frozenset(data[it]) for it in ("passing", "simulators"))
-    return Programs(data["nodes"], data["names"], passing, simulators, data["stamped"])
 
 
 def with_launched(

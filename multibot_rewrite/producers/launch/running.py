@@ -8,27 +8,49 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 
 from multibot_rewrite.controller_ways import controller_way
 from multibot_rewrite.evidence.filling import filled
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import Given, GivenNode
 from multibot_rewrite.knowledge.parameters import KnownNodes
-from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
+from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.producers.launch.models import (
+    Model,
+    Models,
+    Published,
+    is_manager,
+    managers,
+    models_of,
+    rules_of,
+)
 from multibot_rewrite.producers.launch.of_robot import document_of, has_sections, known_node, passes
-from multibot_rewrite.producers.launch.of_robot import programs as known_programs
+from multibot_rewrite.producers.launch.programs import programs as known_programs
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, LaunchNote
-from multibot_rewrite.producers.launch.simulated_managers import Published, simulated_managers
 from multibot_rewrite.producers.launch.spawners import Spawned, spawned_in, texts_of
 from multibot_rewrite.producers.launch.static_transforms import with_static_transform
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.rosnames import expand
-from multibot_rewrite.system.records import Place
+from multibot_rewrite.remap.plugin_nodes import plugin_nodes
+from multibot_rewrite.rosnames import (
+    BoundNode,
+    NameFault,
+    RemapRule,
+    bind,
+    expand,
+    read_remap,
+    resolve_bound,
+)
+from multibot_rewrite.system.conventions import CLOCK
+from multibot_rewrite.system.records import PUBLISHES, TOPIC, Place
 
 Rules = tuple[tuple[str, str], ...]
 DESCRIPTION = "robot_description"
 # The process of the managers that plugins make.
-_SIMULATOR = "simulator"
+SIMULATED = "simulator"
+_CLASSIC = ("gazebo_ros", "gzserver")
+CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
 
 
 class Knowledge(NamedTuple):
@@ -68,26 +90,37 @@ class RunningNode(NamedTuple):
         return expand(self.name, self.namespace, "")
 
 
-def running_nodes(
-    graph: LaunchGraph, known: Knowledge
-) -> tuple[tuple[RunningNode, ...], tuple[LaunchNote, ...]]:
-    """The nodes that a launch starts, hosted ones and controllers with them, and what is not known."""
+class Running(NamedTuple):
+    """The nodes that a launch starts, hosted ones, controllers and plugins with them; what is not
+    known; the descriptions."""
+
+    nodes: tuple[RunningNode, ...]
+    notes: tuple[LaunchNote, ...]
+    models: Models
+
+
+def running_nodes(graph: LaunchGraph, known: Knowledge) -> Running:
+    """All that a launch starts."""
     spawned, notes = spawned_in(graph.nodes)
     started = [it for it in graph.nodes if not passes(it)]
     containers = {full_name(it, None): it for it in started}
     found: list[RunningNode] = []
     for at, it in enumerate(started):
         found += _started(it, containers.get(it.container), f"{at}", known)
+    models = models_of(graph.nodes, _descriptions(found), known.release)
     asked = {it.manager for it in spawned} - {it.full_name for it in found}
-    for manager in simulated_managers(
-        _descriptions(found), dict(graph.files), asked, known.release
-    ):
-        found += _started(manager, None, _SIMULATOR, known)
-        started.append(manager)
-    managers = {it.full_name: it for it in found if it.facts and it.facts.known == MANAGER}
-    controllers = _controllers(spawned, managers, started, known)
-    lost = [it for it in spawned if it.manager not in managers]
-    return (*found, *controllers), (*notes, *_spawned_twice(spawned), *_without_manager(lost))
+    for model in models.found:
+        made = managers(model, dict(graph.files))
+        wanted = [it for it in made if model.spawned or full_name(it, None) in asked]
+        found += [one for it in wanted for one in _started(it, None, SIMULATED, known)]
+        found += _plugins(model) if model.spawned else ()
+        started += wanted
+    found += _clock(graph)
+    by_name = {it.full_name: it for it in found if it.facts and it.facts.known == MANAGER}
+    controllers = _controllers(spawned, by_name, started, known)
+    lost = [it for it in spawned if it.manager not in by_name]
+    more = (*_spawned_twice(spawned), *_without_manager(lost))
+    return Running((*found, *controllers), (*notes, *more), models)
 
 
 def _descriptions(nodes: Iterable[RunningNode]) -> Iterator[Published]:
@@ -95,7 +128,43 @@ def _descriptions(nodes: Iterable[RunningNode]) -> Iterator[Published]:
     for it in nodes:
         given = it.values.get(DESCRIPTION)
         if given and isinstance(given.value, str):
-            yield Published(given.value, it.place)
+            with suppress(UsageError):
+                topic = resolve_bound(DESCRIPTION, TOPIC, bound_of(it.name, it.namespace, it.rules))
+                yield Published(given.value, topic, it.place)
+
+
+def bound_of(name: str, namespace: str, rules: Rules) -> BoundNode:
+    """A node under its rules; raises UsageError for one that rcl refuses."""
+    return bind(name, namespace, [_rule(f"{old}:={new}") for old, new in rules])
+
+
+def _rule(text: str) -> RemapRule:
+    found = read_remap(text)
+    if isinstance(found, NameFault):
+        raise UsageError(f"rule {text!r}: {found.reason}")
+    return found
+
+
+def _plugins(model: Model) -> Iterator[RunningNode]:
+    """The nodes of plugins in the simulator."""
+    nodes = [it for it in model.reading.nodes if not is_manager(it)]
+    facts = {fact.name: fact for fact, _ in plugin_nodes(model.reading, model.name)}
+    for it in nodes:
+        home, program = it.namespace or "/", it.section.names[0]
+        names = (it.name, home, tuple(rules_of(it)), (), home)
+        yield RunningNode(*names, facts[it.name], {}, SIMULATED, (), program, model.place)
+
+
+def _clock(graph: LaunchGraph) -> Iterator[RunningNode]:
+    """Gazebo Classic is a node that has the clock (gazebo_ros src/gazebo_ros_init.cpp); of gz a bridge
+    passes it on."""
+    for it in graph.nodes:
+        if (it.package, it.executable) == _CLASSIC:
+            clock = Endpoint(TOPIC, PUBLISHES, CLOCK, CLOCK_TYPE)
+            facts = NodeFacts("gazebo", it.package, (clock,))
+            names = (facts.name, "/", (), (), "/")
+            yield RunningNode(*names, facts, {}, SIMULATED, (), _CLASSIC[1], it.place)
+            return
 
 
 def full_name(it: LaunchedNode, facts: NodeFacts | None) -> str:

@@ -7,7 +7,7 @@ condition that nobody knows is left out.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from lxml import etree
 
@@ -19,12 +19,15 @@ from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
 from multibot_rewrite.producers.launch.bridges import bridged_by, is_bridge
 from multibot_rewrite.producers.launch.findings import STOOD_IN
-from multibot_rewrite.producers.launch.of_robot import programs
+from multibot_rewrite.producers.launch.models import Models, sent_in_simulator
+from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchNote
 from multibot_rewrite.producers.launch.running import (
+    CLOCK_TYPE,
     DESCRIPTION,
     Knowledge,
     RunningNode,
+    bound_of,
     running_nodes,
 )
 from multibot_rewrite.producers.launch.static_transforms import STATIC
@@ -32,11 +35,7 @@ from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.releases import has_release
 from multibot_rewrite.rosnames import (
     BoundNode,
-    NameFault,
-    RemapRule,
-    bind,
     expand,
-    read_remap,
     resolve_bound,
 )
 from multibot_rewrite.system.conventions import CLOCK
@@ -57,9 +56,7 @@ from multibot_rewrite.system.records import (
     System,
 )
 
-CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
 TF, TF_STATIC, TF_TYPE = "/tf", "/tf_static", "tf2_msgs/msg/TFMessage"
-_CLASSIC = ("gazebo_ros", "spawn_entity.py")
 _PREFIX_SWITCH = "tf_frame_prefix_enable"
 NOT_WHOLE, NOT_KNOWN, NO_TREE, REFUSED = (
     "launch-not-whole",
@@ -67,6 +64,9 @@ NOT_WHOLE, NOT_KNOWN, NO_TREE, REFUSED = (
     "description-not-known",
     "rcl-refuses",
 )
+
+
+Sent = Mapping[str, Sequence[SentEdge]]
 
 
 class _Part(NamedTuple):
@@ -79,24 +79,33 @@ class _Part(NamedTuple):
 
 def would_run(graph: LaunchGraph, known: Knowledge) -> System:
     """The graph of all that the launch starts; what is not known makes the view incomplete."""
-    nodes, notes = running_nodes(graph, known)
+    nodes, notes, models = running_nodes(graph, known)
+    inside = sent_in_simulator(models.found)
     refused: list[str] = []
     parts = []
     for it in nodes:
         try:
-            parts.append(_part(it, known.release))
+            parts.append(_part(it, known.release, inside))
         except UsageError as error:
             refused.append(f"{it.full_name} ({it.place}: {error})")
             parts.append(_Part(it.full_name, (), ()))
-    caveats = (*_stood_in(graph), *_refused(refused), *_caveats((*graph.notes, *notes), nodes))
-    caveats = (*caveats, *_in_classic(graph))
+    more = (*_caveats((*graph.notes, *notes), nodes), *_of_bridges(nodes, inside))
+    caveats = (*_stood_in(graph), *_refused(refused), *more, *_of_models(models))
     return System(
-        tuple(Node(part.name, it.process) for it, part in zip(nodes, parts, strict=True)),
+        tuple(_nodes(nodes, parts)),
         tuple(end for part in parts for end in part.endpoints),
         tuple(_frames(parts)),
         Environment(caveats=caveats),
         parameters=tuple(_clocks(nodes)),
     )
+
+
+def _nodes(running: Iterable[RunningNode], parts: Iterable[_Part]) -> Iterator[Node]:
+    """The nodes, each with those that its code makes beside it (``Endpoint.by``)."""
+    for it, part in zip(running, parts, strict=True):
+        yield Node(part.name, it.process)
+        own = dict.fromkeys(end.node for end in part.endpoints if end.node != part.name)
+        yield from (Node(name, it.process) for name in own)
 
 
 def _stood_in(graph: LaunchGraph) -> Iterator[Caveat]:
@@ -119,48 +128,49 @@ def _caveats(notes: Iterable[LaunchNote], nodes: Sequence[RunningNode]) -> Itera
         hint = "describe them in a file of nodes (--nodes, docs/stacks.md)"
         text = f"{plural(len(unknown), 'node')} not known, with all topics and frames: {listed}"
         yield Caveat(NOT_KNOWN, True, f"{text}; {hint}")
-    bridges = [it.full_name for it in nodes if is_bridge(it) and _passes_tf_on(it)]
-    if bridges:
-        text = f"the transforms that the simulator sends are not known: {shorten(bridges)}"
-        yield Caveat(NO_TREE, True, text)
     treeless = [it.full_name for it in nodes if _publishes_a_tree(it) and _tree(it) is None]
     if treeless:
         text = f"the description is not known, so neither are its frames: {shorten(treeless)}"
         yield Caveat(NO_TREE, True, text)
 
 
-def _in_classic(graph: LaunchGraph) -> Iterator[Caveat]:
-    """Plugins of Gazebo Classic are nodes, which a robot brings with it."""
-    spawners = [it for it in graph.nodes if (it.package, it.executable) == _CLASSIC]
-    if spawners:
-        text = "nodes that plugins of Gazebo Classic make of a spawned robot are not known"
-        yield Caveat(NOT_WHOLE, True, f"{spawners[0].place}: {text}")
+def _of_bridges(nodes: Sequence[RunningNode], inside: Sent) -> Iterator[Caveat]:
+    bridges = [it.full_name for it in nodes if not {*_tf_topics(it)} <= inside.keys()]
+    if bridges:
+        text = f"the transforms that the simulator sends are not known: {shorten(bridges)}"
+        yield Caveat(NO_TREE, True, text)
 
 
-def _passes_tf_on(it: RunningNode) -> bool:
-    return any((role, type_) == (PUBLISHES, TF_TYPE) for role, _, type_ in bridged_by(it))
+def _tf_topics(it: RunningNode) -> Iterator[str]:
+    """The topics in the simulator that a bridge passes on as transforms."""
+    for role, _, type_, inside in bridged_by(it) if is_bridge(it) else ():
+        if (role, type_) == (PUBLISHES, TF_TYPE):
+            yield inside
 
 
-def _part(it: RunningNode, release: str) -> _Part:
-    bound = _bound(it.name, it.namespace, it.rules)
+def _of_models(models: Models) -> Iterator[Caveat]:
+    """Plugins of a spawned model are nodes, which a robot brings with it."""
+    for it in models.lost[:1]:
+        text = "nodes that plugins of a spawned model make are not known: its description is not"
+        yield Caveat(NOT_WHOLE, True, f"{it.place}: {text}")
+    unknown = [name for it in models.found if it.spawned for _, name in it.reading.unknown]
+    if unknown:
+        listed = shorten(list(dict.fromkeys(unknown)), SEVERAL)
+        text = f"what these plugins of spawned models start is not known: {listed}"
+        yield Caveat(NOT_KNOWN, True, f"{text}; describe them (docs/add-a-plugin.md)")
+
+
+def _part(it: RunningNode, release: str, inside: Sent) -> _Part:
+    bound = bound_of(it.name, it.namespace, it.rules)
     name = f"{bound.namespace.rstrip('/')}/{bound.node}"
-    helper = _bound(it.name, it.process_namespace, it.process_rules)
+    helper = bound_of(it.name, it.process_namespace, it.process_rules)
     own = _endpoints(it, name, bound, helper, release)
     ends = [*own, *_bridged(it, name, bound)]
     if _value(it, SIM_TIME) is True and all(end.name != CLOCK for end in ends):
         ends.append(End(TOPIC, SUBSCRIBES, CLOCK, CLOCK_TYPE, "", name, None, it.process))
-    return _Part(name, tuple(dict.fromkeys(ends)), tuple(_edges(it, bound)))
-
-
-def _bound(name: str, namespace: str, rules: Iterable[tuple[str, str]]) -> BoundNode:
-    return bind(name, namespace, [_rule(f"{old}:={new}") for old, new in rules])
-
-
-def _rule(text: str) -> RemapRule:
-    found = read_remap(text)
-    if isinstance(found, NameFault):
-        raise UsageError(f"rule {text!r}: {found.reason}")
-    return found
+    return _Part(
+        name, tuple(dict.fromkeys(ends)), (*_edges(it, bound), *_passed_on(it, bound, inside))
+    )
 
 
 def _endpoints(
@@ -171,7 +181,7 @@ def _endpoints(
             own = end._replace(name=_below_namespace_above(it, end))
             full = _resolved(own, helper if end.helper else bound)
             type_ = _type(it, end, release)
-            yield End(end.kind, end.role, full, type_, "", name, None, it.process)
+            yield End(end.kind, end.role, full, type_, "", f"{name}{end.by}", None, it.process)
 
 
 def _type(it: RunningNode, end: Endpoint, release: str) -> str:
@@ -205,7 +215,7 @@ def _resolved(end: Endpoint, bound: BoundNode) -> str:
 
 
 def _bridged(it: RunningNode, name: str, bound: BoundNode) -> Iterator[End]:
-    for role, topic, type_ in bridged_by(it) if is_bridge(it) else ():
+    for role, topic, type_, _ in bridged_by(it) if is_bridge(it) else ():
         full = resolve_bound(topic, TOPIC, bound)
         yield End(TOPIC, role, full, type_, "", name, None, it.process)
 
@@ -221,6 +231,14 @@ def _edges(it: RunningNode, bound: BoundNode) -> Iterator[tuple[str, SentEdge]]:
         named = next((name for name in sent if name.strip("/") == topic.strip("/")), "")
         if named:
             yield resolve_bound(named, TOPIC, bound), edge
+
+
+def _passed_on(it: RunningNode, bound: BoundNode, inside: Sent) -> Iterator[tuple[str, SentEdge]]:
+    """The transforms of the simulator that a bridge passes on."""
+    for role, topic, type_, own in bridged_by(it) if is_bridge(it) else ():
+        if (role, type_) == (PUBLISHES, TF_TYPE):
+            full = resolve_bound(topic, TOPIC, bound)
+            yield from ((full, edge) for edge in inside.get(own, ()))
 
 
 def _own_edges(it: RunningNode) -> Iterable[SentEdge]:
@@ -286,6 +304,6 @@ def _clocks(nodes: Iterable[RunningNode]) -> Iterator[Parameter]:
     """Simulated time by parameter; the default is false (rclcpp time_source.cpp). What sends transforms
     that hold for ever needs no time."""
     for it in nodes:
-        if it.facts is not None and it.facts.known != STATIC:
+        if it.facts is not None and it.facts.known not in ("", STATIC):
             text = parameter_text(_value(it, SIM_TIME) is True)
             yield Parameter(it.full_name, SIM_TIME, text)

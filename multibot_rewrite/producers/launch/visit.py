@@ -17,6 +17,7 @@ from multibot_rewrite.producers.launch.describe import (
     is_wanted,
     node,
     process,
+    simulator,
     text,
 )
 from multibot_rewrite.producers.launch.places import place_of
@@ -73,6 +74,10 @@ def visit(entity: Any, seen: Visit) -> None:
             visit(below, here)
     except (Exception, SystemExit) as error:
         # A launch file is a program: it may raise anything.
+        missing = simulator(error, here) if own else None
+        if missing:
+            here.nodes.append(missing)
+            return
         ended = "; groups and their launch configurations have ended by then" if here.later else ""
         here.note(f"{here.later} {failure(error)}{ended}".strip())
     finally:

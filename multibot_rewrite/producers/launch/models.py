@@ -1,0 +1,142 @@
+"""Descriptions that a launch publishes or puts into a simulator -> what plugins in them make.
+
+Source: gz_ros2_control of humble to rolling, gz_ros2_control_plugin.cpp: each file of ``<parameters>``
+is an argument ``--params-file``, rules of ``<ros>`` are arguments, too; ``use_sim_time`` is true.
+ros_gz_sim create.cpp and gazebo_ros spawn_entity.py: a model by ``-topic``, ``-file`` or ``-string``.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import pairwise
+
+from multibot_rewrite.graph.transforms import Edge
+from multibot_rewrite.model import InputError
+from multibot_rewrite.producers.launch.programs import programs
+from multibot_rewrite.producers.launch.records import LaunchedNode, ParameterText
+from multibot_rewrite.readback.nodes import ReadNode
+from multibot_rewrite.readback.own_defaults import MODEL
+from multibot_rewrite.readback.reading import FRAME, Reading, read
+from multibot_rewrite.readback.xml import read_xml, values_at
+from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.rewriters.vocabulary import load_vocabulary
+from multibot_rewrite.rosnames import expand
+from multibot_rewrite.sources.read import read_file
+from multibot_rewrite.system.records import TOPIC, Place
+
+_NAMED = "controller_manager_name"
+_PROGRAM = ("controller_manager", "ros2_control_node")
+_CLOCK = ParameterText("", "/**:\n  ros__parameters: {use_sim_time: true}\n")
+# Frames of systems of gz that send odometry, and their topic (gz-sim src/systems: diff_drive,
+# ackermann_steering, mecanum_drive, tracked_vehicle, odometry_publisher).
+_PARENTS, _CHILDREN = ("frame_id", "odom_frame"), ("child_frame_id", "robot_base_frame")
+_TF = "tf_topic"
+
+
+class Published(NamedTuple):
+    """A description that a node of the launch publishes, on which topic, and where the launch file says
+    it."""
+
+    text: str
+    topic: str
+    place: Place
+
+
+class Model(NamedTuple):
+    """A description that is read. ``name`` is that of the model; ``spawned`` is false where nothing of
+    the launch puts it into a simulator."""
+
+    name: str
+    text: str
+    reading: Reading
+    spawned: bool
+    place: Place
+
+
+class Models(NamedTuple):
+    """The descriptions of a launch, and spawners whose model is not known."""
+
+    found: tuple[Model, ...]
+    lost: tuple[LaunchedNode, ...]
+
+
+def models_of(
+    started: Iterable[LaunchedNode], published: Iterable[Published], release: str
+) -> Models:
+    """What spawners put into a simulator, and what is only published."""
+    spawners = [it for it in started if f"{it.package}/{it.executable}" in programs().spawners]
+    texts = {it.topic: it for it in published}
+    found, lost, taken = [], [], set()
+    for it in spawners:
+        words = dict(pairwise(it.arguments))
+        topic = expand(words.get("-topic", ""), it.namespace, "") if "-topic" in words else ""
+        text = texts[topic].text if topic in texts else _given(words)
+        name = words.get("-name", words.get("-entity", ""))
+        model = _read(name, text, it.place, release, spawned=True)
+        found += [model] if model else []
+        lost += [] if model else [it]
+        taken.add(topic)
+    rest = (it for it in texts.values() if it.topic not in taken)
+    more = (_read("", it.text, it.place, release, spawned=False) for it in rest)
+    return Models((*found, *filter(None, more)), tuple(lost))
+
+
+def _given(words: Mapping[str, str]) -> str:
+    path = words.get("-file", "")
+    return read_file(path).decode() if os.path.isfile(path) else words.get("-string", "")
+
+
+def _read(name: str, text: str, place: Place, release: str, spawned: bool) -> Model | None:
+    try:
+        reading = read(text.encode(), place.file, load_vocabulary((), release))
+    except InputError:
+        return None
+    return Model(name, text, reading, spawned, place)
+
+
+def managers(model: Model, files: Mapping[str, ParameterText]) -> Iterator[LaunchedNode]:
+    """The controller managers that plugins make, as nodes that a launch starts; ``files`` are
+    those that descriptions name."""
+    plugins = [*read_xml(model.text.encode(), model.place.file).iter("plugin")]
+    for node in filter(is_manager, model.reading.nodes):
+        named = values_at(plugins[node.number], "parameters")
+        texts = (files[path.strip()] for path in named if path.strip() in files)
+        home = node.namespace or "/"
+        given = (*texts, _CLOCK)
+        rules = tuple(rules_of(node))
+        yield LaunchedNode(*_PROGRAM, node.name, home, rules, given, "", (), "", model.place)
+
+
+def is_manager(node: ReadNode) -> bool:
+    """Does the plugin make a controller manager?"""
+    return any(site.path == _NAMED for site in node.section.sites)
+
+
+def rules_of(node: ReadNode) -> Iterator[tuple[str, str]]:
+    """The remap rules of a plugin."""
+    for rule in (it.rule for it in node.rules):
+        yield f"{rule.node}:{rule.source}".lstrip(":"), rule.target
+
+
+def sent_in_simulator(models: Iterable[Model]) -> dict[str, list[Edge]]:
+    """The transforms that systems of gz send, by the topic in the simulator."""
+    found: dict[str, list[Edge]] = {}
+    for model in (it for it in models if it.spawned):
+        for topic, edge in _sent(model):
+            found.setdefault(topic, []).append(edge)
+    return found
+
+
+def _sent(model: Model) -> Iterator[tuple[str, Edge]]:
+    plugins: dict[int, dict[str, str]] = {}
+    for it in (*model.reading.names, *model.reading.missed):
+        if it.tag == "plugin" and it.kind in (FRAME, TOPIC):
+            plugins.setdefault(it.number, {})[it.path] = it.name.replace(MODEL, model.name)
+    for number in {it.number for it in model.reading.nodes} & plugins.keys():
+        del plugins[number]
+    for own in plugins.values():
+        parent = next((own[it] for it in _PARENTS if it in own), "")
+        child = next((own[it] for it in _CHILDREN if it in own), "")
+        if parent and child:
+            yield own.get(_TF, f"/model/{model.name}/tf"), Edge(parent, child, False)

@@ -1,0 +1,33 @@
+"""What is known of the programs that launch files start: ``programs.yaml``."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from functools import cache
+from importlib.resources import files
+
+from multibot_rewrite.bounded import load_yaml
+from multibot_rewrite.record import NamedTuple
+
+
+class Programs(NamedTuple):
+    """Executables whose node is known under another word, those whose node has another name, and those
+    that are no node of a robot. ``spawners`` put a description into a simulator, ``simulators`` are
+    packages that only a simulated robot needs, ``stamped`` parameters that are true by default, with
+    their releases."""
+
+    nodes: Mapping[str, str]
+    names: Mapping[str, str]
+    passing: Collection[str]
+    spawners: Collection[str]
+    simulators: Collection[str]
+    stamped: Mapping[str, str]
+
+
+@cache
+def programs() -> Programs:
+    """Those of ``programs.yaml``."""
+    text = files(__package__).joinpath("programs.yaml").read_text("utf-8")
+    data = load_yaml(text)
+    sets = {it: frozenset(data[it]) for it in ("passing", "spawners", "simulators")}
+    return Programs(**{**data, **sets})
