@@ -47,7 +47,7 @@ def graph_of(options: argparse.Namespace, order: LaunchOrder) -> System:
     """What the launch file would start; raises InputError for one that cannot be read."""
     release = release_here(options.distro)
     library = known_nodes(options.nodes, release, options.nodl).library
-    known = Knowledge(library.nodes, load_known_nodes("", release), release)
+    known = Knowledge(library.nodes, load_known_nodes(options.nodes or "", release), release)
     return would_run(launch_graph(order), known)
 
 

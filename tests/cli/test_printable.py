@@ -133,8 +133,6 @@ LINES = (
     *(["build", "fleet.yaml", "-o", "out", "--check"],),
     *(["init", ".", "-o", "-"], ["init", f"{EVIL}.xacro", f"a:={EVIL}", "-o", f"{EVIL}f.yaml"]),
     *(["check-launch", f"{EVIL}.launch.py"], ["check-launch", EVIL, "x.launch.py"]),
-    *(["zenoh", f"{EVIL}.yaml", "--router", "tcp/h:1", "-o", f"{EVIL}zenoh"],),
-    *(["zenoh", "plan.yaml", "--router", EVIL, "-o", "zenoh"],),
     *(["view", FILE, "-o", f"{EVIL}.html"], ["view", f"{EVIL}.yaml"], ["view", FILE, EVIL]),
     *(["rehearse", FILE, "robot1", "--stack", EVIL], ["snapshot", "--domain", EVIL]),
 )

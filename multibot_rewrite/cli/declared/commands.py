@@ -12,7 +12,6 @@ from multibot_rewrite.cli.declared.graph import (
     CHECK_LAUNCH,
     LEARN,
     SNAPSHOT,
-    ZENOH_FILES,
 )
 from multibot_rewrite.cli.declared.knowledge import EXPLAIN, INSPECT
 from multibot_rewrite.cli.declared.view import VIEW
@@ -34,7 +33,6 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             REHEARSE,
             SNAPSHOT,
             VIEW,
-            ZENOH_FILES,
         )
     }
 )
@@ -47,6 +45,7 @@ INSTEAD: Mapping[str, str] = MappingProxyType(
         "doctor": "multibot check without a PLAN",
         "lint": "urdf-lint PATH...",
         "remap": "multibot plan INPUT ROBOT... --form table",
+        "zenoh": "multibot build, with the key zenoh in the fleet file",
         "rewrite": "urdf-postfix INPUT ROBOT...",
     }
 )
