@@ -131,7 +131,11 @@ HOMES: tuple[Home, ...] = (
         "any system: tf",
         ("rules.system.transforms", "rules.system.tf_topics", "rules.system.frame_ids"),
     ),
-    Home("MG5", "any system: time and states", ("rules.system.clocks", "rules.system.states")),
+    Home(
+        "MG5",
+        "any system: time and states",
+        ("rules.system.clocks", "rules.system.states", "rules.system.interfaces"),
+    ),
     Home("MR1", "remap tables", ("remap.table_checks", "remap.way_checks")),
 )
 

@@ -39,6 +39,7 @@ from multibot_rewrite.rules.system import (
     commands,
     equal_robots,
     frame_ids,
+    interfaces,
     matching,
     names,
     relays,
@@ -53,7 +54,7 @@ from multibot_rewrite.system.records import PUBLISHES, Caveat, End, System, inco
 
 _SYSTEM = (
     *(running_nodes, names, matching, commands, relays, sharing, any_transforms, tf_topics),
-    *(frame_ids, clocks, states, equal_robots, unsent),
+    *(frame_ids, clocks, states, equal_robots, unsent, interfaces),
 )
 _PAIR = (
     *(nodes, endpoints, leaks, types, publishers, demands, in_enclaves, planned_states),
