@@ -14,6 +14,7 @@ from multibot_rewrite.rules.system import (
     clocks,
     commands,
     frame_ids,
+    interfaces,
     matching,
     names,
     nodes,
@@ -29,7 +30,7 @@ from multibot_rewrite.rules.system import (
 
 _MODULES = (
     nodes, names, matching, commands, relays, sharing, transforms, tf_topics, frame_ids, clocks,
-    states_, unsent,
+    states_, unsent, interfaces,
 )  # fmt: skip
 _FOUND = [it for module in _MODULES for it in vars(module).values() if isinstance(it, Rule)]
 DANGERS = {it.code: it for it in sorted(_FOUND, key=lambda it: it.code)}

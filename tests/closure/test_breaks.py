@@ -15,7 +15,7 @@ from closure_findings import found
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
 # Findings about one line: a name that is in no file, or a plugin of another name.
-ONE_LINE = ("MB8", "MF112", "MF127", "MF510", "MF802")
+ONE_LINE = ("MB8", "MB853", "MF127", "MB874", "MF802")
 PLACE = re.compile(r"\w+\.(urdf|yaml):\d+")
 
 
@@ -27,11 +27,11 @@ def test_a_robot_that_closes(layout: str, files: dict[str, str], tmp_path: Path)
 
 BREAKS = [
     # The controller's joints are not those of the hardware.
-    ("controllers.yaml", "[left_wheel_joint]", "[left_whel_joint]", "MF811", 9, "rover.urdf:23"),
-    ("controllers.yaml", "[right_wheel_joint]", "[wheel_joint]", "MF811", 10, "rover.urdf"),
+    ("controllers.yaml", "[left_wheel_joint]", "[left_whel_joint]", "MG515", 9, "rover.urdf:23"),
+    ("controllers.yaml", "[right_wheel_joint]", "[wheel_joint]", "MG515", 10, "rover.urdf"),
     # The hardware lacks what the controller claims.
-    ("rover.urdf", '      <command_interface name="velocity"/>\n', "", "MF811", 9, ""),
-    ("rover.urdf", 'state_interface name="position"', 'state_interface name="pos"', "MF811", 9, ""),
+    ("rover.urdf", '      <command_interface name="velocity"/>\n', "", "MG515", 9, ""),
+    ("rover.urdf", 'state_interface name="position"', 'state_interface name="pos"', "MG515", 9, ""),
     # The filter's odometry is not that of the controller's parameters: nothing joins the two.
     ("ekf.yaml", "base_link_frame: base_link", "base_link_frame: base_lnk", "MG406", 15, ""),
     # Nobody sends odom -> base_link.
@@ -63,15 +63,15 @@ BREAKS = [
         "controllers.yaml",
         "command_interfaces: [effort]",
         "command_interfaces: [velocity]",
-        "MF811",
+        "MG515",
         20,
         "rover.urdf",
     ),
     (
         "rover.urdf",
-        'state_interface name="effort"',
-        'state_interface name="force"',
-        "MF811",
+        'name="effort"/>\n      <state_interface name="position"',
+        'name="effort"/>\n      <state_interface name="force"',
+        "MG515",
         20,
         "",
     ),
@@ -114,13 +114,13 @@ BREAKS = [
     ("nav2.yaml", "odom_frame: odom,", "odom_frame: odom_slam,", "MG406", 1, "nav2.yaml:1"),
     ("ekf.yaml", "frame: odom", "frame: odom_combined", "MG406", 1, "nav2.yaml:1"),
     # Frames that nothing sends.
-    ("nav2.yaml", "base_frame: base_link,", "base_frame: base_lnk,", "MF112", 2, "base_link"),
-    ("nav2.yaml", "global_frame: odom", "global_frame: odomm", "MF112", 6, ""),
+    ("nav2.yaml", "base_frame: base_link,", "base_frame: base_lnk,", "MB853", 2, "base_link"),
+    ("nav2.yaml", "global_frame: odom", "global_frame: odomm", "MB853", 6, ""),
     (
         "controllers.yaml",
         "base_frame_id: base_link",
         "base_frame_id: base_footprint",
-        "MF112",
+        "MB853",
         13,
         "",
     ),
@@ -139,7 +139,7 @@ BREAKS = [
         "rover.urdf",
         'joint name="finger_joint">\n      <command',
         'joint name="finger">\n      <command',
-        "MF811",
+        "MG515",
         20,
         "",
     ),
@@ -148,7 +148,7 @@ BREAKS = [
         "controllers.yaml",
         "[right_wheel_joint]",
         "[left_wheel_joint]",
-        "MF808",
+        "MG516",
         10,
         "controllers.yaml:9",
     ),
@@ -221,18 +221,18 @@ ARM_BREAKS = [
     ("arm.srdf", 'tip_link="tool_link"', 'tip_link="tol_link"', "MB803", 2, "tool_link"),
     ("arm.srdf", 'name="elbow_joint" value', 'name="elbo_joint" value', "MB804", 6, "elbow_joint"),
     # A broadcaster of a sensor that the hardware has not.
-    ("controllers.yaml", "sensor_name: tool_imu", "sensor_name: imu", "MF811", 20, "arm.urdf:36"),
+    ("controllers.yaml", "sensor_name: tool_imu", "sensor_name: imu", "MG515", 20, "arm.urdf:36"),
     (
         "controllers.yaml",
         "sensor_name: wrist_ft",
         "sensor_name: tcp_fts",
-        "MF811",
+        "MG515",
         22,
         "arm.urdf:48",
     ),
-    ("arm.urdf", '<sensor name="wrist_ft">', '<sensor name="tool_ft">', "MF811", 22, "arm.urdf:48"),
-    ("arm.urdf", '<state_interface name="torque.z"/>', "", "MF811", 22, "arm.urdf:52"),
-    ("controllers.yaml", "joint: finger_joint", "joint: grip_joint", "MF811", 18, "arm.urdf:31"),
+    ("arm.urdf", '<sensor name="wrist_ft">', '<sensor name="tool_ft">', "MG515", 22, "arm.urdf:48"),
+    ("arm.urdf", '<state_interface name="torque.z"/>', "", "MG515", 22, "arm.urdf:52"),
+    ("controllers.yaml", "joint: finger_joint", "joint: grip_joint", "MG515", 18, "arm.urdf:31"),
     # The filter reads the topic of a broadcaster under its usual name.
     (
         "sensors.yaml",
@@ -260,7 +260,7 @@ ARM_BREAKS = [
     # The row of the bridge is for the other direction, for another type, or for another topic.
     ("bridge.yaml", "GZ_TO_ROS", "ROS_TO_GZ", "MF816", 2, "arm.urdf:57"),
     ("bridge.yaml", "gz.msgs.LaserScan", "gz.msgs.PointCloudPacked", "MF816", 2, "arm.urdf:57"),
-    ("bridge.yaml", "msg/LaserScan", "msg/PointCloud2", "MF510", 1, "sensor_msgs/msg/LaserScan"),
+    ("bridge.yaml", "msg/LaserScan", "msg/PointCloud2", "MB874", 1, "sensor_msgs/msg/LaserScan"),
     ("bridge.yaml", "msg/LaserScan", "msg/PointCloud2", "MG306", 7, "bridge.yaml:1"),
     ("arm.urdf", "<topic>scan</topic>", "<topic>lidar</topic>", "MF816", 2, "arm.urdf:57"),
     # MoveIt uses a joint of another controller, an action that is not served, or another type of it.
@@ -313,7 +313,7 @@ ARM_BREAKS = [
         "controllers.yaml",
         "frame_id: tool_link}\nft",
         "frame_id: tol_link}\nft",
-        "MF112",
+        "MB853",
         20,
         "tool_link",
     ),

@@ -202,14 +202,12 @@ def test_a_moveit_file_of_another_robot_is_one_error(tmp_path: Path) -> None:
     text = "".join(solver.replace("{}", it, 1) for it in ("a", "b", "c", "manipulator"))
     _, findings = built(tmp_path, kinematics=text)
     (message,) = errors(findings)
-    assert (
-        message == "MF309 3 of the 4 names in this file are not in the description: a, b and others"
-    )
+    assert message == "MB875 3 of the 4 names in this file are in no description: a, b and others"
     # Two of three may be mistakes.
     text = "".join(solver.replace("{}", it, 1) for it in ("a", "b", "manipulator"))
     _, findings = built(tmp_path, kinematics=text)
     assert errors(findings) == []
-    assert [it.code for it in findings].count("MF301") == 2
+    assert [it.code for it in findings].count("MB854") == 2
 
 
 IPS = "robots: [{name: left, arguments: {ip: A}}, {name: right, arguments: {ip: B}}]\n"
@@ -341,7 +339,7 @@ def test_a_controllers_file_that_a_launch_file_fills_is_taken_unedited(
     assert arm["constraints"] == {"left_elbow": {"trajectory": 0.2, "goal": 0.1}}
     assert made["/left/io_controller"]["ros__parameters"] == {"tf_prefix": "left_"}
     # The mock lacks what io_controller claims; of the arm nothing is open, and its prefix is filled.
-    assert {it.code for it in findings} <= {"MF811", "MF801", "MG316", "MF840"}
+    assert {it.code for it in findings} <= {"MG515", "MF801", "MG316", "MF840"}
     assert "elbow" not in str([it.message for it in findings])
 
 

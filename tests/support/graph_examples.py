@@ -20,6 +20,7 @@ Each line begins with ``planned:`` (it is in the plan), ``running:`` (it is in t
     state of NODE: STATE, parameter NAME of NODE: VALUE     what it is planned to answer
     host of NODE: WORD, NODE on machine NUMBER       where it is planned to run, and where it runs
     NODE controls INTERFACE by CONTROLLER, NODE keeps CONTROLLER STATE    a controller manager's answer
+    NODE exports KIND INTERFACE, NODE claims KIND INTERFACE     of the hardware, of a controller
 
 QOS are words of DDS in small letters: reliable, best_effort, volatile, transient_local. A robot is
 every ``robot1``, ``robot2`` ... in the plan. In the code of its node a planned name has no robot:
@@ -52,6 +53,7 @@ from multibot_rewrite.system.records import (
     Edge,
     End,
     Heard,
+    Interface,
     Node,
     Parameter,
     Qos,
@@ -77,6 +79,7 @@ PLANNED_STATE = re.compile(r"state of (/\S+): (\w+)")
 PLANNED_PARAMETER = re.compile(r"parameter (\w+) of (/\S+): ([\w/]+)")
 HOST = re.compile(r"host of (/\S+): (\w+)")
 MACHINE = re.compile(r"(/\S+) on machine (\d)")
+INTERFACE = re.compile(r"(/\S+) (exports|claims) (command|state) (\S+)")
 CONTROLS = re.compile(r"(/\S+) controls (\S+) by (\w+)")
 FRAME_ID = re.compile(r"frame_id (\S+) on (/\S+)")
 KEEPS = re.compile(r"(/\S+) keeps (\w+) (\w+)")
@@ -155,7 +158,9 @@ def _with_node(plan: System, name: str) -> System:
 def _is_known(line: str) -> bool:
     states = (PLANNED_STATE, PLANNED_PARAMETER, HOST)
     planned = (FRAMES, SHARED, TOPIC_OF, BRIDGED, ONE_OF, ENCLAVE, *states)
-    return any(it.fullmatch(line) for it in (NODE, TRANSFORM, FRAME_ID, *planned, *ANSWERS))
+    return any(
+        it.fullmatch(line) for it in (NODE, TRANSFORM, FRAME_ID, INTERFACE, *planned, *ANSWERS)
+    )
 
 
 def _words(pattern: re.Pattern[str], lines: Iterable[str]) -> Iterator[tuple[str, ...]]:
@@ -231,6 +236,9 @@ def read_graph(lines: list[str]) -> System:
         tuple(_transform(*words) for words in _words(TRANSFORM, lines)),
         environment(),
         tuple(Heard(topic, frame) for frame, topic in _words(FRAME_ID, lines)),
+        interfaces=tuple(
+            Interface(kind, name, node, role) for node, role, kind, name in _words(INTERFACE, lines)
+        ),
     )
     return with_answers(seen, read_states(lines))
 
