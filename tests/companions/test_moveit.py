@@ -417,7 +417,7 @@ def test_a_prefix_of_links_is_put_before_what_is_there() -> None:
     text = 'arm: {kinematics_solver: a/IKFast, link_prefix: ""}\n'
     assert 'link_prefix: "sp/"' in text_of(text, context())
     new, found = run(text, context("L4"))
-    assert new == text and [it.code for it in found] == ["MF306"]
+    assert new == text and [it.code for it in found] == ["MF117"]
     assert run(text, context("L1")) == (text, ())
 
 

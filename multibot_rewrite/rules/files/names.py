@@ -223,10 +223,11 @@ def unknown_use(file: NamedFile) -> Iterator[Remark]:
         return
     level = "" if file.is_certain else NOTE
     known, renamed = _robots_names(file), _renamed(file)
-    misspelt = {it.line for it in unknown_parameters(file)}
-    for site in file.others:
-        found = _said(file, site, known, renamed)
-        if found and site.line not in misspelt:
+    said = [(site, _said(file, site, known, renamed)) for site in file.others]
+    said = [(site, found) for site, found in said if found]
+    misspelt = {it.line for it in unknown_parameters(file)} if said else set()
+    for site, found in said:
+        if site.line not in misspelt:
             message = f"{found} of the robot, but its use here is not known"
             yield remark(site, message, "it stays as it is; if it is a name, rename it", level)
 
