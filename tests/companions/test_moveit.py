@@ -266,6 +266,12 @@ FILES = {
             "status_topic: ~/status\ncommand_out_type: trajectory_msgs/JointTrajectory\n",
         },
     ),
+    "servo with a private topic": (
+        "move_group_name: arm\ncommand_out_topic: ~/joint_trajectory\n",
+        dict.fromkeys(
+            ("L1", "L2", "L4"), "move_group_name: arm\ncommand_out_topic: ~/joint_trajectory\n"
+        ),
+    ),
     "sensors": (
         "sensors:\n  - {sensor_plugin: a/B, point_cloud_topic: /eye/points, filtered_cloud_topic: f}\n"
         "octomap_frame: odom\n",
@@ -456,3 +462,11 @@ def test_lists_of_joints(joints: list[str], layout: str, quote: str, flow: bool)
     wanted = [spell.format(it) if it in JOINTS else it for it in old]
     assert (after["controller_list"][0]["joints"] or []) == wanted
     assert text_of(text, context(layout)).count("# j1") == text.count("# j1")
+
+
+def test_a_file_of_another_robot_is_told_at_its_first_name() -> None:
+    """A name that comes again is at its first place, too."""
+    text = "controller_list:\n  - {name: c, joints: [a]}\n  - {name: d, joints: [b, q, a]}\n"
+    (found,) = run(text, context())[1]
+    assert (found.code, found.level, found.line) == ("MB875", "error", 2)
+    assert found.message.startswith("3 of the 3 names in this file are in no description: a, b")
