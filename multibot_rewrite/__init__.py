@@ -10,7 +10,18 @@ from multibot_rewrite.version import __version__ as __version__
 if TYPE_CHECKING:
     from multibot_rewrite.findings.finding import Finding, RewriteRefused
     from multibot_rewrite.fleets.loaded_robot import LoadedRobot
+    from multibot_rewrite.fleets.one_file import RewrittenFile, rewrite_file, rewrite_files
     from multibot_rewrite.fleets.scripts import LoadedFleet, load_fleet
+    from multibot_rewrite.fleets.system_sources import (
+        compare,
+        judge,
+        system_of_bag,
+        system_of_description,
+        system_of_files,
+        system_of_fleet,
+        system_of_graph,
+        system_of_launch,
+    )
     from multibot_rewrite.library import Rewrite, explain, rewrite, rewrite_all, strip
     from multibot_rewrite.model import (
         Change,
@@ -20,6 +31,7 @@ if TYPE_CHECKING:
         UsageError,
         VocabularyError,
     )
+    from multibot_rewrite.system.records import System
 
 __all__ = [
     "Change",
@@ -31,19 +43,38 @@ __all__ = [
     "ProofError",
     "Rewrite",
     "RewriteRefused",
+    "RewrittenFile",
+    "System",
     "UsageError",
     "VocabularyError",
+    "compare",
     "explain",
+    "judge",
     "load_fleet",
     "rewrite",
     "rewrite_all",
+    "rewrite_file",
+    "rewrite_files",
     "strip",
+    "system_of_bag",
+    "system_of_description",
+    "system_of_files",
+    "system_of_fleet",
+    "system_of_graph",
+    "system_of_launch",
 ]
 _HOMES = {
     **dict.fromkeys(("Rewrite", "explain", "rewrite", "rewrite_all", "strip"), "library"),
     **dict.fromkeys(("Finding", "RewriteRefused"), "findings.finding"),
     **dict.fromkeys(("LoadedFleet", "load_fleet"), "fleets.scripts"),
+    **dict.fromkeys(("RewrittenFile", "rewrite_file", "rewrite_files"), "fleets.one_file"),
     "LoadedRobot": "fleets.loaded_robot",
+    "System": "system.records",
+    **dict.fromkeys(("compare", "judge"), "fleets.system_sources"),
+    **dict.fromkeys(
+        (f"system_of_{it}" for it in ("bag", "description", "files", "fleet", "graph", "launch")),
+        "fleets.system_sources",
+    ),
 }
 
 

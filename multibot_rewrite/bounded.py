@@ -68,10 +68,11 @@ def compose_yaml(text: str) -> yaml.Node | None:
 
 
 def compose_own_yaml(text: str) -> yaml.Node | None:
-    """The same of a text of this package, whose bounds nobody has to ask for."""
+    """The same of a text of this package, whose bounds nobody has to ask for; all but booleans and
+    nothing at all is text."""
     import yaml
 
-    return yaml.compose(text, Loader=_loader())
+    return yaml.compose(text, Loader=_plain_loader())
 
 
 def load_yaml(text: str) -> Any:
@@ -128,6 +129,16 @@ def _loader() -> type[yaml.SafeLoader]:
         construct = base.yaml_constructors[_TAG + kind]
         loader.add_constructor(_TAG + kind, _checked(construct, kind))
     return loader  # type: ignore[no-any-return]
+
+
+@cache
+def _plain_loader() -> type[yaml.SafeLoader]:
+    """A loader that asks of no value whether it is a number or a date."""
+    wanted = (f"{_TAG}bool", f"{_TAG}null")
+    every: Any = _loader().yaml_implicit_resolvers
+    few = {first: [it for it in its if it[0] in wanted] for first, its in every.items()}
+    own: Any = type("PlainLoader", (_loader(),), {"yaml_implicit_resolvers": few})
+    return own  # type: ignore[no-any-return]
 
 
 def _checked(construct: Any, kind: str) -> Any:

@@ -31,8 +31,6 @@ HOMES: tuple[Home, ...] = (
             "companions.params.name_checks",
             "companions.params.unknown_parameters",
             "companions.params.shared_defaults",
-            "companions.params.slashes",
-            "companions.params.release_checks",
             "companions.params.bringup_style",
             "companions.params.calibrations",
         ),
@@ -44,7 +42,6 @@ HOMES: tuple[Home, ...] = (
             "companions.rviz.window_checks",
             "companions.rviz.bridged",
             "companions.rviz.display_checks",
-            "companions.rviz.name_checks",
         ),
     ),
     Home(
@@ -57,10 +54,9 @@ HOMES: tuple[Home, ...] = (
         "MF5",
         "bridges",
         (
-            "fleets.bridge_checks",
+            "companions.bridge_checks",
             "fleets.bridge_merge",
             "fleets.bridge_outputs",
-            "fleets.bridge_types",
         ),
     ),
     Home(

@@ -1,4 +1,4 @@
-"""``multibot check``: is the running system what was planned?"""
+"""``multibot check PLAN``: is the running system what was planned?"""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from multibot_rewrite.bounded import MAX_FLEET_BYTES
 from multibot_rewrite.cli import live, pictures
 from multibot_rewrite.cli.output import note, print_lines, say
-from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
+from multibot_rewrite.cli.process import PROGRAM, STOPPED
 from multibot_rewrite.cli.report import TEXT, About, check_report, chosen, report_first
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.cli.watch import follow
@@ -31,11 +31,13 @@ from multibot_rewrite.sources.read import read_file
 from multibot_rewrite.spelling.plan import robot_words
 from multibot_rewrite.system.records import System, answering
 
-CODES = {Verdict.PLANNED: DONE, Verdict.WRONG: STOPPED, Verdict.INCONCLUSIVE: live.INCONCLUSIVE}
-
 
 def run(options: argparse.Namespace) -> int:
     """Compare, report, sum up; returns the exit code."""
+    if options.plan is None:
+        from multibot_rewrite.cli import unplanned  # a check with a plan needs none of it
+
+        return unplanned.run(options)
     _check_use(options)
     plan = plan_of(options)
     try:
@@ -79,6 +81,8 @@ def _check_use(options: argparse.Namespace) -> None:
         raise UsageError("--watch shows every finding: leave out --select, --ignore and --format")
     if options.built:
         _check_built(options)
+    if options.suggest:
+        raise UsageError("--suggest begins a plan: leave out PLAN")
     check_report(options, printed=False)
     pictures.check(options)
     if options.output:
@@ -146,7 +150,7 @@ def conclude(
     outcome = _outcome(options, verdict, gaps)
     pictures.deliver(options, plan, graph, findings, outcome)
     _sum_up(options, plan, findings, outcome)
-    return STOPPED if failed else CODES[verdict]
+    return STOPPED if failed else live.CODES[verdict]
 
 
 def _gaps(options: argparse.Namespace, plan: System) -> list[Finding]:
@@ -202,4 +206,4 @@ def _watch(options: argparse.Namespace, plan: System) -> int:
     outcome = _outcome(options, verdict, gaps)
     pictures.deliver(options, plan, last.graph, findings, outcome)
     _sum_up(options, plan, findings, outcome)
-    return STOPPED if any(it.level == ERROR for it in gaps) else CODES[verdict]
+    return STOPPED if any(it.level == ERROR for it in gaps) else live.CODES[verdict]

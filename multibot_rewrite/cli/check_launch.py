@@ -6,7 +6,7 @@ import argparse
 import shlex
 from collections.abc import Sequence
 
-from multibot_rewrite.cli import check, doctor, pictures
+from multibot_rewrite.cli import check, pictures, unplanned
 from multibot_rewrite.cli.output import note
 from multibot_rewrite.cli.report import check_report
 from multibot_rewrite.cli.walk import check_target
@@ -32,9 +32,9 @@ def run(options: argparse.Namespace) -> int:
             note(options, it.message)
     if plan is not None:
         return check.conclude(options, plan, made)
-    # What doctor is told besides: there is no snapshot, and nothing to begin.
+    # What a check is told besides: there is no snapshot, and nothing to begin.
     whole = argparse.Namespace(**vars(options), snapshot=[], suggest=None)
-    return doctor.report_on(whole, diagnose(made))
+    return unplanned.report_on(whole, diagnose(made))
 
 
 def order_of(options: argparse.Namespace, words: Sequence[str]) -> LaunchOrder:
@@ -47,7 +47,7 @@ def graph_of(options: argparse.Namespace, order: LaunchOrder) -> System:
     """What the launch file would start; raises InputError for one that cannot be read."""
     release = release_here(options.distro)
     library = known_nodes(options.nodes, release, options.nodl).library
-    known = Knowledge(library.nodes, load_known_nodes("", release), release)
+    known = Knowledge(library.nodes, load_known_nodes(options.nodes or "", release), release)
     return would_run(launch_graph(order), known)
 
 

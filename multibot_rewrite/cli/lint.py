@@ -20,10 +20,10 @@ from multibot_rewrite.cli.process import DONE, STOPPED
 from multibot_rewrite.cli.report import NO_RULES, TEXT, About, by_themselves, report_first
 from multibot_rewrite.cli.usage import plain_words
 from multibot_rewrite.cli.walk import check_folder, check_target, find_files, standard_input
+from multibot_rewrite.companions.kinds import SUFFIXES as BESIDE
+from multibot_rewrite.companions.kinds import is_linted
 from multibot_rewrite.findings.finding import LEVELS, Finding
 from multibot_rewrite.findings.selection import fails
-from multibot_rewrite.lint.beside.kinds import SUFFIXES as BESIDE
-from multibot_rewrite.lint.beside.kinds import is_linted
 from multibot_rewrite.lint.config.configured import (
     Configured,
     configured,

@@ -13,9 +13,11 @@ from math import inf
 from typing import TYPE_CHECKING
 
 from multibot_rewrite.cli.output import note
+from multibot_rewrite.cli.process import DONE, STOPPED
 from multibot_rewrite.graph.environment import settings
 from multibot_rewrite.graph.live.request import Request
 from multibot_rewrite.graph.questions import ANSWER_SECONDS, NO_MORE, questions
+from multibot_rewrite.live.watching import Verdict
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
 from multibot_rewrite.system.answers import with_answers
@@ -25,6 +27,7 @@ if TYPE_CHECKING:
     from multibot_rewrite.graph.zenoh.observe import Router
 
 INCONCLUSIVE, NO_ROS = 3, 4
+CODES = {Verdict.PLANNED: DONE, Verdict.WRONG: STOPPED, Verdict.INCONCLUSIVE: INCONCLUSIVE}
 # How long a single look takes at most.
 LOOK_SECONDS = 15.0
 

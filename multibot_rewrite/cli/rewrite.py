@@ -4,20 +4,14 @@ from __future__ import annotations
 
 import argparse
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from itertools import chain
 
 from multibot_rewrite.checks.verdict import not_proved
-from multibot_rewrite.cli.diffs import diff
 from multibot_rewrite.cli.output import (
     STANDARD,
-    note,
-    print_bytes,
-    prints_colour,
     say,
     serves_a_program,
-    watched,
-    write_files,
 )
 from multibot_rewrite.cli.process import DONE, STOPPED
 from multibot_rewrite.cli.report import (
@@ -26,12 +20,12 @@ from multibot_rewrite.cli.report import (
     chosen,
     report_beside,
 )
-from multibot_rewrite.cli.rewrite_use import check_unread, check_use, input_name, target_path
+from multibot_rewrite.cli.rewrite_output import deliver, tell, told
+from multibot_rewrite.cli.rewrite_use import check_unread, check_use, input_name
 from multibot_rewrite.cli.usage import policy, robots, xacro_args
 from multibot_rewrite.cli.walk import standard_input
+from multibot_rewrite.companions.kinds import is_text_beside
 from multibot_rewrite.config import configured_vocabulary
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.findings.selection import fails
 from multibot_rewrite.library import Rewrite, rewrite_all, strip
 from multibot_rewrite.naming import SEPARATORS
 from multibot_rewrite.plural import plural
@@ -59,6 +53,10 @@ def run(options: argparse.Namespace) -> int:
     check_use(options, names)
     options.vocabulary = [*configured_vocabulary(options.input), *options.vocabulary]
     source: Source = standard_input() if options.input == "-" else options.input
+    if is_text_beside(source):
+        from multibot_rewrite.cli import rewrite_file  # a description needs none of it
+
+        return rewrite_file.run(options, source, names)
     return (_undo if options.strip else _rewrite)(options, source, names)
 
 
@@ -70,8 +68,8 @@ def _undo(options: argparse.Namespace, source: Source, names: list[str]) -> int:
     beside = read_whole(options.xacro, given, options.trust).read if options.xacro else ()
     stripped = _strip(options, read.data, robot)
     check_unread(options, [robot], (*read.read, *beside))
-    _deliver(options, [(robot, read.data, stripped)], [], 1)
-    _note(options, f"{robot} taken out, proved by rewriting again")
+    deliver(options, [(robot, read.data, stripped)], [], 1)
+    tell(options, f"{robot} taken out, proved by rewriting again")
     return DONE
 
 
@@ -95,26 +93,16 @@ def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> i
     check_unread(options, names, (path for it in jobs for path in it.job.read.files))
     about = About([input_name(options)], by_themselves(names), first.distro)
     found = dict.fromkeys(finding for it in (first, *others) for finding in it.findings)
-    if report_beside(options, _told(options, chosen(options, found)), about):
+    if report_beside(options, told(options, chosen(options, found)), about):
         say(f"--fail-on {options.fail_on}: nothing was written", options.program)
         return STOPPED
     results = ((it.robot, it.prepared.job.data, it.data) for it in chain([first], others, rewrites))
     own = {it.robot: it for it in others}
     every = [own.get(robot, first._replace(robot=robot)) for robot in names]
     changes = [(options.changes, changes_json(every))] if options.changes else []
-    _deliver(options, results, changes, len(names))
-    _note(options, summary(first, names, _own_arguments(options, names)))
+    deliver(options, results, changes, len(names))
+    tell(options, summary(first, names, _own_arguments(options, names)))
     return DONE
-
-
-def _told(options: argparse.Namespace, findings: Sequence[Finding]) -> Sequence[Finding]:
-    """What is reported: to a program only what stops the rewrite."""
-    return () if options.silent and not fails(findings, options.fail_on) else findings
-
-
-def _note(options: argparse.Namespace, text: str) -> None:
-    if not options.silent:
-        note(options, text)
 
 
 def _strip(options: argparse.Namespace, source: bytes, robot: str) -> bytes:
@@ -132,26 +120,6 @@ def _strip(options: argparse.Namespace, source: bytes, robot: str) -> bytes:
         distro=options.distro or "",
         **extra,
     )
-
-
-def _deliver(
-    options: argparse.Namespace,
-    results: Iterable[tuple[str, bytes, bytes]],
-    more: list[tuple[str, bytes]],
-    total: int,
-) -> None:
-    """Print or write the results (robot, before, after) as they are made, and ``more`` files."""
-    target = options.input if options.in_place else options.output
-    if target:
-        files = ((target_path(target, robot), data) for robot, _, data in results)
-        write_files(options, watched(chain(more, files), total, "writing"))
-        return
-    write_files(options, more)
-    colour = prints_colour(options)
-    for robot, before, data in results:
-        name = input_name(options)
-        text = diff(before, data, name, f"{name} for {robot}", colour) if options.diff else data
-        print_bytes(text)
 
 
 def changes_json(rewrites: Sequence[Rewrite]) -> bytes:

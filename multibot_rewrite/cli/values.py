@@ -44,13 +44,6 @@ def path(text: str) -> str:
     return text
 
 
-def full_path(text: str) -> str:
-    """A path that means the same from every folder."""
-    if not text.startswith("/"):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a full path, begin with /")
-    return text
-
-
 def zenoh_router(text: str) -> str:
     """An endpoint as Zenoh writes it, or the name of a session configuration."""
     return text if text.endswith((".json5", ".json")) else zenoh_endpoint(text)

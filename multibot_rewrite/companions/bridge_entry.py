@@ -1,12 +1,18 @@
-"""An entry of a ros_gz_bridge file: its keys, the gz topics of a model, its names before and after."""
+"""An entry of a ros_gz_bridge file: its keys, what the bridge refuses, its names before and after.
+
+Source: gazebosim/ros_gz ros_gz_bridge/src/bridge_config.cpp (parseEntry, and its messages).
+"""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator, Mapping
 
 import yaml
 
 from multibot_rewrite.companions.yaml_blocks import Block
+from multibot_rewrite.companions.yaml_text import pairs
+from multibot_rewrite.nearest import did_you_mean_one_of
 from multibot_rewrite.record import NamedTuple
 
 # Stands for the name of the spawned model: it may differ from the namespace and the tag.
@@ -14,7 +20,7 @@ MODEL_SLOT = "multibotModelSlot"
 BOTH, ROS, GZ = "topic_name", "ros_topic_name", "gz_topic_name"
 TYPES = ("ros_type_name", "gz_type_name")
 DIRECTIONS = ("BIDIRECTIONAL", "GZ_TO_ROS", "ROS_TO_GZ")
-SERVICE = "service_name"
+SERVICE, FRAME = "service_name", "frame_id"
 KEYS: tuple[str, ...] = (
     BOTH,
     ROS,
@@ -26,7 +32,7 @@ KEYS: tuple[str, ...] = (
     "subscriber_queue",
     "lazy",
 )
-KEYS += ("publish_optical_frame", "frame_id", "qos_profile", "gz_req_type_name", "gz_rep_type_name")
+KEYS += ("publish_optical_frame", FRAME, "qos_profile", "gz_req_type_name", "gz_rep_type_name")
 GZ_MODEL = re.compile(r"(?P<above>/?(?:world/[^/]+/)?model/)(?P<model>[^/]+)(?P<rest>/.*)?")
 # A link, joint or sensor in a gz topic.
 PART = re.compile(r"(?<=/)(link|joint|sensor)/([^/]+)")
@@ -45,6 +51,58 @@ class BridgeEntry(NamedTuple):
     new_ros: str
     new_gz: str
     own: bool
+
+
+class RowFault(NamedTuple):
+    """Why the bridge leaves an entry out, and the node that it is about."""
+
+    node: yaml.Node
+    message: str
+    hint: str
+
+
+Row = Mapping[str, tuple[yaml.ScalarNode, yaml.Node]]
+_OUT = "the bridge leaves it out"
+
+
+def row_of(node: yaml.Node) -> Row:
+    """The keys and values of an entry by the texts of the keys."""
+    return {str(key.value): (key, value) for key, value in pairs(node)}
+
+
+def text_in(row: Row, key: str) -> str:
+    """The value of a key as text; empty if it is missing or not a scalar."""
+    value = row[key][1] if key in row else None
+    return str(value.value) if isinstance(value, yaml.ScalarNode) else ""
+
+
+def faults(node: yaml.Node) -> Iterator[RowFault]:
+    """Why the bridge does not load an entry; nothing if it does."""
+    row = row_of(node)
+    if not row:
+        yield RowFault(node, f"the row is not a map of keys and values: {_OUT}", "")
+        return
+    for other in (ROS, GZ) if BOTH in row else ():
+        if other in row:
+            message = f"the row has {BOTH} and {other}: {_OUT}"
+            yield RowFault(row[other][0], message, f"delete {BOTH}")
+    direction = text_in(row, "direction")
+    if direction and direction not in DIRECTIONS:
+        hint = did_you_mean_one_of(direction, DIRECTIONS)
+        message = f"the bridge has no direction {direction!r}: {_OUT}"
+        yield RowFault(row["direction"][1], message, hint)
+    lacks = _lacks(row)
+    if lacks:
+        yield RowFault(node, f"the row has no {lacks}: {_OUT}", f"add {lacks}")
+
+
+def _lacks(row: Row) -> str:
+    """What the bridge asks of an entry of topics."""
+    if text_in(row, SERVICE):
+        return ""
+    if not any(text_in(row, it) for it in (BOTH, ROS, GZ)):
+        return ROS
+    return " and ".join(it for it in TYPES if not text_in(row, it))
 
 
 def below(name: str, above: str) -> str:

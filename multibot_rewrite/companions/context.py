@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from multibot_rewrite.companions.names.rename_map import NO_OWN, CompanionNames
-from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT, FileTemplate
-from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.record import NamedTuple
@@ -24,13 +23,6 @@ class Context(NamedTuple):
     topics: CompanionNames
     nodes: Mapping[str, str]
     distro: str
-
-
-class Companion(NamedTuple):
-    """A companion file as a template for any robot, and the findings about it."""
-
-    template: FileTemplate
-    findings: tuple[Finding, ...]
 
 
 def make_context(

@@ -9,15 +9,12 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Sequence
 
-from multibot_rewrite.checks.mentions import mentioned
-from multibot_rewrite.companions.context import Companion, Context
-from multibot_rewrite.companions.names.by_kind import frames_differ, is_plain
+from multibot_rewrite.companions.companion import Companion
+from multibot_rewrite.companions.context import Context
+from multibot_rewrite.companions.kinds import LUA
+from multibot_rewrite.companions.names.by_kind import frames_differ
 from multibot_rewrite.companions.names.rename_map import spell
-from multibot_rewrite.companions.names.undeclared import (
-    is_undeclared,
-    renamed_names,
-    undeclared_message,
-)
+from multibot_rewrite.companions.sites import NamedFile, Site
 from multibot_rewrite.companions.template import (
     check_no_slots,
     make_template,
@@ -81,9 +78,18 @@ def rewrite_lua(text: str, file: str, context: Context) -> Companion:
     tokens = list(tokens_of(text, file))
     options = list(_options(tokens))
     splices = [_splice(context, it.value) for it in options if it.value]
-    found = [*_about(context, options), *_includes(tokens), *_mentions(context, tokens, options)]
+    found = _in_order(
+        _finding(text, file, it) for it in (*_about(context, options), *_includes(tokens))
+    )
+    named = _named(text, file, context, tokens, options)
     template = make_template(text, [it for it in splices if it])
-    return Companion(template, _in_order(_finding(text, file, it) for it in found))
+    return Companion(template, found, named)
+
+
+def read_lua(text: str, file: str, context: Context) -> NamedFile:
+    """The names of a file; raises as ``rewrite_lua``."""
+    tokens = list(tokens_of(text, file))
+    return _named(text, file, context, tokens, list(_options(tokens)))
 
 
 def tokens_of(text: str, file: str) -> Iterator[Token]:
@@ -161,39 +167,14 @@ options = {
     line=2,
     formats=("lua",),
 )
-UNDECLARED_FRAME = declare(
-    "MF452",
-    "lua-undeclared-frame",
-    WARNING,
-    what="A frame of Cartographer is neither in the description nor published by a known node.",
-    why="Cartographer waits for the transform to tracking_frame and published_frame. It drops all "
-    "sensor data if nobody publishes it.",
-    fix="Correct the name, or let a node publish the frame with the robot's name.",
-    bad="""\
-options = {
-  tracking_frame = "base_lnk",
-}
-""",
-    good="""\
-options = {
-  tracking_frame = "base_link",
-}
-""",
-    line=2,
-    formats=("lua",),
-)
 
 
 def _about(context: Context, options: Sequence[LuaOption]) -> Iterator[_Problem]:
     for name, value in options:
-        if value is None:
-            if frames_differ(context):
-                message = f"{name.text} is not a plain string, so it stays unchanged"
-                hint = "each robot needs its own frame here; write the name in quotes"
-                yield _Problem(name.at, NOT_PLAIN, message, hint)
-        elif is_undeclared(context, "frame", value.text[1:-1]):
-            about = undeclared_message(context, "frame", value.text[1:-1])
-            yield _Problem(value.at, UNDECLARED_FRAME, *about)
+        if value is None and frames_differ(context):
+            message = f"{name.text} is not a plain string, so it stays unchanged"
+            hint = "each robot needs its own frame here; write the name in quotes"
+            yield _Problem(name.at, NOT_PLAIN, message, hint)
 
 
 INCLUDE = declare(
@@ -227,44 +208,25 @@ def _includes(tokens: Sequence[Token]) -> Iterator[_Problem]:
             yield _Problem(token.at, INCLUDE, message, hint)
 
 
-OTHER_STRING = declare(
-    "MF454",
-    "lua-name-in-other-string",
-    WARNING,
-    what="A string in a Lua file is a name of the robot, but it is not assigned to a frame of "
-    "Cartographer.",
-    why="It stays unchanged. If the file uses it as a frame later, that frame is the same for all "
-    "robots.",
-    fix="Write the name where the frame is assigned, or rename it by hand if each robot needs its "
-    "own.",
-    bad="""\
-local base = "base_link"
-""",
-    good="""\
-options = {tracking_frame = "base_link"}
-""",
-    formats=("lua",),
-)
+def _named(
+    text: str, file: str, context: Context, tokens: Sequence[Token], options: Sequence[LuaOption]
+) -> NamedFile:
+    values = {it.value.at: (it.name.text, it.value) for it in options if it.value}
+    names = tuple(
+        Site("frame", it.text[1:-1], key, *_place(text, at)) for at, (key, it) in values.items()
+    )
+    strings = (it for it in tokens if it.kind in ("string", "long") and it.at not in values)
+    others = tuple(Site("", it.text.strip("\"'[]="), "", *_place(text, it.at)) for it in strings)
+    return NamedFile(LUA, file, text, context, {}, names, others)
 
 
-def _mentions(
-    context: Context, tokens: Sequence[Token], options: Sequence[LuaOption]
-) -> Iterator[_Problem]:
-    names = renamed_names(context)
-    claimed = {it.value.at for it in options if it.value}
-    for token in tokens:
-        if token.kind not in ("string", "long") or token.at in claimed:
-            continue
-        text = token.text.strip("\"'[]=")
-        if is_plain(text) and mentioned(text, names):
-            message = f"{text!r} is a name of the robot, but its use here is not known"
-            hint = "it stays unchanged; if each robot needs its own, rename it by hand"
-            yield _Problem(token.at, OTHER_STRING, message, hint)
+def _place(text: str, at: int) -> tuple[int, int]:
+    return text.count("\n", 0, at) + 1, at - text.rfind("\n", 0, at)
 
 
 def _finding(text: str, file: str, problem: _Problem) -> Finding:
     at, rule, message, hint = problem
-    line, column = text.count("\n", 0, at) + 1, at - text.rfind("\n", 0, at)
+    line, column = _place(text, at)
     return rule.finding(message, hint, file=file, line=line, column=column)
 
 

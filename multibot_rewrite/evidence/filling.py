@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.evidence.records import Given, GivenNode
-from multibot_rewrite.knowledge.conditions import Values, holds
+from multibot_rewrite.knowledge.conditions import Values, holds, verdict
 from multibot_rewrite.knowledge.records import Endpoint, FrameParameter, NodeFacts, SentTransform
 from multibot_rewrite.model import InputError
 from multibot_rewrite.rosnames import check_topic_name
@@ -72,24 +72,34 @@ def _frame(frame: FrameParameter, values: Mapping[str, Given]) -> FrameParameter
 def _endpoint(node: NodeFacts, raw: Endpoint, values: Mapping[str, Given]) -> Iterator[Endpoint]:
     """The endpoint once for each binding of its ids, with the names that are set."""
     ids = dict(node.ids)
-    texts = (raw.name, raw.parameter, raw.condition)
-    wanted = [it for it in dict.fromkeys(_ID.findall(" ".join(texts))) if it in ids]
-    of_stack = [it for it in node.endpoints if _is_from(it, raw)]
+    wanted = _wanted(ids, raw.name, raw.parameter, raw.condition)
+    asked = _wanted(ids, raw.when)
+    # What its name has decides how it is called; what only its condition asks may be unknown.
+    if _are_listed([ids[it] for it in asked], values):
+        wanted = [*dict.fromkeys((*wanted, *asked))]
+    is_there = verdict(raw.when, lookup(node, values)) if raw.when and not wanted else None
+    if is_there is False:
+        return
+    of_stack = [_sure(it, is_there) for it in node.endpoints if _is_from(it, raw)]
     remapped = next((it.remapped for it in of_stack), "")
     if not _is_decided(raw, [ids[it] for it in wanted], values, of_stack):
         yield from (_typed(it, lookup(node, values)) for it in of_stack)
         return
     for binding in _bindings(ids, wanted, values):
         bound = _bound(raw._replace(remapped=remapped), binding)
-        if holds(bound.condition, lookup(node, values)):
-            decided = bool(binding or bound.condition)
-            named = bound._replace(when="" if decided else bound.when)
-            typed = _typed(named, lookup(node, values))
+        is_bound = verdict(bound.when, lookup(node, values)) if bound.when and binding else is_there
+        if is_bound is not False and holds(bound.condition, lookup(node, values)):
+            decided = bool(binding or bound.condition or is_bound)
+            typed = _typed(_sure(bound, decided), lookup(node, values))
             words = [it for it in _ID.findall(raw.name) if it in ids]
             listed = values.get(_put(ids[words[-1]], binding)) if words else None
             typed = _listed_type(typed, listed, binding[words[-1]] if words else "")
             for it in _named(typed, values, _ending(node, raw)):
                 yield _checked(it, listed)
+
+
+def _sure(endpoint: Endpoint, is_there: bool | None) -> Endpoint:
+    return endpoint._replace(when="") if is_there else endpoint
 
 
 def _checked(endpoint: Endpoint, listed: Given | None) -> Endpoint:
@@ -119,12 +129,22 @@ def _is_decided(
     of_stack: Iterable[Endpoint],
 ) -> bool:
     """Do the parameters say whether it exists, or how it is called?"""
-    needed = [_pattern(it) for it in lists]
+    needed = list(lists)
     if needed:
-        return all(any(it.fullmatch(name) for name in values) for it in needed)
+        return _are_listed(needed, values)
     if raw.condition or any(_set_names(raw.parameter, values)):
         return True
     return "<" in raw.name and all("<" in it.name for it in of_stack)
+
+
+def _wanted(ids: Mapping[str, str], *texts: str) -> list[str]:
+    """The ids that texts have, each once."""
+    return [it for it in dict.fromkeys(_ID.findall(" ".join(texts))) if it in ids]
+
+
+def _are_listed(lists: Iterable[str], values: Mapping[str, Given]) -> bool:
+    """Is each of these lists given?"""
+    return all(any(_pattern(it).fullmatch(name) for name in values) for it in lists)
 
 
 def _bindings(
@@ -183,6 +203,7 @@ def _bound(endpoint: Endpoint, binding: Ids) -> Endpoint:
         fixed=endpoint.fixed if name == endpoint.name else "",
         parameter=_put(endpoint.parameter, binding),
         condition=_put(endpoint.condition, binding),
+        when=_put(endpoint.when, binding),
         types=tuple((_put(it, binding), type_) for it, type_ in endpoint.types),
     )
 

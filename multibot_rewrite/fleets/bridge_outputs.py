@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import cast
 
+from multibot_rewrite.companions.bridge import BridgeFile, rewrite_bridge
 from multibot_rewrite.companions.bridge_entry import BOTH, GZ
 from multibot_rewrite.companions.rviz.read_config import text_of
 from multibot_rewrite.companions.yaml_text import items, read_yaml
 from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
-from multibot_rewrite.fleets.bridge_file import BridgeFile, rewrite_bridge
 from multibot_rewrite.fleets.bridge_merge import as_spawned, fill_bridge, merge_bridges
+from multibot_rewrite.fleets.companion_files import of_fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.member import line_of
 from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, path_for, yaml_of
@@ -20,6 +21,7 @@ from multibot_rewrite.fleets.robot_groups import RobotGroup, group_robots
 from multibot_rewrite.fleets.robot_nodes import node_sources
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.bridged_topics import BridgedTopic, UnbridgedTopic, bridged_topics
+from multibot_rewrite.rules.files.judge import judged_once
 
 BRIDGE = "bridge.yaml"
 
@@ -41,7 +43,7 @@ def bridge_outputs(plan: FleetPlan) -> FilesAndFindings:
     groups = [_read(group) for group in group_robots(plan)]
     for group, files in groups:
         for file in files.values():
-            yield from file.own.findings
+            yield from (*file.own.findings, *judged_once(of_fleet(plan, file.own.file)))
         for robot in group.robots:
             made = list(_for_robot(robot, files, topics))
             yield from made

@@ -41,9 +41,11 @@ from multibot_rewrite.fleets.two_descriptions import differences
 from multibot_rewrite.fleets.with_start_pose_nodes import split_per_robot, with_start_pose_nodes
 from multibot_rewrite.fleets.world_file import world_file
 from multibot_rewrite.fleets.yarp_files import yarp_files
+from multibot_rewrite.fleets.zenoh_file import ZENOH
 from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.graph.enclaves import to_policy
 from multibot_rewrite.graph.plan_file import to_yaml
+from multibot_rewrite.graph.zenoh.configuration import configurations
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.records import Table
@@ -159,6 +161,9 @@ def _tables(plan: FleetPlan, fleet: Fleet) -> Iterator[OutputFile]:
     yield OutputFile(PLAN, to_yaml(planned).encode())
     if plan.file.sros2:
         yield OutputFile(POLICY, to_policy(planned, possible(fleet)).encode())
+    if plan.file.zenoh:
+        made = configurations(planned, plan.file.zenoh)
+        yield from (OutputFile(f"{ZENOH}/{name}", data) for name, data in made)
     yield OutputFile(TABLE, _remappings(table).encode())
 
 

@@ -11,8 +11,8 @@ from collections.abc import Iterator
 import yaml
 
 from multibot_rewrite.companions.names.rename_map import spell
-from multibot_rewrite.companions.rviz.read_config import every, read_config
-from multibot_rewrite.companions.rviz.rewrite import RvizText, fixed_frame, targets
+from multibot_rewrite.companions.rviz.read_config import every, fixed_frame, read_config, targets
+from multibot_rewrite.companions.rviz.rewrite import RvizText
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, replaced, spliced
 from multibot_rewrite.fleets.cell_file import Cell
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot

@@ -22,7 +22,7 @@ from multibot_rewrite.system.records import Topic
 
 # Rules about a file that names what the robot does not have.
 NAMES_NOTHING = frozenset(
-    "MB803 MB804 MB805 MB810 MF111 MF112 MF127 MF301 MF401 MF452 MF507 MF510".split()  # noqa: SIM905
+    "MB803 MB804 MB805 MB810 MB853 MB854 MB874 MF127".split()  # noqa: SIM905
 )
 
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from multibot_rewrite.companions.behavior_tree.rewrite import rewrite_behavior_tree
-from multibot_rewrite.companions.context import Companion
+from multibot_rewrite.companions.companion import Companion
 from multibot_rewrite.companions.lua import rewrite_lua
 from multibot_rewrite.companions.moveit.rewrite import rewrite_moveit
 from multibot_rewrite.companions.params.rewrite import nodes_without_section, rewrite_params
+from multibot_rewrite.companions.sites import NamedFile
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT, fill_template
 from multibot_rewrite.evidence.nodes import children_of
 from multibot_rewrite.findings.finding import Finding
@@ -26,6 +27,7 @@ from multibot_rewrite.fleets.robot_groups import RobotGroup, group_robots
 from multibot_rewrite.fleets.robot_nodes import node_sources
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.model import InputError
+from multibot_rewrite.rules.files.judge import judged_once
 from multibot_rewrite.sources.read import read_file
 
 
@@ -37,11 +39,19 @@ def companion_files(plan: FleetPlan) -> FilesAndFindings:
     for kind, rewrite in _KINDS.items():
         for group in group_robots(plan):
             for path in group.companions.get(kind, ()):
-                template, findings = rewrite(plan, group, path)
-                yield from (_with_names_of(group.robots[0], it) for it in findings)
+                made = rewrite(plan, group, path)
+                found = (*made.findings, *judged_once(of_fleet(plan, made.file)))
+                yield from (_with_names_of(group.robots[0], it) for it in found)
                 for robot in group.robots:
-                    text = fill_template(template, robot.spec.namespace, robot.spec.tag)
+                    text = fill_template(made.template, robot.spec.namespace, robot.spec.tag)
                     yield OutputFile(path_for(robot, path), text.encode(), (path,))
+
+
+def of_fleet(plan: FleetPlan, file: NamedFile) -> NamedFile:
+    """A file with what a fleet knows: the words for its robots, and frames that its nodes send."""
+    known = load_known_nodes(plan.file.nodes, plan.file.distro)
+    words = {name for it in plan.robots for name in (it.spec.namespace, it.spec.tag)}
+    return file._replace(robots=frozenset(words), sent=file.sent | known.sent)
 
 
 def _with_names_of(robot: RewrittenRobot, finding: Finding) -> Finding:
@@ -61,7 +71,6 @@ def _params(plan: FleetPlan, group: RobotGroup, path: str) -> Companion:
     nodes = evidence.nodes
     bare = at_run_time(plan.fleet.naming, evidence.given, known)
     known = known._replace(sent=known.sent | {it for node in nodes for it in children_of(node)})
-    robots = {name for it in plan.robots for name in (it.spec.namespace, it.spec.tag)}
     own = group.robots[0].spec.words if len(group.robots) == 1 else ()
     made = rewrite_params(
         read[path],
@@ -69,7 +78,6 @@ def _params(plan: FleetPlan, group: RobotGroup, path: str) -> Companion:
         known,
         others,
         group.facts,
-        sorted(robots),
         own,
         bare,
         group.robots[0].spec.use_sim_time,

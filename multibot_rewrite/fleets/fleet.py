@@ -19,7 +19,7 @@ from multibot_rewrite.fleets.member import Member, line_of, member
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER, Edges, edges_of, frames_of
 from multibot_rewrite.graph.transforms import Edge as SentEdge
 from multibot_rewrite.knowledge.node_library import with_included
-from multibot_rewrite.knowledge.nodl.facts import KnownNodes, nodes_of
+from multibot_rewrite.knowledge.nodl.facts import NodeKnowledge, nodes_of
 from multibot_rewrite.knowledge.nodl.lookup import find_interfaces
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
@@ -97,7 +97,7 @@ def make_fleet(
     """
     known = known_nodes(nodes, release, nodl).library.nodes
     facts = facts_of(stacks, nodes, release, nodl)
-    usual = load_known_nodes("", release)
+    usual = load_known_nodes(nodes or "", release)
     launched = launched_robot(facts, launch, known, robots[:1], usual, release)
     runs = nodes_with(launched, facts, given_with(launched, ()), known)
     found = rewrite_all(
@@ -162,12 +162,12 @@ def _origin(node: NodeFacts, stack: str) -> str:
     return f"stack {stack}, described in {file}" if file else f"stack {stack}"
 
 
-def known_nodes(nodes: str | None, release: str, nodl: Sequence[str]) -> KnownNodes:
+def known_nodes(nodes: str | None, release: str, nodl: Sequence[str]) -> NodeKnowledge:
     """What is known of nodes in a release: built in, by NoDL, in the user's file ``nodes``."""
     built = built_in(release)
     library = user_stack(nodes, release) if nodes else built
     own = (name for name, node in library.nodes.items() if node != built.nodes.get(name))
-    return KnownNodes(library, find_interfaces(nodl), frozenset(own))
+    return NodeKnowledge(library, find_interfaces(nodl), frozenset(own))
 
 
 def assemble(

@@ -15,6 +15,8 @@ from multibot_rewrite.fleets.fleet_data import FleetData, read_data
 from multibot_rewrite.fleets.fleet_paths import listed, nodl_files
 from multibot_rewrite.fleets.given_arguments import given_arguments
 from multibot_rewrite.fleets.robot_choice import ALL, Choice, with_robots
+from multibot_rewrite.fleets.zenoh_file import zenoh_of
+from multibot_rewrite.graph.zenoh.configuration import Setup
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.naming import NAMESPACE, Naming, make_naming
 from multibot_rewrite.policy import Policy
@@ -105,7 +107,7 @@ class FleetFile(NamedTuple):
     parameters, vocabulary. ``shared_nodes`` are nodes of the stacks that run once for all robots.
     ``sros2`` asks for a policy, ``params_style`` says how parameter files are written,
     ``relayed`` asks for each robot's tf on /tf as well, ``cell`` for one move_group for all robots,
-    ``shape`` for outputs as the launch files of a vendor take them.
+    ``shape`` for outputs as the launch files of a vendor take them, ``zenoh`` for configurations.
     ``installed`` is where the results are when they are used, empty for where
     they are written."""
 
@@ -125,6 +127,7 @@ class FleetFile(NamedTuple):
     relayed: bool = False
     cell: Cell | None = None
     shape: str = ""
+    zenoh: Setup | None = None
 
 
 def read_fleet(
@@ -165,6 +168,7 @@ def read_fleet(
         data.get("relayed", False),
         cell_of(read, naming),
         data.get("shape", ""),
+        zenoh_of(read),
     )
 
 

@@ -8,12 +8,18 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.companions.names.robot_topics import fleet_topics
 from multibot_rewrite.companions.rviz.bridged import bridged_window
-from multibot_rewrite.companions.rviz.rewrite import RvizText, rewrite_rviz, start_command
-from multibot_rewrite.companions.rviz.values import RvizRobot
+from multibot_rewrite.companions.rviz.read import read_for
+from multibot_rewrite.companions.rviz.rewrite import (
+    RvizRobot,
+    RvizText,
+    rewrite_rviz,
+    start_command,
+)
 from multibot_rewrite.companions.rviz.window_checks import ONE_TF_TOPIC
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.cell_outputs import parameters_path
 from multibot_rewrite.fleets.cell_window import cell_window
+from multibot_rewrite.fleets.companion_files import of_fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.moveit_parameters import FILE, has_moveit
 from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, path_for, yaml_of
@@ -21,6 +27,7 @@ from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.start_poses import world_of
 from multibot_rewrite.fleets.with_start_pose_nodes import split_per_robot
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.rules.files.judge import judged_once
 
 RVIZ = "rviz2"
 
@@ -54,6 +61,10 @@ def rviz_outputs(plan: FleetPlan, each: Iterable[FleetPlan]) -> Iterator[RvizOut
         if relayed and not plan.fleet.naming.layout.frames:
             window, bare = bridged_window(yaml_of(path), shown, world)
             texts, found = (window, *texts), (*found, *bare)
+        found = (
+            *found,
+            *judged_once(of_fleet(plan, read_for(yaml_of(path), shown, plan.file.distro))),
+        )
         done = ONE_TF_TOPIC.code if relayed else ""
         yield RvizOutput(path, texts, tuple(it for it in found if it.code != done))
 

@@ -105,6 +105,11 @@ def is_json(data: bytes) -> bool:
     return data.removeprefix(BOM_UTF8)[:1000].lstrip().startswith(b"{")
 
 
+def is_plan(data: bytes) -> bool:
+    """Whether a file is a plan, by its first key or its layout."""
+    return re.search(rb'^[ {]*"?layout"?:', data[:10_000], re.MULTILINE) is not None
+
+
 def from_json(data: bytes, file: str) -> System:
     """Read what ``to_json`` wrote; raises InputError."""
     try:

@@ -177,7 +177,11 @@ def _told(
 ) -> Iterator[Node]:
     """The nodes with what other keys say of them."""
     sources, origins, ways, _ = by_node.values()
+    about = {*sources, *origins, *ways, *demands, *groups}
     for it in nodes:
+        if it.name not in about:
+            yield it
+            continue
         way, _, taker = ways.get(it.name, "").partition(" ")
         demand = demands.get(it.name)
         yield from_text(it, origins.get(it.name, ""))._replace(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from multibot_rewrite.knowledge.conditions import joined
 from multibot_rewrite.knowledge.node_library import NodeLibrary, Stack
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.releases import RELEASES, has_release, releases_with, since_version
@@ -91,5 +92,5 @@ def _endpoint(it: Endpoint, package: str, release: str) -> Endpoint:
 def _condition(when: str, words: str, package: str, release: str) -> str:
     """The condition of a fact, with the version that it came with in this release."""
     version = since_version(words, release) if words else ""
-    newer = f"{package or 'its package'} {version} or newer"
-    return "; ".join(filter(None, (when, newer if version else "")))
+    newer = f"version: {package or 'its package'} {version}"
+    return joined(when, newer) if version else when

@@ -1,55 +1,141 @@
-"""Conditions on a node's parameters, as entries of nodes write them: ``publish_tf != false``.
+"""Conditions under which a node, an endpoint, a transform or a claim is there, as entries write them.
 
-A condition is a parameter (it is true), or ``PARAMETER = VALUE``, ``!= VALUE``, ``has VALUE`` (a list
-that holds it); ``VALUE | VALUE`` are alternatives, ``and`` joins conditions. ``$other`` stands for the
-value of another parameter. The class of a plugin may be written without its namespace.
+Alternatives are joined by ``or``, what must hold together by ``and``. A term asks a parameter:
+
+    PARAMETER                  it is true; ``ONE|OTHER`` asks several, of which one has to do
+    PARAMETER = VALUE          it has this value, or one of ``VALUE | VALUE``; ``$other`` is that of
+                               another parameter; the class of a plugin may lack its namespace
+    PARAMETER != VALUE         it has none of them; so has one that is not set
+    PARAMETER has VALUE        it is a list that holds one of them
+    PARAMETER set, unset       it has a value that is not empty, or none
+
+or it is ``KIND: WORDS``, for what no parameter says (``KINDS``); ``unknown: TEXT`` is what nobody could
+say in another way yet.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import lru_cache
 
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.nearest import did_you_mean_one_of
 from multibot_rewrite.record import NamedTuple
 
 Values = Callable[[str], object]
-_CONDITION = lazy_compile(r"(?P<parameter>[^\s=!]+)(?:\s*(?P<how>!=|=|\bhas\b)\s*(?P<value>.+?))?")
-AND, OR = " and ", "|"
+UNKNOWN = "unknown"
+# Subject -> what its words are.
+KINDS = {
+    "argument": "an argument of the command line that starts it",
+    "bridge": "an entry of its bridge's file: a direction or a topic",
+    "capability": "a capability of move_group that is loaded",
+    "display": "a display of the RViz config",
+    "dock": "a parameter of a dock or of its plugin",
+    "given": "a parameter that whoever starts it passes",
+    "goal": "what a goal of an action is, or names",
+    "hardware": "what the robot has",
+    "heard": "an own topic that somebody subscribes to",
+    "lua": "an option of its Lua file",
+    "missing": "a parameter that nobody passes",
+    "nodl": "no: its NoDL file does not have it",
+    "panel": "a panel of the RViz config",
+    "phase": "what it is doing",
+    "plugin": "a plugin of its own that is loaded",
+    "program": "the executable that runs it",
+    "run": "simulated or real",
+    "stream": "a stream of the device that is enabled",
+    "tool": "a tool of the RViz config",
+    "tree": "a node of the behavior tree",
+    "unsent": "a topic that nobody else sends",
+    "use": "what the robot is used for",
+    "version": "the package, and its version or a newer one",
+    UNKNOWN: "a text",
+}
+AND, OR, ALSO = " and ", " or ", "|"
+_KIND = lazy_compile(r"(?P<kind>[a-z]+): (?P<words>\S.*)")
+_TERM = lazy_compile(
+    r"(?P<parameter>[^\s=!]+)"
+    r"(?:\s*(?P<how>!=|=|\bhas\b)\s*(?P<value>.+?)|\s+(?P<state>set|unset))?"
+)
 
 
 class Condition(NamedTuple):
-    """One comparison; ``how`` is ``=``, ``!=`` or ``has``."""
+    """One term: ``how`` is ``=``, ``!=``, ``has``, ``set`` or ``unset`` for a parameter, and ``:`` for
+    what no parameter says, whose kind is the ``parameter``."""
 
     parameter: str
     how: str
     values: tuple[str, ...]
 
 
-def parse_condition(text: str) -> tuple[Condition, ...]:
-    """The comparisons that must all hold; raises UsageError for a text that is none."""
-    return tuple(_one(it) for it in text.split(AND)) if text else ()
+@lru_cache(maxsize=2048)
+def parse_condition(text: str) -> tuple[tuple[Condition, ...], ...]:
+    """The alternatives, each with the terms that must all hold; raises UsageError for a text that is
+    none. Of an empty text there are none."""
+    told, mark, rest = text.partition(f"{UNKNOWN}: ")
+    if mark:  # the text behind it may have any words
+        before = (*map(_one, told.removesuffix(AND).split(AND)),) if told else ()
+        return ((*before, Condition(UNKNOWN, ":", (rest,))),)
+    return tuple(tuple(map(_one, it.split(AND))) for it in text.split(OR)) if text else ()
+
+
+def joined(text: str, other: str) -> str:
+    """Both conditions as one."""
+    if not text or text.startswith(f"{UNKNOWN}: "):
+        return other if not text else f"{other}{AND}{text}"
+    return OR.join(f"{it}{AND}{other}" for it in text.split(OR))
 
 
 def _one(text: str) -> Condition:
-    found = _CONDITION.fullmatch(text.strip())
+    kind = _KIND.fullmatch(text.strip())
+    if kind is not None:
+        if kind["kind"] not in KINDS:
+            near = did_you_mean_one_of(kind["kind"], KINDS)
+            known = f"{near}{near and ' '}known: {', '.join(KINDS)}"
+            raise UsageError(f"{text!r} is of no kind that is known; {known}")
+        return Condition(kind["kind"], ":", _words(kind["words"]))
+    found = _TERM.fullmatch(text.strip())
     if found is None:
-        raise UsageError(f"{text!r} is no condition; write PARAMETER = VALUE")
-    values = tuple(it.strip() for it in (found["value"] or "true").split(OR))
-    return Condition(found["parameter"], found["how"] or "=", values)
+        hint = "write PARAMETER = VALUE, or unknown: and a text"
+        raise UsageError(f"{text!r} is no condition; {hint}")
+    if found["state"]:
+        return Condition(found["parameter"], found["state"], ())
+    return Condition(found["parameter"], found["how"] or "=", _words(found["value"] or "true"))
+
+
+def _words(text: str) -> tuple[str, ...]:
+    return tuple(it.strip() for it in text.split(ALSO))
 
 
 def holds(text: str, value_of: Values) -> bool:
-    """Is it true of these parameters? ``value_of`` gives None for one that is not set."""
-    return all(_is_true(it, value_of) for it in parse_condition(text))
+    """Is it surely true of these parameters? ``value_of`` gives None for one that is not set."""
+    return not text or verdict(text, value_of) is True
 
 
-def _is_true(it: Condition, value_of: Values) -> bool:
-    given = value_of(it.parameter)
+def verdict(text: str, value_of: Values) -> bool | None:
+    """Is it true of these parameters? None where they do not say it."""
+    found = [_all(terms, value_of) for terms in parse_condition(text)]
+    return True if True in found else None if None in found else False
+
+
+def _all(terms: tuple[Condition, ...], value_of: Values) -> bool | None:
+    found = [_is_true(it, value_of) for it in terms]
+    return False if False in found else None if None in found else True
+
+
+def _is_true(it: Condition, value_of: Values) -> bool | None:
+    # A word in <> that nothing was put in place of is no parameter.
+    if it.how == ":" or "<" in it.parameter:
+        return None
+    given = [value_of(name) for name in it.parameter.split(ALSO)]
+    if it.how in ("set", "unset"):
+        return any(one not in (None, "", []) for one in given) == (it.how == "set")
     wanted = {word for value in it.values for word in _wanted(value, value_of)}
     if it.how == "has":
-        return isinstance(given, list) and any(wanted & _spellings(one) for one in given)
-    return bool(wanted & _spellings(given)) == (it.how == "=")
+        lists = (one for one in given if isinstance(one, list))
+        return any(wanted & _spellings(one) for its in lists for one in its)
+    return any(wanted & _spellings(one) for one in given) == (it.how == "=")
 
 
 def _wanted(value: str, value_of: Values) -> Iterator[str]:

@@ -61,6 +61,7 @@ def _endpoint(role: str, name: str, item: YamlItem) -> Endpoint:
         releases=releases_of(keys),
         source=source_of(keys),
     )
+    condition_of(keys, "when")
     return checked_endpoint(item, endpoint)
 
 

@@ -56,7 +56,7 @@ def check_apart(item: YamlItem, what: str, words: Sequence[str]) -> None:
     """A fact has a variant, and no two of them hold in one release."""
     if not words:
         wrong(item, f"{what} is an empty list; write what it is")
-    for release in RELEASES:
+    for release in RELEASES if len(words) > 1 else ():
         if sum(has_release(it, release) for it in words) > 1:
             wrong(item, f"{what} is there twice in {release}; give each its own {RELEASES_KEY}")
 
@@ -71,9 +71,9 @@ def text_and_words(item: YamlItem, what: str, key: str) -> Mapping[str, YamlItem
     return found
 
 
-def condition_of(keys: Mapping[str, YamlItem]) -> str:
-    """What ``if`` says; a text that is no condition is an error at its line."""
-    return checked_condition(keys["if"], word_of(keys, "if")) if "if" in keys else ""
+def condition_of(keys: Mapping[str, YamlItem], key: str = "if") -> str:
+    """What ``if`` or ``when`` says; a text that is no condition is an error at its line."""
+    return checked_condition(keys[key], word_of(keys, key)) if key in keys else ""
 
 
 def checked_condition(item: YamlItem, text: str) -> str:

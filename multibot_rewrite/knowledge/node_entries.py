@@ -65,7 +65,7 @@ def read_node(
         flag_of(keys, "shared"),
         word_of(keys, "note"),
         host=word_of(keys, "host"),
-        when=word_of(keys, "when"),
+        when=condition_of(keys, "when"),
         frames=frames,
         fixed=words_of(keys, "fixed"),
         sends=tuple(_sends(keys, frames)),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.knowledge.endpoint_entries import checked_endpoint, endpoints_of
-from multibot_rewrite.knowledge.fact_words import releases_of
+from multibot_rewrite.knowledge.fact_words import condition_of, releases_of
 from multibot_rewrite.knowledge.node_entries import (
     GRAPH_KEYS,
     NODE_KEYS,
@@ -209,7 +209,7 @@ def _placed(item: YamlItem, library: NodeLibrary) -> NodeFacts:
         known=node.name,
         plugin=word_of(keys, "plugin", node.plugin),
         shared=flag_of(keys, "shared", node.shared),
-        when=word_of(keys, "when", node.when),
+        when=condition_of(keys, "when") or node.when,
         releases=releases_of(keys) or node.releases,
         endpoints=_remapped(_named(endpoints, keys), keys),
     )

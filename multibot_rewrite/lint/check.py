@@ -9,11 +9,11 @@ from functools import partial
 from typing import Any, NoReturn
 
 from multibot_rewrite.checks.problem import Problem
+from multibot_rewrite.companions.kinds import is_beside
 from multibot_rewrite.findings.finding import Finding, by_place
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.findings.selection import level_of
 from multibot_rewrite.gc_pause import gc_paused
-from multibot_rewrite.lint.beside.kinds import is_beside
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.config.suppress import unsuppressed
 from multibot_rewrite.lint.failures import breakdown, crash, failure, too_long

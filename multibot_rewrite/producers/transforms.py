@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from itertools import chain
 
 from multibot_rewrite.evidence.filling import filled, lookup
 from multibot_rewrite.evidence.records import GivenNode
@@ -55,6 +56,6 @@ def _switch(condition: str, runs: NodeFacts, given: GivenNode) -> Place | None:
     """Where the parameter is that alone switches it off."""
     value_of = lookup(runs, given.values)
     off = [it for it in condition.split(AND) if not holds(it, value_of)]
-    parts = parse_condition(off[0]) if len(off) == 1 else ()
+    parts = chain(*parse_condition(off[0])) if len(off) == 1 else ()
     found = (given.values[it.parameter] for it in parts if it.parameter in given.values)
     return next((it.place for it in found), None)

@@ -31,15 +31,15 @@ NEEDS = [
     (("rehearse", FLEET, "--report", "r.html"), "ros"),
     (("check", FLEET), "ros"),
     (("check", PLAN, "--watch"), "ros"),
-    (("doctor",), "ros"),
+    (("check",), "ros"),
     (("snapshot", "-o", "graph.json"), "ros"),
     (("learn", "-o", "nodes.yaml"), "ros"),
     (("check", PLAN, *ROUTER), "zenoh"),
-    (("doctor", *ROUTER), "zenoh"),
+    (("check", *ROUTER), "zenoh"),
     (("snapshot", *ROUTER), "zenoh"),
     (("learn", *ROUTER), "zenoh"),
     (("check", PLAN, "--bag", "."), "bags"),
-    (("doctor", "--bag", "."), "bags"),
+    (("check", "--bag", "."), "bags"),
     (("view", FLEET, "-o", "view.html"), "view"),
 ]
 LARGEST = 70_000_000

@@ -34,12 +34,11 @@ COMMAND_LINES: dict[str, tuple[Callable[[Sequence[str]], int], list[str], int]] 
     "plan of a fleet": (multibot.main, ["plan", "fleet.yaml"], 2),
     "plan --form": (multibot.main, ["plan", "--form=table", PATH, "robot1", "--stack", "nav2"], 2),
     "rehearse": (multibot.main, ["rehearse", PATH, "robot1", "--stack", "nav2"], 2),
-    "zenoh": (multibot.main, ["zenoh", "fleet.yaml", "--router", "tcp/h:1", "-o", "out"], 2),
     "view": (multibot.main, ["view", PATH, "-o", "-"], 2),
     "inspect --suggest": (multibot.main, ["inspect", "--suggest", PATH], 2),
 }
 # Those that read no description.
-OTHERS = {"doctor", "explain", "learn", "snapshot"}
+OTHERS = {"explain", "learn", "snapshot"}
 
 
 @pytest.fixture

@@ -15,7 +15,7 @@ from closure_findings import found
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
 # Findings about one line: a name that is in no file, or a plugin of another name.
-ONE_LINE = ("MB8", "MF112", "MF127", "MF510", "MF802")
+ONE_LINE = ("MB8", "MB853", "MF127", "MB874", "MF802")
 PLACE = re.compile(r"\w+\.(urdf|yaml):\d+")
 
 
@@ -69,8 +69,8 @@ BREAKS = [
     ),
     (
         "rover.urdf",
-        'state_interface name="effort"',
-        'state_interface name="force"',
+        'name="effort"/>\n      <state_interface name="position"',
+        'name="effort"/>\n      <state_interface name="force"',
         "MF811",
         20,
         "",
@@ -114,13 +114,13 @@ BREAKS = [
     ("nav2.yaml", "odom_frame: odom,", "odom_frame: odom_slam,", "MG406", 1, "nav2.yaml:1"),
     ("ekf.yaml", "frame: odom", "frame: odom_combined", "MG406", 1, "nav2.yaml:1"),
     # Frames that nothing sends.
-    ("nav2.yaml", "base_frame: base_link,", "base_frame: base_lnk,", "MF112", 2, "base_link"),
-    ("nav2.yaml", "global_frame: odom", "global_frame: odomm", "MF112", 6, ""),
+    ("nav2.yaml", "base_frame: base_link,", "base_frame: base_lnk,", "MB853", 2, "base_link"),
+    ("nav2.yaml", "global_frame: odom", "global_frame: odomm", "MB853", 6, ""),
     (
         "controllers.yaml",
         "base_frame_id: base_link",
         "base_frame_id: base_footprint",
-        "MF112",
+        "MB853",
         13,
         "",
     ),
@@ -260,7 +260,7 @@ ARM_BREAKS = [
     # The row of the bridge is for the other direction, for another type, or for another topic.
     ("bridge.yaml", "GZ_TO_ROS", "ROS_TO_GZ", "MF816", 2, "arm.urdf:57"),
     ("bridge.yaml", "gz.msgs.LaserScan", "gz.msgs.PointCloudPacked", "MF816", 2, "arm.urdf:57"),
-    ("bridge.yaml", "msg/LaserScan", "msg/PointCloud2", "MF510", 1, "sensor_msgs/msg/LaserScan"),
+    ("bridge.yaml", "msg/LaserScan", "msg/PointCloud2", "MB874", 1, "sensor_msgs/msg/LaserScan"),
     ("bridge.yaml", "msg/LaserScan", "msg/PointCloud2", "MG306", 7, "bridge.yaml:1"),
     ("arm.urdf", "<topic>scan</topic>", "<topic>lidar</topic>", "MF816", 2, "arm.urdf:57"),
     # MoveIt uses a joint of another controller, an action that is not served, or another type of it.
@@ -313,7 +313,7 @@ ARM_BREAKS = [
         "controllers.yaml",
         "frame_id: tool_link}\nft",
         "frame_id: tol_link}\nft",
-        "MF112",
+        "MB853",
         20,
         "tool_link",
     ),

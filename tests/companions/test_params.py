@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+from beside import findings_of
 from hypothesis import given
 from hypothesis import strategies as st
 from made_params import (
@@ -140,10 +141,10 @@ def test_a_controllers_section_has_the_one_key_that_the_spawner_looks_for() -> N
         ("/robot7/local_costmap/local_costmap", "MF104"),
         ("/robot7/**", "MF104"),
         ("abb/driver", "MF105"),
-        ("bad-name", "MF106"),
-        ("1node", "MF106"),
-        ("robot*", "MF106"),
-        ("<area>", "MF110"),
+        ("bad-name", "MB861"),
+        ("1node", "MB861"),
+        ("robot*", "MB861"),
+        ("<area>", "MB862"),
     ],
 )
 def test_a_section_with_a_doubtful_name_is_reported(name: str, code: str) -> None:
@@ -155,15 +156,16 @@ def test_a_slash_above_a_node_is_the_root_namespace() -> None:
     text, findings = made("/:\n  amcl:\n    ros__parameters: {base_frame_id: base_link}\n", L2)
     assert text.splitlines()[:2] == ["/robot1:", "  amcl:"]
     assert "r1/base_link" in text
-    assert not {"MF104", "MF105", "MF106"} & set(codes(findings))
-    assert "MF106" in codes(made("/:\n  ros__parameters: {a: 1}\n")[1])
+    assert not {"MF104", "MF105", "MB861"} & set(codes(findings))
+    assert "MB861" in codes(made("/:\n  ros__parameters: {a: 1}\n")[1])
 
 
 def test_a_robots_name_in_a_file_is_an_error() -> None:
     source = section("amcl", "scan_topic: /robot2/scan")
-    found = made(source, robots=["robot1", "robot2"])[1]
-    assert [(it.level, it.line) for it in found if it.code == "MF126"] == [("error", 3)]
-    assert "MF126" not in codes(made(source)[1])
+    companion = rewrite_params(read_yaml(source.encode(), "p.yaml"), setting())
+    found = findings_of(companion, ["robot1", "robot2"])
+    assert [(it.level, it.line) for it in found if it.code == "MB863"] == [("error", 3)]
+    assert "MB863" not in codes(made(source)[1])
 
 
 OWN = """\
@@ -192,18 +194,18 @@ def test_a_file_for_one_robot_may_have_its_sections_in_its_namespace(
     context = make_context(DECLARED, make_naming(layout=layout), nodes, distro="jazzy")  # type: ignore[arg-type]
     document = read_yaml(OWN.encode(), "p")
     robots = ["robot1", "robot2"]
-    made = rewrite_params(document, context, None, (), nodes, robots, own=["robot1"])
+    made = rewrite_params(document, context, None, (), nodes, own=["robot1"])
     text = fill_template(made.template, "robot1", "robot1")
     assert [it.path for it in raw_sections(read_yaml(text.encode(), "p"))] == [
         it.lstrip("/") for it in keys
     ]
-    assert not {it.code for it in made.findings} & {"MF104", "MF105", "MF126"}
-    others = rewrite_params(document, context, None, (), nodes, robots)
-    assert {"MF104", "MF126"} <= {it.code for it in others.findings}
+    assert not {it.code for it in findings_of(made, robots)} & {"MF104", "MF105", "MB863"}
+    others = rewrite_params(document, context, None, (), nodes)
+    assert {"MF104", "MB863"} <= {it.code for it in findings_of(others, robots)}
     # Another robot's name below it is wrong all the same.
     wrong = read_yaml(OWN.replace("scan_topic: scan", "scan_topic: /robot2/scan").encode(), "p")
-    found = rewrite_params(wrong, context, None, (), nodes, robots, own=["robot1"]).findings
-    assert "MF126" in {it.code for it in found}
+    found = findings_of(rewrite_params(wrong, context, None, (), nodes, own=["robot1"]), robots)
+    assert "MB863" in {it.code for it in found}
 
 
 def test_a_node_for_all_robots_keeps_its_section() -> None:
@@ -221,9 +223,9 @@ def test_a_node_for_all_robots_keeps_its_section() -> None:
 
 def test_a_wildcard_behind_an_exact_section_wins() -> None:
     exact, wild = section("amcl", "alpha1: 0.1"), section("/**", "alpha1: 0.2")
-    assert "MF107" in codes(made(exact + wild)[1])
-    assert "MF107" not in codes(made(wild + exact)[1])
-    assert "MF107" not in codes(made(exact + section("/**/other", "alpha1: 0.2"))[1])
+    assert "MB867" in codes(made(exact + wild)[1])
+    assert "MB867" not in codes(made(wild + exact)[1])
+    assert "MB867" not in codes(made(exact + section("/**/other", "alpha1: 0.2"))[1])
 
 
 def test_a_repeated_section_is_rewritten_twice() -> None:
@@ -231,7 +233,7 @@ def test_a_repeated_section_is_rewritten_twice() -> None:
     assert text.count("/robot1/amcl:") == 2
     assert "scan_topic: /robot1/a" in text
     assert "map_topic: /robot1/m" in text
-    assert "MF102" in codes(findings)
+    assert "MB866" in codes(findings)
     assert text.count("odom_frame_id") == 1
 
 
@@ -239,7 +241,7 @@ def test_a_repeated_key_is_rewritten_twice() -> None:
     text, findings = made(section("amcl", "scan_topic: /a", "scan_topic: /b"))
     assert "scan_topic: /robot1/a" in text
     assert "scan_topic: /robot1/b" in text
-    assert "MF108" in codes(findings)
+    assert "MB859" in codes(findings)
 
 
 # ---------------------------------------------------------------- names
@@ -469,15 +471,15 @@ def test_a_shared_topic_is_written_from_the_root() -> None:
 def test_an_invalid_topic_stays_and_is_reported() -> None:
     text, findings = made(section("amcl", "scan_topic: 1st/scan"))
     assert "scan_topic: 1st/scan" in text
-    assert "MF113" in codes(findings)
+    assert "MB861" in codes(findings)
 
 
 @pytest.mark.parametrize(
     ("line", "code"),
     [
-        ('scan_topic: "scan "', "MF113"),
-        ('odom_frame_id: "odom "', "MF134"),
-        ('base_frame_id: "base link"', "MF134"),
+        ('scan_topic: "scan "', "MB861"),
+        ('odom_frame_id: "odom "', "MB865"),
+        ('base_frame_id: "base link"', "MB865"),
     ],
 )
 def test_a_name_with_white_space_stays_and_is_reported(line: str, code: str) -> None:
@@ -568,8 +570,8 @@ def test_interfaces_of_an_unknown_controller_are_renamed(key: str) -> None:
     """test_controller_spawner_with_interfaces.yaml of ros2_control; a known one has [position]."""
     text, findings = made(section("own_controller", f"{key}: [elbow/position, other/position]"))
     assert f"{key}: [r1_elbow/position, other/position]" in text
-    assert codes(findings) == ["MF114", "MF111"]
-    assert "'other' of interface 'other/position'" in findings[1].message
+    assert codes(findings) == ["MF114", "MB854"]
+    assert "'other'" in findings[1].message
     assert f"{key}: [position]" in made(section("own_controller", f"{key}: [position]"))[0]
 
 
@@ -583,21 +585,21 @@ def test_what_is_no_interface_of_the_robot_is_not_reported(value: str) -> None:
 @pytest.mark.parametrize(
     ("node", "line", "code", "words"),
     [
-        ("joint_trajectory_controller", "joints: [elbov]", "MF111", "did you mean 'elbow'"),
-        ("amcl", "base_frame_id: base_lnk", "MF112", "did you mean 'base_link'"),
-        ("imu_sensor_broadcaster", "sensor_name: imu", "MF111", "not in the description"),
-        ("other", "what: elbow", "MF123", "is a joint of the robot"),
-        ("other", "elbow: 1.0", "MF123", "is a joint of the robot"),
-        ("other", "what: [1st, base_link]", "MF123", "is a link of the robot"),
-        ("other", "what: [elbow/position]", "MF123", "is an interface of the robot"),
-        ("other", "what: chained/elbow/velocity", "MF123", "is an interface of the robot"),
-        ("other", "what: imu_sensor/orientation.x", "MF123", "is an interface of the robot"),
+        ("joint_trajectory_controller", "joints: [elbov]", "MB854", "did you mean 'elbow'"),
+        ("amcl", "base_frame_id: base_lnk", "MB853", "did you mean 'base_link'"),
+        ("imu_sensor_broadcaster", "sensor_name: imu", "MB854", "is in no description"),
+        ("other", "what: elbow", "MB860", "is a joint of the robot"),
+        ("other", "elbow: 1.0", "MB860", "is a joint of the robot"),
+        ("other", "what: [1st, base_link]", "MB860", "is a link of the robot"),
+        ("other", "what: [elbow/position]", "MB860", "is an interface of the robot"),
+        ("other", "what: chained/elbow/velocity", "MB860", "is an interface of the robot"),
+        ("other", "what: imu_sensor/orientation.x", "MB860", "is an interface of the robot"),
         ("other", "x_topic: /x", "MF114", "guessed: x_topic"),
         ("foxglove_bridge", 'topic_whitelist: ["/scan.*"]', "MF122", "not rewritten"),
         ("robot_state_publisher", "frame_prefix: a/", "MF115", "a second time"),
         ("ekf_filter_node", "debug_out_file: /tmp/x", "MF118", "the same for all robots"),
-        ("amcl", "scan_topic: $(var s)", "MF110", "a launch file must replace it"),
-        ("amcl", "scan_topic:", "MF109", "rcl rejects"),
+        ("amcl", "scan_topic: $(var s)", "MB862", "a launch file must replace it"),
+        ("amcl", "scan_topic:", "MB868", "rcl rejects"),
         ("amcl", "base_frame_id: |\n      base_link", "MF119", "on one line"),
     ],
 )
@@ -807,12 +809,6 @@ def test_the_page_has_codes_that_exist() -> None:
     assert codes_named <= set(catalogue.rules())
 
 
-def test_the_34_codes_are_declared_in_the_room() -> None:
-    assert [it for it in catalogue.rules() if it.startswith("MF1")] == [
-        f"MF{number}" for number in range(101, 135)
-    ]
-
-
 def test_the_example_of_the_page_is_one(tmp_path: Path) -> None:
     text = (ROOT / "docs" / "params.md").read_text()
     path = tmp_path / "more.yaml"
@@ -837,9 +833,9 @@ pose:
 force:
   ros__parameters: {{sensor_name: imu_sensor, frame_id: flange}}
 """
-    assert [it for it in made(text)[1] if it.code == "MF112"] == []
+    assert [it for it in made(text)[1] if it.code == "MB853"] == []
     alone = text.replace("child_frame_id: flange", "child_frame_id: other")
-    (missing,) = (it for it in made(alone)[1] if it.code == "MF112")
+    (missing,) = (it for it in made(alone)[1] if it.code == "MB853")
     assert (missing.line, "'flange'" in missing.message) == (8, True)
 
 

@@ -72,7 +72,7 @@ def test_a_switch_that_is_on_is_turned_off(node: str) -> None:
     """The build's own check of what it wrote takes true for a prefix."""
     text, findings = made(section(node, "tf_frame_prefix_enable: true"), distro="lyrical")
     assert "tf_frame_prefix_enable: false" in text
-    assert codes(findings) == ["MF129"]
+    assert codes(findings) == ["MB869"]
 
 
 @pytest.mark.parametrize("node", ["ackermann_steering_controller", "tricycle_steering_controller"])
@@ -87,7 +87,7 @@ def test_a_prefix_of_a_launch_file_is_reported() -> None:
     _, findings = made(
         section("diff_drive_controller", "tf_frame_prefix: $(var prefix)"), distro="lyrical"
     )
-    assert codes(findings) == ["MF110", "MF116"]
+    assert codes(findings) == ["MF116"]
 
 
 @pytest.mark.parametrize(
@@ -104,14 +104,14 @@ def test_a_slash_is_taken_off_where_the_node_does(
 ) -> None:
     text, findings = made(section(node, "odom_frame_id: /odom"), distro=release)
     assert line in text
-    assert [(it.code, it.level) for it in findings] == [("MF128", level)]
+    assert [(it.code, it.level) for it in findings] == [("MB864", level)]
 
 
 @pytest.mark.parametrize(
     "line", ["scan_topic: /scan", "odom_frame_id: odom", "odom_frame_id: $(var x)"]
 )
 def test_other_slashes_are_not_reported(line: str) -> None:
-    assert "MF128" not in codes(made(section("amcl", line))[1])
+    assert "MB864" not in codes(made(section("amcl", line))[1])
 
 
 def test_a_joint_group_controller_is_deprecated_from_lyrical_on() -> None:
@@ -119,19 +119,19 @@ def test_a_joint_group_controller_is_deprecated_from_lyrical_on() -> None:
         "controller_manager", "arm: {type: effort_controllers/JointGroupEffortController}"
     )
     assert codes(made(text, distro="kilted")[1]) == []
-    assert codes(made(text, distro="lyrical")[1]) == ["MF129"]
+    assert codes(made(text, distro="lyrical")[1]) == ["MB869"]
     flat = section(
         "controller_manager", "arm.type: velocity_controllers/JointGroupVelocityController"
     )
-    assert codes(made(flat, distro="rolling")[1]) == ["MF129"]
+    assert codes(made(flat, distro="rolling")[1]) == ["MB869"]
 
 
 @pytest.mark.parametrize(
     ("given", "found"),
     [
-        (("interfaces: [position, temperature]",), ["MF130"]),
+        (("interfaces: [position, temperature]",), ["MB871"]),
         (("interfaces: [position, effort]",), []),
-        (("interfaces: [effort]", "publish_dynamic_joint_states: true"), ["MF129"]),
+        (("interfaces: [effort]", "publish_dynamic_joint_states: true"), ["MB869"]),
         (("interfaces: [pos]", "map_interface_to_joint_state: {position: pos}"), []),
     ],
 )
@@ -151,14 +151,13 @@ def test_target_frames_of_the_wrench_transformer_are_frames(node: str) -> None:
 def test_a_sensor_that_is_renamed_is_not_said_to_stay() -> None:
     text, findings = made(section("imu_sensor_broadcaster", "sensor_name: mag"))
     assert "sensor_name: r1_mag" in text
-    assert findings[0].code == "MF111"
-    assert "becomes" in findings[0].hint
+    assert findings[0].code == "MB854"
 
 
 def test_a_joint_that_stays_is_said_to_stay() -> None:
     text, findings = made(section("joint_trajectory_controller", "joints: [zzz]"))
     assert "joints: [zzz]" in text
-    assert "stays unchanged" in findings[0].hint
+    assert codes(findings) == ["MB854"]
 
 
 @pytest.mark.parametrize(
@@ -185,15 +184,15 @@ def test_a_parameter_that_only_other_releases_have(
     node: str, line: str, release: str, others: str
 ) -> None:
     _, findings = made(section(node, line), distro=release)
-    (found,) = (it for it in findings if it.code == "MF131")
+    (found,) = (it for it in findings if it.code == "MB870")
     assert (found.level, found.line) == ("note", 3)
     assert found.message.endswith(f"is not in {release}, only in {others}")
-    assert codes(made(section(node, line), distro=others.rpartition(" ")[2])[1]).count("MF131") == 0
+    assert codes(made(section(node, line), distro=others.rpartition(" ")[2])[1]).count("MB870") == 0
 
 
 def test_a_parameter_that_the_release_deprecates_is_told_once() -> None:
     text = section("joint_state_broadcaster", "publish_dynamic_joint_states: false")
-    assert codes(made(text, distro="lyrical")[1]) == ["MF129"]
+    assert codes(made(text, distro="lyrical")[1]) == ["MB869"]
 
 
 def test_an_unknown_parameter_is_of_no_release() -> None:
@@ -207,13 +206,13 @@ def test_a_node_that_only_another_release_has_is_told_once() -> None:
     known = known._replace(nodes={**known.nodes, "amcl": later})
     text = section("amcl", "saved_pose_filepath: /tmp/x")
     _, found = made(text, distro="humble", known=known)
-    assert [it.message for it in found if it.code == "MF131"] == [
+    assert [it.message for it in found if it.code == "MB870"] == [
         "node amcl is not in humble, only in rolling"
     ]
 
 
 def test_what_is_told_of_a_release_says_where_that_is_written() -> None:
     line = "saved_pose_filepath: /tmp/x"
-    (found,) = (it for it in made(section("amcl", line), distro="jazzy")[1] if it.code == "MF131")
+    (found,) = (it for it in made(section("amcl", line), distro="jazzy")[1] if it.code == "MB870")
     place = "ros-navigation/navigation2@1.5.1 nav2_amcl/src/amcl_node.cpp"
     assert re.search(rf"; source: {place}:\d+$", found.hint)

@@ -55,7 +55,7 @@ def test_the_reasons_are_true(corpus_params: dict[str, Path]) -> None:
             bare = re.sub(r"#.*", "", text)
             assert bare.count("ros__parameters") == 0 or not why.startswith("not a ROS 2"), name
             assert re.search(r"[&*]\w", bare) or "anchors" not in why, name
-            assert ROBOT in text or why != "MF126", name
+            assert ROBOT in text or why != "MB863", name
 
 
 @pytest.mark.parametrize(

@@ -13,6 +13,7 @@ from rviz_robots import robots_of
 
 from multibot_rewrite.companions.names.robot_topics import fleet_topics, robot_topic
 from multibot_rewrite.companions.rviz.colours import palette, read_colour
+from multibot_rewrite.companions.rviz.read import read_for
 from multibot_rewrite.companions.rviz.read_config import rviz_data
 from multibot_rewrite.companions.rviz.rewrite import RvizText, rewrite_rviz, start_command
 from multibot_rewrite.companions.yaml_text import read_yaml
@@ -22,6 +23,7 @@ from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.table import build_table
+from multibot_rewrite.rules.files.judge import judged_once
 
 ROBOTS = ("robot1", "robot2")
 DECLARED = {"link": dict.fromkeys(("base_link", "base_scan", "wheel")), "joint": {"hip": None}}
@@ -127,7 +129,10 @@ def make(
 ) -> tuple[tuple[RvizText, ...], tuple[Finding, ...]]:
     options = {key: more.pop(key) for key in ("world", "relayed") if key in more}
     robots = robots_of(declared(), layout, ROBOTS, **more)
-    return rewrite_rviz(read_yaml(text.encode(), "one.rviz"), robots, **options)
+    document = read_yaml(text.encode(), "one.rviz")
+    made, found = rewrite_rviz(document, robots, **options)
+    file = read_for(document, robots, NEWEST_LTS)._replace(robots=frozenset(ROBOTS))
+    return made, (*found, *judged_once(file))
 
 
 def shown(text: str = CONFIG, layout: str = "L2", **more: Any) -> dict[str, Any]:
@@ -417,22 +422,21 @@ def test_the_postfix_layout_adds_postfixes_to_topics() -> None:
     ("display", "code"),
     [
         ("Class: acme/Show\nTopic: /t", "MF204"),
-        ("Class: acme/Show\nBody: base_link", "MF205"),
-        ("Class: rviz_default_plugins/RobotModel\nLinks:\n  base_lnk:\n    Alpha: 1", "MF206"),
-        ("Class: rviz_default_plugins/Axes\nReference Frame: base_lin", "MF206"),
+        ("Class: acme/Show\nBody: base_link", "MB860"),
+        ("Class: rviz_default_plugins/Axes\nReference Frame: base_lin", "MB853"),
         ("Class: rviz_default_plugins/TF\nFilter (whitelist): ^base", "MF208"),
         (
             "Class: rviz_default_plugins/RobotModel\nDescription Source: File\nDescription File: a",
             "MF208",
         ),
-        ("Class: rviz_default_plugins/Image\nImage Topic: /i", "MF209"),
-        ("Class: rviz_default_plugins/Path\nTopic: /a/<name>/b", "MF210"),
+        ("Class: rviz_default_plugins/Image\nImage Topic: /i", "MB872"),
+        ("Class: rviz_default_plugins/Path\nTopic: /a/<name>/b", "MB862"),
         ("Class: rviz_default_plugins/Camera\nTopic: /i\nVisibility:\n  it: false", "MF212"),
         (
             "Class: rviz_default_plugins/RobotModel\nDescription Topic:\n  Durability Policy: Volatile",
-            "MF214",
+            "MB873",
         ),
-        ("Class: rviz_default_plugins/Path\nTopic: /robot1/plan", "MF215"),
+        ("Class: rviz_default_plugins/Path\nTopic: /robot1/plan", "MB863"),
     ],
 )
 def test_findings(display: str, code: str) -> None:
@@ -441,9 +445,9 @@ def test_findings(display: str, code: str) -> None:
 
 def test_a_finding_says_where() -> None:
     text = config("Class: rviz_default_plugins/Axes\nReference Frame: base_lin")
-    found = next(it for it in make(text)[1] if it.code == "MF206")
+    found = next(it for it in make(text)[1] if it.code == "MB853")
     assert (found.file, found.line, found.column) == ("one.rviz", 5, 24)
-    assert "did you mean 'base_link'" in found.message
+    assert "did you mean 'base_link'" in found.hint
 
 
 @pytest.mark.parametrize(
@@ -557,7 +561,7 @@ def test_volatile_descriptions_are_reported_once() -> None:
         "Class: rviz_default_plugins/RobotModel\nDescription Topic:\n  Durability Policy: Volatile"
     )
     other = "    - Name: two\n" + "".join(f"      {line}\n" for line in model.splitlines())
-    assert codes(config(model, other)).count("MF214") == 1
+    assert codes(config(model, other)).count("MB873") == 1
 
 
 def test_orientation_frames_are_no_frames() -> None:

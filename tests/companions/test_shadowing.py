@@ -35,7 +35,7 @@ def shadowed(folder: Path, capsys: pytest.CaptureFixture[str], *sections: str) -
     """The lines of parameters that take the place of earlier ones."""
     assert build(folder, params__yaml="".join(sections)) == 0
     err = capsys.readouterr().err
-    return [int(line) for line in re.findall(r"params\.yaml:(\d+):\d+: \w+: MF107\b", err)]
+    return [int(line) for line in re.findall(r"params\.yaml:(\d+):\d+: \w+: MB867\b", err)]
 
 
 @pytest.mark.parametrize(

@@ -202,14 +202,12 @@ def test_a_moveit_file_of_another_robot_is_one_error(tmp_path: Path) -> None:
     text = "".join(solver.replace("{}", it, 1) for it in ("a", "b", "c", "manipulator"))
     _, findings = built(tmp_path, kinematics=text)
     (message,) = errors(findings)
-    assert (
-        message == "MF309 3 of the 4 names in this file are not in the description: a, b and others"
-    )
+    assert message == "MB875 3 of the 4 names in this file are in no description: a, b and others"
     # Two of three may be mistakes.
     text = "".join(solver.replace("{}", it, 1) for it in ("a", "b", "manipulator"))
     _, findings = built(tmp_path, kinematics=text)
     assert errors(findings) == []
-    assert [it.code for it in findings].count("MF301") == 2
+    assert [it.code for it in findings].count("MB854") == 2
 
 
 IPS = "robots: [{name: left, arguments: {ip: A}}, {name: right, arguments: {ip: B}}]\n"

@@ -165,7 +165,7 @@ def test_many_lines_of_one_fault_are_one_finding(tmp_path: Path) -> None:
 def test_what_a_companion_reported_is_not_reported_again(tmp_path: Path) -> None:
     params = PARAMS.replace("scan_topic: scan", "scan_topic: /robot2/scan")
     made = make_outputs(planned(tmp_path, SMALL, params__yaml=params))
-    assert [it.code for it in made.findings if it.level == "error"] == ["MF126"]
+    assert [it.code for it in made.findings if it.level == "error"] == ["MB863"]
 
 
 def test_the_line_is_that_of_the_source_behind_inserted_ones(tmp_path: Path) -> None:
@@ -286,7 +286,7 @@ def test_an_author_s_own_prefix_in_a_parameter_is_an_error(tmp_path: Path) -> No
     text = SIDES.replace("LAYOUT", "L2")
     made = make_outputs(planned(tmp_path, text, rover__urdf=PARTS, params__yaml=params))
     levels = {it.code: it.level for it in made.findings}
-    assert (levels["MF603"], levels["MF112"]) == ("error", "warning")
+    assert (levels["MF603"], levels["MB853"]) == ("error", "warning")
 
 
 # ---------------------------------------------------------------- parents

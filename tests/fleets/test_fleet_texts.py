@@ -10,12 +10,13 @@ from typing import Any
 
 import pytest
 import yaml
+from beside import findings_of
 from paths import CORPUS
 
+from multibot_rewrite.companions.bridge import BridgeFile, rewrite_bridge
 from multibot_rewrite.companions.context import make_context
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.fleets import spawn, start_poses, teleop
-from multibot_rewrite.fleets.bridge_file import BridgeFile, rewrite_bridge
 from multibot_rewrite.fleets.bridge_merge import as_spawned, fill_bridge, merge_bridges
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
@@ -139,22 +140,22 @@ def test_a_file_with_nothing_shared_or_nothing_own() -> None:
 @pytest.mark.parametrize(
     ("entry", "code"),
     [
-        (f"- topic_name: a\n  ros_topic_name: b\n{TYPES}", "MF502"),
-        (f"- topic_name: a\n  gz_topic_name: b\n{TYPES}", "MF502"),
-        ("- topic_name: a\n  ros_type_name: b\n", "MF502"),
-        ("- ros_type_name: b\n  gz_type_name: c\n", "MF502"),
-        (f"- topic_name: a\n  direction: IN\n{TYPES}", "MF502"),
-        ("- just text\n", "MF502"),
-        (f"- topic_name: a\n  gz_ros_topic_name: b\n{TYPES}", "MF504"),
-        (f"- ros_topic_name: a/$(var b)\n{TYPES}", "MF503"),
-        (f"- gz_topic_name: /model/x/joint/hip/0/cmd_pos\n{TYPES}", "MF501"),
+        (f"- topic_name: a\n  ros_topic_name: b\n{TYPES}", "MB855"),
+        (f"- topic_name: a\n  gz_topic_name: b\n{TYPES}", "MB855"),
+        ("- topic_name: a\n  ros_type_name: b\n", "MB855"),
+        ("- ros_type_name: b\n  gz_type_name: c\n", "MB855"),
+        (f"- topic_name: a\n  direction: IN\n{TYPES}", "MB855"),
+        ("- just text\n", "MB855"),
+        (f"- topic_name: a\n  gz_ros_topic_name: b\n{TYPES}", "MB858"),
+        (f"- ros_topic_name: a/$(var b)\n{TYPES}", "MB862"),
+        (f"- gz_topic_name: /model/x/joint/hip/0/cmd_pos\n{TYPES}", "MB861"),
         (f"- topic_name: /model/x/a\n{TYPES}- topic_name: /model/door/b\n{TYPES}", "MF505"),
-        (f"- topic_name: a\n  lazy: base\n{TYPES}", "MF508"),
-        (f"- ros_topic_name: a\n  gz_topic_name: /model/x/link/bas/a\n{TYPES}", "MF507"),
+        (f"- topic_name: a\n  lazy: base\n{TYPES}", "MB860"),
+        (f"- ros_topic_name: a\n  gz_topic_name: /model/x/link/bas/a\n{TYPES}", "MB853"),
     ],
 )
 def test_mistakes_in_an_entry_are_reported(entry: str, code: str) -> None:
-    assert [it.code for it in bridged(entry, "L2", "base").own.findings] == [code]
+    assert [it.code for it in findings_of(bridged(entry, "L2", "base").own)] == [code]
 
 
 def test_an_entry_that_does_not_load_is_left_out() -> None:

@@ -106,7 +106,7 @@ ARMS = {
         frozenset({("robot", "name", "UF_ROBOT", "left_UF_ROBOT")}),
         "material",
         # The config shows no description that was sent before rviz2 started.
-        frozenset({"MF214"}),
+        frozenset({"MB873"}),
     ),
     "gen3": Arm(
         "ros2_kortex/kortex_description/robots/gen3.xacro",
@@ -349,7 +349,7 @@ def test_a_cell_of_xarms_is_the_vendors_own_for_two_arms(sources: Path, tmp_path
     fleet["robots"][1]["arguments"] |= {"attach_xyz": "0 1 0"}
     (tmp_path / "fleet.yaml").write_text(yaml.safe_dump(fleet))
     made = make_outputs(plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {})))
-    assert {it.code for it in made.findings} <= {"MF214"}
+    assert {it.code for it in made.findings} <= {"MB873"}
     (file,) = (it.data for it in made.files if it.path == "cell/moveit_parameters.yaml")
     ours = yaml.safe_load(file)["/**"]["ros__parameters"]
     vendor = _of_the_vendors_builder(sources)

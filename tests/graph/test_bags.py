@@ -202,8 +202,8 @@ def test_the_command(made: Path, capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_the_doctor(made: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(capsys, "doctor", "--bag", made / "healthy")[0] == 0
-    code, out, _ = run(capsys, "doctor", "--bag", made / "collision")
+    assert run(capsys, "check", "--bag", made / "healthy")[0] == 0
+    code, out, _ = run(capsys, "check", "--bag", made / "collision")
     assert (code, "MG401" in out) == (1, True)
 
 
@@ -309,6 +309,6 @@ def test_a_tf_topic_of_one_robot_alone_needs_no_endpoint_of_the_plan() -> None:
 def test_the_robots_of_a_recording_are_told_by_its_topics(
     made: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    _, _, err = run(capsys, "doctor", "--bag", made / "healthy")
+    _, _, err = run(capsys, "check", "--bag", made / "healthy")
     assert "2 robots by their namespaces: robot1, robot2" in err
     assert "of no robot" not in err

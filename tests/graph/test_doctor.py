@@ -214,7 +214,7 @@ def faulty(code: str, level: str = "error") -> System:
 
 
 def test_a_healthy_system_ends_with_0(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert multibot.main(["doctor", "--snapshot", saved(tmp_path, nav())]) == 0
+    assert multibot.main(["check", "--snapshot", saved(tmp_path, nav())]) == 0
     out, err = capsys.readouterr()
     assert out == "" and err.endswith("multibot: 0 findings: nothing wrong seen\n")
 
@@ -230,25 +230,25 @@ def test_a_healthy_system_ends_with_0(tmp_path: Path, capsys: pytest.CaptureFixt
     ],
 )
 def test_the_exit_code(graph: System, more: list[str], code: int, tmp_path: Path) -> None:
-    assert multibot.main(["doctor", "--snapshot", saved(tmp_path, graph), *more]) == code
+    assert multibot.main(["check", "--snapshot", saved(tmp_path, graph), *more]) == code
 
 
 def test_an_incomplete_view_is_inconclusive(tmp_path: Path) -> None:
     doubt = Caveat("not-settled", True, "still changing")
     graph = nav()._replace(environment=environment(doubt))
-    assert multibot.main(["doctor", "--snapshot", saved(tmp_path, graph)]) == 3
+    assert multibot.main(["check", "--snapshot", saved(tmp_path, graph)]) == 3
 
 
 def test_a_graph_without_robots_is_inconclusive(tmp_path: Path) -> None:
     graph = with_node(EMPTY, "/_ros2cli_4711")
-    assert multibot.main(["doctor", "--snapshot", saved(tmp_path, graph)]) == 3
-    assert multibot.main(["doctor", "--snapshot", saved(tmp_path, EMPTY)]) == 3
+    assert multibot.main(["check", "--snapshot", saved(tmp_path, graph)]) == 3
+    assert multibot.main(["check", "--snapshot", saved(tmp_path, EMPTY)]) == 3
 
 
 def test_the_page(tmp_path: Path) -> None:
     graph, page = saved(tmp_path, faulty("MG402")), tmp_path / "page.html"
     given = ["--report", str(page), "-q"]
-    assert multibot.main(["doctor", "--snapshot", graph, *given]) == 1
+    assert multibot.main(["check", "--snapshot", graph, *given]) == 1
     assert "MG402" in page.read_text()
 
 
@@ -257,7 +257,7 @@ def test_what_is_suggested_is_taken(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     graph, folder = saved(tmp_path, SYSTEMS[name]()), tmp_path / "first"
-    assert multibot.main(["doctor", "--snapshot", graph, "--suggest", str(folder)]) == 0
+    assert multibot.main(["check", "--snapshot", graph, "--suggest", str(folder)]) == 0
     assert multibot.main(["check", str(folder / "plan.yaml"), "--snapshot", graph]) == 0
     fleet, planned = str(folder / "fleet.yaml"), str(tmp_path / "plan.yaml")
     assert multibot.main(["plan", fleet, "-o", planned]) == 0, capsys.readouterr().err
@@ -273,7 +273,7 @@ def test_what_separates_a_robots_word_from_frames_is_suggested(tmp_path: Path) -
     graph = shared_tf()
     frames = (it._replace(child=spelled(it.child), parent=spelled(it.parent)) for it in graph.edges)
     graph, folder = graph._replace(edges=tuple(frames)), tmp_path / "first"
-    given = ["doctor", "--snapshot", saved(tmp_path, graph), "--suggest", str(folder)]
+    given = ["check", "--snapshot", saved(tmp_path, graph), "--suggest", str(folder)]
     assert multibot.main(given) == 0
     planned = str(tmp_path / "plan.yaml")
     assert multibot.main(["plan", str(folder / "fleet.yaml"), "-o", planned]) == 0
@@ -284,7 +284,7 @@ def test_what_separates_a_robots_word_from_frames_is_suggested(tmp_path: Path) -
 def test_a_suggestion_replaces_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "fleet.yaml").write_text("mine")
     given = ["--snapshot", saved(tmp_path, nav()), "--suggest", str(tmp_path)]
-    assert multibot.main(["doctor", *given]) == 2
+    assert multibot.main(["check", *given]) == 2
     assert "fleet.yaml is there already" in capsys.readouterr().err
     assert (tmp_path / "fleet.yaml").read_text() == "mine"
 
@@ -337,7 +337,7 @@ def test_nobody_manages_it_so_it_may_be_meant() -> None:
 
 @pytest.mark.parametrize("more", [["--zenoh", "tcp/localhost:7447"], ["--snapshot", "g"]])
 def test_states_are_of_the_live_graph(more: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    assert multibot.main(["doctor", "--state", *more]) == 2
+    assert multibot.main(["check", "--state", *more]) == 2
     assert "--state asks nodes of the live graph" in capsys.readouterr().err
 
 

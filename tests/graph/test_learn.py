@@ -451,7 +451,7 @@ def test_what_every_node_has_is_a_part_where_it_is_whole() -> None:
     some = [end for end in EVERY_NODE if end.role != SUBSCRIBES]
     found = one(graph(node(*some, clock, description, publishes("x"))))
     assert (found.parts, spelled(found)) == ((), [(PUBLISHES, "/x"), (SUBSCRIBES, "/clock")])
-    assert found.own[1].when == "use_sim_time"
+    assert found.own[1].when == "run: simulated"
 
 
 @pytest.mark.parametrize("base", ["", pytest.param("/old", marks=pytest.mark.deep)])

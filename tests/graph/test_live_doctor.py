@@ -76,7 +76,7 @@ def looked_at(at: int, graph: System, more: Mapping[str, str]) -> Outcome:
     domain = live_commands.domain(at)
     env = {**live_fleet.environ(domain), **more}
     with live_fleet.running(domain, *live_graphs.processes(graph), **more):
-        done = live_commands.multibot("doctor", *PATIENTLY, env=env)
+        done = live_commands.multibot("check", *PATIENTLY, env=env)
     lines = [line.partition(": ")[2].split() for line in done.stdout.splitlines()]
     codes = frozenset(words[1] for words in lines if len(words) > 1)
     return Outcome(done.returncode, codes, done.stdout + done.stderr)

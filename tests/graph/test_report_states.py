@@ -282,9 +282,9 @@ def test_the_open_ends_of_a_plan_are_on_the_page(
 
 
 def test_the_doctor_says_its_own_words(tmp_path: Path) -> None:
-    code, tree = drawn(tmp_path, "doctor", "--snapshot", str(GRAPHS / "healthy.json"), "-q")
+    code, tree = drawn(tmp_path, "check", "--snapshot", str(GRAPHS / "healthy.json"), "-q")
     assert (code, tree.find(".//h1").text) == (0, "nothing wrong seen")
-    assert tree.find(".//header/p").text == "multibot doctor"
+    assert tree.find(".//header/p").text == "multibot check"
     assert "as planned" not in tree.find("body").text_content().partition('"use strict"')[0]
 
 

@@ -60,7 +60,7 @@ def test_an_endpoint_is_there_in_its_releases_only() -> None:
 
 def test_what_came_with_a_version_of_the_package_is_conditional_there() -> None:
     found = conditions(dock("jazzy"))
-    assert found["staging_pose"] == found["~/reload"] == "opennav_docking 1.3.9 or newer"
+    assert found["staging_pose"] == found["~/reload"] == "version: opennav_docking 1.3.9"
     assert found["dock_pose"] == ""
 
 
@@ -68,7 +68,7 @@ def test_a_node_that_came_with_a_version_is_conditional_beside_its_own_condition
     text = "nodes: {a: {package: p, releases: jazzy 2.0+}}\n"
     text += "stacks: {s: {nodes: [{node: a, when: asked}]}}"
     (node,) = stack_of(library("jazzy", text), "s")
-    assert node.when == "asked; p 2.0 or newer"
+    assert node.when == "asked and version: p 2.0"
 
 
 @pytest.mark.parametrize(("release", "type_"), [("jazzy", "Twist"), ("lyrical", "TwistStamped")])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from multibot_rewrite.knowledge.conditions import holds, parse_condition
+from multibot_rewrite.knowledge.conditions import holds, joined, parse_condition, verdict
 from multibot_rewrite.model import UsageError
 
 VALUES: dict[str, object] = {
@@ -15,6 +15,7 @@ VALUES: dict[str, object] = {
     "type": "diff_drive_controller/DiffDriveController",
     "plugins": ["static_layer", "nav2_costmap_2d::VoxelLayer"],
     "period": 0.0,
+    "empty": "",
     "world_frame": "map",
     "map_frame": "map",
 }
@@ -45,10 +46,48 @@ VALUES: dict[str, object] = {
         ("world_frame = $absent", False),
         ("on and mode = mapping", True),
         ("on and off", False),
+        ("off or on", True),
+        ("off or on and absent", False),
+        ("mode set", True),
+        ("absent set", False),
+        ("empty set", False),
+        ("empty unset", True),
+        ("absent unset and on", True),
+        ("absent|mode = mapping", True),
+        ("absent|mode = localization", False),
     ],
 )
 def test_a_condition_is_decided(text: str, true: bool) -> None:
     assert holds(text, VALUES.get) is true
+
+
+@pytest.mark.parametrize(
+    ("text", "known"),
+    [
+        ("tree: DockRobot", None),
+        ("unknown: it is dark, or it is not", None),
+        ("on and tree: DockRobot", None),
+        ("off and tree: DockRobot", False),
+        ("on or tree: DockRobot", True),
+        ("off or tree: DockRobot", None),
+        ("<layer>.plugin = VoxelLayer", None),
+        ("on and <layer>.plugin = VoxelLayer", None),
+        ("off and unknown: on or off", False),
+    ],
+)
+def test_what_parameters_do_not_say_is_open(text: str, known: bool | None) -> None:
+    assert verdict(text, VALUES.get) is known
+
+
+def test_two_conditions_hold_together() -> None:
+    assert joined("", "on") == "on"
+    assert joined("off or on", "off") == "off and off or on and off"
+    assert verdict(joined("unknown: on or off", "off"), VALUES.get) is False
+
+
+def test_a_word_that_is_no_kind_has_the_nearest_one() -> None:
+    with pytest.raises(UsageError, match="did you mean 'tree'"):
+        parse_condition("tre: DockRobot")
 
 
 @pytest.mark.parametrize("text", [" = x", "a b", "a and ", "!= x"])

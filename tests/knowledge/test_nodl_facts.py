@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from multibot_rewrite.knowledge.nodl.facts import NOT_IN_NODL, KnownNodes, nodes_of
+from multibot_rewrite.knowledge.nodl.facts import NOT_IN_NODL, NodeKnowledge, nodes_of
 from multibot_rewrite.knowledge.nodl.lookup import INDEX, NONE, Identity, find_interfaces, load
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in, user_stack
@@ -36,7 +36,7 @@ def installed(prefix: Path, key: str, text: str) -> str:
 
 
 def node_of(stack: str, *paths: str) -> NodeFacts:
-    (node,) = nodes_of(KnownNodes(built_in(NEWEST_LTS), find_interfaces(paths)), stack)
+    (node,) = nodes_of(NodeKnowledge(built_in(NEWEST_LTS), find_interfaces(paths)), stack)
     return node
 
 
@@ -171,7 +171,7 @@ def test_a_document_is_above_the_tables(tmp_path: Path) -> None:
         f"  - {{name: /scan, type: acme_msgs/msg/Scan, {QOS}}}\n"
         "service_servers: [{name: /amcl/get_state, type: lifecycle_msgs/srv/GetState}]\n"
     )
-    (before,) = nodes_of(KnownNodes(built_in(NEWEST_LTS), NONE), "amcl")
+    (before,) = nodes_of(NodeKnowledge(built_in(NEWEST_LTS), NONE), "amcl")
     amcl = amcl_as(tmp_path, text)
     scan = ends(amcl, SUBSCRIBES)["/scan"]
     assert (scan.type, scan.when) == ("acme_msgs/msg/Scan", "")
@@ -240,7 +240,9 @@ def test_a_node_of_a_stack_keeps_the_stacks_changes(tmp_path: Path) -> None:
     path = written(tmp_path, "nav2_controller__controller_server.nodl.yaml", text)
     found = {
         it.name: it
-        for it in nodes_of(KnownNodes(built_in(NEWEST_LTS), find_interfaces([path])), "navigation")
+        for it in nodes_of(
+            NodeKnowledge(built_in(NEWEST_LTS), find_interfaces([path])), "navigation"
+        )
     }
     velocity = ends(found["controller_server"])["/cmd_vel"]
     assert (velocity.remapped, velocity.type) == ("cmd_vel_nav", "acme/msg/Velocity")
@@ -255,7 +257,7 @@ def test_a_document_is_found_by_the_usual_name_of_a_node_that_a_stack_renames(
     found = {
         it.name: it
         for it in nodes_of(
-            KnownNodes(built_in(NEWEST_LTS), find_interfaces([path])), "localization"
+            NodeKnowledge(built_in(NEWEST_LTS), find_interfaces([path])), "localization"
         )
     }
     assert found["lifecycle_manager_localization"].interface == path
@@ -277,8 +279,8 @@ def test_a_node_of_the_users_own_file_stays_and_names_its_document_otherwise(
     library = user_stack(nodes, NEWEST_LTS)
     path = written(tmp_path, "nav2_amcl__amcl.nodl.yaml", document("theirs"))
     interfaces = find_interfaces([path])
-    (own,) = nodes_of(KnownNodes(library, interfaces, frozenset({"amcl"})), "amcl")
-    (theirs,) = nodes_of(KnownNodes(library, interfaces), "amcl")
+    (own,) = nodes_of(NodeKnowledge(library, interfaces, frozenset({"amcl"})), "amcl")
+    (theirs,) = nodes_of(NodeKnowledge(library, interfaces), "amcl")
     assert (list(ends(own)), list(ends(theirs))) == (["mine"], ["theirs", "mine"])
 
 

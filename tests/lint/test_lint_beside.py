@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 from paths import FIXTURES, ROBOTS
 
+from multibot_rewrite.companions.kinds import BRIDGE, MOVEIT, PARAMS, RVIZ, kind_of
 from multibot_rewrite.knowledge.declared import FILE, is_known
 from multibot_rewrite.knowledge.nodl.lookup import INDEX
-from multibot_rewrite.lint.beside.kinds import BRIDGE, MOVEIT, PARAMS, RVIZ, kind_of
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.run import lint_files
@@ -225,9 +225,10 @@ PLANTED = {
         "[right_wheel_joint]\n    right_wheel_names: [left_wheel_joint]",
         "MB856:9",
     ),
+    "a frame with a slash": (VIEW, "base_link", "/base_link", "MB864:3"),
     "a direction": (ROW, "GZ_TO_ROS", "GZ_TO_ROSS", "MB855:5"),
     "a direction in small letters": (ROW, "GZ_TO_ROS", "gz_to_ros", "MB855:5"),
-    "a type's key": (ROW, "ros_type_name", "ros_type", "MB855:1 MB855:3"),
+    "a type's key": (ROW, "ros_type_name", "ros_type", "MB855:1 MB858:3"),
     "a topic twice": (
         ROW,
         "- ros_topic_name",
@@ -236,6 +237,8 @@ PLANTED = {
     ),
     "no type": (ROW, "  gz_type_name: gz.msgs.LaserScan\n", "", "MB855:1"),
 }
+# Notes about what a rewrite for several robots would leave as it is.
+OF_REWRITES = ("MB860", "MB862")
 HEALTHY = {
     "nothing": (CONTROLLERS, "", ""),
     "nothing of Nav2": (NAV, "", ""),
@@ -301,7 +304,6 @@ HEALTHY = {
     "a planner's own parameter": (PLUGINS, "angle_quantization_bins", "acme_bins"),
     "a frame of another node": (NAV, "base_frame_id: base_footprint", "base_frame_id: gps_mast"),
     "a frame at run time": (VIEW, "base_link", "map"),
-    "a frame with a slash": (VIEW, "base_link", "/base_link"),
     "a frame of a robot": (VIEW, "base_link", "robot1/base_link"),
     "joints of another robot": (
         MOVEIT_LIMITS.replace("left_", "l_").replace("right_", "r_"),
@@ -360,7 +362,8 @@ def test_a_planted_defect_is_found(name: str, tmp_path: Path) -> None:
 def test_what_is_odd_and_healthy_is_left_alone(name: str, tmp_path: Path) -> None:
     text, old, new = HEALTHY[name]
     assert old in text
-    assert found(text.replace(old, new, 1) if old else text, tmp_path, NAMES.get(text, "")) == []
+    said = found(text.replace(old, new, 1) if old else text, tmp_path, NAMES.get(text, ""))
+    assert [it for it in said if it[:5] not in OF_REWRITES] == []
 
 
 def test_sources_of_a_package_say_what_its_controllers_declare(tmp_path: Path) -> None:

@@ -16,6 +16,7 @@ from multibot_rewrite.lint.groups import GROUPS, active_rules, rules_of
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.rules.meshes.shared import used_files
+from multibot_rewrite.rules import files
 
 MESHES = b"""<robot name="r"><link name="a"><visual><geometry><mesh filename="a.stl"/></geometry>
 </visual></link></robot>"""
@@ -59,7 +60,8 @@ def test_a_lint_of_a_urdf_loads_nothing_for_other_files(tmp_path: Path) -> None:
 
 
 def test_no_file_of_rules_is_left_out_of_its_group() -> None:
-    names = [it.name for it in walk_packages(rules.__path__, f"{rules.__name__}.")]
+    rooms = (rules, files)
+    names = [it.name for room in rooms for it in walk_packages(room.__path__, f"{room.__name__}.")]
     written = (vars(import_module(name)).values() for name in names)
     declared = {it.code for values in written for it in values if isinstance(it, Rule)}
     assert declared == set(RULES)

@@ -114,9 +114,12 @@ def test_the_check_sees_the_imports_there_are() -> None:
     assert inner("__init__.py") == {
         "findings/finding.py",
         "fleets/loaded_robot.py",
+        "fleets/one_file.py",
         "fleets/scripts.py",
+        "fleets/system_sources.py",
         "library.py",
         "model.py",
+        "system/records.py",
         "version.py",
     }
 

@@ -78,4 +78,4 @@ def test_a_launched_bridge_has_the_topics_of_its_arguments() -> None:
     assert not found.shared
     # Without rows it is the node of a file of rows.
     alone = runs(launched(started(*BRIDGE)))["bridge"].endpoints
-    assert [(it.name, it.when) for it in alone] == [("/clock", "bridged")]
+    assert [(it.name, it.when) for it in alone] == [("/clock", "bridge: /clock")]

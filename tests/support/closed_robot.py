@@ -37,7 +37,7 @@ FILES = {
     </joint>
     <joint name="finger_joint">
       <command_interface name="effort"/>
-      <state_interface name="effort"/>
+      <state_interface name="position"/>
     </joint>
   </ros2_control>
   <gazebo>
@@ -77,7 +77,7 @@ gripper_controller:
   ros__parameters:
     joints: [finger_joint]
     command_interfaces: [effort]
-    state_interfaces: [effort]
+    state_interfaces: [position]
 """,
     "ekf.yaml": """\
 ekf_filter_node:

@@ -21,7 +21,7 @@ HEAD = """\
 # Seeded faults
 
 Made by `python tests/support/graph_faults_page.py > docs/graph-faults.md`. Each row is a fault that was
-put into a system in which nothing was wrong (`tests/support/graph_faults.py`): what `multibot doctor`
+put into a system in which nothing was wrong (`tests/support/graph_faults.py`): what `multibot check`
 finds without a plan, its exit code, whether the finding names who did it and what to do (*cause*), and
 which codes `multibot check` adds with the plan of the system. `-`: nothing more than in the healthy
 system; no entry: the system has no plan.
@@ -78,7 +78,7 @@ def lines() -> Iterator[str]:
     yield f"{plural(len(found), 'fault')}, {sum(it.found for _, it in found)} found, {causes} with the"
     yield f"cause; {len(LIVE)} of them live. {len(SYSTEMS)} healthy systems: 0 findings each."
     yield ""
-    yield "| fault | doctor | level | exit | cause | live | check |"
+    yield "| fault | no plan | level | exit | cause | live | check |"
     yield "|---|---|---|--:|---|---|---|"
     for fault, it in found:
         code = it.code if it.found else "not found"

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from beside import findings_of
+
 from multibot_rewrite.companions.context import Context, make_context
 from multibot_rewrite.companions.params.rewrite import rewrite_params
 from multibot_rewrite.companions.template import fill_template
@@ -39,7 +41,7 @@ def made(
 ) -> tuple[str, tuple[Finding, ...]]:
     """The file for robot1 (in the graph) and r1 (in frames), and what is told about it."""
     companion = rewrite_params(read_yaml(text.encode(), "p.yaml"), setting(policy, distro), **more)  # type: ignore[arg-type]
-    return fill_template(companion.template, "robot1", "r1"), companion.findings
+    return fill_template(companion.template, "robot1", "r1"), findings_of(companion)
 
 
 def codes(findings: Iterable[Finding]) -> list[str]:

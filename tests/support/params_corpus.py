@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import yaml
+from beside import findings_of
 from paths import CORPUS, FIXTURES
 
 from multibot_rewrite.companions.context import make_context
@@ -56,16 +57,17 @@ def outcome(data: bytes, file: str, layout: str, affix: str) -> Outcome:
         document = read_yaml(data, file)
         naming = make_naming(layout=layout, affix=affix)
         context = make_context(declared(document), naming, facts(), distro=NEWEST_LTS)
-        companion = rewrite_params(document, context, robots=(ROBOT,))
+        companion = rewrite_params(document, context)
     except InputError as error:
         return Outcome(reason(str(error), file), "")
     except Exception as error:
         return Outcome("", f"{type(error).__name__}: {error}")
-    bad = next((it.code for it in companion.findings if it.level == ERROR), "")
+    findings = findings_of(companion, [ROBOT])
+    bad = next((it.code for it in findings if it.level == ERROR), "")
     if bad:
-        return Outcome(bad, "", companion.findings)
+        return Outcome(bad, "", findings)
     text = fill_template(companion.template, ROBOT, ROBOT)
-    return Outcome("", "; ".join(problems(document, text, naming)), companion.findings)
+    return Outcome("", "; ".join(problems(document, text, naming)), findings)
 
 
 def facts() -> list[object]:

@@ -74,7 +74,7 @@ def not_closed() -> Scene:
 def doctors(graph: System) -> Scene:
     """What the doctor draws of a graph."""
     seen = diagnose(graph)
-    outcome = Outcome(Verdict.WRONG, "something is wrong", "multibot doctor", planned=False)
+    outcome = Outcome(Verdict.WRONG, "something is wrong", "multibot check", planned=False)
     return make_scene(seen_plan(seen), graph, seen.findings, outcome)
 
 

@@ -18,7 +18,6 @@ from multibot_rewrite.fleets.build import make_outputs
 from multibot_rewrite.fleets.fleet import make_fleet
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import plan_fleet
-from multibot_rewrite.lint.beside.kinds import KINDS
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.policy import Policy
@@ -47,6 +46,8 @@ COMPANIONS = {
     "lua": ("example.lua", "lua"),
     "bridge": ("example.yaml", "bridge"),
 }
+# An option of rules about a file that only a build can ask.
+BUILT = "build"
 GRAPH, DANGER, REMAP = "graph", "danger", ("remap", "remap-urdf")
 # What is found in these has no line of a file.
 WITHOUT_FILE = (GRAPH, DANGER, *REMAP)
@@ -63,7 +64,9 @@ FLEET: dict[str, Any] = {
 def found(rule: Rule, example: str, folder: Path) -> list[Finding]:
     """What the rule finds in one of its examples."""
     _write(folder, rule.beside)
-    run = RUNNERS[next(iter(rule.formats), URDF)]
+    format_ = next(iter(rule.formats), URDF)
+    alone = format_ in COMPANIONS and rule.code.startswith("MB") and BUILT not in rule.options
+    run = beside_example if alone else RUNNERS[format_]
     findings = run(rule, example, folder)
     return [it for it in findings if it.code == rule.code]
 
@@ -97,7 +100,8 @@ def lint_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
 def beside_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
     """The example as a file of a package, with the rule's files beside it."""
     _write(folder, {"example.yaml": example})
-    return lint_file(str(folder / "example.yaml"), Settings(select=(rule.code,)))
+    options: dict[str, Any] = dict(rule.options)
+    return lint_file(str(folder / "example.yaml"), Settings(select=(rule.code,), **options))
 
 
 def rewrite_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
@@ -150,7 +154,8 @@ def _fleet(
     if "robot.urdf" not in rule.beside:
         _write(folder, {"robot.urdf": description})
     said = yaml.safe_load(text) or {}
-    more = {it: value for it, value in {**FLEET, **rule.options, **keys}.items() if it not in said}
+    options = {it: value for it, value in rule.options.items() if it != BUILT}
+    more = {it: value for it, value in {**FLEET, **options, **keys}.items() if it not in said}
     _write(folder, {"fleet.yaml": text + (yaml.safe_dump(more) if more else "")})
     plan = plan_fleet(read_fleet(str(folder / "fleet.yaml"), "", {}))
     return list(make_outputs(plan).findings)
@@ -183,7 +188,6 @@ def danger_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
 RUNNERS: dict[str, Callable[[Rule, str, Path], list[Finding]]] = {
     **dict.fromkeys((URDF, SRDF, XACRO), lint_example),
     **dict.fromkeys(COMPANIONS, companion_example),
-    **dict.fromkeys(KINDS, beside_example),
     "rewrite": rewrite_example,
     "fleet": fleet_example,
     "fleet-urdf": description_example,

@@ -22,7 +22,7 @@ def declared(document: YamlText) -> Declared:
     """What a description of the robot in the file would declare."""
     found: Declared = defaultdict(dict, {"link": {}, "joint": {}})
     for kind, name in _names(document.root):
-        if name not in rviz_data()["fixed_keys"] and name not in rviz_data()["frames"]:
+        if name not in rviz_data()["fixed_keys"]:
             found[kind][name] = None
     return found
 

@@ -45,7 +45,7 @@ tools (RViz, rqt, ros2 CLI, rosbag2, bridges, teleop, containers, Gazebo's own n
 declared link whose names begin like the link's (`camera_link` has `camera_depth_frame`).
 """,
     "MG3": """\
-`multibot doctor` finds these in a running system without a plan. All lines of an example begin with
+`multibot check` finds these in a running system without a plan. All lines of an example begin with
 `running:`; the robots are `robot1`, `robot2`.
 """,
     "MF6": """\

@@ -19,6 +19,7 @@ TITLES = {
     "A robot": ("$defs", "robot"),
     "Companions": ("$defs", "companions"),
     "A cell": ("properties", "cell"),
+    "Zenoh": ("properties", "zenoh"),
 }
 
 

@@ -10,10 +10,8 @@ from multibot_rewrite.cli.declared.fleet import BUILD, INIT, PLAN, REHEARSE
 from multibot_rewrite.cli.declared.graph import (
     CHECK,
     CHECK_LAUNCH,
-    DOCTOR,
     LEARN,
     SNAPSHOT,
-    ZENOH_FILES,
 )
 from multibot_rewrite.cli.declared.knowledge import EXPLAIN, INSPECT
 from multibot_rewrite.cli.declared.view import VIEW
@@ -27,7 +25,6 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             BUILD,
             CHECK,
             CHECK_LAUNCH,
-            DOCTOR,
             EXPLAIN,
             INIT,
             INSPECT,
@@ -36,7 +33,6 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             REHEARSE,
             SNAPSHOT,
             VIEW,
-            ZENOH_FILES,
         )
     }
 )
@@ -46,8 +42,10 @@ INSTEAD: Mapping[str, str] = MappingProxyType(
         "arguments": "multibot inspect FILE.xacro",
         "coverage": "multibot inspect PATH...",
         "vocabulary": "multibot inspect [NAME]",
+        "doctor": "multibot check without a PLAN",
         "lint": "urdf-lint PATH...",
         "remap": "multibot plan INPUT ROBOT... --form table",
+        "zenoh": "multibot build, with the key zenoh in the fleet file",
         "rewrite": "urdf-postfix INPUT ROBOT...",
     }
 )

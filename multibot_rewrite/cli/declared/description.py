@@ -43,6 +43,10 @@ POSTFIX = Command(
         Example("urdf-postfix rover.urdf robot1 --layout frames-per-robot --affix prefix"),
         Example("urdf-postfix rover.urdf left --affix prefix --separator _", "left_base_link"),
         Example("urdf-postfix rover.srdf robot1 --urdf rover.urdf", "an SRDF with its URDF"),
+        Example(
+            "urdf-postfix nav2_params.yaml robot1 robot2 --urdf rover.urdf -o 'out/{robot}.yaml'",
+            "parameters, RViz, MoveIt, a bridge, a tree",
+        ),
         Example("urdf-postfix robot1.urdf robot1 --strip", "undo it"),
         Example("urdf-postfix --why rover.urdf:34", "why is this (not) renamed?"),
         Example("cat rover.urdf | urdf-postfix - robot1 --diff"),
@@ -51,7 +55,12 @@ POSTFIX = Command(
         OptionGroup(
             "input",
             (
-                argument("input", "INPUT", "URDF, SDF model, SRDF, xacro of one, or -", "?"),
+                argument(
+                    "input",
+                    "INPUT",
+                    "URDF, SDF model, SRDF, xacro of one, a file beside one (with --urdf), or -",
+                    "?",
+                ),
                 argument(
                     "words",
                     "ROBOT",

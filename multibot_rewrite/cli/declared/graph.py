@@ -1,4 +1,4 @@
-"""The commands about the live graph: check, doctor, learn, snapshot."""
+"""The commands about the live graph: check, learn, snapshot."""
 
 from __future__ import annotations
 
@@ -63,23 +63,23 @@ LISTENING = SOURCE_OR_BAG._replace(options=(*SOURCE_OR_BAG.options, HEADERS))
 CHECK = Command(
     "check",
     "check",
-    "%(prog)s PLAN [options]",
-    "Compare the running system with its plan.",
+    "%(prog)s [PLAN] [options]",
+    "Compare the running system with its plan; without one, say what is wrong with it.",
     (
-        Example("multibot check plan.yaml", "the graph that runs now"),
+        Example("multibot check", "what is wrong with the robots that run now?"),
+        Example("multibot check plan.yaml", "are they as planned?"),
         Example("multibot check plan.yaml --watch", "show every change until Ctrl-C"),
         Example("multibot check plan.yaml --snapshot graph.json", "a saved graph; needs no ROS"),
-        Example(
-            "multibot check plan.yaml --zenoh tcp/localhost:7447", "a Zenoh router; needs no ROS"
-        ),
+        Example("multibot check --zenoh tcp/localhost:7447", "a Zenoh router; needs no ROS"),
         Example("multibot check plan.yaml --bag recording/", "a bag of rosbag2; needs no ROS"),
         Example("multibot check plan.yaml --format junit -o check.xml", "in CI"),
+        Example("multibot check --suggest first/", "begin a fleet file and a plan with it"),
     ),
     (
         OptionGroup(
             "input",
             (
-                argument("plan", "PLAN", "what multibot plan wrote, or a fleet file"),
+                argument("plan", "PLAN", "what multibot plan wrote, or a fleet file", "?"),
                 DISTRO,
                 TRUST,
             ),
@@ -95,39 +95,10 @@ CHECK = Command(
                 " parameters of nodes are compared with its files; default: the folder of PLAN",
                 type=values.path,
             ),
-        ),
-        PICTURES,
-        LISTENING,
-        FINDINGS,
-        GENERAL,
-    ),
-    f"{LIVE_CODES}. With --watch it is the worst that was seen; what was missing before everything"
-    " was there once does not count",
-    fail_on=ERROR,
-    findings_first=True,
-)
-DOCTOR = Command(
-    "doctor",
-    "doctor",
-    "%(prog)s [options]",
-    "Say what is wrong with the robots that run now; needs no plan.",
-    (
-        Example("multibot doctor", "the graph that runs now"),
-        Example("multibot doctor --watch", "show every change until Ctrl-C"),
-        Example("multibot doctor --snapshot graph.json", "a saved graph; needs no ROS"),
-        Example("multibot doctor --zenoh tcp/localhost:7447", "a Zenoh router; needs no ROS"),
-        Example("multibot doctor --state", "also ask each node for its state"),
-        Example("multibot doctor --suggest first/", "begin a fleet file and a plan with it"),
-    ),
-    (
-        output_group(
-            FINDINGS_OUTPUT,
-            WATCH,
-            STATE,
             value(
                 "--suggest",
                 metavar="FOLDER",
-                about="write a first fleet file, plan and description of what is seen there",
+                about="without PLAN: write a first fleet file, plan and description of what is seen",
                 type=values.path,
             ),
         ),
@@ -136,8 +107,8 @@ DOCTOR = Command(
         FINDINGS,
         GENERAL,
     ),
-    f"{LIVE_CODES.replace('as planned', 'nothing wrong seen')}. With --watch it is the worst that was"
-    " seen",
+    f"{LIVE_CODES.replace('as planned', 'as planned, or nothing wrong seen')}. With --watch it is the"
+    " worst that was seen; what was missing before everything was there once does not count",
     fail_on=ERROR,
     findings_first=True,
 )
@@ -288,58 +259,4 @@ SNAPSHOT = Command(
     "0 done; 2 wrong use; 3 something may be missing in the view, which is written all the same;"
     " 4 rclpy or its RMW, or zenoh, is missing or does not start",
     more="The graph is settled when all of --expect are seen, or nothing changed for 3.5 s.",
-)
-ZENOH_FILES = Command(
-    "zenoh",
-    "zenoh",
-    "%(prog)s PLAN --router ENDPOINT -o FOLDER [options]",
-    "Write configurations of Zenoh's router and sessions that keep each robot to its own names.",
-    (
-        Example("multibot zenoh fleet.yaml --router tcp/localhost:7447 -o zenoh/"),
-        Example(
-            "multibot zenoh plan.yaml --router tls/10.0.0.1:7447 --keystore /opt/keys -o zenoh/",
-            "robots are told apart by their certificates",
-        ),
-    ),
-    (
-        OptionGroup(
-            "input",
-            (
-                argument("plan", "PLAN", "what multibot plan wrote, or a fleet file"),
-                value(
-                    "--router",
-                    metavar="ENDPOINT",
-                    about="where the fleet's router is, such as tcp/10.0.0.1:7447",
-                    type=values.zenoh_endpoint,
-                    required=True,
-                ),
-                value(
-                    "--keystore",
-                    metavar="FOLDER",
-                    about="the sros2 keystore, by its full path on the machines that use it: links are"
-                    " TLS, and the router tells robots apart by their enclaves (/robot1)",
-                    type=values.full_path,
-                ),
-                several(
-                    "--operator",
-                    "/NAME",
-                    "enclaves that may do anything: a fleet manager, RViz, multibot itself",
-                    [],
-                    values.full_names,
-                ),
-                switch(
-                    "--own-routers",
-                    about="each robot has a router of its own, which connects to --router",
-                ),
-                *(it for it in LIVE.options if "--domain" in it.names),
-                DISTRO,
-                TRUST,
-            ),
-        ),
-        output_group(output("write the configurations into that folder", required=True)),
-        GENERAL,
-    ),
-    "0 done; 2 wrong use or unreadable input",
-    more="Start the router with ZENOH_ROUTER_CONFIG_URI and each robot's nodes with"
-    " ZENOH_SESSION_CONFIG_URI: see docs/zenoh.md.",
 )

@@ -70,7 +70,12 @@ ROBOTS = several("--robots", "A,B", "names of robots", [])
 VOCABULARY = several(
     "--vocabulary", "FILE", "what more plugins mean by their parameters (docs/add-a-plugin.md)", []
 )
-URDF = value("--urdf", metavar="FILE", about="the URDF that an SRDF belongs to", type=values.path)
+URDF = value(
+    "--urdf",
+    metavar="FILE",
+    about="the URDF that an SRDF or another file belongs to",
+    type=values.path,
+)
 DISTRO = choice(
     "--distro",
     "NAME",

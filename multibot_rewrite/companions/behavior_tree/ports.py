@@ -8,8 +8,9 @@ from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
 from multibot_rewrite.bounded import load_yaml
+from multibot_rewrite.findings.place import locate
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.steps.document import Document
+from multibot_rewrite.steps.document import Document, value_slot
 
 if TYPE_CHECKING:
     from lxml.etree import _Element
@@ -61,6 +62,12 @@ def ports_of(document: Document) -> Iterator[Port]:
             if not _blackboard_entry(element, str(value), trees):
                 kind = _kind(element, str(attribute), trees)
                 yield Port(element, start, str(attribute), str(value), kind)
+
+
+def place_of(document: Document, port: Port) -> tuple[int, int]:
+    """Line and column of a value, or of its element."""
+    slot = value_slot(document.source, port.start, port.attribute, port.value)
+    return locate(document.source, slot[0] if slot else port.start)
 
 
 def _trees(root: _Element) -> _Trees:

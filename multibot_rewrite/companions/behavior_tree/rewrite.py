@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from xml.sax.saxutils import escape
 
-from multibot_rewrite.companions.behavior_tree.checks import port_findings
+from multibot_rewrite.companions.behavior_tree.checks import included_files
 from multibot_rewrite.companions.behavior_tree.ports import (
     GRAPH_KINDS,
     Port,
@@ -18,7 +18,9 @@ from multibot_rewrite.companions.behavior_tree.ports import (
     port_data,
     ports_of,
 )
-from multibot_rewrite.companions.context import Companion, Context
+from multibot_rewrite.companions.behavior_tree.read import named_ports, read_tree
+from multibot_rewrite.companions.companion import Companion
+from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.names.by_kind import SPELLERS, is_plain
 from multibot_rewrite.companions.names.node_topics import FROM_NODE, spell_topic
 from multibot_rewrite.companions.names.placeholders import without_robot
@@ -26,7 +28,7 @@ from multibot_rewrite.companions.template import check_no_slots, make_template
 from multibot_rewrite.companions.yaml_text import Splice
 from multibot_rewrite.model import InputError
 from multibot_rewrite.releases import has_release
-from multibot_rewrite.steps.document import Document, read_document, value_slot
+from multibot_rewrite.steps.document import Document, value_slot
 
 NAVIGATOR = "bt_navigator"
 
@@ -36,18 +38,13 @@ def rewrite_behavior_tree(data: bytes, file: str, context: Context) -> Companion
 
     Raises InputError for a file that is not a behavior tree.
     """
-    if not data.strip():
-        raise InputError(f"{file}:1: the file is empty; a behavior tree starts with <root>")
-    document = read_document(data, file)
-    if document.root.tag != "root":
-        place = f"{file}:{document.root.sourceline or 1}"
-        raise InputError(f"{place}: not a behavior tree: the root is <{document.root.tag}>")
+    document = read_tree(data, file)
     check_no_slots(data.decode(), file)
     ports = list(ports_of(document))
     splices = [*_value_splices(document, context, ports), *_default_splices(document, context)]
-    return Companion(
-        make_template(data.decode(), splices), tuple(port_findings(document, context, ports))
-    )
+    found = tuple(included_files(document, ports))
+    named = named_ports(document, context, ports)
+    return Companion(make_template(data.decode(), splices), found, named)
 
 
 def _new_text(context: Context, kind: str, value: str) -> str:

@@ -11,11 +11,13 @@ from collections.abc import Iterable, Iterator
 
 import yaml
 
-from multibot_rewrite.companions.context import Companion, Context
+from multibot_rewrite.companions.companion import Companion
+from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.moveit.checks import GRAPH_WORDS, file_findings
 from multibot_rewrite.companions.moveit.controller_manager import inserted_namespace
 from multibot_rewrite.companions.moveit.file_kind import find_kind
 from multibot_rewrite.companions.moveit.name_sites import MoveitName, find_names
+from multibot_rewrite.companions.moveit.read import named
 from multibot_rewrite.companions.names.by_kind import SPELLERS, is_plain
 from multibot_rewrite.companions.names.by_kind import node as node_name
 from multibot_rewrite.companions.names.node_topics import (
@@ -68,12 +70,13 @@ def _moveit(document: YamlText, context: Context, facts: Facts) -> Companion:
     check_no_slots(document.text, document.file)
     kind = find_kind(document)
     sites = find_names(document.root, kind.names if kind else {}, context.names)
+    file = named(document, context, sites)
     node = SERVO if kind and kind.name == "servo" else MOVE_GROUP
     job = _MoveitJob(document, context, node, facts)
     splices = [*_spliced(job, sites.names), *inserted_namespace(document, context)]
     shift = [Splice(0, 0, document.bom)] if document.bom else []
     template = make_template(document.text, [*shift, *splices])
-    return Companion(template, file_findings(document, context, sites))
+    return Companion(template, file_findings(document, context, sites), file)
 
 
 def _spliced(job: _MoveitJob, sites: Iterable[MoveitName]) -> Iterator[Splice]:

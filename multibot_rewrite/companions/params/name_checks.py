@@ -1,8 +1,8 @@
-"""What is wrong with the names in a section, and which of them are not rewritten."""
+"""Names in a section that a rewrite cannot spell for several robots."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 import yaml
 
@@ -10,37 +10,24 @@ from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.names.by_kind import (
     expressible,
     frames_differ,
-    is_component,
-    is_filled,
     is_plain,
-    is_shared_frame,
 )
 from multibot_rewrite.companions.names.placeholders import is_robot
 from multibot_rewrite.companions.names.rename_map import is_declared
 from multibot_rewrite.companions.params.name_sites import NameSite
-from multibot_rewrite.companions.params.values import ParamsJob, renamed
+from multibot_rewrite.companions.params.values import ParamsJob
 from multibot_rewrite.companions.yaml_text import YamlText, found_at
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.knowledge.parameter_entries import PREFIX_KINDS, RUN_TIME
-from multibot_rewrite.nearest import did_you_mean
-from multibot_rewrite.rosnames import check_topic_name
 
 # Patterns that match everything or nothing hold no robot's name.
 _OPEN_PATTERNS = frozenset({".*", "*", "[*]", "(?!)", "^$"})
 
 
 def name_findings(job: ParamsJob, site: NameSite) -> Iterator[Finding]:
-    """The finding about one name, if any."""
-    if site.kind == "frame":
-        yield from _undeclared_frame(job, site)
-    elif site.kind in ("joint", "link", "sensor"):
-        yield from _undeclared(job, site)
-    elif site.kind == "interface":
-        yield from _undeclared_interface(job, site)
-    elif site.kind in ("topic", "service"):
-        yield from _invalid_topic(job, site)
-    elif site.kind in ("stem", "link_prefix", *PREFIX_KINDS):
+    """The finding about the rewrite of one name, if any."""
+    if site.kind in ("stem", "link_prefix", *PREFIX_KINDS):
         yield from _inexpressible(job, site)
     elif site.kind in RUN_TIME and not job.context.names.naming.layout.at_run_time:
         yield from _prefix_twice(job, site)
@@ -48,129 +35,6 @@ def name_findings(job: ParamsJob, site: NameSite) -> Iterator[Finding]:
         yield from _same_for_all(job, site)
     elif site.kind in ("pattern", "text"):
         yield from _not_rewritten(job, site)
-
-
-UNDECLARED = declare(
-    "MF111",
-    "parameter-names-unknown-joint",
-    WARNING,
-    what="A parameter names a joint, link or sensor that is not in the description.",
-    why="A joint stays as it is, a link or sensor gets the robot's name all the same. A controller "
-    "with a joint that no hardware has fails to start (no such interface), and a plugin waits for a "
-    "link that never comes.",
-    fix="Correct the name; the nearest one is in the message.",
-    bad="""\
-joint_trajectory_controller:
-  ros__parameters:
-    joints: [wheel_jiont]
-""",
-    good="""\
-joint_trajectory_controller:
-  ros__parameters:
-    joints: [wheel_joint]
-""",
-    line=3,
-    formats=("params",),
-)
-
-
-def _undeclared(job: ParamsJob, site: NameSite) -> Iterator[Finding]:
-    value = site.value.lstrip("/")
-    known = job.context.names.declared.get(site.kind, {})
-    # A joint of another controller: controller/joint.
-    chained = site.kind == "joint" and "/" in value and value.rpartition("/")[2] in known
-    if site.param is None or chained or not _is_unknown(job, site, known):
-        return
-    message = f"{site.kind} {value!r} is not in the description"
-    text = renamed(job.context, site)
-    now = "it stays unchanged" if text == site.value else f"it becomes {text} all the same"
-    hint = did_you_mean(value, known) or f"{now}; correct it"
-    yield found_at(job.document, site.scalar, UNDECLARED, message, hint)
-
-
-def _undeclared_interface(job: ParamsJob, site: NameSite) -> Iterator[Finding]:
-    """``joint1/position`` of an unknown controller: other ones may be another controller's."""
-    owner, slash, _ = site.value.rpartition("/")
-    known = job.context.names.declared.get("joint", {})
-    if site.param or not slash or "/" in owner or not known or not is_plain(site.value):
-        return
-    if not is_component(job.context, owner):
-        message = f"{owner!r} of interface {site.value!r} is not in the description"
-        hint = did_you_mean(owner, known) or "it stays unchanged; correct it"
-        yield found_at(job.document, site.scalar, UNDECLARED, message, hint)
-
-
-UNDECLARED_FRAME = declare(
-    "MF112",
-    "parameter-names-unknown-frame",
-    WARNING,
-    what="A parameter names a frame that is neither in the description nor published by a known node.",
-    why="It gets the robot's name all the same. If nobody publishes it under that name, every look-up "
-    "in tf2 fails, and the node waits for the transform.",
-    fix="Correct the name, or let the node that publishes the frame use the robot's name.",
-    bad="""\
-amcl:
-  ros__parameters:
-    base_frame_id: base_lnk
-""",
-    good="""\
-amcl:
-  ros__parameters:
-    base_frame_id: base_link
-""",
-    line=3,
-    formats=("params",),
-)
-
-
-def _undeclared_frame(job: ParamsJob, site: NameSite) -> Iterator[Finding]:
-    value = site.value.lstrip("/")
-    known = job.context.names.declared.get("link", {})
-    published = value in job.known.sent or is_shared_frame(job.context, value)
-    if published or not _is_unknown(job, site, known):
-        return
-    what = "frame" if site.param else "possible frame"
-    message = f"{what} {value!r} is not in the description"
-    hint = did_you_mean(value, known) or "some node must publish it with the robot's name"
-    yield found_at(job.document, site.scalar, UNDECLARED_FRAME, message, hint)
-
-
-def _is_unknown(job: ParamsJob, site: NameSite, known: Iterable[str]) -> bool:
-    """Is it a name that a description with ``known`` names does not declare?"""
-    if not known or not is_plain(site.value):
-        return False
-    return not is_declared(job.context.names, site.kind, site.value.lstrip("/"))
-
-
-INVALID_TOPIC = declare(
-    "MF113",
-    "parameter-topic-invalid",
-    WARNING,
-    what="The value of a parameter is not a valid topic or service name.",
-    why="rcl rejects such a name: the node fails when it creates the publisher, subscription or "
-    "service.",
-    fix="Correct the name: its parts have letters, digits and underscores, and start with no digit.",
-    bad="""\
-amcl:
-  ros__parameters:
-    scan_topic: 2d/scan
-""",
-    good="""\
-amcl:
-  ros__parameters:
-    scan_topic: lidar/scan
-""",
-    line=3,
-    formats=("params",),
-)
-
-
-def _invalid_topic(job: ParamsJob, site: NameSite) -> Iterator[Finding]:
-    fault = check_topic_name(site.value) if is_filled(site.value) else None
-    if fault:
-        message = f"{site.value!r} is not a valid {site.kind} name: {fault.reason}"
-        hint = "it stays unchanged; correct it"
-        yield found_at(job.document, site.scalar, INVALID_TOPIC, message, hint)
 
 
 PREFIX_ONLY = declare(

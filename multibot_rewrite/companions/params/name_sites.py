@@ -64,6 +64,10 @@ class SectionNames(NamedTuple):
     kept: list[yaml.ScalarNode]
 
 
+# The names of a section that is not looked at.
+NO_NAMES = SectionNames([], set(), [], [], [], [], [])
+Page = tuple[ParamSection, SectionNames]
+
 # The branch that the path so far leads to, and the names in its keys: key, segment and kind.
 _Mark = tuple[yaml.ScalarNode, int, str]
 _State = tuple[Branch, tuple[_Mark, ...]]

@@ -1,15 +1,17 @@
 """ROS 2 parameter files and controllers' files for any number of robots.
 
-``known_nodes`` knows which parameters hold names (``params.yaml``). One step each: ``sections`` finds
+``knowledge.parameters`` knows which parameters hold names. One step each: ``sections`` finds
 and renames sections, ``name_sites`` finds names, ``values`` renames them, ``shared_defaults`` inserts
-what is missing. Checks: ``section_checks``, ``name_checks``, ``robot_names``, ``unknown_parameters``.
+what is missing. Checks that need the rewrite: ``section_checks``,
+``name_checks``, ``robot_names``, ``unknown_parameters``; ``rules.files`` asks what needs no rewrite.
 """
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 
-from multibot_rewrite.companions.context import Companion, Context
+from multibot_rewrite.companions.companion import Companion
+from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.names.node_topics import facts_by_name
 from multibot_rewrite.companions.params.calibrations import shared_calibrations
 from multibot_rewrite.companions.params.controller_sections import (
@@ -17,15 +19,10 @@ from multibot_rewrite.companions.params.controller_sections import (
     takes_sections,
 )
 from multibot_rewrite.companions.params.name_checks import name_findings
-from multibot_rewrite.companions.params.name_sites import SectionNames, find_names
-from multibot_rewrite.companions.params.release_checks import release_findings
-from multibot_rewrite.companions.params.robot_names import (
-    namespace_findings,
-    placeholders_in_key,
-    placeholders_in_names,
-    robot_in_name,
-)
-from multibot_rewrite.companions.params.section_checks import key_findings, section_findings
+from multibot_rewrite.companions.params.name_sites import Page, SectionNames
+from multibot_rewrite.companions.params.read import read_params
+from multibot_rewrite.companions.params.robot_names import namespace_findings
+from multibot_rewrite.companions.params.section_checks import shared_findings
 from multibot_rewrite.companions.params.sections import (
     ParamSection,
     RawSection,
@@ -41,8 +38,7 @@ from multibot_rewrite.companions.params.shared_defaults import (
     sources_without_topic,
     without_section,
 )
-from multibot_rewrite.companions.params.slashes import slash_findings
-from multibot_rewrite.companions.params.unknown_parameters import guessed_names, unclaimed_names
+from multibot_rewrite.companions.params.unknown_parameters import guessed_names
 from multibot_rewrite.companions.params.values import ParamsJob, clock_splices, name_splices
 from multibot_rewrite.companions.template import (
     NAMESPACE_SLOT,
@@ -57,8 +53,6 @@ from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.knowledge.parameters import KnownNodes, built_in_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
 
-Page = tuple[ParamSection, SectionNames]
-
 
 def rewrite_params(
     document: YamlText,
@@ -66,7 +60,6 @@ def rewrite_params(
     known: KnownNodes | None = None,
     beside: Sequence[YamlText] = (),
     facts: Iterable[NodeFacts] = (),
-    robots: Iterable[str] = (),
     own: Iterable[str] = (),
     at_run_time: Iterable[str] = (),
     clock: bool | None = None,
@@ -75,8 +68,7 @@ def rewrite_params(
 
     ``known`` are the known nodes, ``beside`` the other parameter files that the robot's nodes get:
     what they set is not inserted here. ``facts`` are those of the robot's nodes, whose remap rules
-    move topics too. ``robots`` are namespaces and tags of robots: a name that holds one of them is
-    an error.
+    move topics too.
     A file for one robot may have its sections below one of ``own``. ``at_run_time`` are the nodes that
     put the robot's name before their frames themselves. ``clock`` is the ``use_sim_time`` of all its
     nodes, None if they keep their own. Raises InputError for a file that
@@ -84,13 +76,11 @@ def rewrite_params(
     """
     with gc_paused():
         check_no_slots(document.text, document.file)
-        words = frozenset(robots)
         job = ParamsJob(
             document,
             context,
             known or built_in_nodes(context.distro),
             facts_by_name(facts, context.distro),
-            words,
             tuple(own),
             frozenset(at_run_time),
             clock,
@@ -99,63 +89,41 @@ def rewrite_params(
 
 
 def _params(job: ParamsJob, beside: Sequence[YamlText]) -> Companion:
-    document, context, known = job.document, job.context, job.known
-    found = without_own(raw_sections(document), job.own)
-    sections = identify_sections(found, context, known)
-    pages = [(it, find_names(document, it, known)) for it in sections if not it.shared]
+    document, context = job.document, job.context
+    file = read_params(document, context, job.known, job.own)
+    job = job._replace(known=job.known._replace(sent=file.sent))
+    found = [RawSection(*section[:3]) for section, _ in file.pages]
     others = [it for other in beside for it in without_own(raw_sections(other), job.own)]
-    job = job._replace(known=known._replace(sent=known.sent | _own_frames(pages)))
-    made = [*_made(job, sections, pages, others), *controller_sections(job, found, others)]
+    made = [*_made(job, file.pages, others), *controller_sections(job, found, others)]
     splices = [it for it in made if isinstance(it, Splice)]
     findings = [it for it in made if isinstance(it, Finding)]
     template = make_template(document.text, splices)
     pieces = (document.bom + template.pieces[0], *template.pieces[1:])
-    return Companion(FileTemplate(pieces), _once(findings))
+    return Companion(FileTemplate(pieces), _once(findings), file)
 
 
 def _made(
-    job: ParamsJob,
-    sections: Sequence[ParamSection],
-    pages: Sequence[Page],
-    others: Sequence[RawSection],
+    job: ParamsJob, every: Sequence[Page], others: Sequence[RawSection]
 ) -> Iterator[Splice | Finding]:
+    sections = [section for section, _ in every]
+    pages = [it for it in every if not it[0].shared]
     yield from key_splices(job.document, sections)
     for section in sections:
         yield from clock_splices(job, section)
-    yield from _about_sections(job, sections, [names for _, names in pages])
+        if not section.shared:
+            yield from namespace_findings(job.document, section, job.context)
+    yield from shared_findings(job.document, sections)
     for section, names in pages:
         yield from name_splices(job, section, names)
         yield from _about_names(job, section, names)
-    yield from unclaimed_names(job, [names for _, names in pages])
     yield from default_lines(job, pages, others)
-
-
-def _own_frames(pages: Iterable[Page]) -> frozenset[str]:
-    """The frames that nodes of the file make themselves: no description has them."""
-    sites = (site for _, names in pages for site in names.sites)
-    return frozenset(it.value.lstrip("/") for it in sites if it.param and it.param.own)
-
-
-def _about_sections(
-    job: ParamsJob, sections: Sequence[ParamSection], pages: Sequence[SectionNames]
-) -> Iterator[Finding]:
-    yield from section_findings(job.document, sections)
-    for section in sections:
-        yield from placeholders_in_key(job.document, section)
-        if not section.shared:
-            yield from namespace_findings(job.document, section, job.context)
-    yield from robot_in_name(job.document, sections, pages, job.robots, job.own)
 
 
 def _about_names(job: ParamsJob, section: ParamSection, names: SectionNames) -> Iterator[Finding]:
     for site in names.sites:
         yield from name_findings(job, site)
-        yield from slash_findings(job, section, site)
-    yield from placeholders_in_names(job.document, names)
-    yield from key_findings(job.document, names)
     yield from guessed_names(job, section, names)
     yield from sources_without_topic(job, section)
-    yield from release_findings(job, section)
     yield from shared_calibrations(job, section)
 
 

@@ -40,16 +40,15 @@ _UNSURE = ("frame", "sensor", "interface")
 class ParamsJob(NamedTuple):
     """One parameter file to rewrite, and all that its steps need.
 
-    ``robots`` are the namespaces and tags of the fleet's robots, ``own`` the words for the one robot
-    that the file is for. ``at_run_time`` are nodes that put the robot's name before their frames
-    themselves. ``clock`` is their ``use_sim_time``, None where nothing says.
+    ``own`` are the words for the one robot that the file is for. ``at_run_time`` are nodes that put the
+    robot's name before their frames themselves. ``clock`` is their ``use_sim_time``, None where
+    nothing says.
     """
 
     document: YamlText
     context: Context
     known: KnownNodes
     facts: Facts
-    robots: frozenset[str] = frozenset()
     own: tuple[str, ...] = ()
     at_run_time: frozenset[str] = frozenset()
     clock: bool | None = None

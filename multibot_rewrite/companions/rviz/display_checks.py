@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from multibot_rewrite.companions.rviz.display_groups import Robots, leaves
+from multibot_rewrite.companions.rviz.display_groups import Robots
 from multibot_rewrite.companions.rviz.read_config import (
     DOCK,
     RvizConfig,
     RvizItem,
     ValuePlace,
-    rviz_data,
     text_of,
-    value,
 )
 from multibot_rewrite.companions.rviz.values import GRAPH_NAMESPACE, LINK, TF_PREFIX, RvizRobot
 from multibot_rewrite.companions.yaml_text import found_at, pairs
@@ -30,7 +28,6 @@ def display_findings(
     for place in one.places:
         yield from _tf_prefix(config, place, robots[0])
         yield from _not_renamed(config, one, place, robots[0])
-    yield from _legacy(config, one)
     if together and one.flag == DOCK:
         yield from _visibility(config, one)
 
@@ -161,40 +158,6 @@ def _named(place: ValuePlace) -> str:
     return f"{place.path.rstrip('.*')} {str(place.node.value)!r}"
 
 
-ROS1_PROPERTY = declare(
-    "MF209",
-    "rviz-ros1-property",
-    WARNING,
-    what="A display has a property of RViz for ROS 1: Image Topic, Marker Topic, Unreliable or "
-    "Queue Size.",
-    why="rviz2 ignores properties that it does not know. The display subscribes to nothing and "
-    "shows nothing, without a message.",
-    fix="Set the Topic of the display in rviz2 and save the file.",
-    bad="""\
-Visualization Manager:
-  Displays:
-    - Class: rviz_default_plugins/Image
-      Image Topic: /camera/image_raw
-""",
-    good="""\
-Visualization Manager:
-  Displays:
-    - Class: rviz_default_plugins/Image
-      Topic: /camera/image_raw
-""",
-    line=4,
-    formats=("rviz",),
-)
-
-
-def _legacy(config: RvizConfig, one: RvizItem) -> Iterator[Finding]:
-    for key, _ in pairs(one.node):
-        if key.value in rviz_data()["legacy"]:
-            message = f"{key.value!r} of {one.name!r} is a ROS 1 property, which rviz2 ignores"
-            hint = "set its Topic in rviz2"
-            yield found_at(config.document, key, ROS1_PROPERTY, message, hint)
-
-
 VISIBILITY_RESET = declare(
     "MF212",
     "rviz-camera-visibility-reset",
@@ -229,46 +192,3 @@ def _visibility(config: RvizConfig, one: RvizItem) -> Iterator[Finding]:
             message = f"Visibility of {one.name!r} is reset: the displays are in groups now"
             hint = "choose the displays again in rviz2"
             yield found_at(config.document, key, VISIBILITY_RESET, message, hint)
-
-
-VOLATILE_DESCRIPTION = declare(
-    "MF214",
-    "rviz-description-volatile",
-    WARNING,
-    what="A display subscribes to the description with Durability Policy: Volatile.",
-    why="robot_state_publisher publishes the description once. A volatile subscription misses it "
-    "if rviz2 starts later, so the RobotModel stays empty. The RViz file of Nav2 has this.",
-    fix="Write Durability Policy: Transient Local below Description Topic.",
-    bad="""\
-Visualization Manager:
-  Displays:
-    - Class: rviz_default_plugins/RobotModel
-      Description Topic:
-        Durability Policy: Volatile
-        Value: /robot_description
-""",
-    good="""\
-Visualization Manager:
-  Displays:
-    - Class: rviz_default_plugins/RobotModel
-      Description Topic:
-        Durability Policy: Transient Local
-        Value: /robot_description
-""",
-    line=3,
-    formats=("rviz",),
-)
-
-
-def volatile_findings(config: RvizConfig) -> Iterator[Finding]:
-    """Displays that miss the description; reported once: nearly every saved config has it."""
-    found = [
-        one
-        for one in leaves(config.displays)
-        if text_of(value(one.node, "Description Topic"), "Durability Policy") == "Volatile"
-    ]
-    if found:
-        names = ", ".join(repr(one.name) for one in found)
-        message = f"{names} misses a description published before rviz2 starts: it is Volatile"
-        hint = "set Durability Policy: Transient Local below Description Topic"
-        yield found_at(config.document, found[0].node, VOLATILE_DESCRIPTION, message, hint)

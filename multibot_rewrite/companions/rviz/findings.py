@@ -1,12 +1,11 @@
-"""All findings about an RViz config that was rewritten for robots."""
+"""All findings about the rewrite of an RViz config for robots."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from multibot_rewrite.companions.rviz.display_checks import display_findings, volatile_findings
+from multibot_rewrite.companions.rviz.display_checks import display_findings
 from multibot_rewrite.companions.rviz.display_groups import Robots, leaves
-from multibot_rewrite.companions.rviz.name_checks import name_findings
 from multibot_rewrite.companions.rviz.read_config import RvizConfig
 from multibot_rewrite.companions.rviz.window_checks import window_findings
 from multibot_rewrite.findings.finding import Finding
@@ -19,9 +18,7 @@ def config_findings(
 
     ``together``: one window shows all ``robots``, in the frame ``world``.
     """
-    found = [*window_findings(config, robots, world, together), *volatile_findings(config)]
+    found = [*window_findings(config, robots, world, together)]
     for one in leaves(config.displays):
         found += display_findings(config, one, robots, together)
-    for one in (*leaves(config.displays), *config.tools):
-        found += name_findings(config, one, robots)
     yield from sorted(dict.fromkeys(found), key=lambda it: (it.line, it.column, it.code))

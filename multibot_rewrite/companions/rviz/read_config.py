@@ -157,3 +157,24 @@ def every(shown: Sequence[RvizItem]) -> Iterator[RvizItem]:
     for one in shown:
         yield one
         yield from every(one.children)
+
+
+def fixed_frame(config: RvizConfig) -> yaml.Node | None:
+    """The frame that everything is shown in."""
+    return value(value(config.manager, "Global Options"), "Fixed Frame")
+
+
+def views_of(config: RvizConfig) -> tuple[yaml.Node | None, yaml.Node | None]:
+    """The current view, and the list of saved ones."""
+    views = value(config.manager, "Views")
+    return value(views, "Current"), value(views, "Saved")
+
+
+def targets(config: RvizConfig) -> Iterator[yaml.Node]:
+    """The frames that views follow."""
+    current, saved = views_of(config)
+    listed = saved.value if isinstance(saved, yaml.SequenceNode) else []
+    for view in (current, *listed):
+        target = value(view, "Target Frame")
+        if isinstance(target, yaml.ScalarNode):
+            yield target

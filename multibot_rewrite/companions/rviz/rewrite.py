@@ -25,8 +25,11 @@ from multibot_rewrite.companions.rviz.read_config import (
     ABSOLUTE,
     PROCESS,
     RvizConfig,
+    fixed_frame,
     read_config,
+    targets,
     value,
+    views_of,
 )
 from multibot_rewrite.companions.rviz.values import RvizRobot, frame_of, item_splices
 from multibot_rewrite.companions.yaml_blocks import as_item, blocks, cut_out, is_block, newline
@@ -169,11 +172,6 @@ def _for_one(config: RvizConfig, robot: RvizRobot, colour: Colour | None) -> Rvi
     return RvizText(robot.name, spliced(document, splices), namespace, (*tf, *more))
 
 
-def fixed_frame(config: RvizConfig) -> yaml.Node | None:
-    """The frame that everything is shown in."""
-    return value(value(config.manager, "Global Options"), "Fixed Frame")
-
-
 def _frame_splice(node: yaml.Node | None, robot: RvizRobot) -> list[Splice]:
     new = frame_of(node, robot)
     return [replaced(node, new)] if isinstance(node, yaml.ScalarNode) and new != node.value else []
@@ -188,25 +186,10 @@ def _fixed_frame(config: RvizConfig, robots: Sequence[RvizRobot], world: str) ->
     return [replaced(node, world)] if own else []
 
 
-def _views_of(config: RvizConfig) -> tuple[yaml.Node | None, yaml.Node | None]:
-    views = value(config.manager, "Views")
-    return value(views, "Current"), value(views, "Saved")
-
-
-def targets(config: RvizConfig) -> Iterator[yaml.Node]:
-    """The frames that views follow."""
-    current, saved = _views_of(config)
-    listed = saved.value if isinstance(saved, yaml.SequenceNode) else []
-    for view in (current, *listed):
-        target = value(view, "Target Frame")
-        if isinstance(target, yaml.ScalarNode):
-            yield target
-
-
 def _views(config: RvizConfig, robots: Sequence[RvizRobot]) -> Iterator[Splice]:
     """The current view follows the first robot; each robot has a saved view that follows it."""
     document = config.document
-    current, saved = _views_of(config)
+    current, saved = views_of(config)
     copies = ""
     if _follows(current, robots):
         yield from _frame_splice(value(current, "Target Frame"), robots[0])

@@ -19,7 +19,6 @@ def window_findings(
 ) -> Iterator[Finding]:
     """What is wrong with the window as a whole; ``together`` if one shows all robots."""
     yield from _tf_topic(config, robots, together)
-    yield from _slash(config)
     if together:
         yield from _fixed_frame(config, robots, world)
         yield from _view(config, robots)
@@ -63,36 +62,6 @@ def _tf_topic(config: RvizConfig, robots: Robots, together: bool) -> Iterator[Fi
         )
         hint = f"each robot gets its own config; start rviz2 with -r /tf:={first}, see commands.md"
     yield found_at(config.document, config.manager, ONE_TF_TOPIC, message, hint)
-
-
-FIXED_FRAME_SLASH = declare(
-    "MF211",
-    "rviz-fixed-frame-slash",
-    WARNING,
-    what="The Fixed Frame of an RViz config starts with a slash.",
-    why="tf2 rejects frames that start with a slash, which were usual in ROS 1: RViz finds no "
-    "transform to the Fixed Frame and shows nothing.",
-    fix="Remove the slash.",
-    bad="""\
-Visualization Manager:
-  Global Options:
-    Fixed Frame: /map
-""",
-    good="""\
-Visualization Manager:
-  Global Options:
-    Fixed Frame: map
-""",
-    line=3,
-    formats=("rviz",),
-)
-
-
-def _slash(config: RvizConfig) -> Iterator[Finding]:
-    node = _global_frame(config)
-    if node is not None and node.value.startswith("/"):
-        message = f"Fixed Frame {node.value!r} starts with a slash, which tf2 rejects"
-        yield found_at(config.document, node, FIXED_FRAME_SLASH, message, "remove the slash")
 
 
 OWN_FIXED_FRAME = declare(

@@ -46,7 +46,7 @@ from multibot_rewrite.system.records import (
 FROM_HELPER = "asked for by transform_listener_impl_<address>"
 SHARED_PROCESS = "its process has several nodes, each gets the endpoints of the helper nodes there"
 NO_ENDPOINTS = "only its name is seen, no endpoints"
-EVERY_NODE, SIM_TIME = "every_node", "use_sim_time"
+EVERY_NODE, SIM_TIME = "every_node", "run: simulated"
 # On every node since Jazzy, besides the endpoints of the part every_node.
 SINCE_JAZZY = (SERVES, "~/get_type_description")
 _TF = tuple(f"/{topic}" for topic in TF_TOPICS)

@@ -65,10 +65,10 @@ def configurations(plan: System, setup: Setup) -> Iterator[tuple[str, bytes]]:
         yield name, _text(_client(enclave, setup), about)
 
 
-def file_names(plan: System, setup: Setup) -> list[str]:
+def file_names(robots: Sequence[str], setup: Setup) -> list[str]:
     """What the files are called."""
-    words = [robot.name for robot in plan.robots] + [operator_word(it) for it in setup.operators]
-    words += [f"{robot.name}_router" for robot in plan.robots if setup.own_routers]
+    words = [*robots, *map(operator_word, setup.operators)]
+    words += [f"{robot}_router" for robot in robots if setup.own_routers]
     return [ROUTER_FILE, *(f"{word}.json5" for word in words)]
 
 

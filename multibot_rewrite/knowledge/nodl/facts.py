@@ -27,7 +27,7 @@ from multibot_rewrite.system.records import SERVES, SERVICE, SUBSCRIBES, TOPIC
 
 EVERY_NODE = "every_node"
 # An endpoint of the library alone keeps its rule, and is not asked for: the document may be partial.
-NOT_IN_NODL = "not in the NoDL file of the node"
+NOT_IN_NODL = "nodl: no"
 TYPE_DESCRIPTION = Endpoint(SERVICE, SERVES, "~/get_type_description")
 _TF = ("/tf", "/tf_static")
 _TF_TYPE = "tf2_msgs/msg/TFMessage"
@@ -43,7 +43,7 @@ class _Slot(NamedTuple):
     name: str
 
 
-class KnownNodes(NamedTuple):
+class NodeKnowledge(NamedTuple):
     """What is known of nodes: a library, NoDL documents above it, and above both the nodes that the
     user's own file describes (``own``, by name), which the library has."""
 
@@ -52,7 +52,7 @@ class KnownNodes(NamedTuple):
     own: frozenset[str] = frozenset()
 
 
-def nodes_of(known: KnownNodes, stack: str) -> Iterator[NodeFacts]:
+def nodes_of(known: NodeKnowledge, stack: str) -> Iterator[NodeFacts]:
     """The nodes of a stack, each as its NoDL document says where there is one.
 
     A name that is no stack of the library may be that of a document. Raises UsageError.
@@ -62,7 +62,7 @@ def nodes_of(known: KnownNodes, stack: str) -> Iterator[NodeFacts]:
     yield from [alone] if alone else (declared(known, it) for it in stack_of(library, stack))
 
 
-def declared(known: KnownNodes, node: NodeFacts) -> NodeFacts:
+def declared(known: NodeKnowledge, node: NodeFacts) -> NodeFacts:
     """The node as its NoDL document says; itself where there is none. Raises UsageError."""
     usual = node.known or node.name
     if usual in known.own:
@@ -75,7 +75,7 @@ def declared(known: KnownNodes, node: NodeFacts) -> NodeFacts:
     return _merged(node, usual, load(file, known.interfaces), known.library.parts)
 
 
-def _alone(known: KnownNodes, name: str) -> NodeFacts | None:
+def _alone(known: NodeKnowledge, name: str) -> NodeFacts | None:
     """A node that only a document describes; its name may be given as ``package/name``."""
     found = [it for it in sorted(identities(known.interfaces)) if name in (it.name, shown(it))]
     if len(found) > 1:

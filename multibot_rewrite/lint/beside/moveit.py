@@ -8,34 +8,36 @@ from collections.abc import Iterator
 import yaml
 
 from multibot_rewrite.closure.moveit import moveit_gaps
+from multibot_rewrite.companions.kinds import PARAMS, is_beside, kind_of
+from multibot_rewrite.companions.sites import NamedFile
 from multibot_rewrite.companions.yaml_text import YamlText, line_of, read_yaml
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.stacks import load_nodes
-from multibot_rewrite.lint.beside.kinds import PARAMS, is_beside, kind_of
-from multibot_rewrite.lint.beside.records import Beside, Remark
 from multibot_rewrite.model import InputError
+from multibot_rewrite.rules.files.records import Remark, remark_at
 from multibot_rewrite.sources.packages import entries
 from multibot_rewrite.sources.read import read_file
 from multibot_rewrite.system.conventions import PLACEHOLDER
 
 
-def unknown_controllers(beside: Beside) -> Iterator[Remark]:
+def unknown_controllers(file: NamedFile) -> Iterator[Remark]:
     """Controllers that no parameter file in the folder declares, though one declares others."""
-    release = beside.settings.distro
+    release, document = file.context.distro, file.document
+    assert document is not None
     try:
-        given = given_nodes(_parameter_files(beside), built_in_nodes(release))
+        given = given_nodes(_parameter_files(file), built_in_nodes(release))
     except InputError:  # it is told where that file is linted
         return
-    for gap in moveit_gaps([beside.document], given, load_nodes(release)):
-        node = _at(beside.document, gap.place.line) if gap.place else None
+    for gap in moveit_gaps([document], given, load_nodes(release)):
+        node = _at(document, gap.place.line) if gap.place else None
         if node is not None and not PLACEHOLDER.search(gap.name):
             hint = f"did you mean {gap.near}?" if gap.near else ""
-            yield Remark(node, f"MoveIt uses {gap.name}, which no parameter file here has", hint)
+            yield remark_at(node, f"MoveIt uses {gap.name}, which no parameter file here has", hint)
 
 
-def _parameter_files(beside: Beside) -> Iterator[YamlText]:
-    folder = os.path.dirname(os.path.abspath(beside.document.file))
+def _parameter_files(file: NamedFile) -> Iterator[YamlText]:
+    folder = os.path.dirname(os.path.abspath(file.file))
     for name in sorted(entries(folder)):
         path = os.path.join(folder, name)
         data = read_file(path) if is_beside(name) else b""

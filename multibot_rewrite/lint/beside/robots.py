@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Sequence
 
-from multibot_rewrite.lint.beside.records import Beside
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.files.named import robot_name
 from multibot_rewrite.lint.files.pairing import described
@@ -36,16 +35,9 @@ class Robots(NamedTuple):
 NO_ROBOTS = Robots({}, (), False)
 
 
-def robots_of(beside: Beside) -> Robots:
+def robots_of(file: str, settings: Settings) -> Robots:
     """The descriptions of the file's package, else of the description packages beside it, else those
     that are linted with it."""
-    if robots_of not in beside.memo:
-        beside.memo[robots_of] = _robots(beside.document.file, beside.settings)
-    found: Robots = beside.memo[robots_of]
-    return found
-
-
-def _robots(file: str, settings: Settings) -> Robots:
     own = package_of(file)
     folder = own[1] if own else os.path.dirname(os.path.abspath(file))
     paths = _descriptions(folder)

@@ -11,9 +11,8 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import yaml
 
-from multibot_rewrite.lint.beside.parameters import Given, Section, sections
-from multibot_rewrite.lint.beside.records import Beside, Remark
-from multibot_rewrite.lint.beside.robots import robots_of
+from multibot_rewrite.companions.sites import NamedFile
+from multibot_rewrite.lint.beside.robots import Robots
 from multibot_rewrite.lint.facts.drives import (
     Wheel,
     are_opposite,
@@ -23,6 +22,8 @@ from multibot_rewrite.lint.facts.drives import (
     wheel_of,
 )
 from multibot_rewrite.lint.records import Subject
+from multibot_rewrite.rules.files.declared import Given, Section, sections
+from multibot_rewrite.rules.files.records import Remark, remark_at
 
 CONTROLLER = "diff_drive_controller"
 _LEFT, _RIGHT = "left_wheel_names", "right_wheel_names"
@@ -30,12 +31,13 @@ _SEPARATION, _RADIUS = "wheel_separation", "wheel_radius"
 _Values = Mapping[str, Given]
 
 
-def faulty_wheels(beside: Beside) -> Iterator[Remark]:
+def faulty_wheels(file: NamedFile) -> Iterator[Remark]:
     """What no description of the package with these wheels fits."""
-    for section in sections(beside):
+    for section in sections(file):
         if section.node is None or section.node.name != CONTROLLER:
             continue
-        subjects = robots_of(beside).subjects
+        robots: Robots | None = file.memo.get(Robots)
+        subjects = robots.subjects if robots else ()
         faults = [it for subject in subjects if (it := _faults(subject, section)) is not None]
         if faults and all(faults):
             yield from faults[0]
@@ -75,7 +77,7 @@ def _sizes(
         if not measured.holds(value) and not measured.holds(value * _multiplier(values, name)):
             robot = subject.document.root.get("name", "")
             message = f"{name} is {value:g} m, but the {words.format(measured.best)} in {robot!r}"
-            yield Remark(given.node, message, f"write {measured.best:.4g}")
+            yield remark_at(given.node, message, f"write {measured.best:.4g}")
 
 
 def _multiplier(values: _Values, name: str) -> float:
@@ -89,8 +91,10 @@ def _ways(node: yaml.Node, left: Sequence[Wheel], right: Sequence[Wheel]) -> Ite
     names = f"{one.joint.name!r} and {other.joint.name!r}"
     if are_opposite(one, other):
         message = f"the axes of wheels {names} point in opposite directions"
-        yield Remark(node, message, "turn one of them around: the robot would turn on the spot")
+        yield remark_at(node, message, "turn one of them around: the robot would turn on the spot")
     way = are_swapped(one, other)
     if way:
         message = f"left wheel {one.joint.name!r} is {way:.3g} m right of {other.joint.name!r}"
-        yield Remark(node, message, "swap left and right, or turn the axes of both joints around")
+        yield remark_at(
+            node, message, "swap left and right, or turn the axes of both joints around"
+        )

@@ -10,7 +10,7 @@ from glob import escape
 from io import StringIO
 
 from multibot_rewrite.checks.links_and_joints import Robot, read_robot
-from multibot_rewrite.lint.beside.kinds import is_beside
+from multibot_rewrite.companions.kinds import is_beside
 from multibot_rewrite.lint.config.settings import Settings, matches
 from multibot_rewrite.lint.files.named import SRDF_MARK, files_like, robot_name
 from multibot_rewrite.model import InputError

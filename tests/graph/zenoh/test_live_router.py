@@ -101,7 +101,7 @@ def test_another_version_of_a_type_is_found_and_other_qos_is_none(
         there.end(8, "/", "rviz2", "MP", "/robot1/cmd_vel", STRING, qos=best_effort)
         there.end(8, "/", "rviz2", "MS", "/robot1/odom", STRING, qos=reliable)
         assert check(plan, address, 4) == 0
-        main(["doctor", "--zenoh", address, "--domain", "4"])
+        main(["check", "--zenoh", address, "--domain", "4"])
         there.end(8, "/", "rviz2", "MS", "/robot2/odom", STRING, hash=TF_HASH)
         assert check(plan, address, 4) == 1
     shown = capsys.readouterr().out

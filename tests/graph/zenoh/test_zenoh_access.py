@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 import pytest
+from paths import ROBOTS
 from plans import PlannedRobot, planned
 
 from multibot_rewrite.cli.multibot import main
@@ -140,50 +141,50 @@ def test_without_certificates_the_router_lets_all_in() -> None:
     assert b'"default_permission": "deny"' in robot
 
 
-PLAN = "fixtures/graphs/plan.yaml"
+FLEET = """\
+layout: frames-per-robot
+description: rover.urdf
+stack: [nav2]
+robots: [{name: robot1}, {name: robot2}]
+zenoh:
+"""
+
+
+def built(folder: Path, keys: str) -> int:
+    """Build a fleet with these keys of Zenoh into ``folder/out``."""
+    (folder / "rover.urdf").write_bytes((ROBOTS / "rover.urdf").read_bytes())
+    (folder / "fleet.yaml").write_text(f"{FLEET}  {keys}\n")
+    return main(["build", str(folder / "fleet.yaml"), "-o", str(folder / "out")])
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("keys", "said"),
     [
-        (["--router", "tcp/h"], "write PROTOCOL/HOST:PORT"),
-        (["--router", "tcp/h:1", "--keystore", "keys"], "is not a full path"),
-        (["--router", "tcp/h:1", "--operator", "/ops"], "give --keystore as well"),
+        ("{router: tcp/h}", "zenoh.router"),
+        ("{router: 'tcp/h:1', keystore: keys}", "zenoh.keystore"),
+        ("{router: 'tcp/h:1', operators: [/ops]}", "fleet.yaml:5: zenoh: operators are known by"),
         (
-            ["--router", "tcp/h:1", "--keystore", "/k", "--operator", "/robot1"],
+            "{router: 'tcp/h:1', keystore: /k, operators: [/robot1]}",
             "two of robots, operators and router are robot1",
         ),
-        (["--router", "tcp/h:1", "--keystore", "/k", "--operator", "ops"], "not a full name"),
-        ([], "--router"),
+        ("{router: 'tcp/h:1', keystore: /k, operators: [ops]}", "'ops' is no enclave; write /ops"),
+        ("{domain: 3}", "router"),
     ],
 )
-def test_wrong_use_is_one_line(
-    arguments: list[str],
-    said: str,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+def test_wrong_keys_are_one_line(
+    keys: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.chdir(Path(__file__).parents[3])
-    try:
-        code = main(["zenoh", PLAN, "-o", str(tmp_path / "out"), *arguments])
-    except SystemExit as ended:
-        code = int(str(ended.code))
+    assert built(tmp_path, keys) == 2
     shown = capsys.readouterr().err
-    assert (code, len(shown.splitlines())) == (2, 1)
+    assert len(shown.splitlines()) == 1
     assert said in shown
     assert not (tmp_path / "out").exists()
 
 
-def test_the_command_writes_a_file_each(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.chdir(Path(__file__).parents[3])
-    out = tmp_path / "zenoh"
-    command = ["zenoh", PLAN, "--router", "tcp/localhost:7447", "--domain", "3", "-o", str(out)]
-    assert main(command) == 0
+def test_a_build_writes_a_file_each(tmp_path: Path) -> None:
+    assert built(tmp_path, "{router: 'tcp/localhost:7447', domain: 3}") == 0
+    out = tmp_path / "out" / "zenoh"
     assert sorted(it.name for it in out.iterdir()) == [
         *("robot1.json5", "robot2.json5", "router.json5"),
     ]
     assert '"3/robot1/**"' in (out / "robot1.json5").read_text()
-    assert "2 robots" in capsys.readouterr().err

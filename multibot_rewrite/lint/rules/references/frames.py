@@ -8,14 +8,13 @@ from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.checks.references import where
 from multibot_rewrite.findings.finding import NOTE, WARNING
 from multibot_rewrite.findings.rule import rule
-from multibot_rewrite.lint.facts.typos import meant_name
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.examples import a_link
 from multibot_rewrite.lint.rules.references.lookup import references
 from multibot_rewrite.lint.rules.references.shared import a_plugin
 from multibot_rewrite.model import Claim
 from multibot_rewrite.naming import FRAME_KINDS
-from multibot_rewrite.nearest import HINTED
+from multibot_rewrite.nearest import HINTED, meant_name
 from multibot_rewrite.rewriters.spelling import must_be_declared, names_in
 from multibot_rewrite.system.conventions import SENT_FRAMES
 

@@ -1,4 +1,4 @@
-"""Which files beside a description can be judged, by their names and texts."""
+"""The kinds of files beside a description, and how they are told by their texts."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from multibot_rewrite.bounded import MAX_BYTES
 from multibot_rewrite.lazy import lazy_compile
 
 SUFFIXES = (".yaml", ".yml", ".rviz")
-PARAMS, RVIZ, BRIDGE, MOVEIT = "params file", "rviz file", "bridge file", "moveit file"
-KINDS = (PARAMS, RVIZ, BRIDGE, MOVEIT)
+PARAMS, RVIZ, BRIDGE, MOVEIT, TREE, LUA = "params", "rviz", "bridge", "moveit", "tree", "lua"
+EVERY = (PARAMS, RVIZ, MOVEIT, BRIDGE, TREE, LUA)
 # What only files of one kind have at the start of a line or an item. A file of one node's sections may
 # be MoveIt's as well: that is a parameter file for its reader.
 _MARKS = (
@@ -23,11 +23,28 @@ _MARKS = (
         ),
     ),
 )
+IS_TREE = lazy_compile(rb"<BehaviorTree\b|<root\b[^>]*\b(?:BTCPP_format|main_tree_to_execute)\b", 0)
 
 
 def is_beside(path: str) -> bool:
     """Is a file called like one of these?"""
     return path.lower().endswith(SUFFIXES)
+
+
+def is_text_beside(source: object) -> bool:
+    """Is it the path or the bytes of such a file, or of a tree or Lua file, and of no description?"""
+    if isinstance(source, bytes):
+        return bool(IS_TREE.search(source)) or not source.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(
+            b"<"
+        )
+    path = str(source).lower()
+    if not path.endswith(".xml"):
+        return path.endswith((*SUFFIXES, ".lua"))
+    try:
+        with open(str(source), "rb") as file:
+            return bool(IS_TREE.search(file.read(MAX_BYTES)))
+    except OSError:
+        return False
 
 
 def is_linted(path: str) -> bool:

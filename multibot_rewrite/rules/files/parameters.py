@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
+from multibot_rewrite.companions.kinds import PARAMS
+from multibot_rewrite.companions.sites import NamedFile
 from multibot_rewrite.findings.finding import WARNING
 from multibot_rewrite.findings.rule import rule
-from multibot_rewrite.lint.beside.kinds import PARAMS
-from multibot_rewrite.lint.rules.physics.shared import a_rover
-
-if TYPE_CHECKING:
-    from multibot_rewrite.lint.beside.records import Beside, Remark
+from multibot_rewrite.rules.files import declared
+from multibot_rewrite.rules.files.records import Remark
 
 
 def _drive(line: str) -> str:
@@ -41,11 +39,9 @@ def _drive(line: str) -> str:
     line=5,
     formats=(PARAMS,),
 )
-def unknown_parameter(beside: Beside) -> Iterator[Remark]:
+def unknown_parameter(file: NamedFile) -> Iterator[Remark]:
     """Parameters of known nodes and controllers."""
-    from multibot_rewrite.lint.beside.parameters import unknown_parameters
-
-    return unknown_parameters(beside)
+    return declared.unknown_parameters(file)
 
 
 @rule(
@@ -62,11 +58,9 @@ def unknown_parameter(beside: Beside) -> Iterator[Remark]:
     line=5,
     formats=(PARAMS,),
 )
-def parameter_type(beside: Beside) -> Iterator[Remark]:
+def parameter_type(file: NamedFile) -> Iterator[Remark]:
     """Parameters whose declarations all have one type."""
-    from multibot_rewrite.lint.beside.parameters import wrong_types
-
-    return wrong_types(beside)
+    return declared.wrong_types(file)
 
 
 @rule(
@@ -82,42 +76,6 @@ def parameter_type(beside: Beside) -> Iterator[Remark]:
     line=5,
     formats=(PARAMS,),
 )
-def parameter_out_of_bounds(beside: Beside) -> Iterator[Remark]:
+def parameter_out_of_bounds(file: NamedFile) -> Iterator[Remark]:
     """Parameters that generate_parameter_library checks."""
-    from multibot_rewrite.lint.beside.parameters import out_of_bounds
-
-    return out_of_bounds(beside)
-
-
-def _wheels(separation: str) -> str:
-    return _drive(
-        "left_wheel_names: [left_joint]\n"
-        "    right_wheel_names: [right_joint]\n"
-        f"    wheel_separation: {separation}\n"
-        "    wheel_radius: 0.1"
-    )
-
-
-@rule(
-    "MB856",
-    "controller-wheels",
-    WARNING,
-    what="The wheels of a diff_drive_controller are not as it is told: their separation or radius "
-    "is another in the package's description, left and right are swapped, or their axes point in "
-    "opposite directions.",
-    why="The robot turns or drives too far or the wrong way, and its odometry says otherwise.",
-    fix="Write the sizes of the description, or correct its joints.",
-    bad=_wheels("0.8"),
-    good=_wheels("0.4"),
-    line=7,
-    formats=(PARAMS,),
-    beside={
-        "package.xml": "<package><name>rover</name></package>",
-        "urdf/rover.urdf": f'<robot name="rover">{a_rover()}</robot>',
-    },
-)
-def controller_wheels(beside: Beside) -> Iterator[Remark]:
-    """What no description of the package fits."""
-    from multibot_rewrite.lint.beside.wheels import faulty_wheels
-
-    return faulty_wheels(beside)
+    return declared.out_of_bounds(file)

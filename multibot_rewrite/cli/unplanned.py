@@ -1,4 +1,4 @@
-"""``multibot doctor``: what is wrong with the robots that run now? No plan, no file."""
+"""``multibot check`` without a plan: what is wrong with the robots that run now?"""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ import os
 from collections.abc import Iterator, Sequence
 
 from multibot_rewrite.cli import live, pictures
-from multibot_rewrite.cli.check import CODES
 from multibot_rewrite.cli.output import note, say, write_files
 from multibot_rewrite.cli.process import PROGRAM
 from multibot_rewrite.cli.report import (
@@ -58,6 +57,8 @@ def run(options: argparse.Namespace) -> int:
 
 def _check_use(options: argparse.Namespace) -> None:
     live.check_source(options)
+    if options.built:
+        raise UsageError("--built is compared with a plan: name PLAN")
     if options.watch and (options.select or options.ignore or options.format != TEXT):
         raise UsageError("--watch shows every finding: leave out --select, --ignore and --format")
     check_report(options, printed=False)
@@ -93,7 +94,7 @@ def report_on(options: argparse.Namespace, seen: Diagnosis) -> int:
 
 def _outcome(verdict: Verdict, reasons: Sequence[str] = ()) -> Outcome:
     words = WORDS[verdict]
-    return Outcome(verdict, words, "multibot doctor", planned=False, reasons=tuple(reasons))
+    return Outcome(verdict, words, "multibot check", planned=False, reasons=tuple(reasons))
 
 
 def _nothing_seen(graph: System) -> Iterator[str]:
@@ -109,7 +110,7 @@ def _write(
     if options.report:
         pictures.deliver(options, seen_plan(seen), seen.graph, findings, outcome)
     if options.suggest:
-        files = suggestion(seen, built_in(release_here(None)))
+        files = suggestion(seen, built_in(release_here(options.distro)))
         paths = {os.path.join(options.suggest, name): text for name, text in files.items()}
         write_files(options, [(path, text.encode()) for path, text in paths.items()])
         note(options, f"wrote {', '.join(paths)}: see {next(iter(paths))}")
@@ -122,7 +123,7 @@ def _report(options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Fin
 
 def _sum_up(options: argparse.Namespace, findings: int, verdict: Verdict) -> int:
     note(options, f"{plural(findings, 'finding')}: {WORDS[verdict]}")
-    return CODES[verdict]
+    return live.CODES[verdict]
 
 
 def _watch(options: argparse.Namespace) -> int:

@@ -11,21 +11,20 @@ from multibot_rewrite.companions.params.name_sites import params_at
 from multibot_rewrite.companions.params.rcl_parameters import Value, value_of
 from multibot_rewrite.companions.params.sections import (
     ANY,
+    RawSection,
     controller_types,
-    identify_node,
-    raw_sections,
 )
+from multibot_rewrite.companions.sites import NamedFile
 from multibot_rewrite.companions.yaml_text import YamlText, pairs
 from multibot_rewrite.knowledge.declared import READ, YAML, Declared
-from multibot_rewrite.knowledge.parameters import KnownNode, built_in_nodes
-from multibot_rewrite.lint.beside.records import Beside, Remark
-from multibot_rewrite.lint.facts.typos import meant_name
+from multibot_rewrite.knowledge.parameters import KnownNode
 from multibot_rewrite.model import InputError
-from multibot_rewrite.nearest import MISTYPED, Guesses
+from multibot_rewrite.nearest import MISTYPED, Guesses, meant_name
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules.files.bounds import beyond
 from multibot_rewrite.rules.files.parameter_facts import facts_of_node, of_release
 from multibot_rewrite.rules.files.plugins import RENAMED, plugins_in
+from multibot_rewrite.rules.files.records import Remark, remark_at
 from multibot_rewrite.system.conventions import PLACEHOLDER
 
 # What every node has, or every controller and plugin; prefixes end in a dot.
@@ -59,31 +58,26 @@ class Section(NamedTuple):
     facts: tuple[Declared, ...]
 
 
-def sections(beside: Beside) -> list[Section]:
-    """The sections of a parameter file whose node is known; none where rcl rejects the file."""
-    if sections not in beside.memo:
-        beside.memo[sections] = list(_sections(beside))
-    found: list[Section] = beside.memo[sections]
+def sections(file: NamedFile) -> tuple[Section, ...]:
+    """The sections of a parameter file whose node is known."""
+    if sections not in file.memo:
+        file.memo[sections] = tuple(_sections(file))
+    found: tuple[Section, ...] = file.memo[sections]
     return found
 
 
-def _sections(beside: Beside) -> Iterator[Section]:
-    document, settings = beside.document, beside.settings
-    try:
-        raw = raw_sections(document)
-    except InputError:  # what rcl rejects is told where a fleet is built
-        return
-    known, types = built_in_nodes(settings.distro), controller_types(raw)
-    for it in raw:
+def _sections(file: NamedFile) -> Iterator[Section]:
+    types = controller_types(RawSection(*it[:3]) for it, _ in file.pages)
+    for it, _ in file.pages:
         name = it.path.rpartition("/")[2]
-        if name in ANY or PLACEHOLDER.search(it.path):
+        if file.document is None or name in ANY or PLACEHOLDER.search(it.path):
             continue
-        given = tuple(_given(document, it.body, ""))
+        given = tuple(_given(file.document, it.body, ""))
         type_ = types.get(name) or next((str(at.value) for at in given if at.name == "type"), "")
-        node = identify_node(name, it.body, known, types)
+        node = it.node
         if node is not None and not _is_surely(node, name, type_, given):
             node = None
-        facts = facts_of_node(node, type_, document.file, settings.roots)
+        facts = facts_of_node(node, type_, file.file, file.roots)
         below, rest = _of_plugins(it.path, given)
         yield Section(it.path, node, rest, facts)
         yield from below
@@ -134,12 +128,12 @@ def _value(document: YamlText, node: yaml.Node) -> Value | None:
     return None if filled else value
 
 
-def unknown_parameters(beside: Beside) -> Iterator[Remark]:
+def unknown_parameters(file: NamedFile) -> Iterator[Remark]:
     """Parameters that no release of their node declares, with a name nearly that of one."""
     guesses = Guesses()
-    for section in sections(beside):
+    for section in sections(file):
         facts = [it for it in section.facts if it.how != READ]
-        paths = [it.path for it in of_release(facts, beside.settings.distro)]
+        paths = [it.path for it in of_release(facts, file.context.distro)]
         there = [it for it in paths if "<" not in it]
         there += _in_blocks(section, paths) if section.node is None else ()
         said = {it.name for it in section.given}
@@ -148,7 +142,7 @@ def unknown_parameters(beside: Beside) -> Iterator[Remark]:
             near = "" if _is_known(section, it) else _meant(it.name, free, guesses)
             if near:
                 message = f"{section.title} has no parameter {it.name!r}"
-                yield Remark(it.key, message, f"did you mean {near!r}?")
+                yield remark_at(it.key, message, f"did you mean {near!r}?")
 
 
 def _in_blocks(section: Section, paths: Sequence[str]) -> Iterator[str]:
@@ -176,10 +170,10 @@ def _meant(name: str, known: Sequence[str], guesses: Guesses) -> str:
     return beside.get(near, "") or meant_name(name, known)
 
 
-def wrong_types(beside: Beside) -> Iterator[Remark]:
+def wrong_types(file: NamedFile) -> Iterator[Remark]:
     """Values of another type than the one that all declarations of a parameter have."""
-    for section in sections(beside):
-        for it, facts in _declared(section, beside.settings.distro):
+    for section in sections(file):
+        for it, facts in _declared(section, file.context.distro):
             types = {fact.type for fact in facts}
             if len(types) != 1 or it.value is None or it.value == []:
                 continue
@@ -189,13 +183,13 @@ def wrong_types(beside: Beside) -> Iterator[Remark]:
             sure = all(fact.how == YAML for fact in facts) or type_ in _NUMBERS
             if sure and _expected(type_) not in ("", given) and not _is_filled_in(it.value):
                 message = f"{section.title}: {it.name} is {_article(given)}, not {_article(type_)}"
-                yield Remark(it.node, message, _other_type(type_, given, it))
+                yield remark_at(it.node, message, _other_type(type_, given, it))
 
 
-def out_of_bounds(beside: Beside) -> Iterator[Remark]:
+def out_of_bounds(file: NamedFile) -> Iterator[Remark]:
     """Values that a check of generate_parameter_library rejects."""
-    for section in sections(beside):
-        for it, facts in _declared(section, beside.settings.distro):
+    for section in sections(file):
+        for it, facts in _declared(section, file.context.distro):
             given = None if it.value is None else _type_of(it.value)
             for fact in facts if len(facts) == 1 else ():
                 if given != _expected(fact.type):
@@ -203,7 +197,7 @@ def out_of_bounds(beside: Beside) -> Iterator[Remark]:
                 said = [beyond(*check, it.value) for check in fact.checks]
                 for words in filter(None, said):
                     message = f"{section.title}: {it.name} is {it.value!r}, and has to be {words}"
-                    yield Remark(it.node, message, f"declared in {fact.source}")
+                    yield remark_at(it.node, message, f"declared in {fact.source}")
 
 
 def _is_filled_in(value: Value) -> bool:

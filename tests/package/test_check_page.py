@@ -1,4 +1,4 @@
-"""The page about the doctor: its commands print what is shown."""
+"""The page about a check without a plan: its commands print what is shown."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ import page_commands
 import pytest
 from paths import ROOT
 
-PARTS = page_commands.sections((ROOT / "docs" / "doctor.md").read_text())
+PARTS = page_commands.sections((ROOT / "docs" / "check.md").read_text())
 
 
 @pytest.fixture(scope="module")
 def tried(tmp_path_factory: pytest.TempPathFactory) -> page_commands.Tried:
-    return page_commands.tried(PARTS, tmp_path_factory.mktemp("doctor"), 80, {})
+    return page_commands.tried(PARTS, tmp_path_factory.mktemp("check"), 80, {})
 
 
 @pytest.mark.slow

@@ -6,22 +6,26 @@ from collections.abc import Iterator, Sequence
 
 import yaml
 
+from multibot_rewrite.companions.kinds import PARAMS
 from multibot_rewrite.companions.params.name_sites import params_at
 from multibot_rewrite.companions.params.sections import ParamSection, flattened
-from multibot_rewrite.companions.params.values import ParamsJob
-from multibot_rewrite.companions.yaml_text import found_at, items, pairs
-from multibot_rewrite.findings.finding import NOTE, WARNING, Finding
-from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.companions.sites import NamedFile
+from multibot_rewrite.companions.yaml_text import items, pairs
+from multibot_rewrite.findings.finding import NOTE, WARNING
+from multibot_rewrite.findings.rule import rule
+from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import NodeParameters, Param
 from multibot_rewrite.releases import has_release, releases_with
+from multibot_rewrite.rules.files.records import Remark, remark_at
 
 _BROADCASTER = "joint_state_broadcaster"
 # What sensor_msgs/JointState has a field for.
 _IN_JOINT_STATES = frozenset(("position", "velocity", "effort"))
 _GONE_SINCE = "lyrical+"
 
-DEPRECATED = declare(
-    "MF129",
+
+@rule(
+    "MB869",
     "deprecated-in-release",
     NOTE,
     what="A parameter or controller type is deprecated in the release, or gone.",
@@ -41,12 +45,19 @@ controller_manager:
     arm: {type: forward_command_controller/ForwardCommandController}
 """,
     line=3,
-    formats=("params",),
+    formats=(PARAMS,),
     options={"distro": "lyrical"},
 )
+def deprecated(file: NamedFile) -> Iterator[Remark]:
+    """Parameters of known nodes, and types of controllers."""
+    release = file.context.distro
+    for section, _ in file.pages:
+        yield from _deprecated_parameters(section, release)
+        yield from _deprecated_types(section.body, file.known, release)
 
-NOT_SENT = declare(
-    "MF130",
+
+@rule(
+    "MB871",
     "interfaces-not-published",
     WARNING,
     what="joint_state_broadcaster has interfaces that only dynamic_joint_states had, which it no "
@@ -68,13 +79,19 @@ joint_state_broadcaster:
     interfaces: [position, velocity]
 """,
     line=4,
-    formats=("params",),
+    formats=(PARAMS,),
     options={"distro": "lyrical"},
 )
+def not_sent(file: NamedFile) -> Iterator[Remark]:
+    """Interfaces of joint_state_broadcaster that no topic holds."""
+    if has_release(_GONE_SINCE, file.context.distro):
+        for section, _ in file.pages:
+            if section.node is not None and section.node.name == _BROADCASTER:
+                yield from _not_sent(section.body)
 
 
-ELSEWHERE = declare(
-    "MF131",
+@rule(
+    "MB870",
     "parameter-of-another-release",
     NOTE,
     what="A parameter, or its node, is not in the release that is meant.",
@@ -93,44 +110,39 @@ behavior_server:
     local_costmap_topic: local_costmap/costmap_raw
 """,
     line=3,
-    formats=("params",),
+    formats=(PARAMS,),
     options={"distro": "lyrical"},
 )
+def of_another_release(file: NamedFile) -> Iterator[Remark]:
+    """Nodes and parameters that only other releases have."""
+    for section, _ in file.pages:
+        yield from _of_another_release(section, file.context.distro)
 
 
-def release_findings(job: ParamsJob, section: ParamSection) -> Iterator[Finding]:
-    """What is to be told of a section for the release that is meant."""
-    yield from _deprecated_parameters(job, section)
-    yield from _of_another_release(job, section)
-    yield from _deprecated_types(job, section.body)
-    if section.node is not None and section.node.name == _BROADCASTER:
-        yield from _not_sent(job, section.body)
-
-
-def _deprecated_parameters(job: ParamsJob, section: ParamSection) -> Iterator[Finding]:
+def _deprecated_parameters(section: ParamSection, release: str) -> Iterator[Remark]:
     for name, key in flattened(section.body):
         param = section.node.params.get(name) if section.node else None
-        if param and param.deprecated and has_release(param.deprecated, job.context.distro):
-            there = has_release(param.releases, job.context.distro)
+        if param and param.deprecated and has_release(param.deprecated, release):
+            there = has_release(param.releases, release)
             state = "is deprecated" if there else "is gone and has no effect"
-            message = f"{name} {state} in {job.context.distro}"
+            message = f"{name} {state} in {release}"
             hint = f"{param.note}{_source(param.source)}"
-            yield found_at(job.document, key, DEPRECATED, message, hint)
+            yield remark_at(key, message, hint)
 
 
-def _of_another_release(job: ParamsJob, section: ParamSection) -> Iterator[Finding]:
+def _of_another_release(section: ParamSection, release: str) -> Iterator[Remark]:
     """Nodes and parameters that only other releases have; what is called deprecated is told there."""
-    node, release = section.node, job.context.distro
+    node = section.node
     if node is None or section.wild:
         return
     if not has_release(node.facts.releases, release):
-        yield _elsewhere(job, section.keys[-1], f"node {node.name}", node.facts)
+        yield _elsewhere(section.keys[-1], f"node {node.name}", node.facts, release)
         return
     for name, key in flattened(section.body):
         found = params_at(node, name, key)
         told = any(it.deprecated and has_release(it.deprecated, release) for it in found)
         if found and not told and not any(has_release(it.releases, release) for it in found):
-            yield _elsewhere(job, key, name, found[0])
+            yield _elsewhere(key, name, found[0], release)
 
 
 def _source(places: Sequence[str]) -> str:
@@ -139,44 +151,42 @@ def _source(places: Sequence[str]) -> str:
 
 
 def _elsewhere(
-    job: ParamsJob, key: yaml.ScalarNode, what: str, known: NodeParameters | Param
-) -> Finding:
+    key: yaml.ScalarNode, what: str, known: NodeParameters | Param, release: str
+) -> Remark:
     others = ", ".join(releases_with(known.releases))
-    message = f"{what} is not in {job.context.distro}, only in {others}"
+    message = f"{what} is not in {release}, only in {others}"
     hint = (
         "delete it, or name the release that the file is for: distro: in the fleet file, --distro"
     )
-    return found_at(job.document, key, ELSEWHERE, message, f"{hint}{_source(known.source)}")
+    return remark_at(key, message, f"{hint}{_source(known.source)}")
 
 
-def _deprecated_types(job: ParamsJob, body: yaml.Node) -> Iterator[Finding]:
+def _deprecated_types(body: yaml.Node, known: KnownNodes | None, release: str) -> Iterator[Remark]:
     types = {
         type_: it
-        for node in job.known.nodes.values()
+        for node in (known.nodes.values() if known else ())
         for type_, it in node.facts.deprecated_types.items()
     }
     for key, value in _scalars(body):
         words = types.get(value.value, "") if key.value.rpartition(".")[2] == "type" else ""
-        if words and has_release(words, job.context.distro):
-            message = f"{value.value} is deprecated in {job.context.distro}"
+        if words and has_release(words, release):
+            message = f"{value.value} is deprecated in {release}"
             hint = "use forward_command_controller/ForwardCommandController with interface_name"
-            yield found_at(job.document, value, DEPRECATED, message, hint)
+            yield remark_at(value, message, hint)
 
 
-def _not_sent(job: ParamsJob, body: yaml.MappingNode) -> Iterator[Finding]:
+def _not_sent(body: yaml.MappingNode) -> Iterator[Remark]:
     """Interfaces that no topic holds."""
     given = {key.value: value for key, value in pairs(body)}
     mapped = {
         getattr(it, "value", "") for _, it in _scalars(given.get("map_interface_to_joint_state"))
     }
-    if not has_release(_GONE_SINCE, job.context.distro):
-        return
     for item in items(given.get("interfaces")):
         name = getattr(item, "value", "")
         if name not in _IN_JOINT_STATES | mapped:
             message = f"nobody publishes {name}: joint_states has no field for it"
             hint = "use a state_interfaces_broadcaster for it"
-            yield found_at(job.document, item, NOT_SENT, message, hint)
+            yield remark_at(item, message, hint)
 
 
 def _scalars(node: yaml.Node | None) -> Iterator[tuple[yaml.ScalarNode, yaml.ScalarNode]]:

@@ -6,39 +6,48 @@ Sources: ros_gz jazzy ``ros_gz_bridge/src/bridge_config.cpp``; gz-sim's names ``
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import yaml
 
+from multibot_rewrite.companions.bridge_checks import model_of, other_models, shared_services
 from multibot_rewrite.companions.bridge_entry import (
     BOTH,
+    FRAME,
     GZ,
     GZ_MODEL,
+    KEYS,
     MODEL_SLOT,
     PART,
     ROS,
     SERVICE,
     BridgeEntry,
     below,
+    faults,
+    row_of,
+    text_in,
 )
-from multibot_rewrite.companions.context import Companion, Context
+from multibot_rewrite.companions.companion import Companion
+from multibot_rewrite.companions.context import Context
+from multibot_rewrite.companions.kinds import BRIDGE
 from multibot_rewrite.companions.names.placeholders import without_robot
 from multibot_rewrite.companions.names.rename_map import is_declared, spell
 from multibot_rewrite.companions.names.robot_topics import NOTHING, robot_topic
 from multibot_rewrite.companions.rviz.read_config import text_of
-from multibot_rewrite.companions.template import make_template
+from multibot_rewrite.companions.sites import GZ_TOPIC, NamedFile, Site, site_at
+from multibot_rewrite.companions.template import FileTemplate, make_template
 from multibot_rewrite.companions.yaml_blocks import Block, blocks, cut_out, is_block, newline
 from multibot_rewrite.companions.yaml_text import (
     Splice,
     YamlText,
+    is_text,
+    items,
     line_of,
     pairs,
     quoted,
     refuse_anchors,
     replaced,
 )
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.fleets.bridge_checks import entry_findings, model_of, other_models, skipped
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import POSTFIX
 from multibot_rewrite.record import NamedTuple
@@ -49,25 +58,25 @@ WORLD = frozenset({"clock", "stats"})
 
 
 class BridgeFile(NamedTuple):
-    """A bridge file: the entries of each robot with slots, and the text of those that all share."""
+    """A bridge file: the entries of each robot with slots, the text of those that all share, and both
+    with slots."""
 
     own: Companion
     shared: str
+    whole: FileTemplate
 
 
 def rewrite_bridge(
     document: YamlText, context: Context, known: Mapping[str, str] = NOTHING, above: str = ""
 ) -> BridgeFile:
-    """Find what each robot needs for itself; ``known`` is ``fleet_topics`` of the namespace slot,
+    """What each robot needs for itself; ``known`` is ``fleet_topics`` of the namespace slot,
     ``above`` the namespace in the robot's that the file is for.
 
     Names come out in full, so it makes no difference which namespace the bridge runs in, whether it
     expands gz names, and whether one bridge carries all robots. Raises InputError for a file that
     is no list of entries.
     """
-    _refuse(document)
-    findings: list[Finding] = []
-    entries = _entries(document, context, known, above, findings)
+    entries = _entries(document, context, known, above)
     own = [it for it in entries if it.own]
     shared = [it for it in entries if not it.own]
     splices = [splice for it in own for splice in _splices(document, it, context)]
@@ -77,29 +86,63 @@ def rewrite_bridge(
         else make_template("", ())
     )
     text = cut_out(document, 0, len(document.text), _only(document, shared)) if shared else ""
-    return BridgeFile(Companion(template, tuple(findings)), text)
+    found = (*other_models(document, model_of(document)), *shared_services(document, entries))
+    whole = make_template(document.text, [*_only(document, entries), *splices])
+    return BridgeFile(Companion(template, found, _named(document, context, entries)), text, whole)
+
+
+def read_bridge(document: YamlText, context: Context) -> NamedFile:
+    """The names of a file, whatever its form; raises nothing."""
+    model, nowhere = model_of(document), Block(0, 0, 0)
+    loaded = (it for it in items(document.root) if not any(faults(it)))
+    maps = (it for it in loaded if isinstance(it, yaml.MappingNode))
+    entries = [_entry(it, nowhere, context, model, NOTHING, "") for it in maps]
+    return _named(document, context, entries)
 
 
 def _entries(
-    document: YamlText,
-    context: Context,
-    known: Mapping[str, str],
-    above: str,
-    findings: list[Finding],
+    document: YamlText, context: Context, known: Mapping[str, str], above: str
 ) -> list[BridgeEntry]:
-    """The entries that the bridge loads; what is wrong with others goes to ``findings``."""
+    """The entries that the bridge loads."""
+    _refuse(document)
     model = model_of(document)
-    findings += other_models(document, model)
-    found: list[BridgeEntry] = []
     assert document.root is not None
-    for node, block in zip(document.root.value, blocks(document, document.root), strict=True):
-        faults = [*skipped(document, node)]
-        if faults:
-            findings += faults
-            continue
-        found.append(_entry(node, block, context, model, known, above))
-        findings += entry_findings(document, found[-1], context)
-    return found
+    found = zip(document.root.value, blocks(document, document.root), strict=True)
+    return [
+        _entry(node, block, context, model, known, above)
+        for node, block in found
+        if not any(faults(node))
+    ]
+
+
+def _named(document: YamlText, context: Context, entries: Iterable[BridgeEntry]) -> NamedFile:
+    names = tuple(site for it in entries for site in _sites(it))
+    others = tuple(site for it in entries for site in _others(it.node))
+    return NamedFile(
+        BRIDGE, document.file, document.text, context, {}, names, others, document=document
+    )
+
+
+def _sites(entry: BridgeEntry) -> Iterator[Site]:
+    row = row_of(entry.node)
+    if not text_in(row, SERVICE):
+        ros = next(it for it in (BOTH, ROS, GZ) if text_in(row, it))
+        gz = next(it for it in (BOTH, GZ, ROS) if text_in(row, it))
+        yield site_at(row[ros][1], "topic", entry.ros, ros)
+        model = GZ_MODEL.fullmatch(entry.gz)
+        bare = f"{model['above']}{model['rest'] or ''}" if model else entry.gz
+        yield site_at(row[gz][1], GZ_TOPIC, bare, gz)
+        for kind, name in PART.findall(entry.gz if MODEL_SLOT in entry.new_gz else ""):
+            yield site_at(row[gz][1], kind, name, gz)
+    if text_in(row, FRAME):
+        yield site_at(row[FRAME][1], "frame", text_in(row, FRAME), FRAME)
+
+
+def _others(node: yaml.Node) -> Iterator[Site]:
+    """Values at keys that hold no text of their own."""
+    for key, (_, value) in row_of(node).items():
+        if key in KEYS and key not in (BOTH, ROS, GZ, FRAME) and is_text(value):
+            yield site_at(value, "", text_in(row_of(node), key), key)
 
 
 def _refuse(document: YamlText) -> None:
@@ -191,7 +234,7 @@ def _splices(document: YamlText, entry: BridgeEntry, context: Context) -> Iterat
             yield replaced(node, entry.new_ros)
         elif key.value in names:
             yield from _side(entry, key.value, node, names, ends)
-        elif key.value == "frame_id":
+        elif key.value == FRAME:
             yield from _frame(node, context)
 
 

@@ -1,0 +1,66 @@
+"""``urdf-postfix`` for a file beside a description: parameters, RViz, MoveIt, a bridge, a tree, Lua."""
+
+from __future__ import annotations
+
+import argparse
+
+from multibot_rewrite.cli.output import say
+from multibot_rewrite.cli.process import DONE, STOPPED
+from multibot_rewrite.cli.report import About, by_themselves, chosen, report_beside
+from multibot_rewrite.cli.rewrite_output import deliver, tell, told
+from multibot_rewrite.cli.rewrite_use import check_unread, input_name
+from multibot_rewrite.cli.usage import policy, xacro_args
+from multibot_rewrite.companions.kinds import BRIDGE, LUA, MOVEIT, PARAMS, RVIZ, TREE
+from multibot_rewrite.fleets.one_file import RewrittenFile, rewrite_files
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.plural import plural
+from multibot_rewrite.releases import facts_of_release, release_here
+from multibot_rewrite.sources.read import Source, read_whole
+
+WORDS = {
+    PARAMS: "a parameter file",
+    RVIZ: "a config of RViz",
+    MOVEIT: "a file of MoveIt",
+    BRIDGE: "a file of ros_gz_bridge",
+    TREE: "a behavior tree",
+    LUA: "a Lua file",
+}
+
+
+def run(options: argparse.Namespace, source: Source, names: list[str]) -> int:
+    """Rewrite it for each robot; returns the exit code."""
+    for option in ("strip", "changes"):
+        if getattr(options, option):
+            raise UsageError(f"--{option} is for descriptions, {input_name(options)} is none")
+    before = read_whole(source, {}, options.trust)
+    made = rewrite_files(
+        before.data,
+        names,
+        **policy(options),
+        urdf=options.urdf,
+        xacro_args=xacro_args(options),
+        vocabulary=options.vocabulary,
+        file=input_name(options),
+        trust=options.trust,
+        distro=options.distro or "",
+    )
+    every = list(made)
+    check_unread(options, names, before.read)
+    release = release_here(options.distro or "")
+    about = About([input_name(options)], by_themselves(names), release)
+    found = dict.fromkeys(finding for it in every for finding in it.findings)
+    if report_beside(options, told(options, chosen(options, found)), about):
+        say(f"--fail-on {options.fail_on}: nothing was written", options.program)
+        return STOPPED
+    results = ((it.robot, before.data, it.data) for it in every)
+    deliver(options, results, [], len(names))
+    tell(options, summary(every, names, release))
+    return DONE
+
+
+def summary(made: list[RewrittenFile], robots: list[str], release: str) -> str:
+    """One line: what it is, and whether it is proved."""
+    who = robots[0] if len(robots) == 1 else plural(len(robots), "robot")
+    why = dict.fromkeys(it for one in made for it in one.not_proved)
+    end = f"rewritten, not proved: {', '.join(why)}" if why else "proved"
+    return f"{who}: {WORDS[made[0].kind]}; {end}{facts_of_release(release)}"

@@ -1,0 +1,16 @@
+"""What becomes of a file beside a description."""
+
+from __future__ import annotations
+
+from multibot_rewrite.companions.sites import NamedFile
+from multibot_rewrite.companions.template import FileTemplate
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.record import NamedTuple
+
+
+class Companion(NamedTuple):
+    """A companion file as a template for any robot, the findings about that, and what was read."""
+
+    template: FileTemplate
+    findings: tuple[Finding, ...]
+    file: NamedFile

@@ -1,0 +1,92 @@
+"""A parameter file as rules ask it: its sections and the names in them."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator
+
+from multibot_rewrite.companions.context import Context
+from multibot_rewrite.companions.kinds import PARAMS
+from multibot_rewrite.companions.names.placeholders import without_robot
+from multibot_rewrite.companions.params.name_sites import (
+    NO_NAMES,
+    NameSite,
+    Page,
+    SectionNames,
+    find_names,
+)
+from multibot_rewrite.companions.params.sections import (
+    ParamSection,
+    identify_sections,
+    raw_sections,
+    without_own,
+)
+from multibot_rewrite.companions.sites import SECTION, NamedFile, Site, site_at
+from multibot_rewrite.companions.yaml_text import YamlText
+from multibot_rewrite.knowledge.parameters import KnownNodes
+from multibot_rewrite.releases import has_release
+
+
+def read_params(
+    document: YamlText, context: Context, known: KnownNodes, own: Collection[str] = ()
+) -> NamedFile:
+    """The names of a file; ``own`` are words for the one robot that it is for. Raises InputError for a
+    file that is not a parameter file or that rcl rejects."""
+    found = without_own(raw_sections(document), own)
+    sections = identify_sections(found, context, known)
+    pages = tuple(
+        (it, NO_NAMES if it.shared else find_names(document, it, known)) for it in sections
+    )
+    names = (
+        *(site for it in sections for site in _keys(it, own)),
+        *(_site(page, it, context.distro) for page, names in pages for it in names.sites),
+    )
+    return NamedFile(
+        PARAMS,
+        document.file,
+        document.text,
+        context,
+        {},
+        names,
+        tuple(it for _, page in pages for it in _others(page)),
+        tuple(site_at(key, "", str(key.value)) for _, page in pages for key in page.twice),
+        document,
+        pages,
+        known,
+        sent=known.sent | _own_frames(pages),
+    )
+
+
+def _own_frames(pages: Iterable[Page]) -> frozenset[str]:
+    """The frames that nodes of the file make themselves: no description has them."""
+    sites = (site for _, names in pages for site in names.sites)
+    return frozenset(it.value.lstrip("/") for it in sites if it.param and it.param.own)
+
+
+def _keys(section: ParamSection, own: Collection[str]) -> Iterator[Site]:
+    """The keys above a section, without what its path has not: the robot that the file is for."""
+    first, *rest = section.keys
+    if first.value != "/" or not rest:
+        yield site_at(first, SECTION, without_robot(_without(first.value, own)))
+    yield from (site_at(it, SECTION, without_robot(it.value), in_key=True) for it in rest)
+
+
+def _without(key: str, own: Collection[str]) -> str:
+    bare = key.strip("/")
+    words = (it for it in own if f"{bare}/".startswith(f"{it}/"))
+    return next((bare.removeprefix(it).strip("/") for it in words), key)
+
+
+def _site(section: ParamSection, it: NameSite, release: str) -> Site:
+    strips = section.node.facts.strips if section.node and it.kind == "frame" else ""
+    site = site_at(it.scalar, it.kind, it.value, str(it.key.value), it.at >= 0)
+    return site._replace(
+        is_sure=it.param is not None,
+        together=id(it.key),
+        bare=bool(strips) and it.at < 0 and has_release(strips, release),
+        own=it.param is not None and it.param.own,
+    )
+
+
+def _others(names: SectionNames) -> Iterator[Site]:
+    yield from (site_at(it, "", str(it.value)) for it in names.unclaimed)
+    yield from (site_at(it, "", str(it.value), in_key=True) for it in names.keys)

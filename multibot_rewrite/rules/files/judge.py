@@ -1,0 +1,57 @@
+"""A file beside a description -> what the rules for its kind find in it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from functools import cache
+
+from multibot_rewrite.companions.sites import NamedFile
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.findings.rule import Rule
+from multibot_rewrite.lazy import lazy_compile
+from multibot_rewrite.rules.files import (
+    bridges,
+    frames,
+    keys,
+    names,
+    parameters,
+    releases,
+    ros_names,
+    rviz,
+)
+
+THEMES = (parameters, names, ros_names, frames, keys, releases, bridges, rviz)
+# Up to a reason, which is behind a dash.
+_COMMENT = lazy_compile(r"#\s*urdf-lint:\s*ignore\s+((?:MB\d+[,\s]*)+)(?:$|[-:])")
+
+
+@cache
+def rules_for(kind: str) -> tuple[Rule, ...]:
+    """The rules for files of a kind, by their codes."""
+    every = (it for theme in THEMES for it in vars(theme).values() if isinstance(it, Rule))
+    return tuple(sorted((it for it in every if kind in it.formats), key=lambda it: it.code))
+
+
+def judged(file: NamedFile, rules: Iterable[Rule]) -> Iterator[Finding]:
+    """What rules find in a file, without what a comment at the end of its line silences."""
+    lines = file.text.split("\n")
+    for rule in rules:
+        for it in rule.check(file) if rule.check else ():
+            if rule.code not in _silenced(lines[it.line - 1]):
+                level = it.level or rule.level
+                place = {"file": file.file, "line": it.line, "column": it.column}
+                yield rule.finding(it.message, it.hint, level=level, **place)
+
+
+def judged_once(file: NamedFile) -> list[Finding]:
+    """What all rules find in a file, at its first place, in the order of the places."""
+    first: dict[tuple[str, str], Finding] = {}
+    for it in sorted(judged(file, rules_for(file.kind)), key=lambda it: (it.line, it.column)):
+        first.setdefault((it.code, it.message), it)
+    return list(first.values())
+
+
+def _silenced(line: str) -> list[str]:
+    """The codes in a comment at the end of a line."""
+    found = _COMMENT.search(line) if "urdf-lint" in line else None
+    return found[1].replace(",", " ").split() if found else []

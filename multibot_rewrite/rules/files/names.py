@@ -1,0 +1,285 @@
+"""Names in files beside a description that the description does not have, or whose use is not known."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+
+from multibot_rewrite.checks.mentions import mentioned
+from multibot_rewrite.companions.kinds import BRIDGE, EVERY, LUA, MOVEIT, PARAMS, RVIZ, TREE
+from multibot_rewrite.companions.names.by_kind import is_component, is_plain, is_shared_frame
+from multibot_rewrite.companions.names.rename_map import KINDS, is_declared, spell
+from multibot_rewrite.companions.sites import NamedFile, Site
+from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.findings.rule import rule
+from multibot_rewrite.knowledge.parameters import built_in_nodes
+from multibot_rewrite.nearest import HINTED, MISTYPED, did_you_mean, meant_name
+from multibot_rewrite.rosnames import check_topic_name
+from multibot_rewrite.rules.files.declared import unknown_parameters
+from multibot_rewrite.rules.files.examples import ROVER, a_section
+from multibot_rewrite.rules.files.records import Remark, remark
+
+_FRAMES = ("frame", "link")
+_PARTS = ("joint", "sensor", "group", "interface")
+# Each value of these may be a name, and is looked through.
+_LOOSE = (MOVEIT, TREE, LUA)
+# What a word of the description may be, where a mention of it matters.
+_MENTIONED = ("link", "joint", "frame", "group")
+_REMEDIES = {
+    "frame": "correct it, or let the node that sends it use the robot's name",
+    "": "correct the name",
+}
+# Fewer names are mistakes in a file that is meant for the robot.
+_FEWEST = 3
+
+
+def _drive(left: str) -> str:
+    wheels = f"left_wheel_names: [{left}]\n    right_wheel_names: [right_wheel_joint]"
+    return a_section("drive_controller", wheels)
+
+
+@rule(
+    "MB853",
+    "undeclared-frame-beside",
+    WARNING,
+    what="A file names a frame or link that the description has not and no known node sends. "
+    "Where it is not sure which robot the file is for, and in RViz, only what is nearly a link counts.",
+    why="tf does not have the frame: the node waits for its transform for ever, RViz shows "
+    "nothing ('frame does not exist').",
+    fix="Correct the name, or let the node that sends the frame use the robot's name.",
+    bad=a_section("amcl", "base_frame_id: base_lnik"),
+    good=a_section("amcl", "base_frame_id: base_link"),
+    line=3,
+    formats=EVERY,
+    beside=ROVER,
+)
+def undeclared_frame(file: NamedFile) -> Iterator[Remark]:
+    """Frames and links."""
+    return _undeclared(file, _FRAMES)
+
+
+@rule(
+    "MB854",
+    "undeclared-joint-beside",
+    NOTE,
+    what="A file names a joint, sensor, interface or planning group that the description has not. "
+    "Of a file alone a joint is told beside others that its package describes. In a build it is a "
+    "warning.",
+    why="The controller is not activated: no hardware exports an interface of that joint. MoveIt "
+    "does not use its limits, and refuses to execute on a controller with it.",
+    fix="Name a joint of the description.",
+    bad=_drive("left_whel_joint"),
+    good=_drive("left_wheel_joint"),
+    line=3,
+    formats=EVERY,
+    beside=ROVER,
+)
+def undeclared_joint(file: NamedFile) -> Iterator[Remark]:
+    """Joints, sensors and groups."""
+    return _undeclared(file, _PARTS)
+
+
+def _undeclared(file: NamedFile, kinds: tuple[str, ...]) -> Iterator[Remark]:
+    there = {it.together for it in file.names if _is_there(file, it)}
+    foreign = set(_foreign(file)[0])
+    hinted: dict[str, str] = {}
+    for site in (it for it in file.names if it.kind in kinds):
+        name = _missing(file, site)
+        if not name or (site.kind, site.text) in foreign:
+            continue
+        known = file.declared.get("link" if site.kind in _FRAMES else _kind_of(site), {})
+        if name not in hinted and len(hinted) < HINTED:
+            hinted[name] = _near(file, site, name, known)
+        near = hinted.get(name, "")
+        alone = site.kind == "joint" and file.is_whole and site.together in there
+        if not near and not (_is_sure(file, site) or (not file.is_certain and alone)):
+            continue
+        level = WARNING if file.is_certain else ""
+        hint = near or _REMEDIES["frame" if site.kind == "frame" else ""]
+        yield remark(site, f"{_kind_of(site)} {name!r} is in no description", hint, level)
+
+
+def _kind_of(site: Site) -> str:
+    return "joint" if site.kind == "interface" else site.kind
+
+
+def _is_sure(file: NamedFile, site: Site) -> bool:
+    """Is what the description lacks wrong, whatever it is near to? RViz shows frames of drivers."""
+    return file.is_certain and not (file.kind == RVIZ and site.kind == "frame")
+
+
+def _near(file: NamedFile, site: Site, name: str, known: Iterable[str]) -> str:
+    if not file.is_certain:
+        near = meant_name(name, known)
+        return f"did you mean {near!r}?" if near else ""
+    return did_you_mean(name, known, *(() if _is_sure(file, site) else (MISTYPED,)))
+
+
+def _is_there(file: NamedFile, site: Site) -> bool:
+    return site.kind == "joint" and site.text in file.declared.get("joint", ())
+
+
+def _missing(file: NamedFile, site: Site) -> str:
+    """The name that the description should have and has not; empty for any other."""
+    if " " in site.text or not is_plain(site.text) or site.own:
+        return ""
+    # RViz keeps links and frames that it has seen once, as keys.
+    if (site.in_key and file.kind == RVIZ) or not (site.is_sure or file.is_certain):
+        return ""
+    if site.kind in _FRAMES:
+        return _missing_frame(file, site)
+    if site.kind == "interface":
+        return _missing_owner(file, site)
+    name = site.text.lstrip("/")
+    known = file.declared.get(site.kind, {})
+    # A joint of another controller: controller/joint.
+    chained = site.kind == "joint" and name.rpartition("/")[2] in known
+    guessed = file.kind == PARAMS and not site.is_sure
+    sensors = site.kind != "joint" and not file.is_certain
+    none = not known and not (file.is_certain and file.kind == BRIDGE)
+    return "" if none or name in known or chained or guessed or sensors else name
+
+
+def _missing_frame(file: NamedFile, site: Site) -> str:
+    links, bare = file.declared.get("link", {}), site.text.strip("/")
+    if not file.is_certain:
+        bare = bare.rpartition("/")[2]
+    known = any(is_declared(file.context.names, it, bare) for it in (site.kind, "frame"))
+    sent = bare in file.sent | built_in_nodes(file.context.distro).sent
+    free = not links or known or sent or is_shared_frame(file.context, bare)
+    return "" if free else bare
+
+
+def _missing_owner(file: NamedFile, site: Site) -> str:
+    """``joint1/position`` of an unknown controller: other ones may be another controller's."""
+    owner, slash, _ = site.text.rpartition("/")
+    free = site.is_sure or not slash or "/" in owner or not file.declared.get("joint")
+    return "" if free or is_component(file.context, owner) else owner
+
+
+@rule(
+    "MB875",
+    "file-of-another-robot",
+    ERROR,
+    what="Most joints, links, frames and groups that a file of MoveIt names are not in the description "
+    "that it is built for.",
+    why="move_group takes no limits, solvers or controllers from such a file: trajectories have the "
+    "limits of the URDF, groups have no inverse kinematics, and execution fails.",
+    fix="Name the file of this robot, or give its xacro the arguments that the file was written for.",
+    bad="""\
+joint_limits:
+  left_wheel_joint: {max_velocity: 1.0}
+  left_lidar_joint: {max_velocity: 1.0}
+  left_arm_joint: {max_velocity: 1.0}
+""",
+    good="""\
+joint_limits:
+  wheel_joint: {max_velocity: 1.0}
+""",
+    line=2,
+    formats=(MOVEIT,),
+    options={"build": True},
+)
+def of_another_robot(file: NamedFile) -> Iterator[Remark]:
+    """One remark for all names, at the first."""
+    missing, count, first = _foreign(file)
+    if missing and first:
+        few = ", ".join(text for _, text in missing[:2])
+        message = f"{len(missing)} of the {count} names in this file are in no description: {few}"
+        hint = did_you_mean(first.text, file.declared[first.kind])
+        yield remark(first, f"{message} and others", hint or "name the file of this robot")
+
+
+def _foreign(file: NamedFile) -> tuple[list[tuple[str, str]], int, Site | None]:
+    """The names that are missing where most are, how many there are in all, and the first."""
+    if file.kind != MOVEIT or not file.is_certain:
+        return [], 0, None
+    closed = {(it.kind, it.text): it for it in reversed(file.names) if it.kind in KINDS}
+    closed = {key: it for key, it in reversed(closed.items()) if key[0] in (*_FRAMES, *_PARTS)}
+    missing = [key for key, it in closed.items() if _missing(file, it)]
+    if len(missing) < _FEWEST or 2 * len(missing) <= len(closed):
+        return [], 0, None
+    return missing, len(closed), closed[missing[0]]
+
+
+@rule(
+    "MB860",
+    "name-of-unknown-use",
+    WARNING,
+    what="The name of a link, joint, frame or topic of the robot is at a key, parameter or port that "
+    "is not known to hold names. It is a note where it is not sure which robot the file is for.",
+    why="It stays as it is when the file is written for several robots. If it is a name, a node looks "
+    "for a frame or joint that no longer has that name, or two robots use the same topic.",
+    fix="If it is a name, describe the parameter in a file under `nodes:` of the fleet file; in "
+    "other files rename it by hand for each robot.",
+    bad=a_section("mast_driver", "mounted_on: lidar_link"),
+    good=a_section("mast_driver", "frame_id: lidar_link"),
+    line=3,
+    formats=EVERY,
+    beside=ROVER,
+)
+def unknown_use(file: NamedFile) -> Iterator[Remark]:
+    """Texts of unknown use that are names, and in files of plugins those that hold one."""
+    if not file.others:
+        return
+    level = "" if file.is_certain else NOTE
+    known, renamed = _robots_names(file), _renamed(file)
+    misspelt = {it.line for it in unknown_parameters(file)}
+    for site in file.others:
+        found = _said(file, site, known, renamed)
+        if found and site.line not in misspelt:
+            message = f"{found} of the robot, but its use here is not known"
+            yield remark(site, message, "it stays as it is; if it is a name, rename it", level)
+
+
+def _renamed(file: NamedFile) -> frozenset[str]:
+    """The names that a rewrite makes others: none is known where the file alone is looked at."""
+    names = file.context.names
+    every = (
+        (kind, it) for kind in _MENTIONED for it in file.declared.get(kind, ()) if kind in KINDS
+    )
+    kept = (it for kind, it in every if not file.is_certain or spell(names, kind, it) != it)
+    return frozenset(kept) if file.kind in _LOOSE else frozenset()
+
+
+def _said(file: NamedFile, site: Site, known: Mapping[str, str], renamed: frozenset[str]) -> str:
+    """What a text says of the robot; empty for nothing."""
+    text = site.text
+    if file.kind in _LOOSE:
+        topic = (
+            text[:1] == "/" and file.kind != LUA and is_plain(text) and not check_topic_name(text)
+        )
+        held = mentioned(text, renamed) if file.kind != LUA or is_plain(text) else ""
+        return f"{text!r} is a name" if topic or held else ""
+    if text in known and (known[text] in ("link", "joint") or not site.in_key):
+        return f"{text!r} is a {known[text]}"
+    is_parameter = file.kind == PARAMS and not site.in_key
+    return f"{text!r} is an interface" if is_parameter and _is_interface(file, text) else ""
+
+
+def _robots_names(file: NamedFile) -> dict[str, str]:
+    """The links and joints; in parameters also the frames and absolute topics of known ones."""
+    declared = {it: kind for kind in ("link", "joint") for it in file.declared.get(kind, ())}
+    if file.kind != PARAMS:
+        return declared
+    claimed = {it.text: it.kind for it in file.names if _is_claimed(file, it)}
+    return {**claimed, **declared}
+
+
+def _is_claimed(file: NamedFile, site: Site) -> bool:
+    """A frame or absolute topic of the robot; relative topics are common words."""
+    if site.in_key or not is_plain(site.text):
+        return False
+    if site.kind == "frame":
+        return (site.is_sure or site.text == "odom") and not is_shared_frame(
+            file.context, site.text
+        )
+    return site.kind == "topic" and site.text.startswith("/")
+
+
+def _is_interface(file: NamedFile, value: str) -> bool:
+    """Is it ``elbow/position``? ``imu/data`` is more likely a topic than an interface of a sensor,
+    ``imu/orientation.x`` can be no topic."""
+    *chain, interface = value.split("/")
+    kinds = ("joint", "gpio", "sensor") if "." in interface else ("joint", "gpio")
+    names = file.context.names
+    return interface != "" and any(is_declared(names, kind, it) for kind in kinds for it in chain)

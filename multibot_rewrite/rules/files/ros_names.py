@@ -1,0 +1,129 @@
+"""Names that ROS refuses, placeholders in names, and names of robots in them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from multibot_rewrite.companions.kinds import EVERY, RVIZ
+from multibot_rewrite.companions.names.by_kind import is_filled, is_plain
+from multibot_rewrite.companions.names.placeholders import is_robot
+from multibot_rewrite.companions.sites import GZ_TOPIC, SECTION, NamedFile, Site
+from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.findings.rule import rule
+from multibot_rewrite.rosnames import check_node_name, check_topic_name
+from multibot_rewrite.rules.files.examples import a_section
+from multibot_rewrite.rules.files.records import Remark, remark
+
+_IN_VALUE = re.compile(r"<[^>]*>|\$\([^)]*\)|\$?\{[^}]*\}|%\w+")
+_GRAPH = ("topic", "service")
+# Stand for whole names of nodes.
+_ANY = ("*", "**")
+# What RViz calls the frame that everything is shown in.
+_FIXED = "<Fixed Frame>"
+
+
+@rule(
+    "MB861",
+    "invalid-name-beside",
+    WARNING,
+    what="A topic, a service or the node of a section has a name that ROS refuses. Without "
+    "ros_topic_name the topic of a bridge is the gz topic, where a part may be a number.",
+    why="The node fails when it creates the publisher, subscription or service; rcl rejects a file "
+    "with such a section, or no node has the name; a topic is not bridged.",
+    fix="Correct the name: its parts have letters, digits and underscores, and start with no digit.",
+    bad=a_section("amcl", "scan_topic: 2d/scan"),
+    good=a_section("amcl", "scan_topic: lidar/scan"),
+    line=3,
+    formats=EVERY,
+)
+def invalid_name(file: NamedFile) -> Iterator[Remark]:
+    """Names in the graph, and those of sections."""
+    for site in file.names:
+        fault = _section_fault(site) if site.kind == SECTION else _fault(site)
+        if fault:
+            what = "node" if site.kind == SECTION else site.kind
+            message = f"{what} {site.text!r} is not a valid ROS name: {fault}"
+            yield remark(site, message, "it stays as it is; correct it")
+
+
+def _fault(site: Site) -> str:
+    if site.kind not in _GRAPH or not site.text or not is_filled(site.text):
+        return ""
+    found = check_topic_name(site.text)
+    return found.reason if found else ""
+
+
+def _section_fault(site: Site) -> str:
+    """What is wrong with the key of a section, which may be a pattern; ``in_key`` where there is a key
+    above it."""
+    if _IN_VALUE.search(site.text) or "<" in site.text or "$" in site.text or "{" in site.text:
+        return ""
+    if site.in_key and site.text.startswith("/"):
+        return "the slash it starts with makes two slashes in a row"
+    names = (it for it in site.text.strip("/").split("/") if it not in _ANY)
+    faults = ((it, check_node_name(it)) for it in names)
+    return next((f"{it!r}: {fault.reason}" for it, fault in faults if fault), "")
+
+
+@rule(
+    "MB862",
+    "placeholder-beside",
+    WARNING,
+    what="A section or a name holds a placeholder, such as $(var area) or <area>, that does not stand "
+    "for the robot, and stays as it is. It is a note where only the file is looked at.",
+    why="Only a launch file can replace it. Until it does, no node has the section, and the name is "
+    "the placeholder itself; what it is replaced by does not get the robot's name from the build.",
+    fix="If it stands for the robot, call it so: <robot_namespace>, <robot_name>, $(var namespace) and "
+    "the like are filled in. Otherwise let the launch file replace it (ParameterFile, allow_substs).",
+    bad=a_section("amcl", "scan_topic: <area>/scan"),
+    good=a_section("amcl", "scan_topic: /scan"),
+    line=3,
+    formats=EVERY,
+)
+def placeholder(file: NamedFile) -> Iterator[Remark]:
+    """The first placeholder of each name."""
+    level = "" if file.is_certain else NOTE
+    for site in file.names:
+        found = _placeholder(site)
+        if found:
+            message = f"the placeholder {found} stays; a launch file must replace it"
+            hint = "if it stands for the robot's name, write the value without it"
+            yield remark(site, message, hint, level)
+
+
+def _placeholder(site: Site) -> str:
+    if is_plain(site.text) or is_robot(site.text) or site.text == _FIXED:
+        return ""
+    found = _IN_VALUE.search(site.text)
+    return found[0] if found else ""
+
+
+@rule(
+    "MB863",
+    "robot-in-name-beside",
+    ERROR,
+    what="A name holds the name of a robot of the fleet, so the file is for that robot only. It is a "
+    "warning in a config of RViz.",
+    why="Every robot gets the file: all others would use the names of this robot, and in its own file "
+    "the name would be there twice, as in /robot1/robot1/scan.",
+    fix="Remove the robot's name from every name; the build adds it for each robot.",
+    bad=a_section("amcl", "scan_topic: /robot2/scan"),
+    good=a_section("amcl", "scan_topic: /scan"),
+    line=3,
+    formats=EVERY,
+    options={"robots": ("robot1", "robot2")},
+)
+def robot_in_name(file: NamedFile) -> Iterator[Remark]:
+    """The first name that holds one of the robots."""
+    for site in file.names if file.robots else ():
+        if site.kind == GZ_TOPIC:
+            continue  # the model in it is the robot, whatever it is called
+        robot = next(iter(sorted(file.robots.intersection(site.text.strip("/").split("/")))), "")
+        if robot and (file.kind != RVIZ or "/" in site.text.strip("/")):
+            message = (
+                f"{site.text} includes the robot name {robot}, so the file is for that robot only"
+            )
+            hint = "remove the robot name from every name; the build adds it for each robot"
+            yield remark(site, message, hint, WARNING if file.kind == RVIZ else "")
+            return

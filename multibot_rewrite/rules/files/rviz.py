@@ -1,0 +1,73 @@
+"""Displays of RViz that show nothing, whatever robot they are for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from multibot_rewrite.companions.kinds import RVIZ
+from multibot_rewrite.companions.rviz.read_config import rviz_data, text_of, value
+from multibot_rewrite.companions.sites import NamedFile
+from multibot_rewrite.companions.yaml_text import pairs
+from multibot_rewrite.findings.finding import WARNING
+from multibot_rewrite.findings.rule import rule
+from multibot_rewrite.rules.files.records import Remark, remark_at
+
+
+def _display(lines: str) -> str:
+    return f"Visualization Manager:\n  Displays:\n    - Class: rviz_default_plugins/{lines}"
+
+
+@rule(
+    "MB872",
+    "rviz-ros1-property",
+    WARNING,
+    what="A display has a property of RViz for ROS 1: Image Topic, Marker Topic, Unreliable or "
+    "Queue Size.",
+    why="rviz2 ignores properties that it does not know. The display subscribes to nothing and "
+    "shows nothing, without a message.",
+    fix="Set the Topic of the display in rviz2 and save the file.",
+    bad=_display("Image\n      Image Topic: /camera/image_raw\n"),
+    good=_display("Image\n      Topic: /camera/image_raw\n"),
+    line=4,
+    formats=(RVIZ,),
+)
+def ros1_property(file: NamedFile) -> Iterator[Remark]:
+    """Each such property of each display."""
+    for one in file.shown:
+        for key, _ in pairs(one.node):
+            if key.value in rviz_data()["legacy"]:
+                message = f"{key.value!r} of {one.name!r} is a ROS 1 property, which rviz2 ignores"
+                yield remark_at(key, message, "set its Topic in rviz2")
+
+
+@rule(
+    "MB873",
+    "rviz-description-volatile",
+    WARNING,
+    what="A display subscribes to the description with Durability Policy: Volatile.",
+    why="robot_state_publisher publishes the description once. A volatile subscription misses it "
+    "if rviz2 starts later, so the RobotModel stays empty. The RViz file of Nav2 has this.",
+    fix="Write Durability Policy: Transient Local below Description Topic.",
+    bad=_display(
+        "RobotModel\n      Description Topic:\n        Durability Policy: Volatile\n"
+        "        Value: /robot_description\n"
+    ),
+    good=_display(
+        "RobotModel\n      Description Topic:\n        Durability Policy: Transient Local\n"
+        "        Value: /robot_description\n"
+    ),
+    line=3,
+    formats=(RVIZ,),
+)
+def volatile_description(file: NamedFile) -> Iterator[Remark]:
+    """Reported once: nearly every saved config has it."""
+    found = [
+        one
+        for one in file.shown
+        if text_of(value(one.node, "Description Topic"), "Durability Policy") == "Volatile"
+    ]
+    if found:
+        names = ", ".join(repr(one.name) for one in found)
+        message = f"{names} misses a description published before rviz2 starts: it is Volatile"
+        hint = "set Durability Policy: Transient Local below Description Topic"
+        yield remark_at(found[0].node, message, hint)

@@ -1,0 +1,178 @@
+"""One file beside a description is rewritten without a fleet, by the library and the command."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import yaml
+from paths import CORPUS
+
+from multibot_rewrite import InputError, UsageError, rewrite_file, rewrite_files
+from multibot_rewrite.cli.urdf_postfix import main
+
+ROVER = """\
+<robot name="rover">
+  <link name="base_link"/><link name="base_footprint"/><link name="base_scan"/>
+  <joint name="a" type="fixed"><parent link="base_link"/><child link="base_scan"/></joint>
+  <joint name="b" type="fixed"><parent link="base_link"/><child link="base_footprint"/></joint>
+  <link name="w"/>
+  <joint name="wheel" type="continuous"><parent link="base_link"/><child link="w"/></joint>
+</robot>
+"""
+NAV = "amcl:\n  ros__parameters:\n    base_frame_id: base_footprint\n    scan_topic: scan\n"
+ROW = "- {}: {}\n  ros_type_name: rosgraph_msgs/msg/Clock\n  gz_type_name: gz.msgs.Clock\n"
+TREE = '<root BTCPP_format="4"><BehaviorTree ID="M"><X {}/></BehaviorTree></root>'
+MOVEIT = "joint_limits:\n  {}: {{max_velocity: 1.0}}\n"
+VIEW = """\
+Visualization Manager:
+  Displays:
+    - Class: rviz_default_plugins/Axes
+      Reference Frame: {}
+  Global Options: {{Fixed Frame: map}}
+"""
+# Kind of a file, its text for one robot, and what it has for robot1 in frames-per-robot.
+FILES = {
+    "params": (NAV, "base_frame_id: robot1/base_footprint"),
+    "params in braces": (
+        "{amcl: {ros__parameters: {base_frame_id: base_link}}}",
+        "robot1/base_link",
+    ),
+    "moveit": (MOVEIT.format("wheel"), "robot1_wheel: {max_velocity: 1.0}"),
+    "moveit by a value": (
+        "controller_list:\n  - {name: a, joints: [wheel]}\n",
+        "joints: [robot1_wheel]",
+    ),
+    "bridge": (ROW.format("topic_name", "scan"), "topic_name: /robot1/scan"),
+    "bridge of a model": (ROW.format("topic_name", "/model/x/odometry"), "/model/robot1/odometry"),
+    "rviz": (VIEW.format("base_scan"), "Reference Frame: robot1/base_scan"),
+    "tree": (TREE.format('robot_base_frame="base_link"'), 'robot_base_frame="robot1/base_link"'),
+    "lua": (
+        'options = {\n  tracking_frame = "base_link",\n}\n',
+        'tracking_frame = "robot1/base_link"',
+    ),
+}
+BOTH = {"layout": "both", "affix": "prefix"}
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_a_file_is_told_by_its_text(name: str) -> None:
+    text, line = FILES[name]
+    policy = {"layout": "frames-per-robot", "affix": "prefix"}
+    made = rewrite_file(text.encode(), "robot1", urdf=ROVER, **policy)
+    assert made.kind == name.partition(" ")[0]
+    assert line in made.text
+    assert made.findings == () and made.not_proved == ()
+
+
+def test_what_is_no_such_file_is_refused() -> None:
+    for text in (b"a: b\n", b"robots: [a]\n", b"", b"\x00"):
+        with pytest.raises(InputError):
+            rewrite_file(text, "robot1", urdf=ROVER)
+
+
+def test_a_description_is_asked_for_only_where_names_rest_on_it() -> None:
+    with pytest.raises(UsageError, match="frame 'base_footprint'; give the robot's description"):
+        rewrite_file(NAV.encode(), "robot1", layout="both")
+    bare = rewrite_file(NAV.encode(), "robot1", layout="tf-per-robot")
+    assert "base_frame_id: base_footprint" in bare.text and bare.text.startswith("/robot1/amcl:")
+    row = rewrite_file(ROW.format("topic_name", "scan").encode(), "robot1", layout="both")
+    assert "/robot1/scan" in row.text
+
+
+def test_what_is_wrong_in_it_is_told_and_it_is_not_proved() -> None:
+    text = NAV.replace("base_footprint", "base_lnik").replace("scan\n", "<area>/scan\n")
+    made = rewrite_file(text.encode(), "robot1", urdf=ROVER, layout="both", file="nav.yaml")
+    assert [(it.code, it.file, it.line) for it in made.findings] == [
+        ("MB853", "nav.yaml", 3),
+        ("MB862", "nav.yaml", 4),
+    ]
+    assert made.not_proved == (
+        "1 frame in no description",
+        "1 placeholder that a launch file has to replace",
+    )
+
+
+def test_a_name_that_stays_is_not_called_proved() -> None:
+    """rcl reads a block with its line break: the frame is not that of the robot."""
+    block = NAV.replace("base_frame_id: base_footprint", "base_frame_id: |\n      base_footprint")
+    made = rewrite_file(block.encode(), "robot1", urdf=ROVER, layout="both")
+    assert made.not_proved != ()
+
+
+def test_the_clock_is_bridged_by_the_first_alone() -> None:
+    rows = ROW.format("topic_name", "/clock") + ROW.format("topic_name", "scan")
+    one, other = rewrite_files(rows.encode(), ["a", "b"], layout="both")
+    topics = [[it["topic_name"] for it in yaml.safe_load(made.text)] for made in (one, other)]
+    assert topics == [["/clock", "/a/scan"], ["/b/scan"]]
+
+
+def test_robots_differ_in_their_names_alone() -> None:
+    one, other = rewrite_files(NAV.encode(), ["robot1", "zorba"], urdf=ROVER, **BOTH)
+    assert one.text.replace("robot1", "zorba") == other.text
+
+
+def test_the_command_writes_a_file_for_each(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "rover.urdf").write_text(ROVER)
+    (tmp_path / "nav.yaml").write_text(NAV)
+    out = str(tmp_path / "{robot}.yaml")
+    given = [
+        str(tmp_path / "nav.yaml"),
+        "a",
+        "b",
+        "--urdf",
+        str(tmp_path / "rover.urdf"),
+        "-o",
+        out,
+    ]
+    assert main([*given, "--layout", "both", "--affix", "prefix"]) == 0
+    assert "2 robots: a parameter file; proved" in capsys.readouterr().err
+    for robot in "ab":
+        section = yaml.safe_load((tmp_path / f"{robot}.yaml").read_text())[f"/{robot}/amcl"]
+        assert section["ros__parameters"]["base_frame_id"] == f"{robot}/base_footprint"
+
+
+@pytest.mark.parametrize("option", ["--strip", "--changes=x.json"])
+def test_options_of_descriptions_are_refused(
+    option: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "nav.yaml").write_text(NAV)
+    assert main([str(tmp_path / "nav.yaml"), "a", option]) == 2
+    assert "is for descriptions" in capsys.readouterr().err
+
+
+def test_a_robots_name_in_it_stops(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "nav.yaml").write_text(NAV.replace("scan\n", "/a/scan\n"))
+    assert main([str(tmp_path / "nav.yaml"), "a", "--layout", "tf-per-robot"]) == 1
+    assert "MB863" in capsys.readouterr().err
+
+
+FOLDERS = {
+    "nav2_params": "params",
+    "localization_params": "params",
+    "ros_gz_bridge": "bridge",
+    "rviz": "rviz",
+    "moveit": "moveit",
+}
+
+
+@pytest.mark.parametrize("folder", FOLDERS)
+def test_real_files_are_rewritten_or_refused_with_a_reason(folder: str) -> None:
+    paths = [it for it in sorted((CORPUS / folder).rglob("*")) if it.suffix in (".yaml", ".rviz")]
+    if not paths:
+        pytest.skip(f"no public files in {CORPUS / folder}")
+    kinds = []
+    for path in paths[::12]:
+        try:
+            one, other = rewrite_files(path, ["zorba", "quux"], urdf=ROVER, **BOTH)
+        except InputError as error:
+            assert str(error).startswith(str(path))
+            continue
+        kinds.append(one.kind)
+        read = yaml.safe_load(one.text) if one.kind not in ("rviz", "moveit") else True
+        assert read is not None or not one.text.strip()
+        assert one.text.replace("zorba", "quux") == other.text or one.kind in ("bridge", "rviz")
+    usual = max(set(kinds), key=kinds.count)
+    assert usual == FOLDERS[folder] and len(kinds) > len(paths[::12]) / 4

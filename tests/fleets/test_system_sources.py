@@ -1,0 +1,98 @@
+"""The library's calls: a system from each source, the rules on it, two compared."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from paths import FIXTURES, ROOT
+
+from multibot_rewrite import (
+    InputError,
+    System,
+    UsageError,
+    compare,
+    judge,
+    system_of_bag,
+    system_of_description,
+    system_of_files,
+    system_of_fleet,
+    system_of_launch,
+)
+from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.system.records import MAY
+
+ROVER = FIXTURES / "robots" / "rover.urdf"
+GRAPHS = FIXTURES / "graphs"
+ROBOTS = ["robot1", "robot2"]
+LAUNCH = """\
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    space = LaunchConfiguration("space")
+    amcl = Node(package="nav2_amcl", executable="amcl", name="amcl", namespace=space)
+    return LaunchDescription([DeclareLaunchArgument("space"), amcl])
+"""
+
+
+def healthy() -> System:
+    return system_of_files(GRAPHS / "both" / "healthy.json")
+
+
+def test_a_plan_and_a_snapshot_are_told_apart_by_what_is_in_them() -> None:
+    plan = system_of_files(GRAPHS / "both" / "plan.yaml")
+    assert [it.name for it in plan.robots] == ROBOTS
+    assert healthy().robots == ()
+    assert compare(plan, healthy()) == []
+
+
+def test_a_plan_as_json_too(tmp_path: Path) -> None:
+    file = tmp_path / "plan.json"
+    words = ["plan", str(ROVER), *ROBOTS, "--stack", "nav2", "--layout", "both", "-o", str(file)]
+    assert main(words) == 0
+    assert system_of_files(file).layout == "both"
+
+
+def test_what_is_wrong_is_what_the_commands_say(capsys: pytest.CaptureFixture[str]) -> None:
+    broken = GRAPHS / "MG103.json"
+    plan = GRAPHS / "plan.yaml"
+    assert main(["check", str(plan), "--snapshot", str(broken)]) == 1
+    said = capsys.readouterr().out.splitlines()
+    assert [str(it) for it in compare(system_of_files(plan), system_of_files(broken))] == said
+    main(["doctor", "--snapshot", str(broken)])
+    said = capsys.readouterr().out.splitlines()
+    assert [str(it) for it in judge(system_of_files(broken))] == said
+
+
+def test_a_description_with_its_stacks_is_a_plan() -> None:
+    plan = system_of_description(ROVER, ROBOTS, stacks=["robot_state"], policy={"layout": "both"})
+    nodes = {it.name: it.sure for it in plan.nodes}
+    assert nodes["/robot1/joint_state_publisher"] == MAY
+    assert nodes["/robot2/robot_state_publisher"] != MAY
+    with pytest.raises(UsageError, match="nav3"):
+        system_of_description(ROVER, ["robot1"], stacks=["nav3"])
+
+
+def test_a_fleet_file_is_a_plan() -> None:
+    plan = system_of_fleet(ROOT / "examples" / "two_robots_nav2" / "fleet.yaml")
+    assert len(plan.robots) == 2
+    assert {it.robot for it in plan.nodes} >= {it.name for it in plan.robots}
+
+
+def test_a_launch_file_is_what_it_would_start(tmp_path: Path) -> None:
+    file = tmp_path / "one.launch.py"
+    file.write_text(LAUNCH)
+    made = system_of_launch(file, {"space": "robot1"})
+    assert [it.name for it in made.nodes] == ["/robot1/amcl"]
+    assert "/robot1/amcl_pose" in {it.name for it in made.ends}
+
+
+def test_what_cannot_be_read_is_said(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"none\.json"):
+        system_of_files(tmp_path / "none.json")
+    with pytest.raises(InputError, match="there is no such bag"):
+        system_of_bag(tmp_path / "bag")

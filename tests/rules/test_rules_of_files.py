@@ -1,0 +1,116 @@
+"""One table of broken files: ``urdf-lint`` and ``build`` say the same of each, at one place."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import yaml
+from rule_examples import BUILT, COMPANIONS
+
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.findings.rule import Rule
+from multibot_rewrite.fleets.build import make_outputs
+from multibot_rewrite.fleets.fleet_file import read_fleet
+from multibot_rewrite.fleets.fleet_plan import plan_fleet
+from multibot_rewrite.lint.check import lint_file
+from multibot_rewrite.lint.config.settings import Settings
+from multibot_rewrite.rules.files.examples import ROVER
+from multibot_rewrite.rules.files.judge import THEMES
+
+ROBOTS = ("robot1", "robot2")
+EKF = "ekf_filter_node:\n  ros__parameters:\n    {}\n"
+AMCL = "amcl:\n  ros__parameters:\n    {}\n"
+ARM = "arm_controller:\n  ros__parameters:\n    joints: [{}, right_wheel_joint]\n"
+MANAGER = "moveit_simple_controller_manager:\n  controller_names: [a]\n  a:\n    {}\n"
+AXES = """\
+Visualization Manager:
+  Displays:
+    - Class: rviz_default_plugins/Axes
+      {}
+"""
+SCAN = AXES.replace("Axes", "LaserScan")
+ROW = """\
+- ros_topic_name: scan
+  gz_topic_name: scan
+  ros_type_name: sensor_msgs/msg/LaserScan
+  gz_type_name: gz.msgs.LaserScan
+  {}
+"""
+# Kind of a file, its text, and the code, line and column of what is wrong in it. What the nodes make
+# of each: robot_localization ros_filter.cpp (frequency, publish_tf), amcl_node.cpp (max_beams is an
+# integer), rcl_validate_topic_name, tf2 validateFrameId, rcl_yaml_param_parser, bridge_config.cpp.
+BROKEN = {
+    "a misspelt parameter": ("params", EKF.format("frequncy: 30.0"), "MB850:3:5"),
+    "a text for a switch": ("params", EKF.format('publish_tf: "yes"'), "MB851:3:17"),
+    "a fraction of a beam": ("params", AMCL.format("max_beams: 60.5"), "MB851:3:16"),
+    "a topic with a digit": ("params", AMCL.format("scan_topic: 1scan"), "MB861:3:17"),
+    "a misspelt frame": ("params", AMCL.format("base_frame_id: base_lnik"), "MB853:3:20"),
+    "a misspelt joint": ("params", ARM.format("left_whel_joint"), "MB854:3:14"),
+    "a slash": ("params", AMCL.format("odom_frame_id: /odom"), "MB864:3:20"),
+    "white space": ("params", AMCL.format('odom_frame_id: "odom "'), "MB865:3:20"),
+    "a placeholder": ("params", AMCL.format("scan_topic: $(var side)/scan"), "MB862:3:17"),
+    "another robot": ("params", AMCL.format("scan_topic: /robot2/scan"), "MB863:3:17"),
+    "no value": ("params", AMCL.format("scan_topic:"), "MB868:3:5"),
+    "a key twice": ("params", AMCL.format("max_beams: 1\n    max_beams: 2"), "MB859:4:5"),
+    "a node's name": ("params", AMCL.format("alpha1: 0.1").replace("amcl", "2d"), "MB861:1:1"),
+    "MoveIt's joint": ("moveit", MANAGER.format("joints: [left_whel_joint]"), "MB854:4:14"),
+    "MoveIt's frame": (
+        "moveit",
+        MANAGER.format("type: b\n    base_frame_id: base_lnik"),
+        "MB853:5:20",
+    ),
+    "RViz's frame": ("rviz", AXES.format("Reference Frame: lidar_lnk"), "MB853:4:24"),
+    "RViz's slash": ("rviz", AXES.format("Reference Frame: /lidar_link"), "MB864:4:24"),
+    "RViz's topic": ("rviz", SCAN.format("Topic: 1/scan"), "MB861:4:14"),
+    "RViz's robot": ("rviz", SCAN.format("Topic: /robot1/scan"), "MB863:4:14"),
+    "a bridge's key": ("bridge", ROW.format("lazzy: true"), "MB858:5:3"),
+    "a bridge's direction": ("bridge", ROW.format("direction: GZ_TO_ROSS"), "MB855:5:14"),
+    "a bridge's frame": ("bridge", ROW.format("frame_id: lidar_lnk"), "MB853:5:13"),
+    "a bridge's topic": ("bridge", ROW.replace("e: scan\n", "e: 2d\n", 1).format(""), "MB861:1:19"),
+}
+
+
+def places(findings: list[Finding], file: str, rules: set[str]) -> list[str]:
+    ours = (it for it in findings if it.file.endswith(file) and it.code in rules)
+    return [f"{it.code}:{it.line}:{it.column}" for it in ours]
+
+
+def by_both(kind: str, text: str, folder: Path, rules: set[str]) -> tuple[list[str], list[str]]:
+    """What the lint says of a file in the rover's package, and what a build does."""
+    file, key = COMPANIONS[kind]
+    for name, content in {**ROVER, file: text}.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(content)
+    linted = lint_file(str(folder / file), Settings(robots=ROBOTS))
+    robots = [{"name": it, "description": "urdf/rover.urdf"} for it in ROBOTS]
+    fleet = {"layout": "both", "robots": robots, "companions": {key: file}}
+    (folder / "fleet.yaml").write_text(yaml.safe_dump(fleet))
+    built = make_outputs(plan_fleet(read_fleet(str(folder / "fleet.yaml"), "", {}))).findings
+    return places(linted, file, rules), places(list(built), file, rules)
+
+
+EVERY = [it for theme in THEMES for it in vars(theme).values() if isinstance(it, Rule)]
+IN_BOTH = [it for it in EVERY if BUILT not in it.options]
+CODES = {it.code for it in EVERY}
+
+
+@pytest.mark.parametrize("name", BROKEN)
+def test_lint_and_build_say_the_same(name: str, tmp_path: Path) -> None:
+    kind, text, expected = BROKEN[name]
+    assert by_both(kind, text, tmp_path, CODES) == ([expected], [expected])
+
+
+@pytest.mark.parametrize(
+    "rule", [it for it in EVERY if BUILT not in it.options], ids=lambda it: it.code
+)
+def test_an_example_is_found_by_both(rule: Rule, tmp_path: Path) -> None:
+    linted, built = by_both(rule.formats[0], rule.bad, tmp_path, {rule.code})
+    assert linted == built
+    assert [int(it.split(":")[1]) for it in built] == [rule.line]
+
+
+def test_a_comment_silences_both(tmp_path: Path) -> None:
+    kind, text, _ = BROKEN["a misspelt parameter"]
+    text = text.replace("30.0", "30.0  # urdf-lint: ignore MB850 - ours")
+    assert by_both(kind, text, tmp_path, CODES) == ([], [])

@@ -1,0 +1,19 @@
+"""What is found in a file beside a description: by its rewrite, and by the rules for its kind."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from multibot_rewrite.companions.companion import Companion
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.rules.files.judge import judged_once
+
+
+def findings_of(made: Companion, robots: Iterable[str] = ()) -> tuple[Finding, ...]:
+    """In the order of places; ``robots`` are words that stand for robots."""
+    file = made.file._replace(robots=frozenset(robots))
+    return tuple(sorted((*made.findings, *judged_once(file)), key=_place))
+
+
+def _place(it: Finding) -> tuple[int, int, str]:
+    return it.line, it.column, it.code
