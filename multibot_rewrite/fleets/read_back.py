@@ -89,8 +89,8 @@ def _fault(message: str, place: Place, home: str) -> Finding:
 
 
 def _wrong(planned: System, seen: System) -> Iterator[Finding]:
-    """What a check of the running fleet would say: warnings, since its parameters can still be set where
-    it runs. What is missing may be started by others, as a simulator or a driver is."""
+    """What a check of the running fleet would say: warnings, since parameters can still be set where it
+    runs. What is missing may be started by others, as a simulator or a driver is."""
     for it in check(planned, seen):
         if it.level == ERROR and it.code not in ABSENCE:
             yield it._replace(level=WARNING)
