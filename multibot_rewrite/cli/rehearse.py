@@ -10,6 +10,7 @@ from contextlib import ExitStack, contextmanager
 
 from multibot_rewrite.cli import fleet, live, pictures
 from multibot_rewrite.cli.check import conclude
+from multibot_rewrite.cli.declared.fleet import EVERY_WAY
 from multibot_rewrite.cli.output import note, say, write_files
 from multibot_rewrite.cli.process import PROGRAM
 from multibot_rewrite.cli.walk import check_folder, check_target
@@ -35,7 +36,7 @@ from multibot_rewrite.system.records import System
 # Below the ports that a system gives away by itself.
 _DOMAINS = 100
 # What a look finds where it saw too little: no robot, no node, no endpoint, no transform.
-_ABSENT = {"MG101", "MG102", "MG109", "MG203", "MG208"}
+_ABSENT = {"MG101", "MG102", "MG109", "MG406", "MG208"}
 
 
 def run(options: argparse.Namespace) -> int:
@@ -71,7 +72,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _left_out(options: argparse.Namespace) -> Sequence[str]:
     """The ways of which no rules are given."""
-    return WAYS if options.without_rules else list(options.without_rules_at)
+    return WAYS if EVERY_WAY in options.without_rules else list(options.without_rules)
 
 
 def _check_use(options: argparse.Namespace) -> None:

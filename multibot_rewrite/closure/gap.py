@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.system.records import Place
 
@@ -24,11 +22,3 @@ class Gap(NamedTuple):
     near: str = ""
     near_place: Place | None = None
     at: Place | None = None
-
-
-def by_place(gaps: Iterable[Gap]) -> Iterable[list[Gap]]:
-    """The gaps of each node that are written at one place."""
-    found: dict[object, list[Gap]] = {}
-    for it in gaps:
-        found.setdefault((it.node, it.place), []).append(it)
-    return found.values()

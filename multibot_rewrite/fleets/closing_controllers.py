@@ -4,18 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
-from multibot_rewrite.closure.gap import Gap, by_place
-from multibot_rewrite.closure.interfaces import contested_gaps, interface_gaps, twice_gaps
+from multibot_rewrite.closure.gap import Gap
 from multibot_rewrite.closure.lists import list_gaps
 from multibot_rewrite.closure.moveit import moveit_gaps
 from multibot_rewrite.closure.undeclared import undeclared_gaps
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.gap_findings import at_gap, in_source, meant
+from multibot_rewrite.fleets.judged import controlled
 from multibot_rewrite.fleets.output_values import OutputText
-from multibot_rewrite.fleets.rewritten_robots import SET_PREFIX, RewrittenRobot
+from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.systems import RobotSystem as System
 from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.producers.interfaces import control_system
 
 _ARM = """\
 <robot name="arm">
@@ -34,57 +35,6 @@ _ARM = """\
   </ros2_control>
 </robot>
 """
-_SPAWNED = """\
-structure:
-  nodes:
-    /controller_manager: {pkg: controller_manager, exec: ros2_control_node}
-    /spawner_one: {pkg: controller_manager, exec: spawner, args: [one]}
-    /spawner_two: {pkg: controller_manager, exec: spawner, args: [two]}
-    /spawner_three: {pkg: controller_manager, exec: spawner, args: [three, --inactive]}
-"""
-_TWO = """\
-controller_manager:
-  ros__parameters:
-    one: {{type: forward_command_controller/ForwardCommandController}}
-    two: {{type: forward_command_controller/ForwardCommandController}}
-    three: {{type: forward_command_controller/ForwardCommandController}}
-{}:
-  ros__parameters: {{joints: [elbow], interface_name: position}}
-{}:
-  ros__parameters: {{joints: [elbow], interface_name: position}}
-"""
-NO_INTERFACE = declare(
-    "MF811",
-    "interface-not-exported",
-    WARNING,
-    what="A controller claims an interface that the ros2_control systems of the description do not "
-    "export. Where the files before the rewrite agreed, it is an error.",
-    why="The controller manager does not activate a controller whose interfaces do not exist.",
-    fix="Name an interface that the description has, or add it to the ros2_control system.",
-    bad="""\
-controller_manager:
-  ros__parameters:
-    arm: {type: joint_trajectory_controller/JointTrajectoryController}
-arm:
-  ros__parameters:
-    joints: [elbow]
-    command_interfaces: [velocity]
-    state_interfaces: [position]
-""",
-    good="""\
-controller_manager:
-  ros__parameters:
-    arm: {type: joint_trajectory_controller/JointTrajectoryController}
-arm:
-  ros__parameters:
-    joints: [elbow]
-    command_interfaces: [position]
-    state_interfaces: [position]
-""",
-    line=6,
-    formats=("params",),
-    beside={"robot.urdf": _ARM},
-)
 NOT_MOVED = declare(
     "MF815",
     "moveit-controller-not-there",
@@ -146,49 +96,6 @@ arm_controller:
     formats=("params",),
     beside={"robot.urdf": _ARM},
 )
-CLAIMED_TWICE = declare(
-    "MF808",
-    "interface-claimed-twice",
-    WARNING,
-    what="Two parameters of a controller name the same joint, so it claims a command interface twice.",
-    why="An interface is claimed once: the controller is not activated, or one wheel is driven twice.",
-    fix="Name another joint in one of them.",
-    bad="""\
-controller_manager:
-  ros__parameters:
-    drive: {type: diff_drive_controller/DiffDriveController}
-drive:
-  ros__parameters:
-    left_wheel_names: [elbow]
-    right_wheel_names: [elbow]
-""",
-    good="""\
-controller_manager:
-  ros__parameters:
-    drive: {type: diff_drive_controller/DiffDriveController}
-drive:
-  ros__parameters:
-    left_wheel_names: [elbow]
-    right_wheel_names: [wrist]
-""",
-    line=7,
-    formats=("params",),
-)
-CONTESTED = declare(
-    "MF807",
-    "interface-claimed-by-two",
-    WARNING,
-    what="A robot's launch files start two controllers active that claim the same command interface. "
-    "Without launch files such controllers count as alternatives: the plan says so, none has to run.",
-    why="An interface has one owner: the controller manager refuses to activate the second controller.",
-    fix="Spawn one of them with --inactive.",
-    bad=_TWO.format("one", "two"),
-    good=_TWO.format("one", "three"),
-    line=9,
-    formats=("params",),
-    beside={"robot.urdf": _ARM, "system_model.yaml": _SPAWNED},
-    options={"launch": "system_model.yaml"},
-)
 NOT_LISTED = declare(
     "MF819",
     "listed-name-without-parameters",
@@ -224,24 +131,10 @@ def controller_findings(
 ) -> Iterator[Finding]:
     """What is open in a robot's controllers and lists of parameters, before and after the rewrite;
     ``texts`` are the files that were made, ``active`` the controllers that launch files start so."""
-    old, new = (list(interface_gaps(it.given, known, it.exports)) for it in (before, after))
-    yield from _interfaces(robot, old, [in_source(it, texts) for it in new])
-    for it in contested_gaps(before.given, known, active):
-        both = f"{it.node} and {it.near} of {robot.spec.name}"
-        message = f"{both} are both started active, and claim command interface {it.name}"
-        hint = f"spawn one of them with --inactive; {it.near}: {it.near_place}"
-        yield at_gap(CONTESTED, robot, it, message, hint)
-    for it in twice_gaps(before.given, known):
-        message = f"{it.node} of {robot.spec.name} claims {it.name} by two parameters"
-        yield at_gap(
-            CLAIMED_TWICE,
-            robot,
-            it,
-            message,
-            f"name another joint, the first is at {it.near_place}",
-        )
-    old, new = (list(moveit_gaps(it.moveit, it.given, known)) for it in (before, after))
-    yield from _moveit(robot, old, [in_source(it, texts) for it in new])
+    old, new = (control_system(it.given, known, it.exports, active) for it in (before, after))
+    yield from controlled(robot, old, new, texts)
+    open_, left = (list(moveit_gaps(it.moveit, it.given, known)) for it in (before, after))
+    yield from _moveit(robot, open_, [in_source(it, texts) for it in left])
     for it in undeclared_gaps(before.given, known):
         message = (
             f"{it.name} has parameters of a controller that {robot.spec.name} does not declare"
@@ -251,21 +144,6 @@ def controller_findings(
     for it in list_gaps(before.given):
         message = f"{it.node} of {robot.spec.name} has {it.name}, without parameters"
         yield at_gap(NOT_LISTED, robot, it, message, meant(it))
-
-
-def _interfaces(
-    robot: RewrittenRobot, before: Sequence[Gap], after: Sequence[Gap]
-) -> Iterator[Finding]:
-    known = {it.key for it in before}
-    rest = [it for it in after if it.key not in known]
-    for level, gaps in ((WARNING, before), (ERROR, rest)):
-        for first, *more in by_place(gaps):
-            names = f"{first.name} and {len(more)} more" if more else first.name
-            claims = f"{first.node} of {robot.spec.name} claims {names}"
-            message = f"{claims}, which no ros2_control exports"
-            stuck = level == ERROR and robot.needs_prefix
-            hint = SET_PREFIX if stuck else meant(first)
-            yield at_gap(NO_INTERFACE, robot, first, message, hint, level)
 
 
 def _moveit(

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import cast
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.fleets.fleet import Fleet, planned
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
-from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleets.output_values import OutputText, line_in_source
+from multibot_rewrite.fleets.rewritten_robots import SET_PREFIX, RewrittenRobot
 from multibot_rewrite.producers.ends import NEEDS
-from multibot_rewrite.rules.find import absences, contradictions
+from multibot_rewrite.rules.check import absences, contradictions
 from multibot_rewrite.rules.index import Index, index
 from multibot_rewrite.rules.ownership import (
     ALONE,
@@ -19,9 +21,15 @@ from multibot_rewrite.rules.ownership import (
     name_ownership,
     whose_by_plan,
 )
+from multibot_rewrite.rules.system.interfaces import (
+    interface_claimed_twice,
+    interface_not_exported,
+    open_claims,
+)
+from multibot_rewrite.rules.system.states import interface_commanded_twice
 from multibot_rewrite.rules.system.tf_topics import tf_tree_in_pieces
 from multibot_rewrite.rules.system.unsent import no_longer_sent, open_ends
-from multibot_rewrite.system.records import NOWHERE, RUNS, End, System
+from multibot_rewrite.system.records import CLAIMS, EXPORTS, NOWHERE, RUNS, End, Interface, System
 
 Key = tuple[str, ...]
 
@@ -69,7 +77,8 @@ def missing(
         # Names as the sources have them, where these have both.
         source = in_sources.get(_about(it, after)) if it.node else None
         said = source if source and _is_placed(before, source.names[-1]) else it
-        yield in_file(said._replace(level=WARNING if said.level == ERROR else said.level), robot)
+        level = WARNING if said.level == ERROR else said.level
+        yield in_file(said._replace(level=level), robot, by_sources=said is source)
     yield from (in_file(no_longer_sent(it), robot) for it in lost.values())
 
 
@@ -79,10 +88,42 @@ def apart(robot: RewrittenRobot, before: System, after: System, whose: Whose) ->
     found = [*check(index(before, ALONE))]
     known = {it.name: it.known for it in after.nodes}
     told = {it.node.lstrip("/") for it in found}
-    yield from (in_file(it, robot) for it in found)
+    yield from (in_file(it, robot, by_sources=True) for it in found)
     for it in check(index(after, whose)):
         if known.get(it.node, it.node) not in told:
             yield in_file(it._replace(level=ERROR), robot)
+
+
+def controlled(
+    robot: RewrittenRobot, before: System, after: System, texts: Sequence[OutputText]
+) -> Iterator[Finding]:
+    """What is wrong between a robot's controllers and its hardware, by its sources; an error where only
+    its rewrite has opened it."""
+    for it in _ask(
+        (interface_not_exported, interface_claimed_twice, interface_commanded_twice), before
+    ):
+        yield in_file(it._replace(level=WARNING), robot, by_sources=True)
+    was_open = open_claims(before.interfaces)
+    old = {at for at, it in enumerate(_claims(before)) if it in was_open}
+    left = [it for at, it in enumerate(_claims(after)) if at not in old]
+    exports = [it for it in after.interfaces if it.role == EXPORTS]
+    opened = after._replace(interfaces=(*exports, *left))
+    for it in _ask((interface_not_exported,), opened):
+        source = next((text for text in texts if text.path == it.file and text.sources), None)
+        file, line = line_in_source(source, it.line) if source else (it.file, it.line)
+        hint = SET_PREFIX if robot.needs_prefix else it.hint
+        found = it._replace(level=ERROR, file=file, line=line, hint=hint)
+        yield in_file(found, robot, by_sources=True)
+
+
+def _ask(rules: Iterable[Rule], system: System) -> Iterator[Finding]:
+    seen = index(system, ALONE)
+    for rule in rules:
+        yield from cast(Callable[[Index], Iterator[Finding]], rule.check)(seen)
+
+
+def _claims(system: System) -> list[Interface]:
+    return [it for it in system.interfaces if it.role == CLAIMS]
 
 
 def _asked(before: System, after: System) -> System:
@@ -109,11 +150,11 @@ def _is_placed(system: System, name: str) -> bool:
     return any(it.name == name and it.place != NOWHERE for it in system.ends)
 
 
-def in_file(finding: Finding, robot: RewrittenRobot) -> Finding:
+def in_file(finding: Finding, robot: RewrittenRobot, by_sources: bool = False) -> Finding:
     """The finding as one of its file, else of the robot's line in the fleet file: who it is about is in
-    the message."""
-    it = finding
-    place = (it.file, it.line, it.column) if it.file else (robot.spec.file, robot.spec.line, 1)
-    message = f"{it.node} {it.message}" if it.node else it.message
-    file, line, column = place
+    the message. The names of the sources say no robot."""
+    it, spec = finding, robot.spec
+    file, line, column = (it.file, it.line, it.column) if it.file else (spec.file, spec.line, 1)
+    who = f"{it.node} of {spec.name} " if by_sources else f"{it.node} "
+    message = f"{who}{it.message}" if it.node else it.message
     return it._replace(message=message, node="", robot="", file=file, line=line, column=column)

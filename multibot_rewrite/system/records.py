@@ -13,6 +13,9 @@ TOPIC, SERVICE, ACTION = "topic", "service", "action"
 KINDS = (TOPIC, SERVICE, ACTION)
 PUBLISHES, SUBSCRIBES, SERVES, CALLS = "publishes", "subscribes", "serves", "calls"
 ROLES = (PUBLISHES, SUBSCRIBES, SERVES, CALLS)
+# Kinds and roles of an interface of ros2_control.
+COMMAND, STATE = "command", "state"
+EXPORTS, CLAIMS = "exports", "claims"
 # Why an observation ended: all expected nodes are there, the graph no longer changes, the timeout
 # is over. CHANGING: it has not ended, the graph is being watched.
 EXPECTED, QUIET, TIMEOUT, CHANGING = "expected", "quiet", "timeout", "changing"
@@ -196,6 +199,17 @@ class Controller(NamedTuple):
     claims: tuple[str, ...] = ()
 
 
+class Interface(NamedTuple):
+    """An interface of ros2_control, ``kind`` is command or state: ``node``, a controller manager,
+    ``exports`` it, or ``node``, a controller, ``claims`` it."""
+
+    kind: str
+    name: str
+    node: str
+    role: str
+    place: Place = NOWHERE
+
+
 class Topic(NamedTuple):
     """What holds of a topic besides who has it.
 
@@ -257,6 +271,7 @@ class System(NamedTuple):
     heard: tuple[Heard, ...] = ()
     parameters: tuple[Parameter, ...] = ()
     controllers: tuple[Controller, ...] = ()
+    interfaces: tuple[Interface, ...] = ()
     robots: tuple[Robot, ...] = ()
     topics: tuple[Topic, ...] = ()
     layout: str = ""

@@ -27,11 +27,11 @@ def test_a_robot_that_closes(layout: str, files: dict[str, str], tmp_path: Path)
 
 BREAKS = [
     # The controller's joints are not those of the hardware.
-    ("controllers.yaml", "[left_wheel_joint]", "[left_whel_joint]", "MF811", 9, "rover.urdf:23"),
-    ("controllers.yaml", "[right_wheel_joint]", "[wheel_joint]", "MF811", 10, "rover.urdf"),
+    ("controllers.yaml", "[left_wheel_joint]", "[left_whel_joint]", "MG515", 9, "rover.urdf:23"),
+    ("controllers.yaml", "[right_wheel_joint]", "[wheel_joint]", "MG515", 10, "rover.urdf"),
     # The hardware lacks what the controller claims.
-    ("rover.urdf", '      <command_interface name="velocity"/>\n', "", "MF811", 9, ""),
-    ("rover.urdf", 'state_interface name="position"', 'state_interface name="pos"', "MF811", 9, ""),
+    ("rover.urdf", '      <command_interface name="velocity"/>\n', "", "MG515", 9, ""),
+    ("rover.urdf", 'state_interface name="position"', 'state_interface name="pos"', "MG515", 9, ""),
     # The filter's odometry is not that of the controller's parameters: nothing joins the two.
     ("ekf.yaml", "base_link_frame: base_link", "base_link_frame: base_lnk", "MG406", 15, ""),
     # Nobody sends odom -> base_link.
@@ -63,7 +63,7 @@ BREAKS = [
         "controllers.yaml",
         "command_interfaces: [effort]",
         "command_interfaces: [velocity]",
-        "MF811",
+        "MG515",
         20,
         "rover.urdf",
     ),
@@ -71,7 +71,7 @@ BREAKS = [
         "rover.urdf",
         'name="effort"/>\n      <state_interface name="position"',
         'name="effort"/>\n      <state_interface name="force"',
-        "MF811",
+        "MG515",
         20,
         "",
     ),
@@ -139,7 +139,7 @@ BREAKS = [
         "rover.urdf",
         'joint name="finger_joint">\n      <command',
         'joint name="finger">\n      <command',
-        "MF811",
+        "MG515",
         20,
         "",
     ),
@@ -148,7 +148,7 @@ BREAKS = [
         "controllers.yaml",
         "[right_wheel_joint]",
         "[left_wheel_joint]",
-        "MF808",
+        "MG516",
         10,
         "controllers.yaml:9",
     ),
@@ -221,18 +221,18 @@ ARM_BREAKS = [
     ("arm.srdf", 'tip_link="tool_link"', 'tip_link="tol_link"', "MB803", 2, "tool_link"),
     ("arm.srdf", 'name="elbow_joint" value', 'name="elbo_joint" value', "MB804", 6, "elbow_joint"),
     # A broadcaster of a sensor that the hardware has not.
-    ("controllers.yaml", "sensor_name: tool_imu", "sensor_name: imu", "MF811", 20, "arm.urdf:36"),
+    ("controllers.yaml", "sensor_name: tool_imu", "sensor_name: imu", "MG515", 20, "arm.urdf:36"),
     (
         "controllers.yaml",
         "sensor_name: wrist_ft",
         "sensor_name: tcp_fts",
-        "MF811",
+        "MG515",
         22,
         "arm.urdf:48",
     ),
-    ("arm.urdf", '<sensor name="wrist_ft">', '<sensor name="tool_ft">', "MF811", 22, "arm.urdf:48"),
-    ("arm.urdf", '<state_interface name="torque.z"/>', "", "MF811", 22, "arm.urdf:52"),
-    ("controllers.yaml", "joint: finger_joint", "joint: grip_joint", "MF811", 18, "arm.urdf:31"),
+    ("arm.urdf", '<sensor name="wrist_ft">', '<sensor name="tool_ft">', "MG515", 22, "arm.urdf:48"),
+    ("arm.urdf", '<state_interface name="torque.z"/>', "", "MG515", 22, "arm.urdf:52"),
+    ("controllers.yaml", "joint: finger_joint", "joint: grip_joint", "MG515", 18, "arm.urdf:31"),
     # The filter reads the topic of a broadcaster under its usual name.
     (
         "sensors.yaml",

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from lxml import etree
 
-from multibot_rewrite.closure.gap import Gap
-from multibot_rewrite.closure.interfaces import interface_gaps
 from multibot_rewrite.closure.moveit import moveit_gaps
 from multibot_rewrite.companions.yaml_text import read_yaml
-from multibot_rewrite.evidence.hardware import Exported, exported
+from multibot_rewrite.evidence.hardware import exported
 from multibot_rewrite.evidence.records import Given, GivenNode
 from multibot_rewrite.knowledge.records import Claim
 from multibot_rewrite.knowledge.stacks import load_nodes
+from multibot_rewrite.producers.interfaces import control_system
 from multibot_rewrite.releases import NEWEST_LTS
+from multibot_rewrite.rules.system.interfaces import Missing, missing
 from multibot_rewrite.system.records import Place
 
 SYSTEM = """<robot name="r">
@@ -50,9 +50,13 @@ def controller(*joints: str, name: str = "base", manager: str = "controller_mana
     return GivenNode(name, "drive", "acme/Drive", values, FILE, manager)
 
 
-def lacking(*given: GivenNode, text: str = SYSTEM) -> list[Gap]:
-    exports: list[Exported] = list(exported(etree.fromstring(text), "r.urdf"))
-    return list(interface_gaps(given, KNOWN, exports))
+def lacking(*given: GivenNode, text: str = SYSTEM) -> list[Missing]:
+    exports = exported(etree.fromstring(text), "r.urdf")
+    return list(missing(control_system(given, KNOWN, exports).interfaces))
+
+
+def claimed(found: list[Missing]) -> list[tuple[str, str]]:
+    return [(it.kind, it.name) for one in found for it in one.claims]
 
 
 def test_a_controller_whose_joints_the_hardware_has() -> None:
@@ -60,25 +64,22 @@ def test_a_controller_whose_joints_the_hardware_has() -> None:
 
 
 def test_an_interface_that_the_hardware_lacks_and_the_one_that_is_meant() -> None:
-    command, state = lacking(controller("whel"))
-    assert (command.name, command.node) == ("command interface whel/velocity", "base")
-    assert (command.near, command.near_place) == ("wheel/velocity", Place("r.urdf", 4))
-    assert (state.near, state.near_place) == ("wheel/position", Place("r.urdf", 5))
-    assert command.place == Place("c.yaml", 9)
-    assert command.key != state.key
+    (found,) = lacking(controller("whel"))
+    assert claimed([found]) == [("command", "whel/velocity"), ("state", "whel/position")]
+    assert {(it.node, it.place) for it in found.claims} == {("/base", Place("c.yaml", 9))}
+    assert found.near
+    assert (found.meant, found.near.place) == ("wheel/velocity", Place("r.urdf", 4))
 
 
 def test_the_kind_of_an_interface_counts() -> None:
     text = SYSTEM.replace("command_interface", "state_interface")
-    assert [it.name for it in lacking(controller("wheel"), text=text)] == [
-        "command interface wheel/velocity"
-    ]
+    assert claimed(lacking(controller("wheel"), text=text)) == [("command", "wheel/velocity")]
 
 
 def test_interfaces_of_another_controller_are_there() -> None:
     pid = controller("wheel", name="ns/pid")
     assert lacking(pid, controller("pid/wheel")) == []
-    assert len(lacking(pid, controller("pi/wheel"))) == 2
+    assert len(claimed(lacking(pid, controller("pi/wheel")))) == 2
 
 
 def test_without_hardware_or_without_a_manager_nothing_is_said() -> None:

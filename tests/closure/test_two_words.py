@@ -7,13 +7,18 @@ from pathlib import Path
 import pytest
 from closure_findings import found
 
-from multibot_rewrite.closure.interfaces import claims_any, contested_gaps
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.evidence.hardware import Exported
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import GivenNode
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.stacks import load_nodes
+from multibot_rewrite.producers.interfaces import control_system
+from multibot_rewrite.rules.index import index
+from multibot_rewrite.rules.ownership import ALONE
+from multibot_rewrite.rules.system.interfaces import claims_any
+from multibot_rewrite.rules.system.states import interface_commanded_twice
 from multibot_rewrite.system.records import Place
 
 FORWARD = "forward_command_controller/ForwardCommandController"
@@ -34,21 +39,30 @@ def given(text: str) -> list[GivenNode]:
     return given_nodes([read_yaml(text.encode(), "c.yaml")], built_in_nodes("jazzy"))
 
 
+def commanded(text: str, active: set[str]) -> list[Finding]:
+    system = control_system(given(text), KNOWN, (), active)
+    assert interface_commanded_twice.check
+    return list(interface_commanded_twice.check(index(system, ALONE)))
+
+
 @pytest.mark.parametrize(
     ("word", "active", "names"),
     [
-        ("position", {"one", "two"}, ["b/position"]),
+        ("position", {"one", "two"}, ["a/position", "b/position"]),
         ("velocity", {"one", "two"}, []),
         ("position", {"one"}, []),
         ("position", set(), []),
     ],
 )
 def test_an_interface_has_one_owner(word: str, active: set[str], names: list[str]) -> None:
-    gaps = list(contested_gaps(given(CONTROLLERS.replace("WORD", word)), KNOWN, active))
-    assert [it.name for it in gaps] == names
-    for it in gaps:
-        assert (it.node, it.near) == ("two", "one")
-        assert (it.place, it.near_place) == (Place("c.yaml", 8), Place("c.yaml", 6))
+    found = commanded(CONTROLLERS.replace("WORD", word), active)
+    assert {it.names[0] for it in found} <= set(names)
+    assert bool(found) is bool(names)
+    for it in found:
+        assert "one of /controller_manager" in it.message
+        assert "two of /controller_manager" in it.message
+        assert (it.file, it.line) == ("c.yaml", 8)
+        assert "see c.yaml:6" in it.hint
 
 
 def test_a_state_is_read_by_many() -> None:
@@ -57,33 +71,20 @@ def test_a_state_is_read_by_many() -> None:
     for word in ("position", "velocity"):
         own = f"command_interfaces: [{word}], state_interfaces: [position]"
         text = text.replace("interface_name: " + ("position" if word == "position" else "x"), own)
-    assert list(contested_gaps(given(text), KNOWN, {"one", "two"})) == []
-
-
-def test_two_managers_do_not_share_interfaces() -> None:
-    text = CONTROLLERS.replace("WORD", "position")
-    left, right = (text.replace("one", f"{it}/one").replace("two", f"{it}/two") for it in "lr")
-    apart = [
-        *(
-            it._replace(manager="l/controller_manager")
-            for it in given(left)
-            if it.name[-3:] == "one"
-        ),
-        *(
-            it._replace(manager="r/controller_manager")
-            for it in given(right)
-            if it.name[-3:] == "two"
-        ),
-    ]
-    assert list(contested_gaps(apart, KNOWN, {"l/one", "r/two"})) == []
+    assert commanded(text, {"one", "two"}) == []
 
 
 def test_controllers_of_another_robot() -> None:
     text = CONTROLLERS.replace("WORD", "position")
     place = Place("r.urdf", 1)
-    assert claims_any(given(text), KNOWN, [Exported("command", "a/position", place)])
-    assert not claims_any(given(text), KNOWN, [Exported("command", "c/position", place)])
-    assert not claims_any(given(text), KNOWN, [Exported("state", "a/position", place)])
+
+    def claims(kind: str, name: str) -> bool:
+        system = control_system(given(text), KNOWN, [Exported(kind, name, place)])
+        return claims_any(system.interfaces)
+
+    assert claims("command", "a/position")
+    assert not claims("command", "c/position")
+    assert not claims("state", "a/position")
 
 
 UR = """\
@@ -116,7 +117,7 @@ robots: [{name: robot1}, {name: robot2}]
 """
 
 
-@pytest.mark.parametrize(("affix", "codes"), [("postfix", {"MF811", "MF601"}), ("prefix", set())])
+@pytest.mark.parametrize(("affix", "codes"), [("postfix", {"MG515", "MF601"}), ("prefix", set())])
 def test_names_that_only_a_prefix_reaches(affix: str, codes: set[str], tmp_path: Path) -> None:
     files = {"ur.urdf": UR, "controllers.yaml": BROADCASTER}
     built, _ = found(tmp_path, {**files, "fleet.yaml": FLEET.replace("AFFIX", affix)}, "postfix")
@@ -130,6 +131,6 @@ def test_another_hint_for_what_was_open_before(tmp_path: Path) -> None:
     broken = BROADCASTER.replace("force.x}", "force.w}")
     files = {"ur.urdf": UR, "controllers.yaml": broken}
     built, _ = found(tmp_path, {**files, "fleet.yaml": FLEET.replace("AFFIX", "postfix")})
-    hints = [it.hint for it in built if (it.code, it.level) == ("MF811", "warning")]
+    hints = [it.hint for it in built if (it.code, it.level) == ("MG515", "warning")]
     assert hints
     assert not [it for it in hints if "affix: prefix" in it]

@@ -110,7 +110,7 @@ def parameters(outputs: Outputs, robot: str) -> dict[str, dict[str, object]]:
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_prefixes_follow_the_description(layout: str, tmp_path: Path) -> None:
     outputs = made(tmp_path, MOCK, CONTROLLERS, layout)
-    assert found(outputs, "MF603", "MF811") == []
+    assert found(outputs, "MF603", "MG515") == []
     bare = layout == "tf-per-robot"
     sections = parameters(outputs, "right")
     assert sections["scaling"]["tf_prefix"] == ("" if bare else "right_")
@@ -121,7 +121,7 @@ def test_prefixes_follow_the_description(layout: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_a_prefix_that_its_code_ends(layout: str, tmp_path: Path) -> None:
     outputs = made(tmp_path, FRANKA, STATE, layout)
-    assert found(outputs, "MF811") == []
+    assert found(outputs, "MG515") == []
     section = parameters(outputs, "left").get("state")
     assert section == (None if layout == "tf-per-robot" else {"arm_prefix": "left"})
 
@@ -129,7 +129,7 @@ def test_a_prefix_that_its_code_ends(layout: str, tmp_path: Path) -> None:
 def test_a_prefix_that_cannot_be_said_is_an_error(tmp_path: Path) -> None:
     """The code of Franka's controllers puts _ behind the prefix, whatever the separator is."""
     outputs = made(tmp_path, FRANKA, STATE, "both", 'separators: {joint: "-", sensor: "-"}\n')
-    (problem,) = (it for it in outputs.findings if it.code == "MF811")
+    (problem,) = (it for it in outputs.findings if it.code == "MG515")
     assert problem.level == "error"
     assert "fr3/robot_state" in problem.message
 
@@ -137,7 +137,7 @@ def test_a_prefix_that_cannot_be_said_is_an_error(tmp_path: Path) -> None:
 def test_an_interface_that_the_name_of_another_robot_has_is_not_there(tmp_path: Path) -> None:
     wrong = CONTROLLERS.replace('tf_prefix: ""', "tf_prefix: arm_")
     outputs = made(tmp_path, MOCK, wrong, "both")
-    ((_, message),) = found(outputs, "MF811")
+    ((_, message),) = found(outputs, "MG515")
     assert "scaling of left claims state interface arm_speed_scaling/" in message
 
 

@@ -339,7 +339,7 @@ def test_a_controllers_file_that_a_launch_file_fills_is_taken_unedited(
     assert arm["constraints"] == {"left_elbow": {"trajectory": 0.2, "goal": 0.1}}
     assert made["/left/io_controller"]["ros__parameters"] == {"tf_prefix": "left_"}
     # The mock lacks what io_controller claims; of the arm nothing is open, and its prefix is filled.
-    assert {it.code for it in findings} <= {"MF811", "MF801", "MG316", "MF840"}
+    assert {it.code for it in findings} <= {"MG515", "MF801", "MG316", "MF840"}
     assert "elbow" not in str([it.message for it in findings])
 
 

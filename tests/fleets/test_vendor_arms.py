@@ -73,7 +73,7 @@ ARMS = {
         # Two components of one name cannot be loaded by one controller manager.
         frozenset({("robot", "name", "ur", "left_ur"), ("ros2_control", "name", "ur", "left_ur")}),
         # The description has no effort interfaces: forward_effort_controller cannot be loaded.
-        findings=frozenset({"MF811"}),
+        findings=frozenset({"MG515"}),
     ),
     "fr3": Arm(
         "franka_ros2/franka_bringup/urdf/franka_arm.urdf.xacro",

@@ -81,7 +81,7 @@ def test_an_interface_is_found_whose_name_has_a_slash(
 ) -> None:
     more = "arguments: {namespace: '{robot}'}\nstack: ros2_control\n"
     made = plan(tmp_path, HARDWARE, more, IMU.replace("SENSOR", sensor))
-    found = [it for it in said(made, "MF811") if "of robot1 " in it.message]
+    found = [it for it in said(made, "MG515") if "of robot1 " in it.message]
     assert bool(found) is open_
 
 

@@ -62,7 +62,7 @@ def test_the_file_that_the_description_names(named: str, file: str, tmp_path: Pa
     assert lint(tmp_path, body, file) == []
     (it,) = lint(tmp_path, body, file, COMMAND="velocity")
     assert (it.code, it.line) == ("MB229", 9)
-    assert it.message.startswith(f"{Path(file).name}:6: arm claims command interface j/velocity")
+    assert it.message.startswith(f"{Path(file).name}:6: /arm claims command interface j/velocity")
 
 
 CHOSEN = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">

@@ -19,7 +19,9 @@ Each line begins with ``planned:`` (it is in the plan), ``running:`` (it is in t
     NODE is STATE, NODE has PARAMETER VALUE          what it answers when it is asked for its state
     state of NODE: STATE, parameter NAME of NODE: VALUE     what it is planned to answer
     host of NODE: WORD, NODE on machine NUMBER       where it is planned to run, and where it runs
+    TOPIC came NUMBER times             how many messages of it came in a minute
     NODE controls INTERFACE by CONTROLLER, NODE keeps CONTROLLER STATE    a controller manager's answer
+    NODE exports KIND INTERFACE, NODE claims KIND INTERFACE     of the hardware, of a controller
 
 QOS are words of DDS in small letters: reliable, best_effort, volatile, transient_local. A robot is
 every ``robot1``, ``robot2`` ... in the plan. In the code of its node a planned name has no robot:
@@ -38,7 +40,7 @@ from plans import PlannedRobot, planned
 from plans import told as planned_told
 
 from multibot_rewrite.rules.guess import GuessedRobot, whose_by_guess, with_frames
-from multibot_rewrite.rules.index import Index, index
+from multibot_rewrite.rules.index import Index, Known, index
 from multibot_rewrite.spelling.plan import planned_end
 from multibot_rewrite.system.answers import Answer, with_answers
 from multibot_rewrite.system.conventions import SENT_BY_EVERY_NODE
@@ -52,6 +54,7 @@ from multibot_rewrite.system.records import (
     Edge,
     End,
     Heard,
+    Interface,
     Node,
     Parameter,
     Qos,
@@ -77,7 +80,9 @@ PLANNED_STATE = re.compile(r"state of (/\S+): (\w+)")
 PLANNED_PARAMETER = re.compile(r"parameter (\w+) of (/\S+): ([\w/]+)")
 HOST = re.compile(r"host of (/\S+): (\w+)")
 MACHINE = re.compile(r"(/\S+) on machine (\d)")
+INTERFACE = re.compile(r"(/\S+) (exports|claims) (command|state) (\S+)")
 CONTROLS = re.compile(r"(/\S+) controls (\S+) by (\w+)")
+CAME = re.compile(r"(/\S+) came (\d+) times")
 FRAME_ID = re.compile(r"frame_id (\S+) on (/\S+)")
 KEEPS = re.compile(r"(/\S+) keeps (\w+) (\w+)")
 ANSWERS = (STATE, SIM_TIME, CONTROLS, KEEPS, HAS, MACHINE)
@@ -104,14 +109,16 @@ def read_example(text: str) -> tuple[System, System]:
     return read_plan(planned), read_graph(running)
 
 
-def read_danger(text: str) -> Index:
+def read_system(text: str) -> Index:
     """The graph of an example without a plan."""
     plan, graph = read_example(text)
     assert not plan.ends, "a danger needs no plan: begin its lines with running:"
     robots = sorted({*ROBOT.findall(text)})
     frames = [name for frame in graph.edges for name in (frame.child, frame.parent)]
     guessed = (with_frames(GuessedRobot(it, f"/{it}"), frames) for it in robots)
-    return index(graph, whose_by_guess(guessed))
+    running = [line.removeprefix("running: ") for line in text.splitlines()]
+    messages = {name: int(count) for name, count in _words(CAME, running)}
+    return index(graph, whose_by_guess(guessed), Known(messages=messages, seconds=60.0))
 
 
 def read_states(lines: list[str]) -> tuple[Answer, ...]:
@@ -155,7 +162,8 @@ def _with_node(plan: System, name: str) -> System:
 def _is_known(line: str) -> bool:
     states = (PLANNED_STATE, PLANNED_PARAMETER, HOST)
     planned = (FRAMES, SHARED, TOPIC_OF, BRIDGED, ONE_OF, ENCLAVE, *states)
-    return any(it.fullmatch(line) for it in (NODE, TRANSFORM, FRAME_ID, *planned, *ANSWERS))
+    every = (NODE, TRANSFORM, FRAME_ID, INTERFACE, CAME, *planned, *ANSWERS)
+    return any(it.fullmatch(line) for it in every)
 
 
 def _words(pattern: re.Pattern[str], lines: Iterable[str]) -> Iterator[tuple[str, ...]]:
@@ -231,6 +239,9 @@ def read_graph(lines: list[str]) -> System:
         tuple(_transform(*words) for words in _words(TRANSFORM, lines)),
         environment(),
         tuple(Heard(topic, frame) for frame, topic in _words(FRAME_ID, lines)),
+        interfaces=tuple(
+            Interface(kind, name, node, role) for node, role, kind, name in _words(INTERFACE, lines)
+        ),
     )
     return with_answers(seen, read_states(lines))
 

@@ -9,11 +9,12 @@ from multibot_rewrite.cli.declared.shared import (
     FINDINGS_OUTPUT,
     GENERAL,
     KNOWN_NODES,
-    LAUNCH_ROOTS,
     LIVE,
     LIVE_CODES,
     PICTURES,
     RESULT_OUTPUT,
+    ROOTS,
+    SAVED,
     SOURCE,
     SOURCE_OR_BAG,
     TRUST,
@@ -22,7 +23,6 @@ from multibot_rewrite.cli.declared.shared import (
 from multibot_rewrite.cli.options import (
     Command,
     Example,
-    Option,
     OptionGroup,
     argument,
     choice,
@@ -47,24 +47,12 @@ WATCH = switch(
     about="show every change until Ctrl-C or --timeout; with --state, nodes are asked when nothing has"
     " changed for a while, and again every 10 s",
 )
-MERGE = Option(
-    ("--merge",),
-    "no look: join snapshots that were taken on several machines",
-    {
-        "metavar": "FILE",
-        "dest": "snapshot",
-        "nargs": "+",
-        "action": "extend",
-        "type": values.path,
-        "default": [],
-    },
-)
 LISTENING = SOURCE_OR_BAG._replace(options=(*SOURCE_OR_BAG.options, HEADERS))
 CHECK = Command(
     "check",
     "check",
     "%(prog)s [PLAN] [options]",
-    "Compare the running system with its plan; without one, say what is wrong with it.",
+    "Is the running system as planned? No plan: what is wrong?",
     (
         Example("multibot check", "what is wrong with the robots that run now?"),
         Example("multibot check plan.yaml", "are they as planned?"),
@@ -116,7 +104,7 @@ CHECK_LAUNCH = Command(
     "check-launch",
     "check_launch",
     "%(prog)s [PACKAGE] FILE [NAME:=VALUE...] [options]",
-    "Say what would be wrong with the robots that a launch file starts; starts nothing.",
+    "Say what would be wrong with what a launch file starts.",
     (
         Example("multibot check-launch fleet.launch.py", "as ros2 launch takes it"),
         Example("multibot check-launch my_bringup two.launch.py sim:=false"),
@@ -140,7 +128,7 @@ CHECK_LAUNCH = Command(
                     type=values.path,
                 ),
                 *KNOWN_NODES,
-                LAUNCH_ROOTS,
+                ROOTS,
                 DISTRO,
                 TRUST,
             ),
@@ -160,7 +148,7 @@ LEARN = Command(
     "learn",
     "learn",
     "%(prog)s [options]",
-    "Make a file of nodes and stacks, for multibot plan, from nodes that are running now.",
+    "Describe nodes that run now, in a file for multibot plan.",
     (
         Example("multibot learn --node /my_driver,/my_planner --stack mine -o mine.yaml"),
         Example("multibot learn --namespace /robot1 --stack mine -o mine.yaml", "a whole robot"),
@@ -216,7 +204,7 @@ SNAPSHOT = Command(
     "snapshot",
     "snapshot",
     "%(prog)s [options]",
-    "Show what runs in the ROS graph now: nodes, endpoints, tf, environment.",
+    "Show what runs in the ROS graph now, or save it.",
     (
         Example("multibot snapshot", "a table"),
         Example(
@@ -225,7 +213,8 @@ SNAPSHOT = Command(
         Example("multibot snapshot --form rosgraph -o graph.yaml", "for other tools"),
         Example("multibot snapshot --zenoh tcp/localhost:7447", "what a Zenoh router knows"),
         Example(
-            "multibot snapshot --merge robot1.json robot2.json -o all.json", "from two machines"
+            "multibot snapshot --snapshot robot1.json --snapshot robot2.json -o all.json",
+            "from two machines",
         ),
     ),
     (
@@ -247,7 +236,7 @@ SNAPSHOT = Command(
                 several(
                     "--topic", "TOPIC", "look up QoS of these topics, too", [], values.full_names
                 ),
-                MERGE,
+                SAVED,
                 ZENOH,
                 STATE,
                 HEADERS,

@@ -3,19 +3,28 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.wording import SEVERAL, shorten
-from multibot_rewrite.rules.declaration import danger_rule
-from multibot_rewrite.rules.index import Index, is_viewer
-from multibot_rewrite.system.records import SERVICE, SIM_TIME, Controller, clocks
+from multibot_rewrite.rules.declaration import system_rule
+from multibot_rewrite.rules.index import Index, is_viewer, last_word
+from multibot_rewrite.rules.places import see, where
+from multibot_rewrite.system.records import (
+    CLAIMS,
+    COMMAND,
+    SERVICE,
+    SIM_TIME,
+    Controller,
+    Interface,
+    clocks,
+)
 
 ACTIVE = "active"
 
 
-@danger_rule(
+@system_rule(
     "MG511",
     "not-active",
     ERROR,
@@ -62,14 +71,15 @@ def _manager(seen: Index, node: str) -> str:
     return min((it for it in clients if not is_viewer(it) and not is_tool(it)), default="")
 
 
-@danger_rule(
+@system_rule(
     "MG512",
     "interface-commanded-twice",
     ERROR,
-    what="Active controllers of two controller managers of one robot command the same interface."
-    " Asked for by `--state`.",
-    why="Both drive the joint: it jerks between two set points.",
-    fix="Run one controller manager for a piece of hardware; a simulator has its own.",
+    what="Active controllers of two controller managers of one robot command the same interface (asked"
+    " for by `--state`), or launch files start two controllers of one manager that do.",
+    why="Both drive the joint: it jerks between two set points. One manager refuses the second.",
+    fix="Run one controller manager for a piece of hardware; a simulator has its own. Spawn one of two"
+    " controllers with --inactive.",
     bad="""\
 running: /robot1/controller_manager controls joint1/position by arm_controller
 running: /robot1/gz/controller_manager controls joint1/position by arm_controller
@@ -80,24 +90,36 @@ running: /robot1/gripper/controller_manager controls finger/position by gripper_
 """,
 )
 def interface_commanded_twice(seen: Index) -> Iterator[Finding]:
-    """One controller manager refuses it by itself."""
-    claims: dict[tuple[str, str], dict[str, str]] = defaultdict(dict)
+    """A running manager refuses the second of its own controllers."""
+    claims: dict[tuple[str, str], list[Controller]] = defaultdict(list)
     for it in (one for one in seen.system.controllers if one.state == ACTIVE):
         for interface in it.claims:
-            claims[seen.robot(it.manager), interface][it.manager] = it.name
+            claims[seen.robot(it.manager), interface].append(it)
     reported = set()
     for (robot, interface), found in claims.items():
-        if len(found) > 1 and (robot, *found) not in reported:
-            reported.add((robot, *found))
-            who = " and ".join(f"{name} of {node}" for node, name in found.items())
+        names = tuple((it.manager, it.name) for it in found)
+        if len(set(names)) > 1 and (robot, names) not in reported:
+            reported.add((robot, names))
+            who = " and ".join(f"{name} of {node}" for node, name in names)
             message = f"{interface} is commanded by {who}"
             cause = "two controller managers for one robot: stop one, or unload its controller"
+            if len({it.manager for it in found}) == 1:
+                cause = "spawn one of them with --inactive"
+            places = [it for it in seen.system.interfaces if _is_of(it, interface, found)]
             yield interface_commanded_twice.finding(
-                message, cause, robot=robot, node=next(iter(found)), names=(interface,)
-            )
+                message, cause + see(places),
+                robot=robot, node=found[0].manager, names=(interface,), **where(places),
+            )  # fmt: skip
 
 
-@danger_rule(
+def _is_of(claim: Interface, name: str, controllers: Iterable[Controller]) -> bool:
+    """Is it the claim of an interface by one of these controllers?"""
+    if (claim.role, claim.kind, claim.name) != (CLAIMS, COMMAND, name):
+        return False
+    return any(last_word(claim.node) == it.name for it in controllers)
+
+
+@system_rule(
     "MG513",
     "no-controller-active",
     WARNING,
@@ -122,7 +144,7 @@ def no_controller_active(seen: Index) -> Iterator[Finding]:
             )
 
 
-@danger_rule(
+@system_rule(
     "MG514",
     "use-sim-time-differs",
     WARNING,

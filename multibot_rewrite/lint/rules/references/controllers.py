@@ -30,7 +30,8 @@ from multibot_rewrite.sources.packages import entries, find_in, package_folder
 from multibot_rewrite.sources.read import read_file
 
 if TYPE_CHECKING:
-    from multibot_rewrite.closure.gap import Gap
+    from multibot_rewrite.rules.system.interfaces import Missing
+    from multibot_rewrite.system.records import Interface
 
 _IN_PACKAGE = lazy_compile(r"(?:\$\(find(?:-pkg-share)?\s+([^)\s]+)\)|package://([^/]+))/(.+)")
 _YAML = (".yaml", ".yml")
@@ -92,17 +93,22 @@ def _chosen(subject: Subject) -> tuple[str, ...]:
     )
 
 
-def _missing(gap: Gap, more: int, expanded: bool) -> tuple[str, str]:
-    names = f"{gap.name} and {more} more" if more else gap.name
+def _said(it: Interface) -> str:
+    return f"{it.kind} interface {it.name}"
+
+
+def _at(it: Interface) -> str:
+    return f"{os.path.basename(it.place.file)}:{it.place.line}"
+
+
+def _missing(found: Missing, expanded: bool) -> tuple[str, str]:
+    first, *more = found.claims
+    names = f"{_said(first)} and {len(more)} more" if more else _said(first)
     # Lines of an expanded xacro are in no file.
-    line = f" (line {gap.near_place.line})" if gap.near_place and not expanded else ""
-    near = f"did you mean {gap.near}{line}?" if gap.near else ""
-    message = f"{_at(gap)}: {gap.node} claims {names}, which no <ros2_control> exports"
+    line = f" (line {found.near.place.line})" if found.near and not expanded else ""
+    near = f"did you mean {found.meant}{line}?" if found.meant else ""
+    message = f"{_at(first)}: {first.node} claims {names}, which no <ros2_control> exports"
     return message, near or f"name an interface that is there{line}, or add it"
-
-
-def _at(gap: Gap) -> str:
-    return f"{os.path.basename(gap.place.file)}:{gap.place.line}" if gap.place else gap.node
 
 
 def _files(subject: Subject, system: _Element) -> Iterator[tuple[_Element, str, bool]]:
@@ -141,13 +147,14 @@ def _found(subject: Subject, text: str) -> str:
 def _found_in(subject: Subject, path: str, is_sure: bool) -> Iterator[tuple[str, str]]:
     """Message and hint for what controllers claim and the description lacks."""
     # Most descriptions have no such file, and a lint of them loads nothing of this.
-    from multibot_rewrite.closure.gap import by_place
-    from multibot_rewrite.closure.interfaces import claims_any, interface_gaps, twice_gaps
     from multibot_rewrite.companions.yaml_text import read_yaml
     from multibot_rewrite.evidence.hardware import exported
     from multibot_rewrite.evidence.parameter_files import given_nodes
     from multibot_rewrite.knowledge.parameters import load_known_nodes
     from multibot_rewrite.knowledge.stacks import load_nodes
+    from multibot_rewrite.producers.interfaces import control_system
+    from multibot_rewrite.rules.system.interfaces import claimed_twice, claims_any, missing
+    from multibot_rewrite.system.records import EXPORTS
 
     release, document = subject.settings.distro, subject.document
     try:
@@ -155,12 +162,14 @@ def _found_in(subject: Subject, path: str, is_sure: bool) -> Iterator[tuple[str,
     except InputError:
         # It is said where the file itself is read.
         return
-    known, exports = load_nodes(release), tuple(exported(document.root, document.file))
-    if not is_sure and not claims_any(given, known, exports):
+    exports = exported(document.root, document.file)
+    interfaces = control_system(given, load_nodes(release), exports).interfaces
+    if not is_sure and not claims_any(interfaces):
         return
-    gaps = list(interface_gaps(given, known, exports))
-    chosen = _chosen(subject) if gaps else ()
-    for first, *more in by_place(it for it in gaps if not it.name.startswith(chosen)):
-        yield _missing(first, len(more), bool(subject.origins))
-    for it in twice_gaps(given, known):
-        yield f"{_at(it)}: {it.node} claims {it.name} twice", "name another joint in one of them"
+    chosen = _chosen(subject) if any(missing(interfaces)) else ()
+    rest = [it for it in interfaces if it.role == EXPORTS or not _said(it).startswith(chosen)]
+    for it in missing(rest):
+        yield _missing(it, bool(subject.origins))
+    for _, twice in claimed_twice(interfaces):
+        message = f"{_at(twice)}: {twice.node} claims {twice.name} twice"
+        yield message, "name another joint in one of them"

@@ -1,0 +1,54 @@
+"""The interfaces of ros2_control that the hardware of a description exports and controllers claim."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+
+from multibot_rewrite.evidence.claims import COMMAND, Claimed, claimed_twice, claims_of
+from multibot_rewrite.evidence.hardware import Exported
+from multibot_rewrite.evidence.records import GivenNode
+from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
+from multibot_rewrite.system.records import CLAIMS, EXPORTS, Controller, Interface, System
+
+ACTIVE = "active"
+
+
+def control_system(
+    given: Sequence[GivenNode],
+    known: Mapping[str, NodeFacts],
+    exports: Iterable[Exported],
+    active: Collection[str] = (),
+) -> System:
+    """The controllers that files declare, and all interfaces; ``active`` are those that launch files
+    start so."""
+    declared = [it for it in given if it.manager]
+    own = [Interface(it.kind, it.name, f"/{MANAGER}", EXPORTS, it.place) for it in exports]
+    for it in declared:
+        own += (_claim(claim, it) for claim in _claims(it, known))
+    return System(
+        controllers=tuple(_controller(it, known, active) for it in declared),
+        interfaces=tuple(own),
+    )
+
+
+def _controller(
+    it: GivenNode, known: Mapping[str, NodeFacts], active: Collection[str]
+) -> Controller:
+    claims = (claim.name for claim in _claims(it, known) if claim.kind == COMMAND)
+    is_active = it.name in active
+    name = it.name.rpartition("/")[2]
+    return Controller(
+        f"/{it.manager}", name, ACTIVE if is_active else "", tuple(claims) * is_active
+    )
+
+
+def _claims(it: GivenNode, known: Mapping[str, NodeFacts]) -> Iterator[Claimed]:
+    """What a controller claims, and once more what two of its parameters name."""
+    node = known.get(it.known)
+    if node is not None:
+        yield from claims_of(node.claims, it)
+        yield from (claim for claim, _ in claimed_twice(node.claims, it))
+
+
+def _claim(claim: Claimed, it: GivenNode) -> Interface:
+    return Interface(claim.kind, claim.name, f"/{it.name}", CLAIMS, claim.place or it.place)

@@ -1,0 +1,148 @@
+"""Dangers of ros2_control: an interface that is claimed and not exported, or claimed twice.
+
+Source: ros2_control controller_manager.cpp (a controller whose interfaces do not exist is not
+activated; a command interface has one owner) and its chaining: a controller's own interfaces are called
+``CONTROLLER/...``.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Sequence
+
+from multibot_rewrite.findings.finding import WARNING, Finding
+from multibot_rewrite.nearest import Guesses
+from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.rules.declaration import system_rule
+from multibot_rewrite.rules.index import Index, last_word
+from multibot_rewrite.rules.places import see, where
+from multibot_rewrite.system.conventions import PLACEHOLDER
+from multibot_rewrite.system.records import CLAIMS, COMMAND, EXPORTS, Interface, Place
+
+
+class Missing(NamedTuple):
+    """What a controller claims at one place and no hardware exports; ``near`` is what may be ``meant``,
+    or another interface of the same joint, sensor or gpio."""
+
+    claims: tuple[Interface, ...]
+    near: Interface | None
+    meant: str
+
+
+@system_rule(
+    "MG515",
+    "interface-not-exported",
+    WARNING,
+    absence=True,
+    what="A controller claims an interface that the hardware of its robot does not export. Where the"
+    " files before a rewrite agreed, `build` says it as an error.",
+    why="The controller manager does not activate a controller whose interfaces do not exist.",
+    fix="Name an interface that the description has, or add it to its `<ros2_control>`.",
+    bad="""\
+running: /robot1/controller_manager exports command elbow/position
+running: /robot1/arm claims command elbo/position
+""",
+    good="""\
+running: /robot1/controller_manager exports command elbow/position
+running: /robot1/arm claims command elbow/position
+""",
+    line=2,
+)
+def interface_not_exported(seen: Index) -> Iterator[Finding]:
+    """Nothing is said where no hardware is known: another description may have it."""
+    for robot, known in _by_robot(seen).items():
+        for it in missing(known):
+            first, *more = it.claims
+            names = f"{first.kind} interface {first.name}"
+            names = f"{names} and {len(more)} more" if more else names
+            near = [it.near] if it.near else []
+            cause = f"name one that is there{see((*near, first))}"
+            if it.meant:
+                cause = f"did you mean {it.meant}{see((*near, first))}"
+            yield interface_not_exported.finding(
+                f"claims {names}, which no ros2_control exports",
+                cause, robot=robot, node=first.node, names=(first.name,), **where([first]),
+            )  # fmt: skip
+
+
+def _by_robot(seen: Index) -> dict[str, list[Interface]]:
+    found: dict[str, list[Interface]] = defaultdict(list)
+    for it in seen.system.interfaces:
+        found[seen.robot(it.node)].append(it)
+    return found
+
+
+def missing(known: Sequence[Interface]) -> Iterator[Missing]:
+    """The claims without an export among the interfaces of one robot, by controller and place."""
+    exports = {(it.kind, it.name): it for it in known if it.role == EXPORTS}
+    opened: dict[tuple[str, Place], list[Interface]] = defaultdict(list)
+    for it in open_claims(known):
+        opened[it.node, it.place].append(it)
+    hints = Guesses()
+    for first, *more in opened.values():
+        near = hints.nearest(first.name, [name for kind, name in exports if kind == first.kind])
+        meant = exports.get((first.kind, near))
+        yield Missing((first, *more), meant or _beside(first.name, exports.values()), near)
+
+
+def open_claims(known: Sequence[Interface]) -> list[Interface]:
+    """The claims that nothing exports; a controller chains to another one, whose name may be that of a
+    sensor."""
+    exports = {(it.kind, it.name) for it in known if it.role == EXPORTS}
+    claims = [it for it in known if it.role == CLAIMS]
+    chained = {last_word(it.node) for it in claims}
+    return [
+        it
+        for it in (claims if exports else ())
+        if (it.kind, it.name) not in exports
+        # Launch files fill in placeholders such as <namespace>.
+        and not PLACEHOLDER.search(it.name)
+        and it.name.partition("/")[0] not in chained - {last_word(it.node)}
+    ]
+
+
+def claims_any(known: Iterable[Interface]) -> bool:
+    """Do the controllers claim an interface of this hardware? Else they are for another robot."""
+    sides: dict[str, set[tuple[str, str]]] = {EXPORTS: set(), CLAIMS: set()}
+    for it in known:
+        sides[it.role].add((it.kind, it.name))
+    return not sides[EXPORTS].isdisjoint(sides[CLAIMS])
+
+
+def _beside(name: str, exports: Iterable[Interface]) -> Interface | None:
+    owner = name.rpartition("/")[0]
+    return next((it for it in exports if it.name.rpartition("/")[0] == owner), None)
+
+
+@system_rule(
+    "MG516",
+    "interface-claimed-twice",
+    WARNING,
+    what="Two parameters of a controller name the same joint, so it claims a command interface twice.",
+    why="An interface is claimed once: the controller is not activated, or one wheel is driven twice.",
+    fix="Name another joint in one of them.",
+    bad="""\
+running: /robot1/drive claims command wheel/velocity
+running: /robot1/drive claims command wheel/velocity
+""",
+    good="""\
+running: /robot1/drive claims command left_wheel/velocity
+running: /robot1/drive claims command right_wheel/velocity
+""",
+)
+def interface_claimed_twice(seen: Index) -> Iterator[Finding]:
+    """Of one controller; what two of them command is a rule about those that are active."""
+    for other, it in claimed_twice(seen.system.interfaces):
+        yield interface_claimed_twice.finding(
+            f"claims {it.name} by two parameters", f"name another joint{see((other, it))}",
+            robot=seen.robot(it.node), node=it.node, names=(it.name,), **where([it]),
+        )  # fmt: skip
+
+
+def claimed_twice(known: Iterable[Interface]) -> Iterator[tuple[Interface, Interface]]:
+    """Command interfaces that one controller claims a second time, behind the first claim."""
+    first: dict[tuple[str, str], Interface] = {}
+    for it in (it for it in known if (it.role, it.kind) == (CLAIMS, COMMAND)):
+        other = first.setdefault((it.node, it.name), it)
+        if other is not it:
+            yield other, it
