@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from multibot_rewrite.bounded import MAX_FLEET_BYTES
 from multibot_rewrite.cli import live, pictures
@@ -18,7 +18,7 @@ from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, NOTE, Finding
 from multibot_rewrite.findings.selection import fails
 from multibot_rewrite.fleets.fleet_or_plan import is_fleet
 from multibot_rewrite.graph.bags.read import BagsUnusable, read_bag
-from multibot_rewrite.graph.bags.recording import as_snapshot
+from multibot_rewrite.graph.bags.recording import as_snapshot, counted
 from multibot_rewrite.graph.live.request import RosUnusable
 from multibot_rewrite.graph.plan_file import is_json, read_plan
 from multibot_rewrite.live.watching import WORDS, Outcome, Verdict, final
@@ -26,7 +26,7 @@ from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
 from multibot_rewrite.releases import facts_of_release
 from multibot_rewrite.rules.check import check, doubts
-from multibot_rewrite.rules.recording import compare
+from multibot_rewrite.rules.index import NO_COUNTS
 from multibot_rewrite.sources.read import read_file
 from multibot_rewrite.spelling.plan import robot_words
 from multibot_rewrite.system.records import System, answering
@@ -71,8 +71,7 @@ def _parameters(plan: System) -> dict[str, list[str]]:
 
 def _recorded(options: argparse.Namespace, plan: System) -> int:
     recording = read_bag(options.bag)
-    topics = chosen(options, compare(plan, recording))
-    return conclude(options, plan, as_snapshot(recording, plan), topics)
+    return conclude(options, plan, as_snapshot(recording, plan), messages=counted(recording))
 
 
 def _check_use(options: argparse.Namespace) -> None:
@@ -131,12 +130,13 @@ def conclude(
     plan: System,
     graph: System,
     before: Sequence[Finding] = (),
+    messages: Mapping[str, int] = NO_COUNTS,
 ) -> int:
     """Compare, report the findings, draw what is asked for; the exit code.
 
-    ``before`` are findings from before there was a graph.
+    ``before`` are findings from before there was a graph, ``messages`` are counted for each topic.
     """
-    found = chosen(options, check(plan, graph))
+    found = chosen(options, check(plan, graph, messages))
     of_graph, gaps = [*before, *found], _gaps(options, plan)
     findings = [*of_graph, *gaps]
     about = About([plan_name(options)], robot_words(plan), plan.release)

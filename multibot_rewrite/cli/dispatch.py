@@ -62,13 +62,12 @@ def overview(colour: str) -> str:
             "  multibot init rover.urdf",
             "  multibot build fleet.yaml -o out/",
             "  multibot plan rover.urdf robot1 robot2 --stack nav2 --form table",
-            "  multibot explain MG102",
             "",
             "commands:",
             *rows,
             "",
-            "multibot COMMAND -h shows each in short, --help all of it; urdf-postfix and urdf-lint",
-            "are commands of their own.",
+            "multibot COMMAND -h shows each in short, --help all of it; urdf-postfix and",
+            "urdf-lint are commands of their own.",
             "",
         )
     )

@@ -18,6 +18,8 @@ from multibot_rewrite.printable import one_line
 from multibot_rewrite.version import __version__
 
 UNUSABLE = 2
+# A short help fits a terminal of this size.
+ROWS, COLUMNS = 24, 80
 # Help is not wider than this, however wide the terminal: long lines are hard to read.
 WIDEST = 120
 _HEADING = lazy_compile(r"^([a-z][^\n:]*:)(?=$| )", re.MULTILINE)
@@ -28,6 +30,7 @@ class Parser(argparse.ArgumentParser):
     """Reports a mistake in one line, with the nearest word that is known."""
 
     colour = AUTO
+    short = ""
 
     def error(self, message: str) -> NoReturn:
         self.exit(UNUSABLE, f"{self.prog}: {one_line(message)}; see {self.prog} --help\n")
@@ -42,6 +45,17 @@ class Parser(argparse.ArgumentParser):
     def known(self) -> list[str]:
         """The names of all options."""
         return [name for action in self._actions for name in action.option_strings]
+
+
+class _Short(argparse.Action):
+    """``-h``: the help that fits a screen."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        assert isinstance(parser, Parser)
+        parser._print_message(
+            painted(parser.short, is_coloured(parser.colour, sys.stdout)), sys.stdout
+        )
+        parser.exit()
 
 
 class _Formatter(argparse.RawDescriptionHelpFormatter):
@@ -78,8 +92,9 @@ def make_parser(command: Command, prog: str = "") -> Parser:
     return result
 
 
-def declare(parser: argparse.ArgumentParser, command: Command) -> None:
+def declare(parser: Parser, command: Command) -> None:
     """Give a parser the options and the help text of a command."""
+    parser.short = short_help(command, parser.prog)
     parser.description = "\n\n".join(_head(command))
     parser.epilog = f"exit codes:\n  {_codes(command)}"
     for group in command.groups:
@@ -87,10 +102,41 @@ def declare(parser: argparse.ArgumentParser, command: Command) -> None:
     general = parser._action_groups[-1]
     version = f"{parser.prog} {__version__}"
     general.add_argument("--version", action="version", version=version, help="show the version")
-    general.add_argument("-h", "--help", action="help", help="show this help")
+    general.add_argument("-h", action=_Short, nargs=0, help="show what there is, on one screen")
+    general.add_argument("--help", action="help", help="show all of it")
     parser.set_defaults(command=command.name, findings_first=command.findings_first)
     if command.fail_on:
         parser.set_defaults(fail_on=command.fail_on)
+
+
+def short_help(command: Command, prog: str) -> str:
+    """How a command is called, what it does, examples as far as there is room, names of its options."""
+    head = [f"usage: {command.usage.replace('%(prog)s', prog)}", "", command.about, ""]
+    names = [it for group in command.groups for it in _names(group)]
+    end = ["", *names, "", f"{prog} --help explains them."]
+    fitting = (it for it in map(_fitted, command.examples) if it)
+    examples = [*fitting][: ROWS - len(head) - len(end) - 1]
+    return "\n".join([*head, "examples:", *examples, *end, ""])
+
+
+def _fitted(example: Example) -> str:
+    """An example in one line; empty if that is too long."""
+    lines = (
+        f"  {example.command}    # {example.about}" * bool(example.about),
+        f"  {example.command}",
+    )
+    return next((it for it in lines if it and len(it) <= COLUMNS), "")
+
+
+def _names(group: OptionGroup) -> list[str]:
+    """The options of a group by name, wrapped."""
+    title = group.title.partition(",")[0]
+    words = [
+        it.names[-1] if it.names[0].startswith("-") else it.keywords["metavar"]
+        for it in group.options
+    ]
+    lines = wrapped(f"{title}: {' '.join(words)}", COLUMNS - 2).split("\n")
+    return [lines[0], *(f"  {it}" for it in lines[1:])]
 
 
 def _head(command: Command) -> Iterable[str]:

@@ -20,8 +20,8 @@ from multibot_rewrite.cli.report import (
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.cli.watch import follow
 from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.graph.bags.read import BagsUnusable
-from multibot_rewrite.graph.bags.recording import is_recorded
+from multibot_rewrite.graph.bags.read import BagsUnusable, read_bag
+from multibot_rewrite.graph.bags.recording import as_snapshot, counted, is_recorded
 from multibot_rewrite.graph.live.request import RosUnusable
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.knowledge.stacks import built_in
@@ -48,11 +48,17 @@ def run(options: argparse.Namespace) -> int:
     try:
         if options.watch:
             return _watch(options)
-        graph = live.with_states(options, live.graph(options))
-        return report_on(options, diagnose(graph))
+        return report_on(options, _diagnosis(options))
     except (RosUnusable, BagsUnusable) as error:
         say(str(error), PROGRAM)
         return live.NO_ROS
+
+
+def _diagnosis(options: argparse.Namespace) -> Diagnosis:
+    if options.bag:
+        recording = read_bag(options.bag)
+        return diagnose(as_snapshot(recording), counted(recording))
+    return diagnose(live.with_states(options, live.graph(options)))
 
 
 def _check_use(options: argparse.Namespace) -> None:

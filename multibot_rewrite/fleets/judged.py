@@ -12,7 +12,7 @@ from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.output_values import OutputText, line_in_source
 from multibot_rewrite.fleets.rewritten_robots import SET_PREFIX, RewrittenRobot
 from multibot_rewrite.producers.ends import NEEDS
-from multibot_rewrite.rules.find import absences, contradictions
+from multibot_rewrite.rules.check import absences, contradictions
 from multibot_rewrite.rules.index import Index, index
 from multibot_rewrite.rules.ownership import (
     ALONE,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.graph.bags.recording import RECORDER, is_recorded
@@ -11,10 +11,9 @@ from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.naming import LAYOUTS, Layout
 from multibot_rewrite.plural import plural
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.rules.check import inconclusive_where_in_doubt
-from multibot_rewrite.rules.find import judge
+from multibot_rewrite.rules.check import inconclusive_where_in_doubt, judge
 from multibot_rewrite.rules.guess import GuessedRobot, guess_robots, whose_by_guess
-from multibot_rewrite.rules.index import TF, Index, index, tree_topic
+from multibot_rewrite.rules.index import NO_COUNTS, TF, Index, Known, index, tree_topic
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, System
 
 
@@ -34,10 +33,11 @@ class Diagnosis(NamedTuple):
     findings: tuple[Finding, ...]
 
 
-def diagnose(graph: System) -> Diagnosis:
-    """Look at a graph without a plan."""
+def diagnose(graph: System, messages: Mapping[str, int] = NO_COUNTS) -> Diagnosis:
+    """Look at a graph without a plan; ``messages`` counts those of each topic, if they were counted."""
     robots = guess_robots(graph)
-    seen = index(graph, whose_by_guess(robots))
+    known = Known(messages=messages, seconds=graph.environment.seconds)
+    seen = index(graph, whose_by_guess(robots), known)
     found = inconclusive_where_in_doubt(judge(seen), graph)
     tf = tuple(_tf_senders(graph))
     return Diagnosis(graph, robots, seen, _layout(robots, seen, tf), tf, tuple(found))

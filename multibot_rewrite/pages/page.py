@@ -30,7 +30,7 @@ from multibot_rewrite.pages.states import MISSING
 from multibot_rewrite.pages.svg import Ids, safe
 from multibot_rewrite.pages.text import counted
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.rules.check import ALL_RULES
+from multibot_rewrite.rules.check import RULES
 from multibot_rewrite.system.records import QUIET, ZENOH
 
 # The CSS class of a verdict; a good one with findings is not drawn as good.
@@ -49,7 +49,7 @@ class Framed(NamedTuple):
 
 def to_html(
     scene: Scene,
-    rules: Mapping[str, Rule] = ALL_RULES,
+    rules: Mapping[str, Rule] = RULES,
     snippets: Mapping[str, Sequence[str]] = NO_SNIPPETS,
     robots: Framed | None = None,
 ) -> bytes:

@@ -7,7 +7,6 @@ from collections.abc import Collection, Container, Iterable, Iterator, Mapping, 
 
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.grouping import with_members
-from multibot_rewrite.graph.patterns import fitted
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.live.watching import WORDS, Outcome, judge
 from multibot_rewrite.pages.states import (
@@ -26,7 +25,10 @@ from multibot_rewrite.pages.states import (
 )
 from multibot_rewrite.pages.tf_tree_rows import FrameTree, make_frame_trees
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.rules.pair.comparison import EndpointKey, View, make_view
+from multibot_rewrite.rules.check import side_by_side
+from multibot_rewrite.rules.index import EndKey, Index, by_node, types
+from multibot_rewrite.rules.pair.meeting import matches
+from multibot_rewrite.rules.planned import Planned
 from multibot_rewrite.spelling.plan import robot_words
 from multibot_rewrite.system.records import (
     ACTION,
@@ -160,77 +162,77 @@ def make_scene(
     """What is drawn of ``graph`` with its plan and findings; the outcome follows from these if a
     command does not say otherwise."""
     verdict = judge(found, graph)
-    view = make_view(*fitted(plan, graph))
-    targets = find_targets(view, found)
+    by_plan, seen = side_by_side(plan, graph)
+    targets = find_targets(by_plan, seen, found)
     states = make_states(found, targets)
-    edges = sorted(_edges(view, states))
-    robot_of = _robot_of(view, states, edges)
-    nodes = _nodes(view, states, edges, robot_of)
+    edges = sorted(_edges(by_plan, seen, states))
+    robot_of = _robot_of(by_plan, seen, states, edges)
+    nodes = _nodes(by_plan, seen, states, edges, robot_of)
     return Scene(
         outcome or Outcome(verdict, WORDS[verdict]),
         plan.layout,
         tuple(robot.name for robot in plan.robots),
         tuple(_groups(plan, edges, nodes, robot_of)),
         tuple(_crossings(edges, robot_of)),
-        make_frame_trees(view, states),
+        make_frame_trees(by_plan, seen, states),
         tuple(found),
-        tuple(_rows(view, dict(zip(found, targets, strict=True)))),
+        tuple(_rows(by_plan, dict(zip(found, targets, strict=True)))),
         graph.environment,
         alternatives(plan),
-        frozenset(view.seen),
+        frozenset(seen.nodes),
     )
 
 
-def _rows(view: View, targets: Mapping[Finding, Targets]) -> Iterator[FindingRow]:
-    for finding, members in with_members(targets, robot_words(view.plan)):
-        concerned = {robot for it in members for robot in robots_of(view, it)}
-        robots = tuple(robot for robot in view.robots if robot in concerned)
+def _rows(plan: Planned, targets: Mapping[Finding, Targets]) -> Iterator[FindingRow]:
+    for finding, members in with_members(targets, robot_words(plan.system)):
+        concerned = {robot for it in members for robot in robots_of(plan, it)}
+        robots = tuple(robot for robot in plan.robots if robot in concerned)
         written = f"{finding.file}:{finding.line}" if finding.line else finding.file
-        place = written or _origin(view, finding.node)
+        place = written or _origin(plan, finding.node)
         yield FindingRow(finding, merged(targets[it] for it in members), robots, place)
 
 
-def _edges(view: View, states: States) -> Iterator[DrawnEdge]:
+def _edges(plan: Planned, seen: Index, states: States) -> Iterator[DrawnEdge]:
     """The endpoints in the graph, and those that a finding reports as missing."""
-    common_names = _common_names((*view.graph.ends, *view.plan.ends))
-    bridged = {(role, it.name): it.type for it in view.plan.topics for role in it.bridge}
+    common_names = _common_names((*seen.system.ends, *plan.system.ends))
+    bridged = {(role, it.name): it.type for it in plan.system.topics for role in it.bridge}
     for key, type_ in dict.fromkeys(
-        ((e.node, e.kind, e.role, e.name), e.type) for e in view.graph.ends
+        ((e.node, e.kind, e.role, e.name), e.type) for e in seen.system.ends
     ):
         node, *_, name = key
         common = name in common_names
         state = states.endpoints.get((node, name), OK)
         if state in (OK, MISSING):
-            state = OK if common or _is_expected(view, key, bridged) else UNEXPECTED
+            state = OK if common or _is_expected(plan, key, bridged) else UNEXPECTED
         yield DrawnEdge(*key, type_, state, common)
-    for key, planned in view.planned.items():
+    for key, planned in plan.ends.items():
         node, *_, name = key
         missing = MISSING in (states.nodes.get(node), states.endpoints.get((node, name)))
-        if missing and key not in view.types:
+        if missing and key not in types(seen):
             yield DrawnEdge(*key, planned.type, MISSING, name in common_names)
 
-    carried = {(role, name) for _, _, role, name in view.types}
+    carried = {(role, name) for _, _, role, name in types(seen)}
     for (role, name), type_ in bridged.items():
         if name in states.names and (role, name) not in carried:
             yield DrawnEdge(BRIDGE, TOPIC, role, name, type_, MISSING, False)
 
 
-def _is_expected(view: View, key: EndpointKey, bridged: Container[tuple[str, str]]) -> bool:
+def _is_expected(plan: Planned, key: EndKey, bridged: Container[tuple[str, str]]) -> bool:
     """Whether the plan has an endpoint of the graph, by itself or in another form.
 
     An action may be planned as its parts. Helpers of a robot's nodes have what these have.
     """
     node, kind, role, name = key
-    if key in view.planned or node in view.own[""] or (role, name) in bridged:
+    if key in plan.ends or node in plan.own[""] or (role, name) in bridged:
         return True
-    if kind == ACTION and (node, SERVICE, role, f"{name}{ACTION_PART}send_goal") in view.planned:
+    if kind == ACTION and (node, SERVICE, role, f"{name}{ACTION_PART}send_goal") in plan.ends:
         return True
-    return is_tool(node) and bool(view.ownership.robot(node))
+    return is_tool(node) and bool(plan.names.robot(node))
 
 
-def _origin(view: View, node: str) -> str:
+def _origin(plan: Planned, node: str) -> str:
     """Where a planned node is from: its plugin, a file, or its stack."""
-    planned = view.nodes.get(node)
+    planned = plan.nodes.get(node)
     if planned is None:
         return ""
     stack = f"stack {planned.stack}" if planned.stack else ""
@@ -246,11 +248,11 @@ def _common_names(ends: Iterable[End]) -> set[str]:
     }
 
 
-def _robot_of(view: View, states: States, edges: Iterable[DrawnEdge]) -> _RobotOf:
+def _robot_of(plan: Planned, seen: Index, states: States, edges: Iterable[DrawnEdge]) -> _RobotOf:
     missing = (node for node, state in states.nodes.items() if state == MISSING)
-    nodes = {*view.seen, *missing, *(edge.node for edge in edges)}
+    nodes = {*seen.nodes, *missing, *(edge.node for edge in edges)}
     names = {edge.name for edge in edges}
-    robot, shared = view.ownership.robot, {*view.own[""], *view.plan.shared_topics}
+    robot, shared = plan.names.robot, {*plan.own[""], *plan.system.shared_topics}
     return _RobotOf(
         {node: "" if node in shared else robot(node) for node in sorted(nodes)},
         {name: "" if name in shared else robot(name) for name in sorted(names)},
@@ -258,9 +260,9 @@ def _robot_of(view: View, states: States, edges: Iterable[DrawnEdge]) -> _RobotO
 
 
 def _nodes(
-    view: View, states: States, edges: Iterable[DrawnEdge], robot_of: _RobotOf
+    plan: Planned, seen: Index, states: States, edges: Iterable[DrawnEdge], robot_of: _RobotOf
 ) -> dict[str, DrawnNode]:
-    planned = view.nodes
+    planned = {*plan.robot_of, *plan.own[""]}
     edge_states: dict[str, set[str]] = defaultdict(set)
     own_states: dict[str, set[str]] = defaultdict(set)
     for edge in edges:
@@ -268,12 +270,12 @@ def _nodes(
         if not edge.common:
             own_states[edge.node].add(edge.state)
     # Planned nodes under another name, which the same node of each robot would have.
-    misnamed = set(view.probable_matches.values())
+    misnamed = set(matches(plan, seen).values())
     result = {}
     for node, robot in robot_of.nodes.items():
         own = {states.nodes.get(node, OK), *(edge_states[node] & FAULTY - {MISSING})}
         state = LEAK if node in misnamed and not robot else worst(own)
-        if node not in view.seen and node not in view.by_node:
+        if node not in seen.nodes and node not in by_node(seen):
             state = MISSING
         elif state == OK and node not in planned and own_states[node] != {OK}:
             state = OK if robot and is_tool(node) else UNEXPECTED

@@ -7,9 +7,10 @@ from itertools import chain
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.rules.check import ALL_RULES
-from multibot_rewrite.rules.index import tree_topic
-from multibot_rewrite.rules.pair.comparison import View
+from multibot_rewrite.rules.check import RULES
+from multibot_rewrite.rules.index import Index, ends_of, tree_topic
+from multibot_rewrite.rules.pair.tf_trees import tf_trees
+from multibot_rewrite.rules.planned import Planned
 from multibot_rewrite.system.records import alternatives
 
 OK, LEAK, CROSS_TALK, MISSING = "ok", "leak", "cross-talk", "missing"
@@ -17,9 +18,7 @@ UNEXPECTED, CLASH = "unexpected", "clash"
 # The worst first.
 STATES = (LEAK, CROSS_TALK, CLASH, MISSING, UNEXPECTED, OK)
 FAULTY = frozenset({LEAK, CROSS_TALK, CLASH, MISSING})
-STATE_OF_CODE = {
-    it.code: str(it.options["drawn"]) for it in ALL_RULES.values() if it.options["drawn"]
-}
+STATE_OF_CODE = {it.code: str(it.options["drawn"]) for it in RULES.values() if it.options["drawn"]}
 # For all other codes.
 STATE_OF_LEVEL = {ERROR: CLASH, WARNING: UNEXPECTED}
 TF_CODES = ("MG2", "MG4")
@@ -58,23 +57,23 @@ def worst(states: Iterable[str]) -> str:
     return min(states, key=STATES.index, default=OK)
 
 
-def find_targets(view: View, findings: Iterable[Finding]) -> tuple[Targets, ...]:
+def find_targets(plan: Planned, seen: Index, findings: Iterable[Finding]) -> tuple[Targets, ...]:
     """What each finding is about, by its fields and by the names in its message."""
-    homes = (tree_topic(robot.tf_topic) for robot in view.plan.robots)
-    topics = [*dict.fromkeys((*(tree.topic for tree in view.trees), *homes))]
+    homes = (tree_topic(robot.tf_topic) for robot in plan.system.robots)
+    topics = [*dict.fromkeys((*(tree.topic for tree in tf_trees(plan, seen)), *homes))]
     return tuple(
         Targets(
-            tuple(filter(None, (finding.node,))), (), tuple(_frame_targets(view, finding, topics))
+            tuple(filter(None, (finding.node,))), (), tuple(_frame_targets(plan, finding, topics))
         )
-        if finding.code.startswith(TF_CODES) and not _names_topics(view, finding)
-        else _endpoint_targets(view, finding)
+        if finding.code.startswith(TF_CODES) and not _names_topics(seen, finding)
+        else _endpoint_targets(plan, seen, finding)
         for finding in findings
     )
 
 
-def _names_topics(view: View, finding: Finding) -> bool:
+def _names_topics(seen: Index, finding: Finding) -> bool:
     """Whether a finding about tf is about its topics, not about frames."""
-    return bool(finding.names) and all(name in view.by_name for name in finding.names)
+    return bool(finding.names) and all(any(ends_of(seen, name)) for name in finding.names)
 
 
 def make_states(findings: Iterable[Finding], targets: Sequence[Targets]) -> States:
@@ -94,43 +93,43 @@ def make_states(findings: Iterable[Finding], targets: Sequence[Targets]) -> Stat
     return States(endpoints, nodes, frames, frozenset(chain(*(it.names for it in targets))))
 
 
-def _endpoint_targets(view: View, finding: Finding) -> Targets:
-    nodes = tuple(it for it in finding.names if _is_node(view, it))
+def _endpoint_targets(plan: Planned, seen: Index, finding: Finding) -> Targets:
+    nodes = tuple(it for it in finding.names if _is_node(plan, seen, it))
     names = tuple(it for it in finding.names if it not in nodes)
     if nodes:
         return Targets(nodes, names, ())
-    users = dict.fromkeys(end.node for name in names for end in view.by_name.get(name, ()))
+    users = dict.fromkeys(end.node for name in names for end in ends_of(seen, name))
     if not finding.node:
-        robot = view.robots.get(finding.robot)
-        return Targets(tuple(view.own[robot.name] if robot else sorted(users)), names, ())
+        robot = plan.robots.get(finding.robot)
+        return Targets(tuple(plan.own[robot.name] if robot else sorted(users)), names, ())
     words = words_of(finding.message)
-    rule = ALL_RULES.get(finding.code)
+    rule = RULES.get(finding.code)
     others = [node for node in users if node in words or (rule and rule.options["all_ends"])]
     return Targets(tuple(dict.fromkeys((finding.node, *sorted(others)))), names, ())
 
 
-def _is_node(view: View, name: str) -> bool:
+def _is_node(plan: Planned, seen: Index, name: str) -> bool:
     """Whether a finding that has this name speaks of a node: nothing else is called so."""
-    if any(name in group for group in alternatives(view.plan)):
+    if any(name in group for group in alternatives(plan.system)):
         return True
-    return name in view.seen and name not in view.by_name
+    return name in seen.nodes and not any(ends_of(seen, name))
 
 
-def robots_of(view: View, finding: Finding) -> set[str]:
+def robots_of(plan: Planned, finding: Finding) -> set[str]:
     """The robots that a finding is about, or of which it names a node, a name or a frame."""
     in_tf = finding.code.startswith(TF_CODES)
-    of_name = view.frame_ownership.robot if in_tf else view.ownership.robot
+    of_name = plan.frames.robot if in_tf else plan.names.robot
     words = words_of(finding.message)
     found = {finding.robot, *finding.others, *map(of_name, finding.names)}
-    found |= {view.ownership.robot(it) for it in (finding.node, *words) if it.startswith("/")}
-    found |= {it for it in words if it in view.robots} - view.ownership.ambiguous_words
-    return found & view.robots.keys()
+    found |= {plan.names.robot(it) for it in (finding.node, *words) if it.startswith("/")}
+    found |= {it for it in words if it in plan.robots} - plan.names.ambiguous_words
+    return found & plan.robots.keys()
 
 
-def _frame_targets(view: View, finding: Finding, topics: Sequence[str]) -> Iterator[FrameKey]:
+def _frame_targets(plan: Planned, finding: Finding, topics: Sequence[str]) -> Iterator[FrameKey]:
     """The frames on the topics that the message names; else on the robot's own, or on any topic."""
     words = {tree_topic(word) for word in words_of(finding.message)}
-    robot = view.robots.get(finding.robot)
+    robot = plan.robots.get(finding.robot)
     own = [topic for topic in topics if robot and topic == tree_topic(robot.tf_topic)]
     named = [topic for topic in topics if topic in words]
     return ((topic, frame) for topic in named or own or topics for frame in finding.names)

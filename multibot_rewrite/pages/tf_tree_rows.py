@@ -7,9 +7,10 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.pages.states import CLASH, MISSING, OK, States
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.rules.check import ALL_RULES
-from multibot_rewrite.rules.index import tree_topic
-from multibot_rewrite.rules.pair.comparison import View
+from multibot_rewrite.rules.check import RULES
+from multibot_rewrite.rules.index import Index, tree_topic
+from multibot_rewrite.rules.pair.tf_trees import tf_trees
+from multibot_rewrite.rules.planned import Planned
 from multibot_rewrite.system.records import Edge, Robot
 
 
@@ -41,17 +42,17 @@ class FrameTree(NamedTuple):
     rows: tuple[FrameRow, ...]
 
 
-def make_frame_trees(view: View, states: States) -> tuple[FrameTree, ...]:
+def make_frame_trees(plan: Planned, seen: Index, states: States) -> tuple[FrameTree, ...]:
     """The trees on each topic in the order of the robots, then the frames missing there."""
-    if not (view.trees or states.frames):
+    if not (tf_trees(plan, seen) or states.frames):
         return ()
-    order = {robot: at for at, robot in enumerate(view.robots)}
-    edges = {tree.topic: tree.edges for tree in view.trees}
+    order = {robot: at for at, robot in enumerate(plan.robots)}
+    edges = {tree.topic: tree.edges for tree in tf_trees(plan, seen)}
     found: list[FrameTree] = []
-    home_topics = (tree_topic(robot.tf_topic) for robot in view.plan.robots)
+    home_topics = (tree_topic(robot.tf_topic) for robot in plan.system.robots)
     for topic in dict.fromkeys((*home_topics, *sorted(edges))):
-        home = [robot for robot in view.plan.robots if tree_topic(robot.tf_topic) == topic]
-        forest = _forest(view, topic, edges.get(topic, ()), home)
+        home = [robot for robot in plan.system.robots if tree_topic(robot.tf_topic) == topic]
+        forest = _forest(plan, topic, edges.get(topic, ()), home)
         trees = [FrameTree(topic, _robot(rows), True, rows) for rows in _trees(forest, states)]
         found += sorted(trees, key=lambda tree: order.get(tree.robot, len(order)))
         found += _not_received(forest, home, states)
@@ -72,14 +73,14 @@ class _Forest(NamedTuple):
     robots: Mapping[str, str]
 
 
-def _forest(view: View, topic: str, edges: Sequence[Edge], home: Sequence[Robot]) -> _Forest:
+def _forest(plan: Planned, topic: str, edges: Sequence[Edge], home: Sequence[Robot]) -> _Forest:
     static = {(edge.parent, edge.child): edge.static for edge in edges}
     children: dict[str, list[str]] = defaultdict(list)
     for parent, child in sorted(static):
         children[parent].append(child)
     only = home[0].name if len(home) == 1 else ""
     frames = sorted({frame for edge in static for frame in edge})
-    robots = {frame: view.frame_ownership.robot(frame) or only for frame in frames}
+    robots = {frame: plan.frames.robot(frame) or only for frame in frames}
     return _Forest(topic, static, children, robots)
 
 
@@ -141,4 +142,4 @@ def _not_received(forest: _Forest, home: Iterable[Robot], states: States) -> Ite
 
 
 def _in_words(codes: Iterable[str]) -> tuple[str, ...]:
-    return tuple(ALL_RULES[code].name.replace("-", " ") for code in codes)
+    return tuple(RULES[code].name.replace("-", " ") for code in codes)

@@ -1,19 +1,23 @@
-"""Expectation and snapshot -> findings: every declared rule in the order of the codes.
+"""A system, alone or with its plan -> findings, in the order of the codes.
 
-Where the view of the graph may be incomplete, a finding about something missing is *inconclusive*.
+All that is found without a plan is found with one, but for what the plan means. Where the view may be
+incomplete, a finding about something missing is *inconclusive*.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from typing import cast
+from collections.abc import Iterator, Mapping, Sequence
+from fnmatch import fnmatchcase
+from types import ModuleType
 
 from multibot_rewrite.findings.finding import INCONCLUSIVE, Finding
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.graph.bags.recording import is_recorded
 from multibot_rewrite.graph.patterns import fitted
-from multibot_rewrite.rules.find import DANGERS
+from multibot_rewrite.graph.questions import SIM_TIME
+from multibot_rewrite.rules.declaration import PAIR, SYSTEM, Finder
+from multibot_rewrite.rules.index import NO_COUNTS, Index, ends_of
 from multibot_rewrite.rules.pair import (
     demands,
     endpoints,
@@ -25,50 +29,135 @@ from multibot_rewrite.rules.pair import (
     planned_states,
     publishers,
     transforms,
-    type_and_qos,
+    types,
 )
-from multibot_rewrite.rules.pair.beside_plan import dangers_beside
-from multibot_rewrite.rules.pair.comparison import View, make_view
-from multibot_rewrite.system.records import Caveat, System, incomplete
+from multibot_rewrite.rules.pair.meeting import missing
+from multibot_rewrite.rules.pair.tf_copies import without_bridged
+from multibot_rewrite.rules.planned import Planned, beside, planned
+from multibot_rewrite.rules.system import (
+    clocks,
+    commands,
+    equal_robots,
+    frame_ids,
+    interfaces,
+    matching,
+    names,
+    relays,
+    sharing,
+    states,
+    tf_topics,
+    unsent,
+)
+from multibot_rewrite.rules.system import nodes as running_nodes
+from multibot_rewrite.rules.system import transforms as any_transforms
+from multibot_rewrite.system.records import PUBLISHES, Caveat, End, System, incomplete
 
-_MODULES = (
-    nodes,
-    endpoints,
-    leaks,
-    type_and_qos,
-    publishers,
-    demands,
-    in_enclaves,
-    planned_states,
-    transforms,
-    frame_names,
-    frames_heard,
+_SYSTEM = (
+    *(running_nodes, names, matching, commands, relays, sharing, any_transforms, tf_topics),
+    *(frame_ids, clocks, states, equal_robots, unsent, interfaces),
 )
-_FOUND = [it for module in _MODULES for it in vars(module).values() if isinstance(it, Rule)]
-RULES = {it.code: it for it in sorted(_FOUND, key=lambda it: it.code)}
-# What can be asked of a recording, which has no nodes.
-_ABOUT_FRAMES = (*vars(transforms).values(), *vars(frame_names).values())
-FRAME_RULES = {it.code: it for it in RULES.values() if it in _ABOUT_FRAMES}
+_PAIR = (
+    *(nodes, endpoints, leaks, types, publishers, demands, in_enclaves, planned_states),
+    *(transforms, frame_names, frames_heard),
+)
+
+
+def _declared(modules: Sequence[ModuleType], kind: str) -> Iterator[Rule]:
+    for module in modules:
+        found = (it for it in vars(module).values() if isinstance(it, Rule))
+        yield from (it for it in found if it.formats == (kind,))
+
+
+def _finders() -> Iterator[Finder]:
+    for module in _PAIR:
+        yield from (it for it in vars(module).values() if isinstance(it, Finder))
+    for rule in _declared(_PAIR, PAIR):
+        if rule.check:
+            yield Finder(rule, rule.check, bool(rule.options["nodes"]))
+
+
+SYSTEM_RULES = {it.code: it for it in sorted(_declared(_SYSTEM, SYSTEM), key=lambda it: it.code)}
+FINDERS = tuple(sorted(_finders(), key=lambda it: it.rule.code))
+RULES = {**{it.code: it for it in _declared(_PAIR, PAIR)}, **SYSTEM_RULES}
 WAITED_FOR = "expected-not-seen"
 # Findings about something missing: an incomplete view cannot prove them.
-# With a plan and without one.
-ALL_RULES = {**RULES, **DANGERS}
-ABSENCE = frozenset(it.code for it in ALL_RULES.values() if it.options["absence"])
+ABSENCE = frozenset(it.code for it in RULES.values() if it.options["absence"])
 
 
-def check(plan: System, graph: System) -> list[Finding]:
-    """All findings in the order of the rules; empty for a fleet as planned."""
+def judge(seen: Index) -> list[Finding]:
+    """What is wrong with a system; empty for one that is as it should be."""
     with gc_paused():
-        view = make_view(*fitted(plan, graph))
-        rules = FRAME_RULES if is_recorded(graph) else RULES
-        found = [finding for rule in rules.values() for finding in _ask(rule, view)]
-        if not is_recorded(graph):
-            found += dangers_beside(view, found)
-    return inconclusive_where_in_doubt(found, graph)
+        return [it for rule in SYSTEM_RULES.values() if rule.check for it in rule.check(seen)]
 
 
-def _ask(rule: Rule, view: View) -> Iterator[Finding]:
-    return cast(Callable[[View], Iterator[Finding]], rule.check)(view)
+def contradictions(seen: Index) -> list[Finding]:
+    """What two ends, senders or nodes do to each other: true whatever else runs."""
+    return [it for it in judge(seen) if it.code not in ABSENCE]
+
+
+def absences(seen: Index) -> list[Finding]:
+    """What is missing, as far as the system is known."""
+    return [it for it in judge(seen) if it.code in ABSENCE]
+
+
+def check(plan: System, graph: System, messages: Mapping[str, int] = NO_COUNTS) -> list[Finding]:
+    """What is wrong with a system, and other than planned; empty for a fleet as planned. ``messages``
+    counts those of each topic, where they were counted."""
+    with gc_paused():
+        by_plan, seen = side_by_side(plan, graph, messages)
+        finders = [it for it in FINDERS if not (it.nodes and is_recorded(graph))]
+        found = [finding for it in finders for finding in it.find(by_plan, seen)]
+        found += _besides(by_plan, seen, found)
+    return inconclusive_where_in_doubt(sorted(found, key=lambda it: it.code), graph)
+
+
+def side_by_side(
+    plan: System, graph: System, messages: Mapping[str, int] = NO_COUNTS
+) -> tuple[Planned, Index]:
+    """The look-ups of a plan and a system, with the same words for what is made at run time."""
+    fitting, there = fitted(plan, graph)
+    by_plan = planned(fitting)
+    edges = without_bridged(fitting, there.edges)
+    return by_plan, beside(by_plan, there._replace(edges=edges), messages)
+
+
+def _besides(plan: Planned, seen: Index, found: Sequence[Finding]) -> Iterator[Finding]:
+    """What is wrong with the system, without what is meant, and what is found with its cause by the
+    plan: under the same code, or as an end that is missing."""
+    said = {(it.code, about) for it in found for about in (*it.names, it.node) if about}
+    said |= {(it.code, f"of {it.robot}") for it in found if it.robot}
+    lost = {name for node, *_, name in missing(plan, seen) if node not in plan.may_miss}
+    for it in judge(seen._replace(system=_without_planned(plan, seen.system))):
+        options = RULES[it.code].options
+        abouts = (*it.names, it.node, *[f"of {it.robot}"] * bool(options["robot_wide"]))
+        by_plan = any((it.code, about) in said for about in abouts)
+        absent = options["absence"] and not lost.isdisjoint(it.names)
+        if not (by_plan or absent or _is_meant(plan, seen, it)):
+            yield it
+
+
+def _is_meant(plan: Planned, seen: Index, finding: Finding) -> bool:
+    """Whether all who do with its names what it is about are planned to."""
+    roles = RULES[finding.code].options["meant"]
+    ends = [end for name in finding.names for end in ends_of(seen, name)]
+    about = [end for end in ends if isinstance(roles, tuple) and end.role in roles]
+    return bool(about) and all(_is_planned(plan, end) for end in about)
+
+
+def _is_planned(plan: Planned, end: End) -> bool:
+    if (end.node, end.kind, end.role, end.name) in plan.ends:
+        return True
+    topics = (it for it in plan.system.topics if it.name == end.name and end.role == PUBLISHES)
+    return any(fnmatchcase(end.node, pattern) for it in topics for pattern in it.senders)
+
+
+def _without_planned(plan: Planned, graph: System) -> System:
+    """The graph without the states that the plan has: they are compared with it."""
+    states_ = {it.name for it in plan.system.nodes if it.lifecycle}
+    timed = dict(planned_states.planned_clocks(plan.system))
+    nodes_ = (it._replace(lifecycle="") if it.name in states_ else it for it in graph.nodes)
+    parameters = (it for it in graph.parameters if it.name != SIM_TIME or it.node not in timed)
+    return graph._replace(nodes=tuple(nodes_), parameters=tuple(parameters))
 
 
 def inconclusive_where_in_doubt(found: list[Finding], graph: System) -> list[Finding]:

@@ -1,18 +1,36 @@
-"""How a rule of the live graph is declared: on the function that finds it."""
+"""How a rule about a system, or a plan and a system, is declared: on the function that finds it."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, Literal, TypeVar
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import Rule, rule
+from multibot_rewrite.record import NamedTuple
+
+if TYPE_CHECKING:
+    from multibot_rewrite.rules.index import Index
+    from multibot_rewrite.rules.planned import Planned
 
 _Check = TypeVar("_Check", bound=Callable[..., Any])
+_Pair = Callable[["Planned", "Index"], Iterator[Finding]]
 # How pictures show what a finding is about; "" is violet for an error, blue for a warning.
 Drawn = Literal["", "missing", "leak", "cross-talk", "unexpected"]
+# What the examples of a rule are written in: lines of a system, or of a plan and a system.
+SYSTEM, PAIR = "system", "pair"
 
 
-def graph_rule(
+class Finder(NamedTuple):
+    """A function that finds by a plan what ``rule`` is about. With ``nodes`` it asks which nodes run,
+    which a recording does not know."""
+
+    rule: Rule
+    find: _Pair
+    nodes: bool
+
+
+def system_rule(
     code: str,
     name: str,
     level: str,
@@ -20,33 +38,45 @@ def graph_rule(
     absence: bool = False,
     drawn: Drawn = "",
     all_ends: bool = False,
+    meant: tuple[str, ...] = (),
+    robot_wide: bool = False,
     **words: str | int,
 ) -> Callable[[_Check], Rule]:
-    """Makes a function a rule: it gets a ``View`` and yields what its own ``finding`` makes.
+    """Makes a function a rule about any system: it gets an ``Index`` and yields what its own
+    ``finding`` makes.
 
     ``absence``: the rule finds that something is missing, which an incomplete view cannot prove.
-    ``all_ends``: a finding names one node, and is about all nodes that use the names. The other
-    ``words`` are those of ``findings.rule.declare``; the examples are lines of
-    ``tests/support/graph_examples.py``.
+    ``all_ends``: a finding names one node, and is about all nodes that use the names. ``meant`` are
+    roles: where all who have them at the names of a finding are planned to, it is no fault.
+    ``robot_wide``: what a plan finds of a robot is all that there is of it. The other ``words`` are
+    those of ``findings.rule.declare``; the examples are lines of ``tests/support/graph_examples.py``
+    that begin with ``running:``.
     """
-    options = {"absence": absence, "drawn": drawn, "all_ends": all_ends}
-    return rule(code, name, level, formats=("graph",), options=options, **words)
+    options: dict[str, object] = {"absence": absence, "drawn": drawn, "all_ends": all_ends}
+    options |= {"meant": meant, "robot_wide": robot_wide}
+    return rule(code, name, level, formats=(SYSTEM,), options=options, **words)
 
 
-def danger_rule(
+def pair_rule(
     code: str,
     name: str,
     level: str,
     *,
     absence: bool = False,
     drawn: Drawn = "",
-    planned: str = "",
+    nodes: bool = True,
     **words: str | int,
 ) -> Callable[[_Check], Rule]:
-    """Makes a function a rule about any system of several robots: it gets a ``Seen``.
+    """Makes a function a rule about a plan and what is seen: it gets a ``Planned`` and an ``Index``.
 
-    ``planned`` is the code of the rule that says the same of what is in a plan. Examples have the
-    lines of ``graph_rule`` that begin with ``running:``; a robot is every ``robot1``, ``robot2`` ...
+    ``nodes``: it asks which nodes run, which a recording does not know. The rest is as for
+    ``system_rule``.
     """
-    options = {"absence": absence, "drawn": drawn, "all_ends": False, "planned": planned}
-    return rule(code, name, level, formats=("danger",), options=options, **words)
+    options = {"absence": absence, "drawn": drawn, "all_ends": False, "nodes": nodes}
+    return rule(code, name, level, formats=(PAIR,), options=options, **words)
+
+
+def found_by_plan(*rules: Rule, nodes: bool = True) -> Callable[[_Pair], Finder]:
+    """Makes a function one that finds, by a plan, what system rules are about: the same fault, which
+    the plan shows where the system alone does not, or of which it knows the cause."""
+    return lambda find: Finder(rules[0], find, nodes)

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from functools import cache, partial
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence, Set
+from functools import wraps
+from typing import Any, TypeVar, cast
 
+from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules import words
 from multibot_rewrite.rules.ownership import Whose
 from multibot_rewrite.system.conventions import EVERYBODYS, only_looks
 from multibot_rewrite.system.records import (
     CALLS,
+    KINDS,
     OFF,
     PUBLISHES,
     SERVES,
@@ -24,6 +27,12 @@ from multibot_rewrite.system.records import (
 
 # In the order of the fields of Ends.
 _PLACE = {role: at for at, role in enumerate((PUBLISHES, SUBSCRIBES, SERVES, CALLS))}
+NO_COUNTS: Mapping[str, int] = {}
+NO_NAMES: Mapping[str, str] = {}
+NO_SENDERS: Mapping[tuple[str, str], tuple[str, ...]] = {}
+# Node, kind, role and name of an end.
+EndKey = tuple[str, str, str, str]
+_Look = TypeVar("_Look", bound=Callable[..., Any])
 TF = "tf2_msgs/msg/TFMessage"
 NO_NAMESPACE = "the robot without a namespace"
 
@@ -56,14 +65,37 @@ class Tree(NamedTuple):
     listeners: tuple[str, ...]
 
 
+class Known(NamedTuple):
+    """What is known of a system besides what it shows.
+
+    ``home`` has the tf topic of each robot, ``senders`` the nodes that are known to send a transform
+    (parent, child). ``parts`` are nodes of robots whatever they are called, ``tools`` patterns of
+    nodes that are none. ``clocks`` are nodes of which a plan says on which clock they are, ``relays``
+    nodes that are to send their robot's tf elsewhere as well. ``messages`` counts those that came on
+    each topic in ``seconds``, where they were counted.
+    """
+
+    home: Mapping[str, str] = NO_NAMES
+    senders: Mapping[tuple[str, str], tuple[str, ...]] = NO_SENDERS
+    parts: Container[str] = ()
+    tools: tuple[str, ...] = ()
+    clocks: Container[str] = ()
+    relays: Container[str] = ()
+    messages: Mapping[str, int] = NO_COUNTS
+    seconds: float = 0.0
+
+
+NOTHING_KNOWN = Known()
+
+
 class Index(NamedTuple):
     """A system; ``names`` has the ends of each (kind, name), without hidden ones.
 
     ``robot`` and ``frame_robot`` have the robot of a node or name and of a frame, empty where it is of
     none or of all; ``plain`` and ``plain_frame`` the name without the robot's. ``nodes`` counts the
     nodes by name. ``topics`` are the topics but tf and what every node has; ``orders`` those by which a
-    robot is moved or sent somewhere. ``by_robot`` makes, when it is first asked, the ends of each
-    (robot, kind, name without the robot's).
+    robot is moved or sent somewhere. ``known`` is what is known besides. ``memo`` is filled while
+    rules look at it (``once``).
     """
 
     system: System
@@ -77,14 +109,32 @@ class Index(NamedTuple):
     topics: tuple[Ends, ...]
     orders: Mapping[str, Ends]
     trees: tuple[Tree, ...]
-    by_robot: Callable[[], Mapping[tuple[str, str, str], Ends]]
+    known: Known
+    memo: dict[object, Any]
 
     def of_robot(self, robot: str, kind: str, plain: str) -> Ends | None:
         """The ends of a robot's name, by the name without the robot's."""
-        return self.by_robot().get((robot, kind, plain))
+        return _by_robot(self).get((robot, kind, plain))
+
+    def is_tool(self, node: str) -> bool:
+        """Is the node none of the robots', but one that comes and goes beside any?"""
+        return node not in self.known.parts and is_tool(node, self.known.tools)
 
 
-def index(system: System, whose: Whose) -> Index:
+def once(make: _Look) -> _Look:
+    """A look-up that is made when it is first asked, and kept by the last index that it is asked of."""
+
+    @wraps(make)
+    def found(*indices: Any) -> Any:
+        memo = indices[-1].memo
+        if make not in memo:
+            memo[make] = make(*indices)
+        return memo[make]
+
+    return cast(_Look, found)
+
+
+def index(system: System, whose: Whose, known: Known = NOTHING_KNOWN) -> Index:
     """The look-ups, made once."""
     names = {(it.kind, it.name): it for it in _ends(system.ends)}
     topics = [it for it in names.values() if it.kind == TOPIC]
@@ -96,16 +146,43 @@ def index(system: System, whose: Whose) -> Index:
         tuple(it for it in topics if it.name not in EVERYBODYS and it.type != TF),
         {it.name: it for it in topics if words.is_order(whose.plain(it.name), it.type)},
         tuple(_trees(system, names.values())),
-        cache(partial(_by_robot, whose, names)),
+        known,
+        {},
     )
 
 
-def _by_robot(
-    whose: Whose, names: Mapping[tuple[str, str], Ends]
-) -> Mapping[tuple[str, str, str], Ends]:
-    return {
-        (whose.robot(name), kind, whose.plain(name)): ends for (kind, name), ends in names.items()
-    }
+@once
+def _by_robot(it: Index) -> Mapping[tuple[str, str, str], Ends]:
+    return {(it.robot(name), kind, it.plain(name)): ends for (kind, name), ends in it.names.items()}
+
+
+@once
+def by_node(it: Index) -> Mapping[str, Sequence[End]]:
+    """The ends of each node, hidden ones as well."""
+    found: dict[str, list[End]] = defaultdict(list)
+    for end in it.system.ends:
+        found[end.node].append(end)
+    return found
+
+
+@once
+def types(it: Index) -> Mapping[EndKey, str]:
+    """The type of each end, hidden ones as well."""
+    return {(end.node, end.kind, end.role, end.name): end.type for end in it.system.ends}
+
+
+@once
+def published(it: Index) -> Set[str]:
+    """The topics that somebody publishes."""
+    return {name for (kind, name), ends in it.names.items() if kind == TOPIC and ends.publishers}
+
+
+def ends_of(it: Index, name: str) -> Iterator[End]:
+    """All ends of a name, whatever their kind."""
+    for kind in KINDS:
+        found = it.names.get((kind, name))
+        if found:
+            yield from (end for side in found[3:] for end in side)
 
 
 def _ends(endpoints: Iterable[End]) -> Iterator[Ends]:
@@ -129,14 +206,23 @@ def _trees(system: System, names: Iterable[Ends]) -> Iterator[Tree]:
     for ends in names:
         if ends.type == TF:
             topics[tree_topic(ends.name)].append(ends)
-    for frame in (it for it in system.edges if it.sure != OFF):
-        edges[tree_topic(frame.topic)].append(frame)
+    for frame in system.edges:
+        if "/_" not in frame.topic and frame.sure != OFF:
+            edges[tree_topic(frame.topic)].append(_without_slash(frame))
     for topic in dict.fromkeys((*edges, *topics)):
         own = topics.get(topic, ())
         heard = (node for frame in edges.get(topic, ()) for node in frame.publishers)
         senders = (*(end.node for it in own for end in it.publishers), *heard)
         listeners = (end.node for it in own if it.name == topic for end in it.subscribers)
         yield Tree(topic, tuple(edges.get(topic, ())), unique(senders), unique(listeners))
+
+
+def _without_slash(frame: Edge) -> Edge:
+    """tf2 takes a frame with a slash in front as one without (buffer_core.cpp stripSlash)."""
+    if not (frame.child.startswith("/") or frame.parent.startswith("/")):
+        return frame
+    child, parent = (it.removeprefix("/") for it in (frame.child, frame.parent))
+    return frame._replace(child=child, parent=parent)
 
 
 def unique(names: Iterable[str]) -> tuple[str, ...]:
@@ -184,6 +270,16 @@ def robots_of(it: Index, nodes: Iterable[str]) -> tuple[str, ...]:
     theirs = {it.plain(node) for node in known if it.robot(node)}
     twins = any(node in theirs for node in known if not it.robot(node))
     return (*robots, NO_NAMESPACE) if twins else robots
+
+
+def in_namespaces_above(node: str, name: str) -> Iterator[str]:
+    """A name directly in a node's namespace, moved to each of the namespaces above."""
+    namespace = node.rpartition("/")[0]
+    while namespace and name.startswith(f"{namespace}/"):
+        rest = name.removeprefix(namespace)
+        namespace = namespace.rpartition("/")[0]
+        yield namespace + rest
+        name = namespace + rest
 
 
 def tree_topic(topic: str) -> str:

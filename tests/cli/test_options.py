@@ -279,6 +279,31 @@ def test_help_in_colour(capsys: pytest.CaptureFixture[str]) -> None:
     assert "\033" not in plain
 
 
+@pytest.mark.parametrize("name", [*COMMANDS, *(it.name for it in PROGRAMS)])
+def test_the_short_help_fits_a_screen_and_names_every_option(
+    name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ("multibot", name) if name in COMMANDS else (name,)
+    code, shown, err = said(capsys, *words, "-h")
+    assert (code, err) == (0, "")
+    lines = shown.splitlines()
+    assert len(lines) <= 24 and max(map(len, lines)) <= 80
+    assert lines[0].startswith(f"usage: {' '.join(words)} ")
+    assert sum(line.startswith("  ") and words[-1] in line for line in lines) >= 2
+    names = [it.names[-1] for group in ALL[name].groups for it in group.options]
+    assert [it for it in names if it.startswith("-") and f" {it}" not in shown] == []
+    assert len(said(capsys, *words, "--help")[1]) > len(shown)
+
+
+def test_the_list_of_commands_fits_a_screen(capsys: pytest.CaptureFixture[str]) -> None:
+    lines = said(capsys, "multibot", "-h")[1].splitlines()
+    assert len(lines) <= 24 and max(map(len, lines)) <= 80
+
+
+def test_there_are_at_most_twelve_commands() -> None:
+    assert len(COMMANDS) <= 12
+
+
 def test_help_of_a_command_by_name(capsys: pytest.CaptureFixture[str]) -> None:
     assert said(capsys, "multibot", "help", "plan") == said(capsys, "multibot", "plan", "--help")
     assert said(capsys, "multibot", "help") == said(capsys, "multibot", "--help")

@@ -47,7 +47,7 @@ def test_two_robots_are_named_both() -> None:
     [
         pytest.param(lost("robot2", "scan"), id="topic"),
         pytest.param(lost("robot2", level=WARNING), id="level"),
-        pytest.param(lost("robot2", code="MG103"), id="code"),
+        pytest.param(lost("robot2", code="MG310"), id="code"),
         pytest.param(lost("robot2", file="rover.urdf"), id="file"),
         pytest.param(lost("robot2")._replace(hint=""), id="cause"),
         pytest.param(lost("robot2")._replace(message="/robot1/cmd_vel is lost"), id="robot"),

@@ -23,7 +23,7 @@ from multibot_rewrite.system.records import System
 
 # Rules about names: one node under another topic, of another robot, or not there. In random files two
 # nodes of other types may have one topic, which is told, and is right.
-NAMES = ("MG101", "MG102", "MG103", "MG104", "MG105", "MG107", "MG108")
+NAMES = ("MG101", "MG102", "MG310", "MG311", "MG320", "MG321", "MG301", "MG307", "MG108")
 
 
 @pytest.mark.parametrize("seed", range(8))

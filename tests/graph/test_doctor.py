@@ -6,8 +6,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from fault_changes import Fault, nav, shared_tf
-from graph_cases import environment, sent
+from fault_changes import Fault, added, nav, shared_tf
+from graph_cases import environment, qos, sent
 from graph_faults import FAULTS
 from graph_faults_page import lines
 from healthy_systems import (
@@ -179,6 +179,25 @@ def test_what_is_not_seen_may_be_missing_only_in_the_view() -> None:
     doubt = Caveat("not-settled", True, "still changing")
     partial = graph._replace(environment=graph.environment._replace(caveats=(doubt,)))
     assert {it.level for it in diagnose(partial).findings} == {INCONCLUSIVE}
+
+
+def second_lidar(graph: System) -> System:
+    """A second lidar with another QoS: the reader gets the scans of one."""
+    graph = added("/robot1/rear_lidar", (PUBLISHES, "/robot1/scan", SCAN))(graph)
+    weak, strong = qos(reliability="BEST_EFFORT"), qos(reliability="RELIABLE")
+    ends = (
+        it._replace(qos=weak if it.node == "/robot1/rear_lidar" else strong)
+        if it.name == "/robot1/scan"
+        else it
+        for it in graph.ends
+    )
+    return graph._replace(ends=tuple(reversed(tuple(ends))))
+
+
+def test_a_reader_that_hears_one_of_two_publishers_is_warned() -> None:
+    found = diagnose(second_lidar(nav2_with_tools())).findings
+    assert {(it.code, it.level) for it in found} == {("MG307", "warning")}
+    assert all("no message of /robot1/rear_lidar ever arrives" in it.hint for it in found)
 
 
 # ---------------------------------------------------------------- the plan of what is seen

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import pytest
 from fault_changes import CHANGE_STATE, added, both
-from graph_cases import environment, qos, sent
+from graph_cases import environment, sent
 from healthy_systems import (
     CLOCK,
     NAVIGATE,
@@ -28,19 +28,6 @@ from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
 
 IMU = "sensor_msgs/msg/Imu"
 EMPTY = System((), (), (), environment())
-
-
-def hears_one_of_two(graph: System) -> System:
-    """A second lidar with another QoS: the reader gets the scans of the first."""
-    graph = added("/robot1/rear_lidar", (PUBLISHES, "/robot1/scan", SCAN))(graph)
-    weak, strong = qos(reliability="BEST_EFFORT"), qos(reliability="RELIABLE")
-    ends = (
-        it._replace(qos=weak if it.node == "/robot1/rear_lidar" else strong)
-        if it.name == "/robot1/scan"
-        else it
-        for it in graph.ends
-    )
-    return graph._replace(ends=tuple(reversed(tuple(ends))))
 
 
 def two_windows(graph: System) -> System:
@@ -68,7 +55,6 @@ SILENT: dict[str, Callable[[System], System]] = {
     ),
     "a joystick node listens to it too": added("/joy_node", (SUBSCRIBES, "/clock", CLOCK)),
     "two windows of RViz": two_windows,
-    "a reader that hears one of two publishers": hears_one_of_two,
     "the RViz panel of a manager that is not used": added(
         "/robot1/rviz2", (CALLS, "/robot1/lifecycle_manager_slam/manage_nodes", TRIGGER)
     ),

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from fault_changes import nav, shared_tf
-from graph_examples import read_danger, read_example
+from graph_examples import read_example, read_system
 from healthy_systems import SYSTEMS, plan
 from node_answers import told
 
@@ -18,8 +18,7 @@ from multibot_rewrite.graph.merging import Look, merged
 from multibot_rewrite.graph.zenoh.cdr import read_header_frame
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.model import InputError
-from multibot_rewrite.rules.check import check
-from multibot_rewrite.rules.find import judge
+from multibot_rewrite.rules.check import check, judge
 from multibot_rewrite.rules.index import index
 from multibot_rewrite.rules.ownership import Whose
 from multibot_rewrite.system.answers import with_answers
@@ -55,7 +54,7 @@ def serialized(frame: str, mark: bytes = b"\x00\x01", rest: bytes = b"\x00" * 9)
 
 
 def found(*lines: str) -> list[Finding]:
-    return judge(read_danger(TWO_ROBOTS + "".join(f"running: {it}\n" for it in lines)))
+    return judge(read_system(TWO_ROBOTS + "".join(f"running: {it}\n" for it in lines)))
 
 
 def heard(graph: System, topic: str, frame: str) -> System:
@@ -64,7 +63,7 @@ def heard(graph: System, topic: str, frame: str) -> System:
 
 def codes(text: str, topic: str, frame: str) -> list[str]:
     """Of an example in which a message on ``topic`` names ``frame``."""
-    seen = read_danger(text)
+    seen = read_system(text)
     return [it.code for it in judge(index(heard(seen.system, topic, frame), Whose(*seen[1:6])))]
 
 

@@ -8,8 +8,6 @@ from plans import own
 
 from multibot_rewrite import catalogue
 from multibot_rewrite.rules.check import RULES, check
-from multibot_rewrite.rules.find import DANGERS
-from multibot_rewrite.rules.recording import RULES as OF_RECORDINGS
 from multibot_rewrite.system.records import ACTION, CALLS, SERVICE, Edge
 
 EXAMPLE = """\
@@ -78,5 +76,4 @@ def test_a_line_of_another_language_is_refused(line: str) -> None:
 
 def test_every_declared_rule_is_asked() -> None:
     declared = {code for code in catalogue.rules() if code.startswith("MG")}
-    # Those of a recording are found by one function, which test_bags.py asks for.
-    assert declared == RULES.keys() | DANGERS.keys() | {it.code for it in OF_RECORDINGS}
+    assert declared == RULES.keys()

@@ -172,7 +172,7 @@ def test_a_frame_with_another_parent_is_found(fleet: Fleet, data: st.DataObject)
     edge = data.draw(st.sampled_from(fleet.graph.edges))
     other = edge._replace(parent="somewhere_else")
     found = check(fleet.plan, fleet.graph._replace(edges=(*fleet.graph.edges, other)))
-    assert "MG201" in {finding.code for finding in found}
+    assert "MG401" in {finding.code for finding in found}
 
 
 @settings(max_examples=50, deadline=None)

@@ -176,7 +176,7 @@ def one_robot_killed(plan: Path, offset: int) -> Iterator[IO[str]]:
 def test_a_killed_node_stays_visible_to_who_saw_it_alive(ros: None, plan: Path) -> None:
     """Who looks later does not see it."""
     with one_robot_killed(plan, 82) as lines:
-        twins = wait_for(lines, "+ /robot1/drive", "MG105 2 nodes have this name")
+        twins = wait_for(lines, "+ /robot1/drive", "MG301 2 nodes have this name")
         fresh = check(plan, 82)
     assert "a node that was killed stays visible for 20 s" in twins
     assert (fresh.returncode, fresh.stdout) == (0, ""), fresh.stderr
@@ -185,8 +185,8 @@ def test_a_killed_node_stays_visible_to_who_saw_it_alive(ros: None, plan: Path) 
 @pytest.mark.deep
 def test_after_its_lease_a_dead_node_is_gone(ros: None, plan: Path) -> None:
     with one_robot_killed(plan, 83) as lines:
-        wait_for(lines, "+ /robot1/drive", "MG105")
-        wait_for(lines, "- /robot1/drive", "MG105")
+        wait_for(lines, "+ /robot1/drive", "MG301")
+        wait_for(lines, "- /robot1/drive", "MG301")
         wait_for(lines, "2/2 nodes", "0 findings", "as planned")
 
 

@@ -92,7 +92,7 @@ def test_without_rules_it_leaks_and_is_reported() -> None:
     words = [*PAIR, "--stack", "robot_state", "--layout", "tf-per-robot", "--without-rules", "-v"]
     done = rehearse(4, *words)
     assert done.returncode == 1, done.stderr
-    assert "/robot1/robot_state_publisher: error: MG103 uses /tf" in done.stdout
+    assert "graph: error: MG402 robot1 and robot2 send frames without" in done.stdout
     assert "/robot2/robot_state_publisher: error: MG102" in done.stdout
 
 
@@ -110,8 +110,8 @@ def test_a_stack_that_leaks_is_shown_leaking(tmp_path: Path) -> None:
     )
     done = rehearse(5, *PAIR, "--nodes", str(own), "--stack", "mine", "--layout", "L2", "-v")
     assert done.returncode == 1
-    assert "/robot1/siren: error: MG103 uses /alarm" in done.stdout
-    assert "/robot2/siren: error: MG103 uses /alarm" in done.stdout
+    assert "/robot1/siren: error: MG320 uses /alarm" in done.stdout
+    assert "/robot2/siren: error: MG320 uses /alarm" in done.stdout
     assert "robot_state_publisher" not in done.stdout
 
 

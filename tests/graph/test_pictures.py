@@ -453,9 +453,9 @@ def test_every_finding_is_listed_and_links_to_what_it_is_about() -> None:
         target = section(tree, pick(row, "a", "place")[0].get("href")[1:])
         by_code[finding.code] = pick(target, "text")[0].text_content()
     assert by_code["MG101"].endswith("/bt_navigator")
-    assert by_code["MG103"] == "/cmd_vel"
-    assert by_code["MG104"].endswith("/scan")
-    assert by_code["MG201"] == "lidar_link/robot1"
+    assert by_code["MG310"] == "/cmd_vel"
+    assert by_code["MG321"].endswith("/scan")
+    assert by_code["MG401"] == "lidar_link/robot1"
 
 
 def test_a_code_leads_to_what_it_means() -> None:
@@ -471,7 +471,7 @@ def test_a_code_leads_to_what_it_means() -> None:
         words = (code, rule.name, rule.what, f"Why: {rule.why}", f"Fix: {rule.fix}")
         assert all(part.replace("`", "") in text for part in words)
     assert len(pick(section(tree, "rules"), "details")) == len(links)
-    assert pick(section(tree, "rule-MG103"), "code")[0].text == "/tf"
+    assert pick(section(tree, "rule-MG401"), "code")[0].text == "publish_tf: false"
 
 
 def test_a_page_without_findings_explains_nothing() -> None:
@@ -485,9 +485,9 @@ def test_a_fault_of_twenty_robots_is_one_row() -> None:
     for robot in plan.robots:
         graph = nav2_graphs.moved(graph, f"/{robot.name}/topic1", "/topic1", "driver")
     scene = nav2_graphs.scene(plan, graph)
-    assert Counter(it.code for it in scene.findings) == {"MG102": 20, "MG103": 20}
+    assert Counter(it.code for it in scene.findings) == {"MG102": 20, "MG320": 20}
     rows = pick(page(scene), "details", "finding")
-    assert [pick(row, "a", "rule")[0].text for row in rows] == ["MG102", "MG103"]
+    assert [pick(row, "a", "rule")[0].text for row in rows] == ["MG102", "MG320"]
     for row in rows:
         (who,) = pick(row, "b", "who")
         assert who.text == "robot1, robot2, robot3 and 17 more"

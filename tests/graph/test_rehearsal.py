@@ -242,7 +242,7 @@ def _without_endpoints(graph: System) -> System:
         (_without_endpoints, 2),
         (lambda full: full._replace(edges=full.edges[1:]), 2),
         # What is seen and is wrong does not go away.
-        (lambda _: _graph("MG103.json"), 1),
+        (lambda _: _graph("MG320.json"), 1),
     ],
 )
 def test_a_look_that_only_lacks_something_is_taken_again(

@@ -25,7 +25,7 @@ from multibot_rewrite.pages.page import to_html
 from multibot_rewrite.pages.page_sections import ids_of, make_ids
 from multibot_rewrite.pages.scene import BRIDGE, Scene
 from multibot_rewrite.pages.states import CLASH, MISSING, OK, UNEXPECTED, robots_of
-from multibot_rewrite.rules.pair.comparison import make_view
+from multibot_rewrite.rules.check import side_by_side
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.records import ACTION, SERVES, End, Node
 
@@ -77,7 +77,7 @@ def test_an_open_end_of_the_plan_is_a_finding_with_its_explanation() -> None:
 
 
 def test_a_fault_in_tf_makes_its_robots_red() -> None:
-    assert [it.finding.code for it in report_pages.tf_collision().rows] == ["MG202"]
+    assert [it.finding.code for it in report_pages.tf_collision().rows] == ["MG402"]
     assert cards(report_pages.tf_collision()) == {"robot1": "bad"}
     (card,) = page(report_pages.tf_collision()).find_class("card")
     assert card.get("data-robot") == "0 1"
@@ -113,8 +113,8 @@ def test_of_a_large_fleet_the_robots_with_findings_are_drawn() -> None:
 
 def test_both_robots_of_cross_talk_are_concerned() -> None:
     rows = {it.finding.code: it.robots for it in report_pages.spoiled().rows}
-    assert rows["MG104"] == ("robot1", "robot2")
-    assert rows["MG103"] == ("robot1",)
+    assert rows["MG321"] == ("robot1", "robot2")
+    assert rows["MG310"] == ("robot1",)
     assert cards(report_pages.spoiled()) == {"robot1": "bad", "robot2": "bad"}
 
 
@@ -138,9 +138,9 @@ def test_a_robot_is_not_concerned_by_a_robot_with_a_longer_name() -> None:
 
 
 def test_a_frame_concerns_the_robot_that_has_its_word() -> None:
-    view = make_view(report_pages.rich_plan(), report_pages.rich_graph())
-    found = Finding("MG201", ERROR, "has two parents", names=("robot2/laser",))
-    assert robots_of(view, found) == {"fleet_a/robot2"}
+    by_plan, _ = side_by_side(report_pages.rich_plan(), report_pages.rich_graph())
+    found = Finding("MG401", ERROR, "has two parents", names=("robot2/laser",))
+    assert robots_of(by_plan, found) == {"fleet_a/robot2"}
 
 
 @pytest.mark.parametrize("fault", FAULTS, ids=[it.name for it in FAULTS])
@@ -247,7 +247,7 @@ def drawn(tmp_path: Path, *given: str) -> tuple[int, html.HtmlElement]:
         ("MG102", (), "not as planned", 1),
         ("MG108", (), "as planned", 0),
         ("MG108", ("--fail-on", "warning"), "not as planned", 1),
-        ("MG102", ("--ignore", "MG1"), "as planned", 0),
+        ("MG102", ("--ignore", "MG1,MG3"), "as planned", 0),
     ],
 )
 def test_page_and_command_say_the_same(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.rules.find import absences
+from multibot_rewrite.rules.check import absences
 from multibot_rewrite.rules.index import Index, index
 from multibot_rewrite.rules.ownership import ALONE
 from multibot_rewrite.rules.system.matching import types_differ

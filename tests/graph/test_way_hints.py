@@ -23,7 +23,7 @@ def plan(release: str, stack: str) -> System:
 
 
 def hint(of: System, node: str) -> str:
-    view: Any = SimpleNamespace(plan=of, nodes={it.name: it for it in of.nodes})
+    view: Any = SimpleNamespace(system=of, nodes={it.name: it for it in of.nodes})
     end = planned_end(f"/robot1/{node}", "topic", "publishes", "/robot1/tf", "", "/tf")
     return how_to_remap(view, end)
 
@@ -83,9 +83,9 @@ def test_a_node_under_another_name_is_told_where_its_name_is_given(
     of = plan("lyrical", stack)
     ownership = SimpleNamespace(without_robot=lambda name, robot: name.removeprefix(f"/{robot}"))
     view: Any = SimpleNamespace(
-        plan=of,
+        system=of,
         nodes={it.name: it for it in of.nodes},
         robot_of={f"/robot1/{node}": "robot1"},
-        ownership=ownership,
+        names=ownership,
     )
     assert words in why_other_name(view, f"/robot1/{node}", f"/{node}").hint

@@ -23,8 +23,10 @@ from paths import FIXTURES, ROBOTS, ROOT, SUPPORT
 from vendor_sources import VARIABLE, sources_folder
 
 from multibot_rewrite import launch
+from multibot_rewrite.cli.declared.commands import PROGRAMS
 from multibot_rewrite.cli.rehearse import stage
-from multibot_rewrite.launch.nav2_programs import MANAGER, PROGRAMS, SLAM
+from multibot_rewrite.closure.moveit import MANAGER
+from multibot_rewrite.knowledge.programs import SLAM
 from multibot_rewrite.releases import RELEASES
 
 REASON = f"not tried in the real launch, which is not here: {launch.missing()}"

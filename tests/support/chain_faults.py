@@ -159,7 +159,7 @@ def chain_rows() -> tuple[Fault, ...]:
         Fault(
             "robot2's amcl reads the scan of the robot without a namespace", beside_the_root,
             renamed("/robot2/scan", "/scan", "/robot2/amcl"),
-            "MG322", ("/robot2/amcl", "/scan"),
+            "MG320", ("/robot2/amcl", "/scan"),
         ),
     )  # fmt: skip
 

@@ -287,29 +287,29 @@ L2, L1, L3, L4 = FOLDERS
 CASES = (
     Case(L2, "MG101", ("MG101",), without_namespace),
     Case(
-        L2, "MG102", ("MG102", "MG103"),
+        L2, "MG102", ("MG102", "MG310"),
         lambda g: moved(g, "/robot1/cmd_vel", "/cmd_vel", "diff_drive"),
     ),
     Case(
-        L2, "MG103", ("MG102", "MG103"),
+        L2, "MG320", ("MG102", "MG320"),
         lambda g: moved(g, "/robot2/status", "/status", "pilot"),
     ),
     Case(
-        L2, "MG104", ("MG102", "MG104"),
+        L2, "MG321", ("MG102", "MG321"),
         lambda g: moved(g, "/robot1/odom", "/robot2/odom", "pilot"),
     ),
     Case(
-        L2, "MG105", ("MG105",),
+        L2, "MG301", ("MG301",),
         lambda g: g._replace(nodes=(*g.nodes, Node("/robot1/pilot", ""))),
     ),
     Case(
-        L2, "MG106", ("MG106",),
+        L2, "MG306", ("MG306",),
         lambda g: with_type(
             g, "/robot1/odom", "/robot1/diff_drive", "geometry_msgs/msg/PoseStamped"
         ),
     ),
     Case(
-        L2, "MG107", ("MG107",),
+        L2, "MG307", ("MG307",),
         lambda g: with_qos(
             g, "/robot1/cmd_vel", qos(reliability="BEST_EFFORT"), qos(deadline=0.5)
         ),
@@ -322,15 +322,14 @@ CASES = (
         ),
     ),
     Case(L2, "MG109", ("MG109",), silent),
-    Case(L2, "MG110", ("MG110",), captured),
-    Case(L2, "MG111", ("MG111", "MG111"), unheard),
+    Case(L2, "MG303", ("MG303", "MG303", "MG303"), lambda g: captured(unheard(g))),
     Case(
-        L2, "MG201", ("MG201",),
+        L2, "MG401", ("MG401",),
         reframed(lambda f: f, Edge("base_footprint/robot1", "map", "/tf", False, ())),
     ),
-    Case(L2, "MG202", ("MG202",), reframed(bare)),
+    Case(L2, "MG402", ("MG402",), reframed(bare)),
     Case(
-        L2, "MG203", ("MG203",),
+        L2, "MG406", ("MG406",),
         reframed(lambda f: None if f.child == "base_link/robot1" else f),
     ),
     Case(
@@ -341,44 +340,44 @@ CASES = (
         ),
     ),
     Case(
-        L2, "MG205", ("MG102", "MG205"),
+        L2, "MG405", ("MG102", "MG405"),
         lambda g: reframed(
             lambda f: on("/robot1/tf", f) if of("robot1", f) and not f.static else f
         )(moved(g, "/tf", "/robot1/tf", "robot1/diff_drive")),
     ),
     Case(
-        L2, "MG206", ("MG203", "MG206"),
+        L2, "MG407", ("MG406", "MG407"),
         reframed(lambda f: prefixed(f, "robot1") if of("robot1", f) and f.static else f),
     ),
     Case(
-        L2, "MG207", ("MG203", "MG207"),
+        L2, "MG207", ("MG207", "MG406"),
         reframed(lambda f: bare(f) if of("robot1", f) and f.static else f),
     ),
     Case(
-        L1, "MG202", ("MG102",) * 6 + ("MG103",) * 6 + ("MG202",),
+        L1, "MG402", ("MG102",) * 6 + ("MG402",) + ("MG405",) * 2,
         lambda g: global_tf(g, "robot1", "robot2"),
     ),
     Case(
-        L1, "MG205", ("MG102",) * 3 + ("MG103",) * 3 + ("MG205",),
+        L1, "MG405", ("MG102",) * 3 + ("MG405",),
         lambda g: global_tf(g, "robot1"),
     ),
     Case(
-        L1, "MG206", ("MG203", "MG206"),
+        L1, "MG407", ("MG406", "MG407"),
         reframed(lambda f: prefixed(f, "robot2") if of("robot2", f) and f.static else f),
     ),
     Case(
-        L3, "MG205", ("MG102",) * 3 + ("MG103",) * 3 + ("MG205",),
+        L3, "MG405", ("MG102",) * 3 + ("MG405",),
         lambda g: global_tf(g, "robot2"),
     ),
     Case(L3, "MG207", ("MG207",), reframed(lambda f: bare(f) if of("robot2", f) else f)),
     Case(
-        L4, "MG205", ("MG102", "MG104", "MG205"),
+        L4, "MG405", ("MG102", "MG405"),
         lambda g: reframed(
             lambda f: f._replace(topic="/tf/robot2") if f.topic == "/tf/robot1" else f
         )(moved(g, "/tf/robot1", "/tf/robot2", "diff_drive_robot1")),
     ),
     Case(
-        L4, "MG206", ("MG206",),
+        L4, "MG407", ("MG407",),
         reframed(lambda f: prefixed(f, "robot1") if of("robot1", f) else f),
     ),
 )  # fmt: skip

@@ -19,6 +19,7 @@ Each line begins with ``planned:`` (it is in the plan), ``running:`` (it is in t
     NODE is STATE, NODE has PARAMETER VALUE          what it answers when it is asked for its state
     state of NODE: STATE, parameter NAME of NODE: VALUE     what it is planned to answer
     host of NODE: WORD, NODE on machine NUMBER       where it is planned to run, and where it runs
+    TOPIC came NUMBER times             how many messages of it came in a minute
     NODE controls INTERFACE by CONTROLLER, NODE keeps CONTROLLER STATE    a controller manager's answer
     NODE exports KIND INTERFACE, NODE claims KIND INTERFACE     of the hardware, of a controller
 
@@ -39,7 +40,7 @@ from plans import PlannedRobot, planned
 from plans import told as planned_told
 
 from multibot_rewrite.rules.guess import GuessedRobot, whose_by_guess, with_frames
-from multibot_rewrite.rules.index import Index, index
+from multibot_rewrite.rules.index import Index, Known, index
 from multibot_rewrite.spelling.plan import planned_end
 from multibot_rewrite.system.answers import Answer, with_answers
 from multibot_rewrite.system.conventions import SENT_BY_EVERY_NODE
@@ -81,6 +82,7 @@ HOST = re.compile(r"host of (/\S+): (\w+)")
 MACHINE = re.compile(r"(/\S+) on machine (\d)")
 INTERFACE = re.compile(r"(/\S+) (exports|claims) (command|state) (\S+)")
 CONTROLS = re.compile(r"(/\S+) controls (\S+) by (\w+)")
+CAME = re.compile(r"(/\S+) came (\d+) times")
 FRAME_ID = re.compile(r"frame_id (\S+) on (/\S+)")
 KEEPS = re.compile(r"(/\S+) keeps (\w+) (\w+)")
 ANSWERS = (STATE, SIM_TIME, CONTROLS, KEEPS, HAS, MACHINE)
@@ -107,14 +109,16 @@ def read_example(text: str) -> tuple[System, System]:
     return read_plan(planned), read_graph(running)
 
 
-def read_danger(text: str) -> Index:
+def read_system(text: str) -> Index:
     """The graph of an example without a plan."""
     plan, graph = read_example(text)
     assert not plan.ends, "a danger needs no plan: begin its lines with running:"
     robots = sorted({*ROBOT.findall(text)})
     frames = [name for frame in graph.edges for name in (frame.child, frame.parent)]
     guessed = (with_frames(GuessedRobot(it, f"/{it}"), frames) for it in robots)
-    return index(graph, whose_by_guess(guessed))
+    running = [line.removeprefix("running: ") for line in text.splitlines()]
+    messages = {name: int(count) for name, count in _words(CAME, running)}
+    return index(graph, whose_by_guess(guessed), Known(messages=messages, seconds=60.0))
 
 
 def read_states(lines: list[str]) -> tuple[Answer, ...]:
@@ -158,9 +162,8 @@ def _with_node(plan: System, name: str) -> System:
 def _is_known(line: str) -> bool:
     states = (PLANNED_STATE, PLANNED_PARAMETER, HOST)
     planned = (FRAMES, SHARED, TOPIC_OF, BRIDGED, ONE_OF, ENCLAVE, *states)
-    return any(
-        it.fullmatch(line) for it in (NODE, TRANSFORM, FRAME_ID, INTERFACE, *planned, *ANSWERS)
-    )
+    every = (NODE, TRANSFORM, FRAME_ID, INTERFACE, CAME, *planned, *ANSWERS)
+    return any(it.fullmatch(line) for it in every)
 
 
 def _words(pattern: re.Pattern[str], lines: Iterable[str]) -> Iterator[tuple[str, ...]]:

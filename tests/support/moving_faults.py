@@ -91,7 +91,7 @@ def tf_rows() -> tuple[Fault, ...]:
         Fault(
             "the EKF calls its frame odom_combined, amcl odom", nav,
             other_parent("base_footprint", "odom_combined", tf1),
-            "MG406", ("odom and base_footprint", "not connected"),
+            "MG406", ("2 roots", "odom_combined", "nobody sends"),
         ),
         Fault(
             "frame_prefix on top of a rewritten description", shared_tf, prefixed_twice,

@@ -154,7 +154,7 @@ def data_rows() -> tuple[Fault, ...]:
                 lambda g: without_node(without_node(g, "/robot1/lidar_driver"), "/robot2/lidar_driver"),
                 added("/lidar", (PUBLISHES, "/scan", SCAN)),
             ),
-            "MG322", ("robot1 and robot2", "/scan"),
+            "MG320", ("robot1 and robot2", "/scan"),
         ),
         Fault(
             "joint_state_publisher beside the driver", nav,

@@ -179,7 +179,7 @@ class Outcome(NamedTuple):
     @property
     def wrong(self) -> int:
         """Findings about parameters."""
-        return sum(it.code in ("MG131", "MG132", "MG133") for it in self.findings)
+        return sum(it.code in ("MG511", "MG132", "MG133") for it in self.findings)
 
 
 def cells() -> Iterator[Cell]:

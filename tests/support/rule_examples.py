@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, cast
 
 import yaml
-from graph_examples import read_danger, read_example
+from graph_examples import read_example, read_system
 
 from multibot_rewrite import RewriteRefused, rewrite_all, strip
 from multibot_rewrite.findings.finding import Finding
@@ -22,8 +22,8 @@ from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.policy import Policy
 from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.rules.check import check
-from multibot_rewrite.rules.find import judge
+from multibot_rewrite.rules.check import check, judge
+from multibot_rewrite.rules.declaration import PAIR, SYSTEM
 
 # What every companion file of an example stands beside, unless ``beside`` has another robot.urdf.
 DESCRIPTION = """\
@@ -48,9 +48,9 @@ COMPANIONS = {
 }
 # An option of rules about a file that only a build can ask.
 BUILT = "build"
-GRAPH, DANGER, REMAP = "graph", "danger", ("remap", "remap-urdf")
+REMAP = ("remap", "remap-urdf")
 # What is found in these has no line of a file.
-WITHOUT_FILE = (GRAPH, DANGER, *REMAP)
+WITHOUT_FILE = (PAIR, SYSTEM, *REMAP)
 POLICY: Policy = {"layout": "frames-per-robot", "affix": "prefix"}
 FLEET: dict[str, Any] = {
     **POLICY,
@@ -175,14 +175,14 @@ def remap_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
     return grouped(made.table.problems, {it: it for it in robots})
 
 
-def graph_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
+def pair_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
     """A plan and a graph in the lines of ``graph_examples``."""
     return check(*read_example(example))
 
 
-def danger_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
+def system_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
     """A graph in the same lines, without a plan."""
-    return judge(read_danger(example))
+    return judge(read_system(example))
 
 
 RUNNERS: dict[str, Callable[[Rule, str, Path], list[Finding]]] = {
@@ -192,6 +192,6 @@ RUNNERS: dict[str, Callable[[Rule, str, Path], list[Finding]]] = {
     "fleet": fleet_example,
     "fleet-urdf": description_example,
     **dict.fromkeys(REMAP, remap_example),
-    GRAPH: graph_example,
-    DANGER: danger_example,
+    PAIR: pair_example,
+    SYSTEM: system_example,
 }

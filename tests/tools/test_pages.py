@@ -102,7 +102,7 @@ def test_the_written_page_has_a_section_for_each() -> None:
 
 
 def test_a_link_leads_to_what_it_means() -> None:
-    assert meant("MG103", "findings", made()) == "findings/MG103.md"
+    assert meant("MG102", "findings", made()) == "findings/MG102.md"
     assert meant("findings", "findings", made()) == "findings/index.md"
     assert meant("MG999", "findings", made()) == "findings/index.md"
     assert meant("x", "nowhere", made()) == ""

@@ -99,7 +99,7 @@ INIT = Command(
     "init",
     "init",
     "%(prog)s [PATH...] [-n COUNT] [-o FLEET] [options]",
-    "Write a first fleet file for the robots of descriptions, packages or a repository.",
+    "Write a first fleet file, of descriptions or whole packages.",
     (
         Example("multibot init rover.urdf", "two robots of one description"),
         Example("multibot init -n 3 my_robot_ws/src", "the robot and all files found there"),
@@ -193,7 +193,7 @@ PLAN = Command(
     "plan",
     "plan",
     "%(prog)s INPUT ROBOT... [NAME:=VALUE...] [options]",
-    "Write what the ROS graph of a fleet should look like, or the remap rules that make it so.",
+    "Write the ROS graph that a fleet should have, or its rules.",
     (
         Example("multibot plan fleet.yaml -o plan.yaml", "for multibot check"),
         Example("multibot plan rover.urdf robot1 robot2 --stack nav2 --form table", "the rules"),
@@ -230,7 +230,7 @@ REHEARSE = Command(
     "rehearse",
     "rehearse",
     "%(prog)s INPUT ROBOT... [NAME:=VALUE...] [options]",
-    "Try the plan of a fleet on a real ROS graph, without robot or simulator.",
+    "Try a fleet's plan on a real ROS graph, without any robot.",
     (
         Example("multibot rehearse rover.urdf robot1 robot2 --stack nav2"),
         Example("multibot rehearse rover.urdf robot1 robot2 --stack nav2 --report nav2.html"),

@@ -64,7 +64,7 @@ CHECK = Command(
     "check",
     "check",
     "%(prog)s [PLAN] [options]",
-    "Compare the running system with its plan; without one, say what is wrong with it.",
+    "Is the running system as planned? No plan: what is wrong?",
     (
         Example("multibot check", "what is wrong with the robots that run now?"),
         Example("multibot check plan.yaml", "are they as planned?"),
@@ -116,7 +116,7 @@ CHECK_LAUNCH = Command(
     "check-launch",
     "check_launch",
     "%(prog)s [PACKAGE] FILE [NAME:=VALUE...] [options]",
-    "Say what would be wrong with the robots that a launch file starts; starts nothing.",
+    "Say what would be wrong with what a launch file starts.",
     (
         Example("multibot check-launch fleet.launch.py", "as ros2 launch takes it"),
         Example("multibot check-launch my_bringup two.launch.py sim:=false"),
@@ -160,7 +160,7 @@ LEARN = Command(
     "learn",
     "learn",
     "%(prog)s [options]",
-    "Make a file of nodes and stacks, for multibot plan, from nodes that are running now.",
+    "Describe nodes that run now, in a file for multibot plan.",
     (
         Example("multibot learn --node /my_driver,/my_planner --stack mine -o mine.yaml"),
         Example("multibot learn --namespace /robot1 --stack mine -o mine.yaml", "a whole robot"),
@@ -216,7 +216,7 @@ SNAPSHOT = Command(
     "snapshot",
     "snapshot",
     "%(prog)s [options]",
-    "Show what runs in the ROS graph now: nodes, endpoints, tf, environment.",
+    "Show what runs in the ROS graph now, or save it.",
     (
         Example("multibot snapshot", "a table"),
         Example(

@@ -20,7 +20,7 @@ INSPECT = Command(
     "inspect",
     "inspect",
     "%(prog)s [NAME | PATH...] [NAME:=VALUE...] [options]",
-    "Show what is known of a plugin, of descriptions, and of a xacro's arguments.",
+    "Show what is known of plugins, descriptions, xacro arguments.",
     (
         Example("multibot inspect libgazebo_ros_diff_drive.so", "which of its values are names?"),
         Example("multibot inspect urdf/", "what is known of all .urdf and .sdf, and what is not"),
@@ -61,7 +61,7 @@ EXPLAIN = Command(
     "explain",
     "explain",
     "%(prog)s CODE... [options]",
-    "Explain the code of a finding: what it is, why it matters, how to fix it.",
+    "Explain a finding's code: what it is, why, how to fix it.",
     (
         Example("multibot explain MB202"),
         Example("multibot explain undeclared-link", "by its name"),

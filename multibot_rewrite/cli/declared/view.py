@@ -26,7 +26,7 @@ VIEW = Command(
     "view",
     "view",
     "%(prog)s INPUT [ROBOT...] [NAME:=VALUE...] [options]",
-    "Show the rewritten robots in 3D, in one HTML file that needs no network.",
+    "Show the robots in 3D, in one HTML file that needs no network.",
     (
         Example("multibot view fleet.yaml", "all robots at their poses, in view.html"),
         Example("multibot view rover.urdf robot1 robot2 -o rover.html"),

@@ -14,11 +14,12 @@ from multibot_rewrite.system.records import (
     Edge,
     End,
     Environment,
+    Heard,
     Qos,
     System,
 )
 
-# In place of the RMW: such a snapshot has no nodes, so only the rules about frames ask it.
+# In place of the RMW: such a snapshot has no nodes, so what asks for nodes has no answer.
 ROSBAG = "rosbag2"
 # In place of the nodes that sent what was recorded. A tool by its name.
 RECORDER = "/_recorded"
@@ -53,7 +54,7 @@ def is_recorded(graph: System) -> bool:
 
 
 def as_snapshot(found: Recording, plan: System | None = None) -> System:
-    """The recording as a snapshot, for the rules about frames. A transform does not say who sent it:
+    """The recording as a snapshot. A transform does not say who sent it:
     those that publish its topic by the plan."""
     seconds = round(found.seconds, 2)
     senders: dict[str, dict[str, None]] = defaultdict(dict)
@@ -65,7 +66,13 @@ def as_snapshot(found: Recording, plan: System | None = None) -> System:
         for it in found.transforms
     )
     around = Environment(0, "OFF", (), ROSBAG, "", False, 0, QUIET, seconds, found.caveats)
-    return System((), tuple(_publishers(found.topics)), frames, around)
+    heard = (Heard(it.name, frame) for it in found.topics for frame in it.frames)
+    return System((), tuple(_publishers(found.topics)), frames, around, tuple(heard))
+
+
+def counted(found: Recording) -> dict[str, int]:
+    """How many messages were recorded of each topic."""
+    return {it.name: it.messages for it in found.topics}
 
 
 def _publishers(topics: Iterable[RecordedTopic]) -> Iterable[End]:

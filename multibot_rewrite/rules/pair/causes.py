@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.remap.ways import COMPONENT, HOST, PLUGIN, SPAWNER
 from multibot_rewrite.rosnames import check_topic_name, expand
-from multibot_rewrite.rules.pair.comparison import View
+from multibot_rewrite.rules.planned import Planned
 from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SERVES, SUBSCRIBES, End, Robot
 
 # What a node does with a name, by the role of its endpoint.
@@ -39,12 +38,12 @@ def caused(hint: str, place: str) -> Cause:
     return Cause(hint, found[1], int(found[2])) if found else Cause(hint)
 
 
-def plugin_of(view: View, node: str) -> tuple[str, str]:
+def plugin_of(plan: Planned, node: str) -> tuple[str, str]:
     """The plugin that starts a node, and its place in the description; both empty without one."""
-    place = plugin_place(view, node)
+    place = plugin_place(plan, node)
     if not place:
         return "", ""
-    plain = view.ownership.without_robot(node, view.robot_of.get(node, ""))
+    plain = plan.names.without_robot(node, plan.robot_of.get(node, ""))
     return f"plugin {plain.rpartition('/')[2]}", place
 
 
@@ -64,23 +63,13 @@ def name_without_rules(planned: End) -> str:
     return expand(planned.code_name, namespace or "/", node)
 
 
-def names_without_rules(view: View, planned: End) -> tuple[str, ...]:
+def names_without_rules(plan: Planned, planned: End) -> tuple[str, ...]:
     """The names an endpoint may have where no remap rule and no namespace is applied."""
     in_root = f"/{planned.code_name.strip('/').removeprefix('~/')}"
-    robot = view.robot_of.get(planned.node) or view.ownership.robot(planned.name)
-    plain = view.ownership.without_robot(planned.name, robot)
+    robot = plan.robot_of.get(planned.node) or plan.names.robot(planned.name)
+    plain = plan.names.without_robot(planned.name, robot)
     names = (name_without_rules(planned), in_root, plain)
     return tuple(name for name in names if name not in ("", "/", planned.name))
-
-
-def in_namespaces_above(node: str, name: str) -> Iterator[str]:
-    """A name directly in a node's namespace, moved to each of the namespaces above."""
-    namespace = node.rpartition("/")[0]
-    while namespace and name.startswith(f"{namespace}/"):
-        rest = name.removeprefix(namespace)
-        namespace = namespace.rpartition("/")[0]
-        yield namespace + rest
-        name = namespace + rest
 
 
 def use_absolute(name: str) -> str:
@@ -88,10 +77,10 @@ def use_absolute(name: str) -> str:
     return f"the node resolves a relative name in its own namespace: write {name} in its parameters"
 
 
-def why_not_remapped(view: View, planned: End) -> Cause:
+def why_not_remapped(plan: Planned, planned: End) -> Cause:
     """Why a name is still the one in the code, although a rule should remap it."""
     rule = remap_rule(planned)
-    plugin, place = plugin_of(view, planned.node)
+    plugin, place = plugin_of(plan, planned.node)
     if plugin:
         # It may have the rule: what it loads is not given it in every release.
         missing = f"no remap rule {rule} of {plugin} is applied"
@@ -102,18 +91,18 @@ def why_not_remapped(view: View, planned: End) -> Cause:
     return Cause(f"the remap rule {rule} is not applied")
 
 
-def how_to_remap(view: View, planned: End) -> str:
+def how_to_remap(plan: Planned, planned: End) -> str:
     """How to pass the rule to a node of the stack; empty for a plugin's node, which has a file."""
     rule = remap_rule(planned)
-    if not rule or plugin_place(view, planned.node):
+    if not rule or plugin_place(plan, planned.node):
         return ""
     parts = ", and one rule for each of its _action/ names" if planned.kind == ACTION else ""
-    return f"; pass {how_to_pass(view, planned.node, rule, 'it')}{parts}"
+    return f"; pass {how_to_pass(plan, planned.node, rule, 'it')}{parts}"
 
 
-def how_to_pass(view: View, node: str, rule: str, what: str = "") -> str:
+def how_to_pass(plan: Planned, node: str, rule: str, what: str = "") -> str:
     """Where a rule for a node stands, and how it is written there; ``what`` is what to call it."""
-    way, taker = _way(view, node)
+    way, taker = _way(plan, node)
     what = what or rule
     if way == PLUGIN:
         return f"{what} in the description: <remapping>{rule}</remapping> of the plugin of {taker}"
@@ -121,7 +110,7 @@ def how_to_pass(view: View, node: str, rule: str, what: str = "") -> str:
         # In the process of another node a rule says whose it is.
         led = f"{node.rpartition('/')[2]}:{rule}"
         return (
-            f"{what} to {taker}, whose process it is in: {_as_written(_way(view, taker)[0], led)}"
+            f"{what} to {taker}, whose process it is in: {_as_written(_way(plan, taker)[0], led)}"
         )
     if way == SPAWNER:
         return f"{what} to its spawner: {_as_written(way, rule)}"
@@ -130,15 +119,15 @@ def how_to_pass(view: View, node: str, rule: str, what: str = "") -> str:
     return f"{what} with {_as_written(way, rule)}"
 
 
-def plugin_place(view: View, node: str) -> str:
+def plugin_place(plan: Planned, node: str) -> str:
     """The ``file:line`` of the plugin that starts a planned node; empty for any other node."""
-    planned = view.nodes.get(node)
+    planned = plan.nodes.get(node)
     return str(planned.plugin) if planned else ""
 
 
-def _way(view: View, node: str) -> tuple[str, str]:
+def _way(plan: Planned, node: str) -> tuple[str, str]:
     """How a planned node gets its rules, and which one takes them for it."""
-    planned = view.nodes.get(node)
+    planned = plan.nodes.get(node)
     return (planned.way, planned.taker) if planned else ("", "")
 
 
@@ -152,25 +141,25 @@ def _as_written(way: str, rule: str) -> str:
     return f"--ros-args -r {rule}, or with {pair} in the launch file"
 
 
-def tf_rule(view: View, robot: Robot, topic: str) -> str:
+def tf_rule(plan: Planned, robot: Robot, topic: str) -> str:
     """The remap rule for a tf topic; its target is relative in the robot's own namespace."""
-    namespaced = any(node.startswith(f"/{robot.name}/") for node in view.own[robot.name])
+    namespaced = any(node.startswith(f"/{robot.name}/") for node in plan.own[robot.name])
     place = robot.tf_topic.removeprefix(f"/{robot.name}/") if namespaced else robot.tf_topic
     return f"/{topic}:={'/'.join(topic if it == 'tf' else it for it in place.split('/'))}"
 
 
-def why_other_name(view: View, node: str, match: str) -> Cause:
+def why_other_name(plan: Planned, node: str, match: str) -> Cause:
     """Why a planned node runs under another name, which is ``match``."""
-    robot = view.robot_of[node]
-    plugin, place = plugin_of(view, node)
-    plain = view.ownership.without_robot(node, robot)
+    robot = plan.robot_of[node]
+    plugin, place = plugin_of(plan, node)
+    plain = plan.names.without_robot(node, robot)
     namespaced = node == f"/{robot}{plain}"
     if match not in (plain, f"/{plain.rpartition('/')[2]}"):
         return Cause(f"{match} is running; is it this node under another name?")
     if plugin:
         missing = "namespace" if namespaced else "separate name for each robot"
         return caused(f"{match} is running: {plugin} has no {missing}, see {place}", place)
-    way, taker = _way(view, node)
+    way, taker = _way(plan, node)
     if way == HOST:
         return Cause(f"{match} is running: {taker} makes it; start that as the plan says")
     if namespaced and way == COMPONENT:

@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
 
 from multibot_rewrite.findings.finding import ERROR, Finding
-from multibot_rewrite.rules.declaration import graph_rule
+from multibot_rewrite.graph.wording import SEVERAL, shorten
+from multibot_rewrite.rules.declaration import found_by_plan, pair_rule
+from multibot_rewrite.rules.index import Index, by_node, in_namespaces_above
 from multibot_rewrite.rules.pair.causes import (
     DOES,
     Cause,
     how_to_remap,
-    in_namespaces_above,
     names_without_rules,
     use_absolute,
     why_not_remapped,
 )
-from multibot_rewrite.rules.pair.comparison import View
+from multibot_rewrite.rules.pair.meeting import missing
 from multibot_rewrite.rules.pair.similar_names import similar
+from multibot_rewrite.rules.planned import Planned
+from multibot_rewrite.system.conventions import EVERYBODYS
 from multibot_rewrite.system.records import (
     CALLS,
     PUBLISHES,
@@ -35,7 +39,7 @@ TO_DO = {
 }
 
 
-@graph_rule(
+@pair_rule(
     "MG102",
     "missing-endpoint",
     ERROR,
@@ -51,82 +55,109 @@ running: /robot1/driver subscribes /cmd_vel
 """,
     good="as planned: /robot1/driver subscribes /robot1/cmd_vel\n",
 )
-def missing_endpoint(view: View) -> Iterator[Finding]:
+def missing_endpoint(plan: Planned, seen: Index) -> Iterator[Finding]:
     """Only where its node is in the graph."""
-    for planned in view.missing.values():
-        robot = view.robot_of.get(planned.node, "")
-        if planned.node not in view.seen:
+    for planned in missing(plan, seen).values():
+        robot = plan.robot_of.get(planned.node, "")
+        if planned.node not in seen.nodes:
             continue
         # Of two nodes with one name, rcl shows the services of only one.
-        if view.seen[planned.node] > 1 and planned.kind != TOPIC:
+        if seen.nodes[planned.node] > 1 and planned.kind != TOPIC:
             continue
         message = f"should {TO_DO[planned.role]} {planned.kind} {planned.name}, but does not"
-        cause = _why_missing(view, planned)
+        cause = _why_missing(plan, seen, planned)
         yield missing_endpoint.finding(
             message, **cause._asdict(), robot=robot, node=planned.node, names=(planned.name,)
         )
 
 
-def _why_missing(view: View, planned: End) -> Cause:
+def _why_missing(plan: Planned, seen: Index, planned: End) -> Cause:
     """Answers the most common question: why do we never get the topic /robot1/cmd_vel?"""
-    used = _used_instead(view, planned)
+    used = _used_instead(plan, seen, planned)
     if not used:
-        managed = (planned.node, SERVICE, SERVES, f"{planned.node}/get_state") in view.planned
+        managed = (planned.node, SERVICE, SERVES, f"{planned.node}/get_state") in plan.ends
         state = f"; is it configured? ros2 lifecycle get {planned.node}" if managed else ""
         return Cause(f"it has no similar name; is it switched off by a parameter?{state}")
     instead = f"it {DOES[planned.role]} {used} instead"
-    if used in names_without_rules(view, planned):
-        why = why_not_remapped(view, planned)
-        return why._replace(hint=f"{instead}: {why.hint}{how_to_remap(view, planned)}")
-    return Cause(f"{instead}{_why_remapped(view, planned, used)}")
+    if used in names_without_rules(plan, planned):
+        why = why_not_remapped(plan, planned)
+        return why._replace(hint=f"{instead}: {why.hint}{how_to_remap(plan, planned)}")
+    return Cause(f"{instead}{_why_remapped(plan, seen, planned, used)}")
 
 
-def _why_remapped(view: View, planned: End, used: str) -> str:
+def _why_remapped(plan: Planned, seen: Index, planned: End, used: str) -> str:
     """Why an endpoint has a name that comes from a rule or parameter."""
-    if not view.ownership.robot(planned.name):
+    if not plan.names.robot(planned.name):
         return f": a rule remaps it, but the plan has one {planned.name} for all robots"
-    if used in _moved_down(view, planned):
+    if used in _moved_down(plan, seen, planned):
         return f": {use_absolute(planned.name)}"
-    other = view.ownership.robot(used)
-    if other and other != view.robot_of.get(planned.node, other):
+    other = plan.names.robot(used)
+    if other and other != plan.robot_of.get(planned.node, other):
         return f", a name of {other}: a remap rule or parameter names the wrong robot"
     return ": is the name misspelled in a remap rule or parameter?"
 
 
-def _used_instead(view: View, planned: End) -> str:
+def _used_instead(plan: Planned, seen: Index, planned: End) -> str:
     """The name that the node probably uses in place of a planned one, or an empty string."""
-    unplanned = _unplanned_names(view, planned)
-    likely = [name for name in names_without_rules(view, planned) if name in unplanned]
-    likely += _moved_down(view, planned)
+    unplanned = _unplanned_names(plan, seen, planned)
+    likely = [name for name in names_without_rules(plan, planned) if name in unplanned]
+    likely += _moved_down(plan, seen, planned)
     if likely:
         return likely[0]
     # A node for all robots has names of several: which robot's is in the name itself.
-    ownership = view.ownership
-    robot = view.robot_of.get(planned.node) or ownership.robot(planned.name)
+    ownership = plan.names
+    robot = plan.robot_of.get(planned.node) or ownership.robot(planned.name)
     plain = {
         ownership.without_robot(name, ownership.robot(name) or robot): name for name in unplanned
     }
     wanted = ownership.without_robot(planned.name, robot)
     near = plain.get(wanted, "") or plain.get(similar(wanted, plain), "")
-    if near or planned.node in view.robot_of:
+    if near or planned.node in plan.robot_of:
         return near
     return similar(planned.name, unplanned)
 
 
-def _moved_down(view: View, planned: End) -> list[str]:
+def _moved_down(plan: Planned, seen: Index, planned: End) -> list[str]:
     """The unplanned names that are a relative name resolved below the node's own namespace."""
     return [
         name
-        for name in _unplanned_names(view, planned)
+        for name in _unplanned_names(plan, seen, planned)
         if planned.name in in_namespaces_above(planned.node, name)
     ]
 
 
-def _unplanned_names(view: View, planned: End) -> list[str]:
+def _unplanned_names(plan: Planned, seen: Index, planned: End) -> list[str]:
     """The names that the node uses in the role of a planned endpoint without being planned."""
     node, kind, role = planned.node, planned.kind, planned.role
     return [
         e.name
-        for e in view.by_node.get(node, ())
-        if (e.kind, e.role) == (kind, role) and (node, kind, role, e.name) not in view.planned
+        for e in by_node(seen).get(node, ())
+        if (e.kind, e.role) == (kind, role) and (node, kind, role, e.name) not in plan.ends
     ]
+
+
+@found_by_plan(missing_endpoint, nodes=False)
+def topic_of_some_robots(plan: Planned, seen: Index) -> Iterator[Finding]:
+    """Where it is not known which nodes run: a topic that each robot sends by the plan, and that is
+    there for some of them."""
+    there = {name for kind, name in seen.names if kind == TOPIC}
+    for names in _sent_by_each(plan).values() if not seen.nodes else ():
+        others = [name for name in names.values() if name in there]
+        for robot, name in names.items() if others else ():
+            if name not in there:
+                message = f"{name} is not there, {shorten(others, SEVERAL)} is"
+                cause = "did its node run, in its robot's namespace, and was the topic recorded?"
+                yield missing_endpoint.finding(message, cause, robot=robot, names=(name,))
+
+
+def _sent_by_each(plan: Planned) -> Mapping[str, Mapping[str, str]]:
+    """Name without the robot's -> robot -> topic that is published by the plan; tf is of each."""
+    shared = {*plan.system.shared_topics, *EVERYBODYS}
+    sent = [name for _, kind, role, name in plan.ends if (kind, role) == (TOPIC, PUBLISHES)]
+    trees = [it.tf_topic for it in plan.system.robots if it.frames]
+    found: dict[str, dict[str, str]] = defaultdict(dict)
+    for name in (*sent, *trees):
+        robot = plan.names.robot(name)
+        if robot and name not in shared:
+            found[plan.names.without_robot(name, robot)][robot] = name
+    return found

@@ -3,74 +3,28 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.wording import shorten
-from multibot_rewrite.rules.declaration import graph_rule
+from multibot_rewrite.rules.declaration import found_by_plan, pair_rule
+from multibot_rewrite.rules.index import Index
 from multibot_rewrite.rules.ownership import SEPARATORS, without_tag_once
-from multibot_rewrite.rules.pair.causes import Cause, caused, tf_rule
-from multibot_rewrite.rules.pair.comparison import View
+from multibot_rewrite.rules.pair.causes import Cause, caused
 from multibot_rewrite.rules.pair.frame_prefixes import added_prefixes, robot_behind_prefix
 from multibot_rewrite.rules.pair.similar_names import similar
 from multibot_rewrite.rules.pair.tf_senders import sent_by_robot, state_publisher, where_set
-from multibot_rewrite.rules.pair.tf_trees import TfTree, frames_in
+from multibot_rewrite.rules.pair.tf_trees import TfTree, frames_in, tf_trees
+from multibot_rewrite.rules.planned import Planned
+from multibot_rewrite.rules.system.transforms import robots_name_twice
 from multibot_rewrite.system.records import Edge, Robot
 
 
-@graph_rule(
-    "MG202",
-    "frame-of-several-robots",
-    ERROR,
-    what="Two robots send the same frames on one tf topic.",
-    why="Both trees are mixed into one that is wrong for both.",
-    fix="With robot names in frames, load each robot's rewritten description. Without them, give"
-    " each robot its tf topic: `/tf:=tf` and `/tf_static:=tf_static`.",
-    bad="""\
-planned: frames of robot1 on /tf: base_link/robot1
-planned: frames of robot2 on /tf: base_link/robot2
-running: transform odom -> base_link on /tf by /robot1/driver, /robot2/driver
-""",
-    good="""\
-planned: frames of robot1 on /tf: base_link/robot1
-planned: frames of robot2 on /tf: base_link/robot2
-running: transform odom/robot1 -> base_link/robot1 on /tf by /robot1/driver, /robot2/driver
-running: transform odom/robot2 -> base_link/robot2 on /tf by /robot1/driver, /robot2/driver
-""",
-    line=3,
-)
-def frame_of_several_robots(view: View) -> Iterator[Finding]:
-    """One finding for a tf topic, with all robots."""
-    for tree in view.trees:
-        unnamed = _frames_without_robot(view, tree)
-        shared = {frame: robots for frame, robots in unnamed.items() if len(robots) > 1}
-        robots = sorted({robot for found in shared.values() for robot in found})
-        if robots:
-            message = f"frames {shorten(shared)} on {tree.topic} are sent by {_and(robots)}"
-            cause = _why_colliding(view, tree, robots)
-            yield frame_of_several_robots.finding(message, cause, names=tuple(shared))
-
-
-def _and(robots: Iterable[str]) -> str:
-    return shorten(robots).replace(", ", " and ", 1)
-
-
-def _why_colliding(view: View, tree: TfTree, robots: Sequence[str]) -> str:
-    senders = shorten(node for robot in robots for node in tree.senders.get(robot, ()))
-    first = view.robots[robots[0]]
-    if _has_plain_frames(view, first):
-        rules = f"{tf_rule(view, first, 'tf')} and {tf_rule(view, first, 'tf_static')}"
-        return (
-            "frames without a robot's name need a tf topic for each robot: pass the rules"
-            f" {rules} to {senders}"
-        )
-    return f"the descriptions are not rewritten: load each robot's own description in {senders}"
-
-
-@graph_rule(
+@pair_rule(
     "MG207",
     "frame-without-robot-name",
     ERROR,
+    nodes=False,
     absence=True,
     what="A frame does not have the robot's name, although the layout adds it.",
     why="It is not connected to the rest of the tree, and the next robot's frame has the same"
@@ -86,68 +40,69 @@ running: transform base_link/robot1 -> laser/robot1 on /tf_static by /robot1/dri
 """,
     line=2,
 )
-def frame_without_robot_name(view: View) -> Iterator[Finding]:
+def frame_without_robot_name(plan: Planned, seen: Index) -> Iterator[Finding]:
     """Of one robot only; else it is a frame of several robots."""
-    for tree in view.trees:
+    for tree in tf_trees(plan, seen):
         own: dict[str, list[str]] = defaultdict(list)
-        for frame, robots in _frames_without_robot(view, tree).items():
-            if len(robots) == 1 and frame not in view.robots[robots[0]].frames:
+        for frame, robots in _frames_without_robot(plan, tree).items():
+            if len(robots) == 1 and frame not in plan.robots[robots[0]].frames:
                 own[robots[0]].append(frame)
         for robot, found in own.items():
             message = f"frames {shorten(found)} on {tree.topic} do not have the name of {robot}"
-            cause = _why_bare(view, tree, view.robots[robot], found)
+            cause = _why_bare(plan, tree, plan.robots[robot], found)
             yield frame_without_robot_name.finding(
                 message, **cause._asdict(), robot=robot, names=tuple(found)
             )
 
 
-def _why_bare(view: View, tree: TfTree, robot: Robot, names: Sequence[str]) -> Cause:
+def _why_bare(plan: Planned, tree: TfTree, robot: Robot, names: Sequence[str]) -> Cause:
     """The node that sends all of them by the plan, besides the description; else the description."""
-    by_name = _by_plain_name(view, robot)
+    by_name = _by_plain_name(plan, robot)
     expected = {by_name[name] for name in names}
-    sent = next((it for it in sent_by_robot(view, robot) if expected <= {*it[1:]}), None)
+    sent = next((it for it in sent_by_robot(plan, robot) if expected <= {*it[1:]}), None)
     first = f"expected {by_name[names[0]]}"
     if sent:
-        place = where_set(view, sent.node)
+        place = where_set(plan, sent.node)
         see = f", see {place}" if place else ""
         return caused(f"{first}: by the plan {sent.node} sends {sent}{see}", place)
     senders = shorten(tree.senders.get(robot.name, ())) or "its robot_state_publisher"
     return Cause(f"{first}: load the rewritten description in {senders}")
 
 
-def _frames_without_robot(view: View, tree: TfTree) -> dict[str, list[str]]:
+def _frames_without_robot(plan: Planned, tree: TfTree) -> dict[str, list[str]]:
     """The frames of a tree that hold no robot's name, with the robots they may belong to.
 
     That is a robot that declares the frame so, or with its name while that frame is not there.
     """
     present = set(frames_in(tree))
-    unnamed = {name for name in present if not view.frame_ownership.robot(name)}
-    unnamed -= {*view.plan.shared_frames}
+    unnamed = {name for name in present if not plan.frames.robot(name)}
+    unnamed -= {*plan.system.shared_frames}
     found: dict[str, list[str]] = defaultdict(list)
-    for robot in (view.robots[name] for name in tree.robots if unnamed):
-        for plain, frame in _by_plain_name(view, robot).items():
+    for robot in (plan.robots[name] for name in tree.robots if unnamed):
+        for plain, frame in _by_plain_name(plan, robot).items():
             if plain in unnamed and (plain == frame or frame not in present):
                 found[plain].append(robot.name)
     return found
 
 
-def _has_plain_frames(view: View, robot: Robot) -> bool:
+def _has_plain_frames(plan: Planned, robot: Robot) -> bool:
     """Whether the layout has the same frames for every robot; one of them may hold its name."""
-    ownership = view.frame_ownership
+    ownership = plan.frames
     return any(ownership.without_robot(frame, robot.name) == frame for frame in robot.frames)
 
 
-def _by_plain_name(view: View, robot: Robot) -> dict[str, str]:
+def _by_plain_name(plan: Planned, robot: Robot) -> dict[str, str]:
     """The robot's frames by their name without the robot's."""
-    if _has_plain_frames(view, robot):
+    if _has_plain_frames(plan, robot):
         return {frame: frame for frame in robot.frames}
-    return {view.frame_ownership.without_robot(frame, robot.name): frame for frame in robot.frames}
+    return {plan.frames.without_robot(frame, robot.name): frame for frame in robot.frames}
 
 
-@graph_rule(
+@pair_rule(
     "MG204",
     "undeclared-frame",
     WARNING,
+    nodes=False,
     what="A frame with a robot's name, or a static one on the robot's tf topic, is not in its"
     " description.",
     why="If a frame of the description was meant, its data cannot be placed.",
@@ -162,34 +117,34 @@ running: transform base_link/robot1 -> laser/robot1 on /tf_static
 """,
     line=2,
 )
-def undeclared_frame(view: View) -> Iterator[Finding]:
+def undeclared_frame(plan: Planned, seen: Index) -> Iterator[Finding]:
     """A frame that a driver adds below its sensor's link is none."""
-    for tree in view.trees:
+    for tree in tf_trees(plan, seen):
         children = {edge.child: edge for edge in tree.edges}
-        for robot, names in _not_in_a_description(view, tree, children).items():
-            prefixed = added_prefixes(view.robots[robot], names)
+        for robot, names in _not_in_a_description(plan, tree, children).items():
+            prefixed = added_prefixes(plan.robots[robot], names)
             found = [
                 name
                 for name in names
-                if name in children and not _of_a_sensor(view, robot, name, children)
-                if name not in prefixed and not _has_name_twice(view, view.robots[robot], name)
+                if name in children and not _of_a_sensor(plan, robot, name, children)
+                if name not in prefixed and not _has_name_twice(plan, plan.robots[robot], name)
             ]
             if found:
-                yield _undeclared(view, view.robots[robot], found)
+                yield _undeclared(plan, plan.robots[robot], found)
 
 
-def _undeclared(view: View, robot: Robot, names: Sequence[str]) -> Finding:
+def _undeclared(plan: Planned, robot: Robot, names: Sequence[str]) -> Finding:
     verb = "is" if len(names) == 1 else "are"
     message = f"{_frames(names).rpartition(' ')[0]} {verb} not in the description of {robot.name}"
-    declared = _by_plain_name(view, robot)
-    plain = view.frame_ownership.without_robot(names[0], robot.name)
+    declared = _by_plain_name(plan, robot)
+    plain = plan.frames.without_robot(names[0], robot.name)
     meant = declared.get(plain) or declared.get(similar(plain, declared), "")
     cause = f"did you mean {meant}? Otherwise" if meant else "a sensor's own frame? Then"
     cause += f" add {'it' if len(names) == 1 else 'them'} to other_frames of the plan"
     return undeclared_frame.finding(message, cause, robot=robot.name, names=tuple(names))
 
 
-def _of_a_sensor(view: View, robot: str, name: str, children: Mapping[str, Edge]) -> bool:
+def _of_a_sensor(plan: Planned, robot: str, name: str, children: Mapping[str, Edge]) -> bool:
     """Whether a frame is one that a driver adds below its sensor's link.
 
     Its name begins like the link's: camera_depth_frame is below camera_link.
@@ -198,124 +153,109 @@ def _of_a_sensor(view: View, robot: str, name: str, children: Mapping[str, Edge]
     while above in children and children[above].static and above not in passed:
         passed.add(above)
         above = children[above].parent
-        if above in view.frames_of[robot]:
-            return _first_word(view, above, robot) == _first_word(view, name, robot)
+        if above in plan.frames_of[robot]:
+            return _first_word(plan, above, robot) == _first_word(plan, name, robot)
     return False
 
 
-def _first_word(view: View, frame: str, robot: str) -> str:
-    plain = view.frame_ownership.without_robot(frame, robot)
+def _first_word(plan: Planned, frame: str, robot: str) -> str:
+    plain = plan.frames.without_robot(frame, robot)
     return plain[
         : next((at for at, letter in enumerate(plain) if letter in "/" + SEPARATORS), None)
     ]
 
 
-@graph_rule(
-    "MG206",
-    "robot-name-twice",
-    ERROR,
-    what="A frame has the robot's name twice, has it although the layout does not add it, or has a"
-    " prefix in front that the plan does not have.",
-    why="No other node uses that frame: every tf lookup fails.",
-    fix="Leave `frame_prefix` empty, and set `tf_frame_prefix_enable: false`.",
-    bad="""\
-planned: frames of robot1 on /tf: base_link/robot1
-running: transform odom/robot1 -> robot1/base_link/robot1 on /tf
-""",
-    good="""\
-planned: frames of robot1 on /tf: base_link/robot1
-running: transform odom/robot1 -> base_link/robot1 on /tf
-""",
-    line=2,
-)
-def robot_name_twice(view: View) -> Iterator[Finding]:
+@found_by_plan(robots_name_twice, nodes=False)
+def robot_name_twice(plan: Planned, seen: Index) -> Iterator[Finding]:
     """Parents and children."""
-    for tree in view.trees:
+    for tree in tf_trees(plan, seen):
         children = {edge.child: edge for edge in tree.edges}
-        found = _not_in_a_description(view, tree, children)
-        for frame, of in _behind_prefixes(view, tree):
+        found = _not_in_a_description(plan, tree, children)
+        for frame, of in _behind_prefixes(plan, tree):
             found[of].append(frame)
         for name, names in found.items():
-            robot = view.robots[name]
-            twice = [it for it in names if _has_name_twice(view, robot, it)]
+            robot = plan.robots[name]
+            twice = [it for it in names if _has_name_twice(plan, robot, it)]
             if twice:
-                yield _doubled(view, robot, twice)
+                yield _doubled(plan, robot, twice)
             prefixed = added_prefixes(robot, names)
             others = [it for it in prefixed if it not in twice]
             if others:
-                yield _prefixed(view, robot, others, prefixed[others[0]])
+                yield _prefixed(plan, robot, others, prefixed[others[0]])
 
 
-def _behind_prefixes(view: View, tree: TfTree) -> Iterator[tuple[str, str]]:
+def _behind_prefixes(plan: Planned, tree: TfTree) -> Iterator[tuple[str, str]]:
     """Frames on a shared topic that say no robot and are of one but for a prefix, each with it."""
-    ownership = view.frame_ownership
+    ownership = plan.frames
     for frame in frames_in(tree) if len(tree.home) != 1 else ():
-        if frame not in view.plan.shared_frames and not ownership.robot(frame):
+        if frame not in plan.system.shared_frames and not ownership.robot(frame):
             robot = robot_behind_prefix(ownership, frame)
             if robot:
                 yield frame, robot
 
 
 def _not_in_a_description(
-    view: View, tree: TfTree, children: Mapping[str, Edge]
+    plan: Planned, tree: TfTree, children: Mapping[str, Edge]
 ) -> dict[str, list[str]]:
     """By robot: the frames of a tree that are its own and not in its description."""
     found: dict[str, list[str]] = defaultdict(list)
     for name in frames_in(tree):
-        robot = _robot_without_frame(view, tree, name, children)
+        robot = _robot_without_frame(plan, tree, name, children)
         if robot:
             found[robot].append(name)
     return found
 
 
-def _prefixed(view: View, robot: Robot, names: Sequence[str], prefix: str) -> Finding:
+def _prefixed(plan: Planned, robot: Robot, names: Sequence[str], prefix: str) -> Finding:
     verb = "is" if len(names) == 1 else "are"
     what = f"{_frames(names).rpartition(' ')[0]} {verb}"
     message = f"{what} planned without {prefix!r} in front"
-    sender = state_publisher(view, robot) or f"the robot_state_publisher of {robot.name}"
+    sender = state_publisher(plan, robot) or f"the robot_state_publisher of {robot.name}"
     cause = (
         f"frame_prefix of {sender} is {prefix!r}, on top of a rewritten description: set it to ''"
     )
-    return robot_name_twice.finding(message, cause, robot=robot.name, names=tuple(names))
+    return robots_name_twice.finding(message, cause, robot=robot.name, names=tuple(names))
 
 
-def _doubled(view: View, robot: Robot, names: Sequence[str]) -> Finding:
+def _doubled(plan: Planned, robot: Robot, names: Sequence[str]) -> Finding:
     cause = (
         "frame_prefix of robot_state_publisher or tf_frame_prefix_enable of a controller (on by "
     )
-    if _has_plain_frames(view, robot):
+    if _has_plain_frames(plan, robot):
         message = f"{_frames(names)} the name of {robot.name}, which this layout does not add"
         cause += "default), or a description rewritten for another layout: set them to '' and false"
     else:
         message = f"{_frames(names)} the name of {robot.name} twice"
         cause += "default), on top of a rewritten description: set them to '' and false"
-    return robot_name_twice.finding(message, cause, robot=robot.name, names=tuple(names))
+    return robots_name_twice.finding(message, cause, robot=robot.name, names=tuple(names))
 
 
 def _frames(names: Sequence[str]) -> str:
     return f"frame {names[0]} has" if len(names) == 1 else f"frames {shorten(names)} have"
 
 
-def _has_name_twice(view: View, robot: Robot, name: str) -> bool:
-    ownership = view.frame_ownership
+def _has_name_twice(plan: Planned, robot: Robot, name: str) -> bool:
+    ownership = plan.frames
     tag = ownership.tag(robot.name)
-    if not view.frames_of[robot.name].isdisjoint(without_tag_once(name, tag)):
+    if not plan.frames_of[robot.name].isdisjoint(without_tag_once(name, tag)):
         return True
     once = ownership.without_robot(name, robot.name)
     twice = ownership.without_robot(once, robot.name)
     ambiguous = tag in ownership.ambiguous_words
-    return twice != once and not ambiguous and twice in _by_plain_name(view, robot)
+    return twice != once and not ambiguous and twice in _by_plain_name(plan, robot)
 
 
-def _robot_without_frame(view: View, tree: TfTree, name: str, children: Mapping[str, Edge]) -> str:
+def _robot_without_frame(
+    plan: Planned, tree: TfTree, name: str, children: Mapping[str, Edge]
+) -> str:
     """The robot of a frame by name or topic, if the frame is not in the robot's description."""
-    if name in view.plan.shared_frames or view.frame_ownership.exact.get(name):
+    if name in plan.system.shared_frames or plan.frames.exact.get(name):
         return ""
-    robot = view.frame_ownership.robot(name)
+    robot = plan.frames.robot(name)
     # A moving frame on a robot's own topic may be anything that it detects.
     if not robot and len(tree.home) == 1 and name in children and children[name].static:
         robot = tree.home[0]
-    if not robot or not view.robots[robot].frames or name in view.frames_of[robot]:
+    if not robot or not plan.robots[robot].frames or name in plan.frames_of[robot]:
         return ""
     # frame_without_robot_name reports a frame that only lacks the robot's name.
-    return "" if name in _by_plain_name(view, view.robots[robot]) else robot
+    return "" if name in _by_plain_name(plan, plan.robots[robot]) else robot

@@ -8,19 +8,20 @@ from collections.abc import Iterator, Mapping, Sequence, Set
 from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER
 from multibot_rewrite.graph.wording import shorten
-from multibot_rewrite.rules.declaration import graph_rule
-from multibot_rewrite.rules.pair.comparison import View
+from multibot_rewrite.rules.declaration import pair_rule
+from multibot_rewrite.rules.index import Index
 from multibot_rewrite.rules.pair.frame_prefixes import added_prefixes, robot_behind_prefix
 from multibot_rewrite.rules.pair.name_variants import name_variants
 from multibot_rewrite.rules.pair.silent_topics import silent_topics
 from multibot_rewrite.rules.pair.tf_causes import JOINT_STATES
 from multibot_rewrite.rules.pair.tf_senders import described_robots, sent_by_robot, state_publisher
-from multibot_rewrite.rules.pair.tf_trees import frames_in
+from multibot_rewrite.rules.pair.tf_trees import frames_in, tf_trees
+from multibot_rewrite.rules.planned import Planned
 from multibot_rewrite.system.conventions import USUAL_FRAMES
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, Robot
 
 
-@graph_rule(
+@pair_rule(
     "MG208",
     "frame-not-received",
     ERROR,
@@ -44,28 +45,28 @@ running: transform odom/robot1 -> base_link/robot1 on /tf
 running: transform base_link/robot1 -> wheel/robot1 on /tf
 """,
 )
-def frame_not_received(view: View) -> Iterator[Finding]:
+def frame_not_received(plan: Planned, seen: Index) -> Iterator[Finding]:
     """One finding for a robot whose senders all run. Where no transform was received at all, tf may
     not have been looked at."""
-    senders = _senders(view) if view.graph.edges else {}
-    trees, strays = _trees_of(view), _strays(view)
-    for robot in view.plan.robots:
-        needed = senders.get(robot.name, set()) - view.may_miss
-        if not needed or not needed <= view.seen.keys():
+    senders = _senders(plan) if seen.system.edges else {}
+    trees, strays = _trees_of(plan, seen), _strays(plan, seen)
+    for robot in plan.system.robots:
+        needed = senders.get(robot.name, set()) - plan.may_miss
+        if not needed or not needed <= seen.nodes.keys():
             continue
         heard = trees.get(robot.name, ())
         prefixes = set(added_prefixes(robot, strays.get(robot.name, ())).values())
-        missing = [it for it in robot.frames if not _is_heard(view, robot, it, heard, prefixes)]
+        missing = [it for it in robot.frames if not _is_heard(plan, robot, it, heard, prefixes)]
         if missing:
-            yield _not_received(view, robot, missing)
+            yield _not_received(plan, seen, robot, missing)
 
 
-def _senders(view: View) -> Mapping[str, set[str]]:
+def _senders(plan: Planned) -> Mapping[str, set[str]]:
     """By robot: its planned nodes that publish its tf."""
-    topics = {robot.name: _tf_topics(robot) for robot in view.plan.robots}
+    topics = {robot.name: _tf_topics(robot) for robot in plan.system.robots}
     found: dict[str, set[str]] = defaultdict(set)
-    for node, kind, role, name in view.planned:
-        robot = view.robot_of.get(node, "")
+    for node, kind, role, name in plan.ends:
+        robot = plan.robot_of.get(node, "")
         if robot and (kind, role) == (TOPIC, PUBLISHES) and name in topics[robot]:
             found[robot].add(node)
     return found
@@ -77,22 +78,22 @@ def _tf_topics(robot: Robot) -> tuple[str, str]:
     )
 
 
-def _trees_of(view: View) -> Mapping[str, list[Set[str]]]:
+def _trees_of(plan: Planned, seen: Index) -> Mapping[str, list[Set[str]]]:
     """By robot: the frames on its tf topic, and on others where it sends: those have a finding of
     their own."""
     found: dict[str, list[Set[str]]] = defaultdict(list)
-    for tree in view.trees:
+    for tree in tf_trees(plan, seen):
         frames = frozenset(frames_in(tree))
         for robot in {*tree.home, *tree.robots}:
             found[robot].append(frames)
     return found
 
 
-def _strays(view: View) -> Mapping[str, list[str]]:
+def _strays(plan: Planned, seen: Index) -> Mapping[str, list[str]]:
     """By robot: frames that are not planned and are its own by name, or by the topic."""
-    ownership = view.frame_ownership
+    ownership = plan.frames
     found: dict[str, list[str]] = defaultdict(list)
-    for tree in view.trees:
+    for tree in tf_trees(plan, seen):
         home = tree.home[0] if len(tree.home) == 1 else ""
         for name in frames_in(tree):
             if name not in ownership.exact:
@@ -102,7 +103,7 @@ def _strays(view: View) -> Mapping[str, list[str]]:
 
 
 def _is_heard(
-    view: View,
+    plan: Planned,
     robot: Robot,
     frame: str,
     heard: Sequence[Set[str]],
@@ -111,36 +112,36 @@ def _is_heard(
     """Under its name, or under a wrong one, which has a finding of its own."""
     if any(frame in frames for frames in heard):
         return True
-    plain = _plain(view, robot, frame)
-    variants = [*name_variants(plain, frame, view.frame_ownership.tag(robot.name))]
+    plain = _plain(plan, robot, frame)
+    variants = [*name_variants(plain, frame, plan.frames.tag(robot.name))]
     variants += [f"{prefix}{frame}" for prefix in prefixes]
     return any(not frames.isdisjoint(variants) for frames in heard)
 
 
-def _not_received(view: View, robot: Robot, missing: Sequence[str]) -> Finding:
+def _not_received(plan: Planned, seen: Index, robot: Robot, missing: Sequence[str]) -> Finding:
     several = f"{len(missing)} of the {len(robot.frames)} frames of {robot.name} are"
     what = several if len(missing) > 1 else f"frame {missing[0]} of {robot.name} is"
     message = f"{what} in no transform: {shorten(missing)}"
-    hint = _why_not_received(view, robot, missing)
+    hint = _why_not_received(plan, seen, robot, missing)
     return frame_not_received.finding(message, hint, robot=robot.name, names=tuple(missing))
 
 
-def _plain(view: View, robot: Robot, frame: str) -> str:
-    return view.frame_ownership.without_robot(frame, robot.name)
+def _plain(plan: Planned, robot: Robot, frame: str) -> str:
+    return plan.frames.without_robot(frame, robot.name)
 
 
-def _why_not_received(view: View, robot: Robot, missing: Sequence[str]) -> str:
-    silent = min(silent_topics(view, robot, JOINT_STATES), default="")
+def _why_not_received(plan: Planned, seen: Index, robot: Robot, missing: Sequence[str]) -> str:
+    silent = min(silent_topics(plan, seen, robot, JOINT_STATES), default="")
     if silent:
         source = "joint_state_publisher, joint_state_broadcaster or the bridge"
         return f"nothing publishes {silent}: is {source} started for {robot.name}?"
-    sent = sent_by_robot(view, robot)
+    sent = sent_by_robot(plan, robot)
     described = set(robot.frames).difference(*(it[1:] for it in sent))
     # The root of a description comes with the odometry, too.
-    described = {it for it in described if _plain(view, robot, it) not in USUAL_FRAMES}
+    described = {it for it in described if _plain(plan, robot, it) not in USUAL_FRAMES}
     if described and described.issubset(missing):
-        publisher = state_publisher(view, robot) or STATE_PUBLISHER
-        whose = next(described_robots(view, robot), "")
+        publisher = state_publisher(plan, robot) or STATE_PUBLISHER
+        whose = next(described_robots(plan, seen, robot), "")
         if whose:
             return f"{publisher} has the description of {whose}, whose transforms it sends"
         return f"has {publisher} the description of {robot.name}, or that of another robot?"

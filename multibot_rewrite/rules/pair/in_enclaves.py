@@ -7,12 +7,13 @@ from collections.abc import Iterator
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.enclaves import enclave_of
 from multibot_rewrite.graph.wording import shorten
-from multibot_rewrite.rules.declaration import graph_rule
-from multibot_rewrite.rules.pair.comparison import View
+from multibot_rewrite.rules.declaration import pair_rule
+from multibot_rewrite.rules.index import Index
+from multibot_rewrite.rules.planned import Planned
 from multibot_rewrite.system.records import Node
 
 
-@graph_rule(
+@pair_rule(
     "MG112",
     "enclave-of-another-robot",
     ERROR,
@@ -34,13 +35,13 @@ running: enclave /robot2 of /robot2/driver
 """,
     line=1,
 )
-def enclave_of_another_robot(view: View) -> Iterator[Finding]:
+def enclave_of_another_robot(plan: Planned, seen: Index) -> Iterator[Finding]:
     """By the robots' names in the path of the enclave."""
-    for name, enclave in dict.fromkeys((it.name, it.enclave) for it in view.graph.nodes):
-        robot = view.robot_of.get(name, "")
+    for name, enclave in dict.fromkeys((it.name, it.enclave) for it in seen.system.nodes):
+        robot = plan.robot_of.get(name, "")
         if not (robot and enclave) or _is_of(enclave, robot):
             continue
-        other = next((it for it in sorted(view.robots) if _is_of(enclave, it)), "")
+        other = next((it for it in sorted(plan.robots) if _is_of(enclave, it)), "")
         if other:
             message = f"{name} is in the enclave {enclave}, which is of {other}"
             yield enclave_of_another_robot.finding(message, _start(robot), robot=robot, node=name)
@@ -51,7 +52,7 @@ def _is_of(enclave: str, robot: str) -> bool:
     return bool(robot) and f"/{robot}/" in f"{enclave}/"
 
 
-@graph_rule(
+@pair_rule(
     "MG113",
     "without-enclave",
     WARNING,
@@ -66,15 +67,15 @@ running: enclave /robot2 of /robot2/driver
     good="as planned: /robot1/driver\nas planned: /robot2/driver\n",
     line=1,
 )
-def without_enclave(view: View) -> Iterator[Finding]:
+def without_enclave(plan: Planned, seen: Index) -> Iterator[Finding]:
     """One finding a robot."""
-    planned = [it for it in view.graph.nodes if it.name in view.robot_of]
+    planned = [it for it in seen.system.nodes if it.name in plan.robot_of]
     if not any(it.enclave for it in planned):
         return
-    bare: dict[str, list[Node]] = {robot: [] for robot in view.robots}
+    bare: dict[str, list[Node]] = {robot: [] for robot in plan.robots}
     for it in planned:
         if not it.enclave:
-            bare[view.robot_of[it.name]].append(it)
+            bare[plan.robot_of[it.name]].append(it)
     yield from (_bare(robot, nodes) for robot, nodes in bare.items() if nodes)
 
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 
-from multibot_rewrite.findings.finding import ERROR, Finding
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.graph.wording import SEVERAL, shorten
-from multibot_rewrite.rules.declaration import graph_rule
+from multibot_rewrite.rules.declaration import found_by_plan
+from multibot_rewrite.rules.index import TF, Index, ends_of, types
 from multibot_rewrite.rules.pair.causes import (
     DOES,
     Cause,
@@ -17,144 +19,148 @@ from multibot_rewrite.rules.pair.causes import (
     plugin_of,
     why_not_remapped,
 )
-from multibot_rewrite.rules.pair.comparison import View
+from multibot_rewrite.rules.pair.meeting import missing, unplanned_ends
 from multibot_rewrite.rules.pair.tf_copies import copying_nodes
-from multibot_rewrite.system.conventions import EVERYBODYS, LISTENER
+from multibot_rewrite.rules.planned import Planned
+from multibot_rewrite.rules.system.commands import (
+    command_for_several_robots,
+    command_from_another_robot,
+)
+from multibot_rewrite.rules.system.names import service_of_two_nodes
+from multibot_rewrite.rules.system.sharing import data_of_another_robot, topic_of_several_robots
+from multibot_rewrite.rules.words import is_order
+from multibot_rewrite.system.conventions import EVERYBODYS
 from multibot_rewrite.system.records import SUBSCRIBES, TOPIC, End
 
 
-@graph_rule(
-    "MG103",
-    "leaked-name",
-    ERROR,
-    drawn="leak",
-    what="A robot's node uses a name that belongs to no robot and is not shared, or its tf"
-    " listener subscribes to the global `/tf`.",
-    why="The same node of another robot uses the name too: one command moves both robots, and"
-    " their scans are mixed.",
-    fix="Pass the remap rule of the hint; for a tf listener pass it to the whole process. If all"
-    " robots are to share the name, add it to `shared_topics` of the plan (`--shared-topics`).",
-    bad="""\
-planned: /robot1/driver
-running: /robot1/driver subscribes /cmd_vel
-""",
-    good="""\
-planned: /robot1/driver
-running: /robot1/driver subscribes /robot1/cmd_vel
-""",
-    line=2,
+@found_by_plan(
+    topic_of_several_robots, command_for_several_robots, service_of_two_nodes, nodes=False
 )
-def leaked_name(view: View) -> Iterator[Finding]:
-    """All robots meet at such a name."""
-    yield from _unplanned_leaks(view)
-    yield from _planned_leaks(view)
-    yield from _wrong_tf_listeners(view)
+def name_of_no_robot(plan: Planned, seen: Index) -> Iterator[Finding]:
+    """A robot's node uses a name of no robot that is not shared: all robots meet at such a name."""
+    yield from _unplanned_leaks(plan, seen)
+    yield from _planned_leaks(plan, seen)
+    yield from _unsent_leaks(plan, seen)
 
 
-def _unplanned_leaks(view: View) -> Iterator[Finding]:
-    shared = {*view.plan.shared_topics, *EVERYBODYS}
-    not_remapped = _missing_by_name_without_rules(view)
-    for node, robot in view.robot_of.items():
-        for name in dict.fromkeys(e.name for e in view.unplanned_endpoints.get(node, ())):
-            if name in shared or view.ownership.robot(name):
+def _unplanned_leaks(plan: Planned, seen: Index) -> Iterator[Finding]:
+    shared = {*plan.system.shared_topics, *EVERYBODYS}
+    not_remapped = _missing_by_name_without_rules(plan, seen)
+    for node, robot in plan.robot_of.items():
+        for end in {it.name: it for it in unplanned_ends(plan, seen).get(node, ())}.values():
+            name = end.name
+            # Whose tf is where is a rule of its own.
+            if name in shared or plan.names.robot(name) or end.type == TF:
                 continue
-            message = (
-                f"uses {name}, which is not a name of {robot}: the same node of another robot uses"
-                " it too"
-            )
-            cause = _why_leaked(view, node, name, not_remapped.get((node, name)))
-            yield leaked_name.finding(
-                message, **cause._asdict(), robot=robot, node=node, names=(name,)
-            )
+            cause = _why_leaked(plan, node, name, not_remapped.get((node, name)))
+            message = f"uses {name}, which is not a name of {robot}{_how_many(seen, name)}"
+            rule = _rule_of(seen, end.kind, name, end.type)
+            yield rule.finding(message, **cause._asdict(), robot=robot, node=node, names=(name,))
 
 
-def _missing_by_name_without_rules(view: View) -> dict[tuple[str, str], End]:
+def _rule_of(seen: Index, kind: str, name: str, type_: str) -> Rule:
+    """What it is to use a name together with other robots."""
+    if kind != TOPIC:
+        return service_of_two_nodes
+    return command_for_several_robots if is_order(name, type_) else topic_of_several_robots
+
+
+def _how_many(seen: Index, name: str) -> str:
+    """How many robots use the name, as far as they are there."""
+    robots = {seen.robot(it.node) for it in ends_of(seen, name)} - {""}
+    if len(robots) > 1:
+        return f": {len(robots)} robots use it"
+    return ", and is not in shared_topics: robots that do the same meet there"
+
+
+def _missing_by_name_without_rules(plan: Planned, seen: Index) -> dict[tuple[str, str], End]:
     """The planned endpoints that are missing, by node and the name they have without a rule."""
     return {
         (planned.node, name): planned
-        for planned in view.missing.values()
-        if planned.node in view.robot_of
-        for name in names_without_rules(view, planned)
+        for planned in missing(plan, seen).values()
+        if planned.node in plan.robot_of
+        for name in names_without_rules(plan, planned)
     }
 
 
-def _why_leaked(view: View, node: str, name: str, planned: End | None) -> Cause:
+def _why_leaked(plan: Planned, node: str, name: str, planned: End | None) -> Cause:
     if planned:
-        return why_not_remapped(view, planned)
-    plugin, place = plugin_of(view, node)
+        return why_not_remapped(plan, planned)
+    plugin, place = plugin_of(plan, node)
     if plugin:
         return caused(f"{plugin} has no namespace or remap rule for it, see {place}", place)
-    robot = view.robot_of[node]
-    target = f"{name}/{robot}" if view.ownership.robot_is_last else f"/{robot}{name}"
-    rule = how_to_pass(view, node, f"{name}:={target}")
+    robot = plan.robot_of[node]
+    target = f"{name}/{robot}" if plan.names.robot_is_last else f"/{robot}{name}"
+    rule = how_to_pass(plan, node, f"{name}:={target}")
     return Cause(f"an absolute name in its code or parameters; pass {rule}")
 
 
-def _planned_leaks(view: View) -> Iterator[Finding]:
+def _planned_leaks(plan: Planned, seen: Index) -> Iterator[Finding]:
     """A name that the plan itself has for several robots, because no remap rule changes it."""
-    shared = {*view.plan.shared_topics, *EVERYBODYS, *_shared_tf(view)}
+    shared = {*plan.system.shared_topics, *EVERYBODYS, *_shared_tf(plan)}
     nodes: dict[str, dict[str, None]] = defaultdict(dict)
-    relays = copying_nodes(view.plan)
-    for key in view.planned:
+    relays = copying_nodes(plan.system)
+    for key in plan.ends:
         node, _, _, name = key
-        if name in view.ownership.exact or name in shared or node not in view.robot_of:
+        if name in plan.names.exact or name in shared or node not in plan.robot_of:
             continue
-        if not view.ownership.robot(name) and key in view.types and node not in relays:
+        if not plan.names.robot(name) and key in types(seen) and node not in relays:
             nodes[name][node] = None
     for name, users in nodes.items():
-        robots = dict.fromkeys(view.robot_of[node] for node in users)
+        robots = dict.fromkeys(plan.robot_of[node] for node in users)
         for node in users if len(robots) > 1 else ():
             listed = shorten(robots, SEVERAL)
             message = f"uses {name}, which the plan has for several robots: {listed}"
             cause = "no remap rule changes it: set the node's parameter, or add it to shared_topics"
-            yield leaked_name.finding(
-                message, cause, robot=view.robot_of[node], node=node, names=(name,)
+            (kind, type_), *_ = ((it.kind, it.type) for it in ends_of(seen, name))
+            yield _rule_of(seen, kind, name, type_).finding(
+                message, cause, robot=plan.robot_of[node], node=node, names=(name,)
             )
 
 
-def _shared_tf(view: View) -> set[str]:
+def _unsent_leaks(plan: Planned, seen: Index) -> Iterator[Finding]:
+    """Where it is not known which nodes run: a name that each robot has with its own in it."""
+    shared = {*plan.system.shared_topics, *EVERYBODYS, *(name for *_, name in plan.ends)}
+    names = _names_of_robots(plan) if not seen.nodes else {}
+    for ends in seen.names.values() if names else ():
+        if ends.name in shared or plan.names.robot(ends.name) or ends.type == TF:
+            continue
+        segments = ends.name.strip("/").split("/")
+        likely = {"/" + "/".join(it) for it in (segments, segments[1:], segments[:-1])}
+        meant = [name for plain in likely for name in names.get(plain, ())]
+        if meant:
+            message = f"{ends.name} is of no robot; planned: {shorten(meant, SEVERAL)}"
+            cause = "start its node in its robot's namespace, with the rules of multibot remap"
+            rule = _rule_of(seen, ends.kind, ends.name, ends.type)
+            yield rule.finding(message, cause, names=(ends.name,))
+
+
+def _names_of_robots(plan: Planned) -> Mapping[str, Sequence[str]]:
+    """The planned topics of robots by the name without the robot's."""
+    found: dict[str, list[str]] = defaultdict(list)
+    for name in dict.fromkeys(name for _, kind, _, name in plan.ends if kind == TOPIC):
+        robot = plan.names.robot(name)
+        if robot:
+            found[plan.names.without_robot(name, robot)].append(name)
+    return found
+
+
+def _shared_tf(plan: Planned) -> set[str]:
     """The tf topics that robots share in their layout."""
-    times = Counter(robot.tf_topic for robot in view.plan.robots)
+    times = Counter(robot.tf_topic for robot in plan.system.robots)
     return {f"{tf}{end}" for tf, count in times.items() if count > 1 for end in ("", "_static")}
 
 
-def _wrong_tf_listeners(view: View) -> Iterator[Finding]:
-    """A tf listener in a robot's namespace that subscribes to /tf, which is not the robot's."""
-    home = {robot.name: robot.tf_topic for robot in view.plan.robots}
-    for node in view.seen:
-        robot = view.ownership.robot(node) if f"/{LISTENER}" in node else ""
-        if robot and home[robot] != "/tf" and (node, TOPIC, SUBSCRIBES, "/tf") in view.types:
-            message = f"this tf listener subscribes to /tf, but tf of {robot} is on {home[robot]}"
-            cause = "pass the rule /tf:=tf to its whole process or container, not to one node in it"
-            yield leaked_name.finding(message, cause, robot=robot, node=node, names=("/tf",))
-
-
-@graph_rule(
-    "MG104",
-    "cross-talk",
-    ERROR,
-    drawn="cross-talk",
-    what="A robot's node uses a name of another robot.",
-    why="One robot is driven or localized with the data of the other.",
-    fix="Correct the remap rule or parameter that has the name of the other robot.",
-    bad="""\
-as planned: /robot2/driver subscribes /robot2/cmd_vel
-planned: /robot1/planner
-running: /robot1/planner publishes /robot2/cmd_vel
-""",
-    good="""\
-as planned: /robot2/driver subscribes /robot2/cmd_vel
-planned: /robot1/planner
-running: /robot1/planner publishes /robot1/cmd_vel
-""",
-    line=3,
-)
-def cross_talk(view: View) -> Iterator[Finding]:
+@found_by_plan(command_from_another_robot, data_of_another_robot)
+def name_of_another_robot(plan: Planned, seen: Index) -> Iterator[Finding]:
     """Of planned nodes; names that are in the plan are meant."""
-    for node, robot in view.robot_of.items():
-        for end in view.unplanned_endpoints.get(node, ()):
-            other = view.ownership.robot(end.name)
-            if other and other != robot:
+    for node, robot in plan.robot_of.items():
+        for end in unplanned_ends(plan, seen).get(node, ()):
+            other = plan.names.robot(end.name)
+            # Whose tf is where is a rule of its own.
+            if other and other != robot and end.type != TF:
+                reads = end.role == SUBSCRIBES
+                rule = data_of_another_robot if reads else command_from_another_robot
                 message = f"{DOES[end.role]} {end.name}, which belongs to {other}"
                 cause = f"a remap rule or parameter of {robot} names {other}"
-                yield cross_talk.finding(message, cause, robot=robot, node=node, names=(end.name,))
+                yield rule.finding(message, cause, robot=robot, node=node, names=(end.name,))

@@ -6,16 +6,17 @@ from collections.abc import Iterator
 
 from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding
 from multibot_rewrite.graph.reach import hidden_from_here, why_not_seen
-from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.wording import shorten
-from multibot_rewrite.rules.declaration import graph_rule
+from multibot_rewrite.rules.declaration import pair_rule
+from multibot_rewrite.rules.index import Index, by_node
 from multibot_rewrite.rules.pair.causes import Cause, caused, plugin_of, why_other_name
-from multibot_rewrite.rules.pair.comparison import View
+from multibot_rewrite.rules.pair.meeting import matches, unplanned_nodes
+from multibot_rewrite.rules.planned import Planned
 from multibot_rewrite.system.conventions import EVERYBODYS
 from multibot_rewrite.system.records import Robot
 
 
-@graph_rule(
+@pair_rule(
     "MG101",
     "missing-node",
     ERROR,
@@ -38,74 +39,42 @@ as planned: /robot1/driver
 as planned: /robot1/planner
 """,
 )
-def missing_node(view: View) -> Iterator[Finding]:
+def missing_node(plan: Planned, seen: Index) -> Iterator[Finding]:
     """Of the plan; a robot without any of its nodes is one finding of ``missing_robot``."""
-    for robot in view.plan.robots:
-        for node in () if _is_absent(view, robot) else _missing(view, robot):
-            match = view.probable_matches.get(node, "")
-            cause = why_other_name(view, node, match) if match else _not_started(view, node)
+    for robot in plan.system.robots:
+        for node in () if _is_absent(plan, seen, robot) else _missing(plan, seen, robot):
+            match = matches(plan, seen).get(node, "")
+            cause = why_other_name(plan, node, match) if match else _not_started(plan, node)
             message = f"node {node} is in the plan, but not in the graph"
             yield missing_node.finding(message, **cause._asdict(), robot=robot.name, node=node)
-    for node in view.own[""]:
-        if node not in view.seen and node not in view.may_miss:
+    for node in dict.fromkeys(plan.own[""]):
+        if node not in seen.nodes and node not in plan.may_miss:
             message = f"node {node} for all robots is in the plan, but not in the graph"
             yield missing_node.finding(message, "is it started?", level=WARNING, node=node)
 
 
-def _missing(view: View, robot: Robot) -> list[str]:
+def _missing(plan: Planned, seen: Index, robot: Robot) -> list[str]:
     """An optional node is missing only where it runs under another name."""
     return [
         node
-        for node in view.own[robot.name]
-        if node not in view.seen and (node not in view.may_miss or node in view.probable_matches)
+        for node in plan.own[robot.name]
+        if node not in seen.nodes and (node not in plan.may_miss or node in matches(plan, seen))
     ]
 
 
-def _is_absent(view: View, robot: Robot) -> bool:
-    return view.seen.keys().isdisjoint(view.own[robot.name]) and bool(_missing(view, robot))
+def _is_absent(plan: Planned, seen: Index, robot: Robot) -> bool:
+    return seen.nodes.keys().isdisjoint(plan.own[robot.name]) and bool(_missing(plan, seen, robot))
 
 
-def _not_started(view: View, node: str) -> Cause:
-    plugin, place = plugin_of(view, node)
+def _not_started(plan: Planned, node: str) -> Cause:
+    plugin, place = plugin_of(plan, node)
     if plugin:
         started = f"{plugin} of the description should start it, see {place}"
         return caused(f"{started}; is the robot spawned?", place)
     return Cause("is it started, or did it end with an error?")
 
 
-@graph_rule(
-    "MG105",
-    "node-name-twice",
-    ERROR,
-    what="Two running nodes have the same name.",
-    why="Parameters and services work for only one of them, and tools show only one.",
-    fix="Give each node its namespace or its own name. A node that was killed stays visible for 20"
-    " s.",
-    bad="""\
-as planned: /robot1/driver
-running: /robot1/driver
-""",
-    good="as planned: /robot1/driver\n",
-    line=2,
-)
-def node_name_twice(view: View) -> Iterator[Finding]:
-    """Of planned nodes, and of those that are not ignored."""
-    for node, times in view.seen.items():
-        robot = view.robot_of.get(node, "")
-        if times == 1 or (not robot and is_tool(node, view.plan.ignored_nodes)):
-            continue
-        missing = [planned for planned, match in view.probable_matches.items() if match == node]
-        cause = (
-            "it was started twice, or two robots run without a namespace; a node that was killed"
-            " stays visible for 20 s"
-        )
-        if len(missing) > 1:
-            cause = f"{shorten(missing)} are missing: both were started without their robot's name"
-        message = f"{times} nodes have this name"
-        yield node_name_twice.finding(message, cause, robot=robot, node=node)
-
-
-@graph_rule(
+@pair_rule(
     "MG108",
     "unplanned-node",
     WARNING,
@@ -124,22 +93,21 @@ as planned: /robot1/gripper
 """,
     line=2,
 )
-def unplanned_node(view: View) -> Iterator[Finding]:
+def unplanned_node(plan: Planned, seen: Index) -> Iterator[Finding]:
     """Only where the plan has nodes of its robot."""
-    if not view.unplanned:
+    if not unplanned_nodes(plan, seen):
         return
-    matches = set(view.probable_matches.values())
-    planned = {robot.name for robot in view.plan.robots if view.own[robot.name]}
-    without_robot = view.ownership.without_robot
-    originals = {without_robot(node, robot): node for node, robot in view.robot_of.items()}
-    for node in view.unplanned if planned else ():
-        robot = view.ownership.robot(node)
-        if node in matches or (robot and robot not in planned):
+    meant = set(matches(plan, seen).values())
+    planned = {robot.name for robot in plan.system.robots if plan.own[robot.name]}
+    without_robot = plan.names.without_robot
+    originals = {without_robot(node, robot): node for node, robot in plan.robot_of.items()}
+    for node in unplanned_nodes(plan, seen) if planned else ():
+        robot = plan.names.robot(node)
+        if node in meant or (robot and robot not in planned):
             continue
         if robot:
-            message = (
-                f"belongs to {robot}, but is not in the plan{_foreign_names(view, node, robot)}"
-            )
+            foreign = _foreign_names(plan, seen, node, robot)
+            message = f"belongs to {robot}, but is not in the plan{foreign}"
             cause = "add it to the plan: with --stack or --nodes, or by hand"
         else:
             message = "belongs to no robot, and is not in shared_nodes of the plan"
@@ -149,15 +117,15 @@ def unplanned_node(view: View) -> Iterator[Finding]:
         yield unplanned_node.finding(message, cause, robot=robot, node=node)
 
 
-def _foreign_names(view: View, node: str, robot: str) -> str:
+def _foreign_names(plan: Planned, seen: Index, node: str, robot: str) -> str:
     """The names of a node that do not hold its robot's name: these may disturb other robots."""
-    shared = {*view.plan.shared_topics, *EVERYBODYS}
-    names = dict.fromkeys(e.name for e in view.by_node.get(node, ()) if "/_" not in e.name)
-    foreign = [n for n in names if n not in shared and view.ownership.robot(n) != robot]
+    shared = {*plan.system.shared_topics, *EVERYBODYS}
+    names = dict.fromkeys(e.name for e in by_node(seen).get(node, ()) if "/_" not in e.name)
+    foreign = [n for n in names if n not in shared and plan.names.robot(n) != robot]
     return f"; it uses {shorten(foreign)}, without the name of {robot}" if foreign else ""
 
 
-@graph_rule(
+@pair_rule(
     "MG109",
     "missing-robot",
     ERROR,
@@ -178,29 +146,29 @@ as planned: /robot2/driver
 """,
     line=2,
 )
-def missing_robot(view: View) -> Iterator[Finding]:
+def missing_robot(plan: Planned, seen: Index) -> Iterator[Finding]:
     """One finding in place of one for each node."""
-    for robot in view.plan.robots:
-        if _is_absent(view, robot):
+    for robot in plan.system.robots:
+        if _is_absent(plan, seen, robot):
             message = (
-                f"none of the {len(view.own[robot.name])} nodes of {robot.name} is in the graph"
+                f"none of the {len(plan.own[robot.name])} nodes of {robot.name} is in the graph"
             )
-            cause = _why_absent(view, robot)
-            hidden = not _matches(view, robot) and hidden_from_here(view.graph)
+            cause = _why_absent(plan, seen, robot)
+            hidden = not _matches(plan, seen, robot) and hidden_from_here(seen.system)
             level = INCONCLUSIVE if hidden else ERROR
             yield missing_robot.finding(message, **cause._asdict(), robot=robot.name, level=level)
 
 
-def _matches(view: View, robot: Robot) -> list[tuple[str, str]]:
+def _matches(plan: Planned, seen: Index, robot: Robot) -> list[tuple[str, str]]:
     """Its nodes, and those that probably run in their place."""
-    matches = view.probable_matches
-    return [(node, matches[node]) for node in view.own[robot.name] if node in matches]
+    found = matches(plan, seen)
+    return [(node, found[node]) for node in plan.own[robot.name] if node in found]
 
 
-def _why_absent(view: View, robot: Robot) -> Cause:
-    matches = _matches(view, robot)
+def _why_absent(plan: Planned, seen: Index, robot: Robot) -> Cause:
+    matches = _matches(plan, seen, robot)
     if not matches:
-        return Cause(why_not_seen(view.graph, robot.name))
-    cause = why_other_name(view, *matches[0])
+        return Cause(why_not_seen(seen.system, robot.name))
+    cause = why_other_name(plan, *matches[0])
     same = f"; the same for {len(matches) - 1} more of its nodes" if len(matches) > 1 else ""
     return cause._replace(hint=cause.hint + same)

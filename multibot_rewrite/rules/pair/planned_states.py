@@ -8,8 +8,11 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.reach import machines
 from multibot_rewrite.graph.wording import FEW, SEVERAL, shorten
-from multibot_rewrite.rules.declaration import graph_rule
-from multibot_rewrite.rules.pair.comparison import View
+from multibot_rewrite.rules.declaration import found_by_plan, pair_rule
+from multibot_rewrite.rules.index import Index, ends_of
+from multibot_rewrite.rules.planned import Planned
+from multibot_rewrite.rules.system.clocks import clocks_mixed
+from multibot_rewrite.rules.system.states import not_active
 from multibot_rewrite.system.conventions import CLOCK
 from multibot_rewrite.system.parameters import parameter_text, parameter_value
 from multibot_rewrite.system.records import SIM_TIME, SUBSCRIBES, Parameter, System, clocks
@@ -18,42 +21,22 @@ from multibot_rewrite.system.records import SIM_TIME, SUBSCRIBES, Parameter, Sys
 Difference = tuple[Parameter, str]
 
 
-@graph_rule(
-    "MG131",
-    "state-not-planned",
-    ERROR,
-    what="A managed (lifecycle) node is in another state than `states` of the plan has. Asked for by"
-    " `--state`.",
-    why="A node that is not active publishes nothing and refuses goals; one that was to wait works.",
-    fix="See the log of its lifecycle manager; `ros2 lifecycle set NODE activate`. If it is right,"
-    " change `lifecycle` in the plan.",
-    bad="""\
-planned: state of /robot1/amcl: active
-as planned: /robot1/amcl
-running: /robot1/amcl is inactive
-""",
-    good="""\
-planned: state of /robot1/amcl: active
-as planned: /robot1/amcl
-running: /robot1/amcl is active
-""",
-    line=3,
-)
-def state_not_planned(view: View) -> Iterator[Finding]:
+@found_by_plan(not_active)
+def state_not_planned(plan: Planned, seen: Index) -> Iterator[Finding]:
     """A node that did not answer is not known."""
-    states = {it.name: it.lifecycle for it in view.graph.nodes if it.lifecycle}
-    for planned in view.plan.nodes:
-        seen = states.get(planned.name, planned.lifecycle)
-        if planned.lifecycle and seen != planned.lifecycle:
-            yield state_not_planned.finding(
-                f"is {seen}, planned is {planned.lifecycle}",
+    states = {it.name: it.lifecycle for it in seen.system.nodes if it.lifecycle}
+    for planned in plan.system.nodes:
+        state = states.get(planned.name, planned.lifecycle)
+        if planned.lifecycle and state != planned.lifecycle:
+            yield not_active.finding(
+                f"is {state}, planned is {planned.lifecycle}",
                 f"ros2 lifecycle get {planned.name}; see the log of its lifecycle manager",
                 robot=planned.robot,
                 node=planned.name,
             )
 
 
-@graph_rule(
+@pair_rule(
     "MG132",
     "parameter-not-planned",
     ERROR,
@@ -76,15 +59,15 @@ running: /robot1/amcl has base_frame_id robot1/base_link
 """,
     line=3,
 )
-def parameter_not_planned(view: View) -> Iterator[Finding]:
+def parameter_not_planned(plan: Planned, seen: Index) -> Iterator[Finding]:
     """One finding a node; a parameter that it does not have is not known."""
-    values = {(it.node, it.name): it.value for it in view.graph.parameters}
-    for node, planned in _by_node(view.plan.parameters).items():
+    values = {(it.node, it.name): it.value for it in seen.system.parameters}
+    for node, planned in _by_node(plan.system.parameters).items():
         found = [*_differences(planned, values)]
         # What makes it an error comes first.
-        found.sort(key=lambda it: not _is_serious(view, it[0]))
+        found.sort(key=lambda it: not _is_serious(plan, it[0]))
         if found:
-            yield _differs(view, node, found)
+            yield _differs(plan, node, found)
 
 
 def _by_node(parameters: Iterable[Parameter]) -> dict[str, list[Parameter]]:
@@ -112,23 +95,23 @@ def _is_same(planned: str, value: str) -> bool:
     return bool(parameter_value(planned) == parameter_value(value))
 
 
-def _is_serious(view: View, it: Parameter) -> bool:
+def _is_serious(plan: Planned, it: Parameter) -> bool:
     """Whether the plan itself says it, or it is a frame of a robot."""
-    frames = view.frames_of.get(view.robot_of.get(it.node, ""), frozenset())
+    frames = plan.frames_of.get(plan.robot_of.get(it.node, ""), frozenset())
     return not it.place.file or parameter_value(it.value) in [
         *frames,
         *(f"/{frame}" for frame in frames),
     ]
 
 
-def _differs(view: View, node: str, found: Sequence[Difference]) -> Finding:
+def _differs(plan: Planned, node: str, found: Sequence[Difference]) -> Finding:
     listed = [f"{it.name} is {value}, planned is {it.value}{_at(it)}" for it, value in found]
-    robot, (first, _) = view.robot_of.get(node, ""), found[0]
+    robot, (first, _) = plan.robot_of.get(node, ""), found[0]
     file = first.place.file
     start = f"start it with {file}" if file else "change it, or states of the plan"
-    other = _whose(view, node, found)
+    other = _whose(plan, node, found)
     hint = f"has it the parameters of {other}? {start}" if other else start
-    serious = _is_serious(view, first)
+    serious = _is_serious(plan, first)
     level = ERROR if serious else WARNING
     names = tuple(it.name for it, _ in found)
     message = "; ".join(listed[:FEW]) + (f"; {len(found) - FEW} more" if len(found) > FEW else "")
@@ -141,14 +124,14 @@ def _at(it: Parameter) -> str:
     return f" ({it.place})" if it.place.file else ""
 
 
-def _whose(view: View, node: str, found: Sequence[Difference]) -> str:
+def _whose(plan: Planned, node: str, found: Sequence[Difference]) -> str:
     """The robot whose node of that name is planned to have these values."""
-    whose = view.ownership
-    robot = view.robot_of.get(node, "")
+    whose = plan.names
+    robot = plan.robot_of.get(node, "")
     plain = whose.without_robot(node, robot)
     wanted = {(it.name, value) for it, value in found}
-    for other, planned in _by_node(view.plan.parameters).items():
-        theirs = view.robot_of.get(other, "")
+    for other, planned in _by_node(plan.system.parameters).items():
+        theirs = plan.robot_of.get(other, "")
         if not theirs or whose.without_robot(other, theirs) != plain:
             continue
         if wanted <= {(it.name, it.value) for it in planned}:
@@ -156,41 +139,19 @@ def _whose(view: View, node: str, found: Sequence[Difference]) -> str:
     return ""
 
 
-@graph_rule(
-    "MG134",
-    "clock-not-planned",
-    ERROR,
-    absence=True,
-    what="A node of which the plan or fleet file says `use_sim_time: true` does not subscribe to"
-    " `/clock`, or one of which it says false does. What a node answers is compared by MG132.",
-    why="Every node with `use_sim_time` subscribes to `/clock`, and no other one does. Nodes on two"
-    " clocks refuse each other's messages and transforms as decades old.",
-    fix="Start all nodes of the robot with the value of the fleet file: `use_sim_time:=...` of the"
-    " launch file, `SetParameter`, the files that `multibot build` wrote, the lines of commands.md.",
-    bad="""\
-planned: parameter use_sim_time of /robot1/amcl: true
-as planned: /robot1/amcl
-""",
-    good="""\
-planned: parameter use_sim_time of /robot1/amcl: true
-as planned: /robot1/amcl
-running: /robot1/amcl subscribes /clock rosgraph_msgs/msg/Clock
-running: /bridge publishes /clock rosgraph_msgs/msg/Clock
-""",
-    line=2,
-)
-def clock_not_planned(view: View) -> Iterator[Finding]:
+@found_by_plan(clocks_mixed)
+def clock_not_planned(plan: Planned, seen: Index) -> Iterator[Finding]:
     """One finding for the nodes of a robot that differ alike."""
-    timed = {it.node for it in view.by_name.get(CLOCK, ()) if it.role == SUBSCRIBES}
-    asked = clocks(view.graph)
+    timed = {it.node for it in ends_of(seen, CLOCK) if it.role == SUBSCRIBES}
+    asked = clocks(seen.system)
     differing: dict[tuple[str, str], list[str]] = defaultdict(list)
-    for node, wanted in planned_clocks(view.plan):
-        if node in view.seen and node not in asked and wanted != parameter_text(node in timed):
-            differing[view.robot_of.get(node, ""), wanted].append(node)
+    for node, wanted in planned_clocks(plan.system):
+        if node in seen.nodes and node not in asked and wanted != parameter_text(node in timed):
+            differing[plan.robot_of.get(node, ""), wanted].append(node)
     for (robot, wanted), nodes in differing.items():
-        seen = "do not subscribe" if wanted == parameter_text(True) else "subscribe"
-        which = f"these nodes {seen} to {CLOCK}: {shorten(nodes)}"
-        yield clock_not_planned.finding(
+        verb = "do not subscribe" if wanted == parameter_text(True) else "subscribe"
+        which = f"these nodes {verb} to {CLOCK}: {shorten(nodes)}"
+        yield clocks_mixed.finding(
             f"{SIM_TIME} is planned to be {wanted}, but {which}",
             f"start them with {SIM_TIME}: {wanted}",
             robot=robot,
@@ -204,7 +165,7 @@ def planned_clocks(plan: System) -> Iterator[tuple[str, str]]:
     return ((it.node, it.value) for it in plan.parameters if it.name == SIM_TIME)
 
 
-@graph_rule(
+@pair_rule(
     "MG133",
     "host-not-planned",
     ERROR,
@@ -230,10 +191,10 @@ running: /robot2/lidar on machine 2
 """,
     line=6,
 )
-def host_not_planned(view: View) -> Iterator[Finding]:
+def host_not_planned(plan: Planned, seen: Index) -> Iterator[Finding]:
     """A snapshot tells machines apart, and has no names: a host is where most of its nodes are."""
-    machine_of = {node: it for it, nodes in machines(view.graph).items() for node in nodes}
-    hosts = _hosts(view, machine_of)
+    machine_of = {node: it for it, nodes in machines(seen.system).items() for node in nodes}
+    hosts = _hosts(plan, machine_of)
     homes = {
         host: max(sorted(found), key=lambda it: len(found[it])) for host, found in hosts.items()
     }
@@ -241,24 +202,24 @@ def host_not_planned(view: View) -> Iterator[Finding]:
         away = [node for it, nodes in found.items() if it != homes[host] for node in nodes]
         if away:
             message = f"not on {host}, where {shorten(found[homes[host]])} runs: {shorten(away)}"
-            yield _on_wrong_host(view, message, away, "start it there, or change host in the plan")
+            yield _on_wrong_host(plan, message, away, "start it there, or change host in the plan")
     for machine in dict.fromkeys(homes.values()):
         own = [host for host, home in homes.items() if home == machine]
         if len(own) > 1:
             message = f"hosts {shorten(own, SEVERAL)} are one machine"
             nodes = hosts[own[1]][machine]
-            yield _on_wrong_host(view, message, nodes, "is this a simulation? Then leave out host")
+            yield _on_wrong_host(plan, message, nodes, "is this a simulation? Then leave out host")
 
 
-def _hosts(view: View, machine_of: Mapping[str, str]) -> Mapping[str, dict[str, list[str]]]:
+def _hosts(plan: Planned, machine_of: Mapping[str, str]) -> Mapping[str, dict[str, list[str]]]:
     """Host of the plan -> machine -> the nodes that run there."""
     found: dict[str, dict[str, list[str]]] = defaultdict(lambda: defaultdict(list))
-    for it in view.plan.nodes:
+    for it in plan.system.nodes:
         if it.host and it.name in machine_of:
             found[it.host][machine_of[it.name]].append(it.name)
     return found
 
 
-def _on_wrong_host(view: View, message: str, nodes: Sequence[str], hint: str) -> Finding:
-    robot = view.robot_of.get(nodes[0], "")
+def _on_wrong_host(plan: Planned, message: str, nodes: Sequence[str], hint: str) -> Finding:
+    robot = plan.robot_of.get(nodes[0], "")
     return host_not_planned.finding(message, hint, robot=robot, node=nodes[0], names=tuple(nodes))

@@ -5,40 +5,39 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence, Set
 
 from multibot_rewrite.graph.wording import shorten
-from multibot_rewrite.rules.index import tree_topic
+from multibot_rewrite.rules.index import Index, ends_of, tree_topic
 from multibot_rewrite.rules.pair.causes import Cause, caused
-from multibot_rewrite.rules.pair.comparison import View
 from multibot_rewrite.rules.pair.name_variants import name_variants
 from multibot_rewrite.rules.pair.silent_topics import silent_topics
 from multibot_rewrite.rules.pair.tf_senders import (
-    Sent,
     foreign,
     sender_of,
     sent_by_robot,
     where_set,
 )
-from multibot_rewrite.rules.pair.tf_trees import TfTree
+from multibot_rewrite.rules.pair.tf_trees import TfTree, tf_trees
+from multibot_rewrite.rules.planned import Planned, Sent
 from multibot_rewrite.system.records import PUBLISHES, Edge, Robot
 
 JOINT_STATES, TF = "sensor_msgs/msg/JointState", "tf2_msgs/msg/TFMessage"
 
 
-def why_disconnected(view: View, robot: Robot, roots: Sequence[str]) -> Cause:
+def why_disconnected(plan: Planned, seen: Index, robot: Robot, roots: Sequence[str]) -> Cause:
     """The node that sends a frame under another name, or does not send what it should."""
-    edges = [edge for tree in _trees(view, robot) for edge in tree.edges]
-    unsent = [it for it in sent_by_robot(view, robot) if not _is_sent(it, edges)]
+    edges = [edge for tree in _trees(plan, seen, robot) for edge in tree.edges]
+    unsent = [it for it in sent_by_robot(plan, robot) if not _is_sent(it, edges)]
     causes = (
-        _two_names(view, robot, roots, edges),
-        *(_not_sent(view, robot, it) for it in unsent),
-        *(_silent(view, robot, type_) for type_ in (TF, JOINT_STATES)),
-        _bridged(view, robot),
+        _two_names(plan, robot, roots, edges),
+        *(_not_sent(plan, seen, robot, it) for it in unsent),
+        *(_silent(plan, seen, robot, type_) for type_ in (TF, JOINT_STATES)),
+        _bridged(plan, seen, robot),
     )
     general = "a transform between them is missing: joint states of a moving joint, odometry or"
     return next(filter(None, causes), Cause(f"{general} localization"))
 
 
-def _trees(view: View, robot: Robot) -> Iterator[TfTree]:
-    return (tree for tree in view.trees if tree.topic == tree_topic(robot.tf_topic))
+def _trees(plan: Planned, seen: Index, robot: Robot) -> Iterator[TfTree]:
+    return (tree for tree in tf_trees(plan, seen) if tree.topic == tree_topic(robot.tf_topic))
 
 
 def _is_sent(planned: Sent, edges: Sequence[Edge]) -> bool:
@@ -46,36 +45,39 @@ def _is_sent(planned: Sent, edges: Sequence[Edge]) -> bool:
 
 
 def _two_names(
-    view: View, robot: Robot, roots: Sequence[str], edges: Sequence[Edge]
+    plan: Planned,
+    robot: Robot,
+    roots: Sequence[str],
+    edges: Sequence[Edge],
 ) -> Cause | None:
     """A root that is in the tree under another name, with the robot's or without."""
     children = {edge.child for edge in edges}
     for root in roots:
-        plain = view.frame_ownership.without_robot(root, robot.name)
-        variants = name_variants(plain, root, view.frame_ownership.tag(robot.name))
+        plain = plan.frames.without_robot(root, robot.name)
+        variants = name_variants(plain, root, plan.frames.tag(robot.name))
         other = next((name for name in variants if name in children), "")
         if other:
             right, wrong = (root, other) if root in robot.frames else (other, root)
-            return _wrongly_named(view, robot, right, wrong)
+            return _wrongly_named(plan, robot, right, wrong)
     return None
 
 
-def _wrongly_named(view: View, robot: Robot, right: str, wrong: str) -> Cause:
+def _wrongly_named(plan: Planned, robot: Robot, right: str, wrong: str) -> Cause:
     names = f"{wrong} and {right} are one frame with two names"
-    node = sender_of(view, robot, right)
+    node = sender_of(plan, robot, right)
     if not node:
         return Cause(f"{names}, the second is the planned one")
-    place = where_set(view, node)
+    place = where_set(plan, node)
     see = f", see {place}" if place else ""
     return caused(f"{names}: by the plan {node} sends the second, {right}{see}", place)
 
 
-def _not_sent(view: View, robot: Robot, planned: Sent) -> Cause:
-    place = where_set(view, planned.node)
+def _not_sent(plan: Planned, seen: Index, robot: Robot, planned: Sent) -> Cause:
+    place = where_set(plan, planned.node)
     see = f" (see {place})" if place else ""
-    if planned.node not in view.seen:
+    if planned.node not in seen.nodes:
         return caused(f"{planned.node}, which sends {planned}, does not run{see}", place)
-    whose = next(_whose(view, robot, planned), "")
+    whose = next(_whose(plan, seen, robot, planned), "")
     which = f"it has the parameters of {whose}" if whose else "has it those of another robot?"
     return caused(
         f"by the plan and its parameters{see} {planned.node} sends {planned}, and does not: {which}",
@@ -83,22 +85,22 @@ def _not_sent(view: View, robot: Robot, planned: Sent) -> Cause:
     )
 
 
-def _whose(view: View, robot: Robot, planned: Sent) -> Iterator[str]:
+def _whose(plan: Planned, seen: Index, robot: Robot, planned: Sent) -> Iterator[str]:
     """The robots of whom this transform is, and is sent for this one."""
-    plain = _plain(view, planned.parent, planned.child, robot.name)
-    for other, edge in foreign(view, robot):
-        if _plain(view, edge.parent, edge.child, other) == plain:
+    plain = _plain(plan, planned.parent, planned.child, robot.name)
+    for other, edge in foreign(plan, seen, robot):
+        if _plain(plan, edge.parent, edge.child, other) == plain:
             yield other
 
 
-def _plain(view: View, parent: str, child: str, robot: str) -> tuple[str, ...]:
-    return tuple(view.frame_ownership.without_robot(it, robot) for it in (parent, child))
+def _plain(plan: Planned, parent: str, child: str, robot: str) -> tuple[str, ...]:
+    return tuple(plan.frames.without_robot(it, robot) for it in (parent, child))
 
 
-def _bridged(view: View, robot: Robot) -> Cause | None:
+def _bridged(plan: Planned, seen: Index, robot: Robot) -> Cause | None:
     """The odometry of a simulated robot, which a bridge carries beside the transforms of others."""
-    carried = [it for it in view.plan.topics if it.bridge and it.name == robot.tf_topic]
-    ends = view.by_name.get(robot.tf_topic, ()) if carried else ()
+    carried = [it for it in plan.system.topics if it.bridge and it.name == robot.tf_topic]
+    ends = ends_of(seen, robot.tf_topic) if carried else ()
     bridges = sorted({it.node for it in ends if it.role == PUBLISHES and "bridge" in it.node})
     if not bridges:
         return None
@@ -108,12 +110,12 @@ def _bridged(view: View, robot: Robot) -> Cause | None:
     )
 
 
-def _silent(view: View, robot: Robot, type_: str) -> Cause | None:
-    silent: Set[str] = silent_topics(view, robot, type_)
+def _silent(plan: Planned, seen: Index, robot: Robot, type_: str) -> Cause | None:
+    silent: Set[str] = silent_topics(plan, seen, robot, type_)
     if not silent:
         return None
     topic = min(silent)
-    bridged = any(it.name == topic and it.bridge for it in view.plan.topics)
+    bridged = any(it.name == topic and it.bridge for it in plan.system.topics)
     if bridged:
         return Cause(
             f"nothing publishes {topic}, which a ros_gz_bridge has to carry: is it started?"

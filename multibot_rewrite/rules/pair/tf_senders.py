@@ -2,75 +2,49 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.rules.index import tree_topic
-from multibot_rewrite.rules.pair.comparison import View
-from multibot_rewrite.rules.pair.tf_trees import TfTree
-from multibot_rewrite.system.records import Edge, Robot, System
+from multibot_rewrite.rules.index import Index, tree_topic
+from multibot_rewrite.rules.pair.tf_trees import tf_trees
+from multibot_rewrite.rules.planned import Planned, Sent
+from multibot_rewrite.system.records import Edge, Robot
 
 
-class Sent(NamedTuple):
-    """A transform that a node sends by the plan."""
-
-    node: str
-    parent: str
-    child: str
-
-    def __str__(self) -> str:
-        return f"{self.parent} -> {self.child}"
-
-
-def planned_transforms(plan: System) -> Iterator[Sent]:
-    """What nodes send besides the description's transforms, as ``sends`` of the plan has it."""
-    for edge in plan.edges:
-        yield from (Sent(node, edge.parent, edge.child) for node in edge.publishers)
-
-
-def sent_by_robot(view: View, robot: Robot) -> list[Sent]:
+def sent_by_robot(plan: Planned, robot: Robot) -> list[Sent]:
     """Those of one robot's nodes."""
-    own = (it for it in planned_transforms(view.plan) if view.robot_of.get(it.node) == robot.name)
-    return list(own)
+    return [it for it in plan.sent if plan.robot_of.get(it.node) == robot.name]
 
 
-def foreign(view: View, robot: Robot) -> Iterator[tuple[str, Edge]]:
+def foreign(plan: Planned, seen: Index, robot: Robot) -> Iterator[tuple[str, Edge]]:
     """Transforms of other robots, each with its robot, that a node of this one may send: all on a tf
     topic of its own, else what several nodes send."""
-    for tree in view.trees:
+    for tree in tf_trees(plan, seen):
         if tree.topic != tree_topic(robot.tf_topic):
             continue
         for edge in tree.edges:
-            other = view.frame_ownership.robot(edge.child)
+            other = plan.frames.robot(edge.child)
             if other not in ("", robot.name) and (len(tree.home) == 1 or edge.several):
                 yield other, edge
 
 
-def described_robots(view: View, robot: Robot) -> Iterator[str]:
+def described_robots(plan: Planned, seen: Index, robot: Robot) -> Iterator[str]:
     """The robots whose description a node of this one seems to have, by fixed transforms of theirs."""
-    return (other for other, edge in foreign(view, robot) if edge.static)
+    return (other for other, edge in foreign(plan, seen, robot) if edge.static)
 
 
-def sender_of(view: View, robot: Robot, frame: str) -> str:
+def sender_of(plan: Planned, robot: Robot, frame: str) -> str:
     """The node that sends a planned frame of the robot: a node of its own, else the description's."""
-    found = (it.node for it in sent_by_robot(view, robot) if frame in (it.parent, it.child))
-    return next(found, "") or state_publisher(view, robot)
+    found = (it.node for it in sent_by_robot(plan, robot) if frame in (it.parent, it.child))
+    return next(found, "") or state_publisher(plan, robot)
 
 
-def state_publisher(view: View, robot: Robot) -> str:
+def state_publisher(plan: Planned, robot: Robot) -> str:
     """The robot's robot_state_publisher by the plan; empty where it has none."""
-    return next((it for it in view.own[robot.name] if STATE_PUBLISHER in it), "")
+    return next((it for it in plan.own[robot.name] if STATE_PUBLISHER in it), "")
 
 
-def senders_there(tree: TfTree, robot: str, first: Mapping[str, None]) -> list[str]:
-    """Who publishes on a tree's topics: ``first``, then the robot's nodes, then all others."""
-    others = [node for nodes in tree.senders.values() for node in nodes]
-    every = dict.fromkeys((*first, *tree.senders.get(robot, ()), *others))
-    return [node for node in every if node in others]
-
-
-def where_set(view: View, node: str) -> str:
+def where_set(plan: Planned, node: str) -> str:
     """The file that holds a node's frames: its plugin's line, or that of its parameters; or empty."""
-    planned = view.nodes.get(node)
+    planned = plan.nodes.get(node)
     return str(planned.plugin) or str(planned.place) if planned else ""

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.rules.index import tree_topic
-from multibot_rewrite.rules.ownership import NameOwnership
-from multibot_rewrite.system.records import Edge, Robot
+from multibot_rewrite.rules.index import Index, Tree, once, tree_topic
+from multibot_rewrite.rules.planned import Planned
+from multibot_rewrite.system.records import Edge
 
 
 class TfTree(NamedTuple):
@@ -26,48 +26,22 @@ class TfTree(NamedTuple):
     robots: tuple[str, ...]
 
 
-def tf_trees(
-    frames: Iterable[Edge], robots: Iterable[Robot], ownership: NameOwnership
-) -> tuple[TfTree, ...]:
-    """One tree for each tf topic with transforms."""
+@once
+def tf_trees(plan: Planned, seen: Index) -> Sequence[TfTree]:
+    """Those with transforms."""
     home: dict[str, list[str]] = defaultdict(list)
-    for robot in robots:
+    for robot in plan.system.robots:
         home[tree_topic(robot.tf_topic)].append(robot.name)
-    edges: dict[str, list[Edge]] = defaultdict(list)
-    # The same for all transforms on a topic.
-    senders: dict[str, tuple[str, ...]] = {}
-    for frame in frames:
-        edges[frame.topic].append(frame)
-        senders[frame.topic] = senders.get(frame.topic) or frame.publishers
-    topics: dict[str, list[str]] = defaultdict(list)
-    for topic in edges:
-        topics[tree_topic(topic)].append(topic)
-    return tuple(
-        _tree(
-            tree,
-            tuple(edge for topic in own for edge in edges[topic]),
-            _by_robot((node for topic in own for node in senders[topic]), ownership),
-            tuple(home.get(tree, ())),
-        )
-        for tree, own in topics.items()
-    )
+    there = (it for it in seen.trees if it.edges)
+    return [_tree(plan, it, tuple(home.get(it.topic, ()))) for it in there]
 
 
-def _tree(
-    topic: str,
-    edges: tuple[Edge, ...],
-    senders: Mapping[str, tuple[str, ...]],
-    home: tuple[str, ...],
-) -> TfTree:
+def _tree(plan: Planned, tree: Tree, home: tuple[str, ...]) -> TfTree:
+    senders: dict[str, tuple[str, ...]] = defaultdict(tuple)
+    for node in sorted(tree.senders):
+        senders[plan.names.robot(node)] += (node,)
     robots = tuple(filter(None, senders)) if senders else home
-    return TfTree(topic, edges, senders, home, robots)
-
-
-def _by_robot(nodes: Iterable[str], ownership: NameOwnership) -> dict[str, tuple[str, ...]]:
-    found: dict[str, list[str]] = defaultdict(list)
-    for node in sorted(set(nodes)):
-        found[ownership.robot(node)].append(node)
-    return {robot: tuple(own) for robot, own in found.items()}
+    return TfTree(tree.topic, tree.edges, senders, home, robots)
 
 
 def frames_in(tree: TfTree) -> Iterator[str]:

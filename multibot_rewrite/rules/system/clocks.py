@@ -10,7 +10,7 @@ from fnmatch import translate
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.wording import shorten
-from multibot_rewrite.rules.declaration import danger_rule
+from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.index import Index, and_then, is_viewer, last_word, nodes_of
 from multibot_rewrite.system.conventions import CLOCK
 from multibot_rewrite.system.records import TOPIC
@@ -25,7 +25,7 @@ _TIMED = (
 _IS_TIMED = re.compile("|".join(map(translate, _TIMED)))
 
 
-@danger_rule(
+@system_rule(
     "MG501",
     "no-clock",
     ERROR,
@@ -68,7 +68,7 @@ def _on_simulated_time(seen: Index) -> dict[str, list[str]]:
     return found
 
 
-@danger_rule(
+@system_rule(
     "MG502",
     "two-clocks",
     ERROR,
@@ -89,7 +89,7 @@ def two_clocks(seen: Index) -> Iterator[Finding]:
     """Two nodes of one name count as well: a bridge that was started for each robot."""
     ends = seen.names.get((TOPIC, CLOCK))
     nodes = _clocks(seen)
-    times = {node: sum(it.name == node for it in seen.system.nodes) for node in nodes}
+    times = {node: seen.nodes.get(node, 0) for node in nodes}
     if ends and sum(max(1, count) for count in times.values()) > 1:
         who = and_then(nodes) if len(nodes) > 1 else f"{times[nodes[0]]} nodes {nodes[0]}"
         cause = "a clock bridge for each robot, two simulators, or a bag with --clock: keep one"
@@ -97,12 +97,11 @@ def two_clocks(seen: Index) -> Iterator[Finding]:
         yield two_clocks.finding(message, cause, node=nodes[0], names=(CLOCK,))
 
 
-@danger_rule(
+@system_rule(
     "MG503",
     "clocks-mixed",
     ERROR,
     absence=True,
-    planned="MG134",
     what="Of the nodes of one robot that compare times, some are on simulated time and some are not.",
     why="Their messages are decades apart: tf refuses every lookup between them (`extrapolation into"
     " the future`).",
@@ -124,7 +123,7 @@ def clocks_mixed(seen: Index) -> Iterator[Finding]:
     simulated = {node for nodes in _on_simulated_time(seen).values() for node in nodes}
     if not simulated or not _clocks(seen):
         return
-    timed = {node.name for node in seen.system.nodes if _IS_TIMED.fullmatch(last_word(node.name))}
+    timed = {node for node in seen.nodes if _is_timed(node) and node not in seen.known.clocks}
     for robot in dict.fromkeys(map(seen.robot, sorted(timed))):
         own = [node for node in sorted(timed) if seen.robot(node) == robot]
         others = [node for node in own if node not in simulated]
@@ -132,6 +131,10 @@ def clocks_mixed(seen: Index) -> Iterator[Finding]:
             yield _mixed(robot, others, sorted(simulated & set(own)) or sorted(simulated))
         elif others and robot:
             yield _real_beside_simulated(robot, others, simulated)
+
+
+def _is_timed(node: str) -> bool:
+    return not is_viewer(node) and bool(_IS_TIMED.fullmatch(last_word(node)))
 
 
 def _mixed(robot: str, others: list[str], simulated: list[str]) -> Finding:

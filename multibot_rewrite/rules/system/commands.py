@@ -9,7 +9,7 @@ from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.rules import words
-from multibot_rewrite.rules.declaration import danger_rule
+from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.index import (
     TF,
     Ends,
@@ -25,15 +25,15 @@ from multibot_rewrite.rules.index import (
 from multibot_rewrite.rules.system.names import ABSENT, alike, nobody_in
 from multibot_rewrite.rules.system.sharing import own_namespace
 from multibot_rewrite.system.conventions import EVERYBODYS, OF_EVERY_NODE, chooses, team
-from multibot_rewrite.system.records import ACTION, TOPIC, End
+from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SUBSCRIBES, TOPIC, End
 
 
-@danger_rule(
+@system_rule(
     "MG310",
     "command-for-several-robots",
     ERROR,
     drawn="leak",
-    planned="MG103",
+    meant=(SUBSCRIBES,),
     what="Nodes of several robots subscribe to one topic with velocities, trajectories, a goal or a"
     " start pose. For a joystick it is a warning: its buttons may choose the robot.",
     why="One command moves all of them.",
@@ -66,7 +66,7 @@ def command_for_several_robots(seen: Index) -> Iterator[Finding]:
             )
 
 
-@danger_rule(
+@system_rule(
     "MG308",
     "command-to-nobody",
     ERROR,
@@ -129,12 +129,12 @@ def _unread(seen: Index, ends: Ends, meant: str, robots: int) -> Finding:
     )
 
 
-@danger_rule(
+@system_rule(
     "MG311",
     "command-from-another-robot",
     ERROR,
     drawn="cross-talk",
-    planned="MG104",
+    meant=(PUBLISHES, CALLS),
     what="A robot's node sends commands to another robot: velocities, trajectories, goals, requests to"
     " its services, or a topic for which its own robot waits.",
     why="Who drives, or stops, the one robot moves the other.",
@@ -195,10 +195,11 @@ def _mistaken(seen: Index, node: str, robot: str, ends: Ends) -> bool:
     return node not in nodes_of((*own.publishers, *own.clients))
 
 
-@danger_rule(
+@system_rule(
     "MG312",
     "several-command-senders",
     WARNING,
+    meant=(PUBLISHES,),
     what="Several nodes send velocities or trajectories to one robot, and nothing chooses between"
     " them.",
     why="While two of them send, the robot follows both by turns: it jerks, or drives against the"
@@ -242,7 +243,7 @@ def several_command_senders(seen: Index) -> Iterator[Finding]:
         )
 
 
-@danger_rule(
+@system_rule(
     "MG313",
     "bag-beside-a-robot",
     ERROR,

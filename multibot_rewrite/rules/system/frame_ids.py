@@ -10,7 +10,7 @@ from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.nearest import MISTYPED, nearest
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.rules.declaration import danger_rule
+from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.index import (
     Index,
     Tree,
@@ -36,7 +36,7 @@ class _Message(NamedTuple):
     senders: tuple[str, ...]
 
 
-@danger_rule(
+@system_rule(
     "MG411",
     "frame-id-of-another-robot",
     ERROR,
@@ -80,7 +80,7 @@ def _is_of_another(seen: Index, frame: str, robot: str, messages: Sequence[_Mess
     return bool(robot) and measured and seen.frame_robot(frame) not in ("", robot)
 
 
-@danger_rule(
+@system_rule(
     "MG412",
     "frame-id-unknown",
     ERROR,

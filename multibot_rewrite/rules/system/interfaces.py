@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.nearest import Guesses
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.rules.declaration import danger_rule
+from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.index import Index, last_word
 from multibot_rewrite.rules.places import see, where
 from multibot_rewrite.system.conventions import PLACEHOLDER
@@ -29,7 +29,7 @@ class Missing(NamedTuple):
     meant: str
 
 
-@danger_rule(
+@system_rule(
     "MG515",
     "interface-not-exported",
     WARNING,
@@ -114,7 +114,7 @@ def _beside(name: str, exports: Iterable[Interface]) -> Interface | None:
     return next((it for it in exports if it.name.rpartition("/")[0] == owner), None)
 
 
-@danger_rule(
+@system_rule(
     "MG516",
     "interface-claimed-twice",
     WARNING,

@@ -2,27 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache
+from math import inf
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.wording import shorten
-from multibot_rewrite.rules.declaration import danger_rule
-from multibot_rewrite.rules.index import Ends, Index, is_viewer, nodes_of
-from multibot_rewrite.rules.pair.type_and_qos import STAMPED, qos_conflicts
+from multibot_rewrite.rules.declaration import system_rule
+from multibot_rewrite.rules.index import TF, Ends, Index, is_viewer, nodes_of
 from multibot_rewrite.rules.places import see, where
+from multibot_rewrite.rules.words import DESCRIPTION, MAP
 from multibot_rewrite.system.conventions import EVERYBODYS
-from multibot_rewrite.system.records import TOPIC, ZENOH, End
+from multibot_rewrite.system.records import TOPIC, ZENOH, End, Qos
+
+# The words of each policy, the weakest first; any other word does not say what is in force.
+RELIABILITY = ("BEST_EFFORT", "RELIABLE")
+DURABILITY = ("VOLATILE", "TRANSIENT_LOCAL")
+LIVELINESS = ("AUTOMATIC", "MANUAL_BY_NODE", "MANUAL_BY_TOPIC")
+# A valid type hash starts with the version of the hash.
+HASH = "RIHS"
+STAMPED = "Stamped"
 
 
-@danger_rule(
+@system_rule(
     "MG306",
     "types-differ",
     ERROR,
-    planned="MG106",
-    what="Both sides of a topic, service or action have different types, or two versions of one type.",
+    all_ends=True,
+    what="The ends of a topic, service or action have different types, two versions of one type, or"
+    " another type than in the plan.",
     why="No message arrives, and there is no error message.",
-    fix="Use the same type on both sides; for velocities set `enable_stamped_cmd_vel`,"
-    " `use_stamped_vel` or `stamped` alike on both.",
+    fix="Use the same type on both sides, and build both against one version; for velocities set"
+    " `enable_stamped_cmd_vel`, `use_stamped_vel` or `stamped` alike on both. If the running type is"
+    " right, correct the plan.",
     bad="""\
 running: /robot1/planner publishes /robot1/cmd_vel geometry_msgs/msg/TwistStamped
 running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
@@ -41,26 +54,39 @@ def types_differ(seen: Index) -> Iterator[Finding]:
             givers, takers = ends.servers, ends.clients
         if len({(end.type, end.type_hash) for end in (*givers, *takers)}) < 2:
             continue
-        given = {it for end in givers for it in _types(end)}
-        for node in nodes_of(takers) if given and all(end.type for end in givers) else ():
-            own = [end for end in takers if end.node == node]
+        # Of a side alone the first one counts.
+        others = givers if takers else givers[:1]
+        for node, own in _apart(takers or givers, others).items():
+            given = {it for end in others for it in _types(end)}
             asked = {it for end in own for it in _types(end)}
-            if not all(end.type for end in own) or _meet(asked, given):
-                continue
-            message, cause = _difference(ends.name, nodes_of(givers)[0], dict(asked), dict(given))
+            message, cause = _difference(ends.name, others[0].node, dict(asked), dict(given))
             level = WARNING if is_viewer(node) else ERROR
             robot = seen.robot(node) or seen.robot(ends.name)
-            both = (*givers, *own)
+            both = (*others, *own)
             yield types_differ.finding(
                 message, cause + see(both),
                 level=level, robot=robot, node=node, names=(ends.name,), **where(both),
             )  # fmt: skip
 
 
+def _apart(ends: Iterable[End], others: Sequence[End]) -> Mapping[str, Sequence[End]]:
+    """By node: the ends that connect with none of the others, where all types are known."""
+    given = {it for end in others for it in _types(end)}
+    by_node: dict[str, list[End]] = defaultdict(list)
+    for end in ends if given and all(end.type for end in others) else ():
+        by_node[end.node].append(end)
+    return {
+        node: own
+        for node, own in by_node.items()
+        if all(end.type for end in own)
+        and not _meet((it for end in own for it in _types(end)), given)
+    }
+
+
 def _types(end: End) -> Iterator[tuple[str, str]]:
-    """The type of an end with its hash, and the others that it may have."""
+    """The type of an end with its hash, if that is valid, and the others that it may have."""
     if end.type:
-        yield end.type, end.type_hash
+        yield end.type, end.type_hash if end.type_hash.startswith(HASH) else ""
     yield from ((it, "") for it in end.also)
 
 
@@ -91,13 +117,15 @@ def _difference(
     return f"uses {name} as {wanted}, but {giver} has it as {there}", cause
 
 
-@danger_rule(
+@system_rule(
     "MG307",
     "qos-never-meets",
     ERROR,
-    planned="MG107",
-    what="A subscriber asks for a QoS that no publisher of the topic offers.",
-    why="No message ever arrives; there is at most a line in the log.",
+    what="A subscriber asks for a QoS that a publisher of the topic does not offer: reliability,"
+    " durability, deadline, liveliness or lease. Where it hears other publishers it is a warning, but"
+    " for tf.",
+    why="DDS does not connect them: both are in the graph, and no message arrives; there is at most a"
+    " line in the log.",
     fix="Let the subscriber ask for less (best effort, volatile), or the publishers offer more.",
     bad="""\
 running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan best_effort volatile
@@ -110,20 +138,19 @@ running: /robot1/amcl subscribes /robot1/scan sensor_msgs/msg/LaserScan best_eff
     line=2,
 )
 def qos_never_meets(seen: Index) -> Iterator[Finding]:
-    """A subscriber that hears at least one of several publishers is left alone; Zenoh connects all."""
+    """One for each subscription and what it lacks. Zenoh connects any two (rmw_zenoh design.md)."""
     for (kind, name), ends in seen.names.items() if seen.system.environment.rmw != ZENOH else ():
         if kind != TOPIC or name in EVERYBODYS or not ends.publishers:
             continue
-        for end in ends.subscribers:
-            conflicts = _with_all(end, ends)
-            if conflicts:
-                yield _never_meets(seen, end, ends.publishers, conflicts)
-
-
-def _with_all(end: End, ends: Ends) -> tuple[tuple[str, str], ...]:
-    """Where a subscriber's QoS conflicts, if it does with every publisher; else nothing."""
-    found = [qos_conflicts(it.qos, end.qos) if it.qos and end.qos else () for it in ends.publishers]
-    return found[0] if all(found) else ()
+        for end in {(it.node, it.qos): it for it in ends.subscribers}.values():
+            refused: dict[tuple[tuple[str, str], ...], list[End]] = defaultdict(list)
+            for it in ends.publishers:
+                if it.qos and end.qos and (conflicts := qos_conflicts(it.qos, end.qos)):
+                    refused[conflicts].append(it)
+            hears = sum(map(len, refused.values())) < len(ends.publishers)
+            if not (hears and is_viewer(end.node)):
+                for conflicts, publishers in refused.items():
+                    yield _never_meets(seen, end, publishers, conflicts, hears)
 
 
 def _never_meets(
@@ -131,14 +158,90 @@ def _never_meets(
     end: End,
     publishers: Iterable[End],
     conflicts: tuple[tuple[str, str], ...],
+    hears: bool,
 ) -> Finding:
     offered = " and ".join(offer for offer, _ in conflicts)
     asked = " and ".join(request for _, request in conflicts)
     senders = shorten(nodes_of(publishers))
     message = f"subscribes to {end.name} with {asked}, but {senders} offers {offered}"
-    cause = f"no message ever arrives: let it ask for {offered}, or the publisher offer {asked}"
-    level = WARNING if is_viewer(end.node) else ERROR
+    never = f"no message of {senders} ever arrives" if hears else "no message ever arrives"
+    cause = f"{never}: let it ask for {offered}, or the publisher offer {asked}"
+    level = WARNING if is_viewer(end.node) or (hears and end.type != TF) else ERROR
     robot = seen.robot(end.node) or seen.robot(end.name)
     return qos_never_meets.finding(
         message, cause, level=level, robot=robot, node=end.node, names=(end.name,)
     )
+
+
+@system_rule(
+    "MG309",
+    "not-latched",
+    ERROR,
+    what="A map, a description or `tf_static` is offered without `transient_local`; or a publisher"
+    " offers another QoS than `qos` of its topic in the plan.",
+    why="Who starts later, or asks for more, never gets it.",
+    fix="Publish it with durability transient local: by the node's parameter, or a qos_overrides"
+    " parameter; or correct the plan.",
+    bad="""\
+running: /robot1/map_server publishes /robot1/map nav_msgs/msg/OccupancyGrid reliable volatile
+""",
+    good="""\
+running: /robot1/map_server publishes /robot1/map nav_msgs/msg/OccupancyGrid reliable transient_local
+""",
+)
+def not_latched(seen: Index) -> Iterator[Finding]:
+    """Where a subscriber asks for it, that is the finding."""
+    for ends in seen.names.values() if seen.system.environment.rmw != ZENOH else ():
+        asked = any(it.qos and it.qos.durability == DURABILITY[1] for it in ends.subscribers)
+        if ends.kind != TOPIC or asked or not _is_latched(ends):
+            continue
+        weak = (it for it in ends.publishers if it.qos and it.qos.durability == DURABILITY[0])
+        for node in nodes_of(weak):
+            yield not_latched.finding(
+                f"publishes {ends.name} with durability VOLATILE: who starts later never gets it",
+                f"set it with qos_overrides.{ends.name}.publisher in its parameters",
+                robot=seen.robot(ends.name) or seen.robot(node),
+                node=node,
+                names=(ends.name,),
+            )
+
+
+def _is_latched(ends: Ends) -> bool:
+    """By type or by name: a map, a description, the transforms that hold for ever."""
+    words_ = ends.name.split("/")[-2:]
+    return (ends.type == MAP and "map" in words_) or bool({*words_} & {DESCRIPTION, "tf_static"})
+
+
+@lru_cache(maxsize=1024)
+def qos_conflicts(offered: Qos, requested: Qos) -> tuple[tuple[str, str], ...]:
+    """Where two QoS do not connect by the rules of DDS: (offered, requested) for each policy.
+
+    A policy that is unknown or the system's default is no conflict.
+    """
+    words = (
+        (offered.reliability, requested.reliability, RELIABILITY),
+        (offered.durability, requested.durability, DURABILITY),
+        (offered.liveliness, requested.liveliness, LIVELINESS),
+    )
+    times = (
+        (offered.deadline, requested.deadline, "a deadline"),
+        (offered.liveliness_lease_duration, requested.liveliness_lease_duration, "a lease"),
+    )
+    return (
+        *((o, r) for o, r, order in words if _is_weaker(o, r, order)),
+        *((_time(o, what), _time(r, what)) for o, r, what in times if _seconds(o) > _seconds(r)),
+    )
+
+
+def _is_weaker(offered: str, requested: str, order: Sequence[str]) -> bool:
+    known = offered in order and requested in order
+    return known and order.index(offered) < order.index(requested)
+
+
+def _seconds(time: float) -> float:
+    """rmw writes no limit as 0."""
+    return time if time > 0 else inf
+
+
+def _time(time: float, what: str) -> str:
+    return f"no {what[2:]}" if _seconds(time) == inf else f"{what} of {time:g} s"

@@ -9,24 +9,24 @@ from itertools import islice, zip_longest
 
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.nearest import CHOICE, COMPARED, MISTYPED, nearest
-from multibot_rewrite.rules.declaration import danger_rule
+from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.index import (
     TF,
     Ends,
     Index,
     and_then,
     at_work,
+    in_namespaces_above,
     is_spawner,
     is_viewer,
     last_word,
     nodes_of,
     robots_of,
 )
-from multibot_rewrite.rules.pair.causes import in_namespaces_above
 from multibot_rewrite.rules.places import see, where
 from multibot_rewrite.rules.system.unsent import meant
 from multibot_rewrite.system.conventions import EVERYBODYS, chooses
-from multibot_rewrite.system.records import ACTION, SERVICE, TOPIC, End
+from multibot_rewrite.system.records import ACTION, SERVES, SERVICE, TOPIC, End
 
 ABSENT = "is that robot started, and is its name right?"
 _DIGITS = re.compile(r"_?\d+")
@@ -40,12 +40,11 @@ _COMMON = (
 )
 
 
-@danger_rule(
+@system_rule(
     "MG303",
     "topic-names-miss",
     ERROR,
     absence=True,
-    planned="MG111",
     what="A node subscribes to a topic that nobody publishes, while nearly the same name is published:"
     " with or without the robot's namespace, below another namespace or the node's own name, or"
     " misspelled.",
@@ -207,7 +206,7 @@ def _missed_topic(seen: Index, end: End, other: Ends) -> Finding:
     )  # fmt: skip
 
 
-@danger_rule(
+@system_rule(
     "MG304",
     "server-names-miss",
     ERROR,
@@ -287,10 +286,11 @@ def nobody_in(seen: Index, name: str, known: Iterable[str]) -> str:
     return ""
 
 
-@danger_rule(
+@system_rule(
     "MG305",
     "service-of-two-nodes",
     ERROR,
+    meant=(SERVES,),
     what="Nodes of several robots serve a service of the same name, or several nodes the same action.",
     why="A request is answered by any of them, and a goal reaches all: two robots drive to it.",
     fix="Use a relative name, or a remap rule, so that each robot has its own.",

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
 
 from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.wording import SEVERAL, shorten
-from multibot_rewrite.rules.declaration import danger_rule
+from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.index import Index, and_then, is_viewer, nodes_of
 from multibot_rewrite.system.records import SERVICE
 
@@ -17,11 +17,10 @@ MANY = 3
 _CHANGE_STATE = "/change_state"
 
 
-@danger_rule(
+@system_rule(
     "MG301",
     "nodes-of-one-name",
     ERROR,
-    planned="MG105",
     what="Several nodes that run have the same full name.",
     why="They have the same topics, parameters and services: a command or parameter that is meant for"
     " one reaches both, or either. Where all nodes of a robot are there twice, two robots were started"
@@ -39,8 +38,8 @@ running: /robot2/driver
 )
 def nodes_of_one_name(seen: Index) -> Iterator[Finding]:
     """Many of them are one finding: two robots."""
-    times = Counter(node.name for node in seen.system.nodes)
-    twins = [name for name, count in times.items() if count > 1 and _counts(name)]
+    times = seen.nodes
+    twins = [name for name, count in times.items() if count > 1 and _counts(seen, name)]
     by_robot: dict[str, list[str]] = defaultdict(list)
     for name in twins:
         by_robot[seen.robot(name)].append(name)
@@ -57,9 +56,9 @@ def nodes_of_one_name(seen: Index) -> Iterator[Finding]:
             yield nodes_of_one_name.finding(message, cause, robot=robot, node=name)
 
 
-def _counts(node: str) -> bool:
+def _counts(seen: Index, node: str) -> bool:
     """Tools may run twice. Of two containers each gets the components of the other."""
-    return not is_tool(node) or node.endswith("_container")
+    return not seen.is_tool(node) or node.endswith("_container")
 
 
 def _two_robots(robot: str, names: Sequence[str]) -> Finding:
@@ -75,7 +74,7 @@ def _two_robots(robot: str, names: Sequence[str]) -> Finding:
     return nodes_of_one_name.finding(message, cause, robot=robot, node=names[0], names=tuple(names))
 
 
-@danger_rule(
+@system_rule(
     "MG302",
     "managed-twice",
     ERROR,

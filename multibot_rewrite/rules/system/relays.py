@@ -6,20 +6,21 @@ from collections.abc import Iterator
 
 from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.rules import words
-from multibot_rewrite.rules.declaration import danger_rule
+from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.index import Ends, Index, at_work, last_word, nodes_of
 from multibot_rewrite.system.conventions import chooses
-from multibot_rewrite.system.records import TOPIC
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
 
 # Of Nav2, between its controller and the robot: they limit velocities, and stop before obstacles.
 _LIMITS = ("velocity_smoother", "collision_monitor")
 _CONTROLLER = "controller_server"
 
 
-@danger_rule(
+@system_rule(
     "MG314",
     "relayed-to-another-robot",
     ERROR,
+    meant=(PUBLISHES,),
     what="A node that belongs to no robot reads commands, or what a body measures, of one robot and"
     " publishes them as those of another: a relay or bridge.",
     why="Who drives the one robot moves the other, or one is localized with the scan of the other.",
@@ -69,10 +70,11 @@ def _of_bodies(seen: Index) -> Iterator[Ends]:
             yield ends
 
 
-@danger_rule(
+@system_rule(
     "MG315",
     "limits-left-out",
     ERROR,
+    meant=(PUBLISHES, SUBSCRIBES),
     what="Nav2's controller_server sends velocities on the topic on which velocity_smoother or"
     " collision_monitor sends them, after it has limited them; or a driver reads an input of twist_mux,"
     " and nobody its output.",

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.rules import words
-from multibot_rewrite.rules.declaration import danger_rule
+from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.index import (
     Ends,
     Index,
@@ -17,6 +17,7 @@ from multibot_rewrite.rules.index import (
     nodes_of,
     robots_of,
 )
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
 
 
 def own_namespace(seen: Index, name: str, robot: str) -> str:
@@ -28,17 +29,19 @@ def own_namespace(seen: Index, name: str, robot: str) -> str:
     )
 
 
-@danger_rule(
+@system_rule(
     "MG320",
     "topic-of-several-robots",
     ERROR,
     drawn="leak",
-    planned="MG103",
+    meant=(PUBLISHES, SUBSCRIBES),
     what="Nodes of several robots publish sensor data, odometry, a map, a command or a description on"
-    " the same topic.",
+    " the same topic, or read what one body measures from it; or a robot's node uses a topic that is"
+    " of no robot and not shared by the plan.",
     why="Whoever reads it gets the data of all robots by turns: localization jumps, a controller"
     " follows two plans.",
-    fix="Use relative topics in the nodes' parameters, or a remap rule: each robot needs its own.",
+    fix="Use relative topics in the nodes' parameters, or a remap rule: each robot needs its own. If"
+    " all robots are to share the topic, add it to `shared_topics` of the plan (`--shared-topics`).",
     bad="""\
 running: /robot1/lidar publishes /scan sensor_msgs/msg/LaserScan
 running: /robot2/lidar publishes /scan sensor_msgs/msg/LaserScan
@@ -50,6 +53,11 @@ running: /robot2/lidar publishes /robot2/scan sensor_msgs/msg/LaserScan
 )
 def topic_of_several_robots(seen: Index) -> Iterator[Finding]:
     """Reports and orders of a fleet are none: only what belongs to one robot."""
+    yield from _sent_by_several(seen)
+    yield from _read_by_several(seen)
+
+
+def _sent_by_several(seen: Index) -> Iterator[Finding]:
     for ends in seen.topics:
         if len(ends.publishers) < 2:
             continue
@@ -64,12 +72,12 @@ def topic_of_several_robots(seen: Index) -> Iterator[Finding]:
             yield topic_of_several_robots.finding(message, cause, node=nodes[0], names=(ends.name,))
 
 
-@danger_rule(
+@system_rule(
     "MG321",
     "data-of-another-robot",
     ERROR,
     drawn="cross-talk",
-    planned="MG104",
+    meant=(SUBSCRIBES,),
     what="A robot's node subscribes to data of another robot, although its own robot has the same"
     " topic.",
     why="The robot is localized, or avoids obstacles, with the data of the other.",
@@ -122,29 +130,7 @@ def _topics_by_robot(seen: Index) -> dict[tuple[str, str], Ends]:
     }
 
 
-@danger_rule(
-    "MG322",
-    "one-sensor-for-several-robots",
-    ERROR,
-    drawn="leak",
-    planned="MG103",
-    what="Nodes of several robots subscribe to one topic with a scan, odometry, IMU data or joint"
-    " states.",
-    why="These are of one robot's body: all others are localized with them as well.",
-    fix="Use relative topics in the nodes' parameters, or a remap rule: each robot needs its own.",
-    bad="""\
-running: /lidar publishes /scan sensor_msgs/msg/LaserScan
-running: /robot1/amcl subscribes /scan sensor_msgs/msg/LaserScan
-running: /robot2/amcl subscribes /scan sensor_msgs/msg/LaserScan
-""",
-    good="""\
-running: /lidar publishes /robot1/scan sensor_msgs/msg/LaserScan
-running: /robot1/amcl subscribes /robot1/scan sensor_msgs/msg/LaserScan
-running: /robot2/amcl subscribes /robot2/scan sensor_msgs/msg/LaserScan
-""",
-    line=2,
-)
-def one_sensor_for_several_robots(seen: Index) -> Iterator[Finding]:
+def _read_by_several(seen: Index) -> Iterator[Finding]:
     """Of a topic without a robot's name; that of a robot is for those who follow it."""
     for ends in seen.topics:
         if not words.is_of_a_body(ends.type) or seen.robot(ends.name):
@@ -155,15 +141,14 @@ def one_sensor_for_several_robots(seen: Index) -> Iterator[Finding]:
         if len(robots) > 1 and len(senders) < 2:
             message = f"{and_then(robots)} all read {ends.name}: {shorten(nodes)}"
             cause = own_namespace(seen, ends.name, robots[0])
-            yield one_sensor_for_several_robots.finding(
-                message, cause, node=nodes[0], names=(ends.name,)
-            )
+            yield topic_of_several_robots.finding(message, cause, node=nodes[0], names=(ends.name,))
 
 
-@danger_rule(
+@system_rule(
     "MG323",
     "two-maps",
     ERROR,
+    meant=(PUBLISHES,),
     what="Several nodes publish a map on the same topic.",
     why="A map is latched: a node that starts gets both, and uses the one that comes last.",
     fix="Start one of map_server and SLAM for a topic, or give each robot's map its own topic.",
@@ -189,10 +174,11 @@ def two_maps(seen: Index) -> Iterator[Finding]:
         )
 
 
-@danger_rule(
+@system_rule(
     "MG324",
     "joint-states-twice",
     WARNING,
+    meant=(PUBLISHES,),
     what="joint_state_publisher publishes on the same topic as a driver or controller.",
     why="It publishes every movable joint of the description, by default at 0: the robot's joints jump"
     " between their true position and 0.",
@@ -222,7 +208,7 @@ def joint_states_twice(seen: Index) -> Iterator[Finding]:
             )
 
 
-@danger_rule(
+@system_rule(
     "MG325",
     "odometry-twice",
     ERROR,

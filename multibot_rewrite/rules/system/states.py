@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.wording import SEVERAL, shorten
-from multibot_rewrite.rules.declaration import danger_rule
+from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.index import Index, is_viewer, last_word
 from multibot_rewrite.rules.places import see, where
 from multibot_rewrite.system.records import (
@@ -24,7 +24,7 @@ from multibot_rewrite.system.records import (
 ACTIVE = "active"
 
 
-@danger_rule(
+@system_rule(
     "MG511",
     "not-active",
     ERROR,
@@ -71,7 +71,7 @@ def _manager(seen: Index, node: str) -> str:
     return min((it for it in clients if not is_viewer(it) and not is_tool(it)), default="")
 
 
-@danger_rule(
+@system_rule(
     "MG512",
     "interface-commanded-twice",
     ERROR,
@@ -119,7 +119,7 @@ def _is_of(claim: Interface, name: str, controllers: Iterable[Controller]) -> bo
     return any(last_word(claim.node) == it.name for it in controllers)
 
 
-@danger_rule(
+@system_rule(
     "MG513",
     "no-controller-active",
     WARNING,
@@ -144,7 +144,7 @@ def no_controller_active(seen: Index) -> Iterator[Finding]:
             )
 
 
-@danger_rule(
+@system_rule(
     "MG514",
     "use-sim-time-differs",
     WARNING,

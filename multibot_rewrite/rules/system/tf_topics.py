@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.wording import shorten
-from multibot_rewrite.rules.declaration import danger_rule
+from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.index import (
     Index,
     Tree,
@@ -19,18 +19,29 @@ from multibot_rewrite.rules.index import (
     unique,
 )
 from multibot_rewrite.rules.places import see, where
+from multibot_rewrite.rules.system.transforms import collide
 from multibot_rewrite.system.conventions import BODY_FRAMES
-from multibot_rewrite.system.records import NOWHERE, OFF, UNKNOWN_NODES, Edge
+from multibot_rewrite.system.records import (
+    NOWHERE,
+    OFF,
+    PUBLISHES,
+    SUBSCRIBES,
+    UNKNOWN_NODES,
+    Edge,
+)
 
 TF = "tf"
+_REMAP = "/tf:=tf and /tf_static:=tf_static"
 _STATE_PUBLISHER = "robot_state_publisher"
 
 
-@danger_rule(
+@system_rule(
     "MG405",
     "tf-on-two-topics",
     ERROR,
-    planned="MG205",
+    drawn="leak",
+    meant=(PUBLISHES, SUBSCRIBES),
+    robot_wide=True,
     what="Of one robot's nodes some send or hear tf on `/tf`, some on the robot's own topic.",
     why="A listener hears one half of the tree: `Could not find a connection between 'odom' and"
     " 'base_link'`.",
@@ -53,11 +64,16 @@ def tf_on_two_topics(seen: Index) -> Iterator[Finding]:
     listeners: dict[str, dict[str, list[str]]] = defaultdict(dict)
     for tree in (it for it in seen.trees if last_word(seen.plain(it.topic)) == TF):
         for found, nodes in ((senders, tree.senders), (listeners, tree.listeners)):
-            for node in (it for it in nodes if seen.robot(it) and not is_viewer(it)):
+            for node in (it for it in nodes if seen.robot(it) and not _looks(seen, it)):
                 found[seen.robot(node)].setdefault(tree.topic, []).append(node)
-    for robot, topics in senders.items():
+    # Where robots' frames collide, that is the finding, unless it is known where they belong.
+    mixed = {tree.topic for tree in seen.trees if collide(seen, tree)}
+    known = (it for it in listeners if it in seen.known.home)
+    for robot in unique((*senders, *known)):
+        topics = senders.get(robot, {})
         home = _home(seen, robot, topics)
-        odd = [it for it in topics if it != home]
+        planned = robot in seen.known.home
+        odd = [it for it in topics if it != home and (planned or it not in mixed)]
         yield from (_sends_elsewhere(seen, robot, home, it, topics[it]) for it in odd)
         heard = listeners.get(robot, {})
         lost = [it for it in heard if it not in topics and it != home]
@@ -65,10 +81,36 @@ def tf_on_two_topics(seen: Index) -> Iterator[Finding]:
             deaf = [it for it in heard[topic] if it not in heard.get(home, ())]
             if deaf:
                 yield _hears_elsewhere(seen, robot, home, topic, deaf)
+    yield from _frames_of_another(seen)
+
+
+def _frames_of_another(seen: Index) -> Iterator[Finding]:
+    """One robot's frames on another one's topic, where it is not known who sends them."""
+    for tree in seen.trees:
+        owner = seen.robot(tree.topic)
+        if not owner or any(map(seen.robot, tree.senders)):
+            continue
+        found: dict[str, list[str]] = defaultdict(list)
+        for edge in tree.edges:
+            found[seen.frame_robot(edge.child)].append(edge.child)
+        for robot, frames in found.items():
+            if robot not in ("", owner):
+                yield tf_on_two_topics.finding(
+                    f"{shorten(frames)} of {robot} on {tree.topic}, which is of {owner}",
+                    f"start its nodes in its own namespace, with the rules {_REMAP}",
+                    robot=robot,
+                    names=(*unique(frames), tree.topic),
+                )
+
+
+def _looks(seen: Index, node: str) -> bool:
+    return is_viewer(node) or node in seen.known.relays
 
 
 def _home(seen: Index, robot: str, topics: Mapping[str, Sequence[str]]) -> str:
-    """The tf topic of a robot: its own one if it has one, else where most of its nodes send."""
+    """The tf topic of a robot: the known one, its own one, or where most of its nodes send."""
+    if robot in seen.known.home:
+        return seen.known.home[robot]
     own = [it for it in topics if seen.robot(it) == robot]
     return next(iter(own), "") or max(topics, key=lambda it: len(topics[it]))
 
@@ -77,7 +119,7 @@ def _sends_elsewhere(
     seen: Index, robot: str, home: str, topic: str, nodes: Sequence[str]
 ) -> Finding:
     verb = "sends" if len(nodes) == 1 else "send"
-    message = f"{shorten(nodes)} {verb} tf on {topic}, the other nodes of {robot} on {home}"
+    message = f"{shorten(nodes)} {verb} tf on {topic}, but the tf of {robot} is on {home}"
     return tf_on_two_topics.finding(
         message, _remap(seen, robot, home, topic), robot=robot, node=nodes[0], names=(topic, home)
     )
@@ -87,7 +129,7 @@ def _hears_elsewhere(
     seen: Index, robot: str, home: str, topic: str, nodes: Sequence[str]
 ) -> Finding:
     verb = "hears" if len(nodes) == 1 else "hear"
-    message = f"{shorten(nodes)} {verb} tf on {topic}, but {robot} sends it on {home}"
+    message = f"{shorten(nodes)} {verb} tf on {topic}, but the tf of {robot} is on {home}"
     return tf_on_two_topics.finding(
         message, _remap(seen, robot, home, topic), robot=robot, node=nodes[0], names=(topic, home)
     )
@@ -103,11 +145,12 @@ def _remap(seen: Index, robot: str, home: str, topic: str) -> str:
     return f"pass {rules}: to the whole process, where the node shares one"
 
 
-@danger_rule(
+@system_rule(
     "MG406",
     "tf-tree-in-pieces",
     ERROR,
     absence=True,
+    robot_wide=True,
     what="The odometry frame and the robot's base are on one tf topic and not connected.",
     why="Nothing that needs the robot's place works: costmaps, AMCL, RViz with the fixed frame `odom`.",
     fix="Start what sends odometry (a driver, a controller, an EKF), with the frames that the others"
@@ -149,15 +192,18 @@ def tf_tree_in_pieces(seen: Index) -> Iterator[Finding]:
             if not own or root_of(odom, above) in {*roots, *above}:
                 continue
             found = next(iter(roots))
-            message = (
-                f"{odom} and {own[0]} are not connected on {tree.topic}: one hangs below"
-                f" {root_of(odom, above)}, the other below {found}"
-            )
+            robot = robot or only(robots_of(seen, tree.senders))
+            message = in_pieces(robot, tree.topic, sorted({root_of(odom, above), found}))
             cause = f"nobody sends {odom} -> {found}: is odometry started, are its frames the same?"
             yield tf_tree_in_pieces.finding(
-                message, cause, robot=robot or only(robots_of(seen, tree.senders)),
-                names=(odom, own[0]),
+                message, cause, robot=robot, names=(odom, own[0], found),
             )  # fmt: skip
+
+
+def in_pieces(robot: str, topic: str, roots: Sequence[str]) -> str:
+    """The sentence for a tree of several roots."""
+    whose = f"the tf tree of {robot}" if robot else "the tf tree"
+    return f"{whose} on {topic} has {len(roots)} roots: {', '.join(roots)}"
 
 
 def told_not_to(seen: Index) -> Iterator[Finding]:

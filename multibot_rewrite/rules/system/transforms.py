@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import pairwise
 
 from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.graph.wording import SEVERAL, shorten
-from multibot_rewrite.rules.declaration import danger_rule
+from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.index import (
     Index,
     Tree,
@@ -24,11 +25,10 @@ from multibot_rewrite.system.records import Edge
 _STATIC = "static_transform_publisher"
 
 
-@danger_rule(
+@system_rule(
     "MG401",
-    "frame-with-two-parents",
+    "two-parents",
     ERROR,
-    planned="MG201",
     what="A tf frame has two parents on one tf topic: two nodes send it.",
     why="For listeners it jumps between two places.",
     fix="Stop one of the two: `publish_tf: false` of the EKF, `enable_odom_tf: false` of"
@@ -52,9 +52,9 @@ def frame_with_two_parents(seen: Index) -> Iterator[Finding]:
             message = f"frame {child} has {len(parents)} parents on {tree.topic}: {both}"
             own = [it for it in tree.edges if it.child == child]
             robot = seen.frame_robot(child) or only(robots_of(seen, _senders(tree, own)))
-            cause = _who_sends(seen, tree, child) + see(own)
+            cause = _who_sends(seen, tree, [(it, child) for it in sorted(parents)]) + see(own)
             yield frame_with_two_parents.finding(
-                message, cause, robot=robot, names=(child, *sorted(parents)), **where(own)
+                message, cause, robot=robot, names=(child,), **where(own)
             )
 
 
@@ -70,13 +70,20 @@ def _senders(tree: Tree, edges: Iterable[Edge]) -> Sequence[str]:
     return unique(node for it in edges for node in it.publishers) or tree.senders
 
 
-def _who_sends(seen: Index, tree: Tree, frame: str) -> str:
-    """The nodes that may have sent it: those of the frame's robot first."""
+def _who_sends(seen: Index, tree: Tree, edges: Sequence[tuple[str, str]]) -> str:
+    """The nodes that may have sent these: who is known to first, then those of the frame's robot."""
+    frame = edges[0][1]
     senders = _senders(tree, (it for it in tree.edges if it.child == frame))
     robots = robots_of(seen, senders)
-    owner = seen.frame_robot(frame)
-    nodes = sorted(senders, key=lambda it: seen.robot(it) != owner)
+    owner = seen.frame_robot(frame) or seen.robot(tree.topic)
+    planned = [(node, it) for it in edges for node in seen.known.senders.get(it, ())]
+    there = [it for it in planned if it[0] in senders] or planned[:1]
+    known = [node for node, _ in there]
+    nodes = sorted(senders, key=lambda it: (it not in known, seen.robot(it) != owner))
     sent = f"two of the nodes that send on {tree.topic}: {shorten(nodes, SEVERAL)}" if nodes else ""
+    if there:
+        by_plan = " and ".join(f"{node} sends {above} -> {it}" for node, (above, it) in there)
+        return f"by the plan {by_plan}; {sent}"
     if len(robots) > 1 and not owner:
         return f"{and_then(robots)} need frames of their own, or tf topics of their own; {sent}"
     if len(robots) > 1:
@@ -84,11 +91,10 @@ def _who_sends(seen: Index, tree: Tree, frame: str) -> str:
     return sent or "two nodes send it: stop one"
 
 
-@danger_rule(
+@system_rule(
     "MG402",
     "robots-frames-collide",
     ERROR,
-    planned="MG202",
     what="Several robots send frames on one tf topic whose names do not say which robot's they are:"
     " `base_link` of both.",
     why="Every listener sees one robot that jumps between the places of all: Nav2 drives by the"
@@ -106,7 +112,7 @@ running: transform odom -> base_link on /robot2/tf by /robot2/driver
 def robots_frames_collide(seen: Index) -> Iterator[Finding]:
     """One robot may have no name in its frames, if all others have."""
     for tree in seen.trees:
-        who = _collide(seen, tree)
+        who = collide(seen, tree)
         if who:
             bare = _bare_frames(seen, tree)
             message = f"{who} on {tree.topic}: {shorten(bare, SEVERAL)}"
@@ -114,17 +120,20 @@ def robots_frames_collide(seen: Index) -> Iterator[Finding]:
             yield robots_frames_collide.finding(message, cause, names=tuple(bare))
 
 
-def _collide(seen: Index, tree: Tree) -> str:
+def collide(seen: Index, tree: Tree) -> str:
     """Who sends frames that do not say whose they are; empty where nothing collides."""
-    robots, bare = robots_of(seen, tree.senders), set(_bare_frames(seen, tree))
+    senders = [it for it in tree.senders if it not in seen.known.relays]
+    robots, bare = robots_of(seen, senders), set(_bare_frames(seen, tree))
     # Who sends on another robot's topic is a finding of its own.
     if bare and not seen.robot(tree.topic):
-        named = {seen.frame_robot(edge.child) for edge in tree.edges}
-        nameless = [robot for robot in robots if robot not in named]
-        doubled = {seen.plain_frame(it) for it in _named_frames(seen, tree)}
-        if len(nameless) > 1 or (not nameless and doubled & bare):
-            return f"{and_then(nameless or robots)} send frames without a robot's name"
-    if bare and _twice(seen, tree.senders):
+        named = {(seen.frame_robot(it.child), seen.plain_frame(it.child)) for it in tree.edges}
+        nameless = [it for it in robots if any((it, frame) not in named for frame in bare)]
+        of_all = {seen.plain_frame(it) for it in _named_frames(seen, tree)}
+        without = {robot for robot in robots if robot not in {it for it, _ in named}}
+        who = nameless or robots
+        if len(who) > 1 and (len(without) > 1 or (not without and of_all & bare)):
+            return f"{and_then(who)} send frames without a robot's name"
+    if bare and _twice(seen, senders):
         return "two nodes of one name send the same frames"
     return ""
 
@@ -153,7 +162,7 @@ def _either(tree: Tree, robots: Sequence[str]) -> str:
     return f"{own}, or put its name into its frames (urdf-postfix); the senders are {senders}"
 
 
-@danger_rule(
+@system_rule(
     "MG403",
     "tf-cycle",
     ERROR,
@@ -180,7 +189,10 @@ def tf_cycle(seen: Index) -> Iterator[Finding]:
             robots = unique(filter(None, (seen.frame_robot(it) for it in circle)))
             robot = only(robots) or only(robots_of(seen, tree.senders))
             yield tf_cycle.finding(
-                message, _who_sends(seen, tree, circle[0]), robot=robot, names=circle
+                message,
+                _who_sends(seen, tree, [*pairwise((*circle, circle[0]))]),
+                robot=robot,
+                names=circle,
             )
 
 
@@ -206,7 +218,7 @@ def _that_end_nowhere(parents: Mapping[str, set[str]]) -> dict[str, set[str]]:
         left = kept
 
 
-@danger_rule(
+@system_rule(
     "MG404",
     "static-and-moving",
     ERROR,
@@ -238,7 +250,7 @@ def static_and_moving(seen: Index) -> Iterator[Finding]:
             )
 
 
-@danger_rule(
+@system_rule(
     "MG408",
     "transform-of-two-senders",
     ERROR,
@@ -253,7 +265,7 @@ def static_and_moving(seen: Index) -> Iterator[Finding]:
 def transform_of_two_senders(seen: Index) -> Iterator[Finding]:
     """Where robots' frames collide, that is the finding; all transforms of a tree are one."""
     for tree in seen.trees:
-        if _collide(seen, tree):
+        if collide(seen, tree):
             continue
         edges = _sent_twice(tree)
         for robot in unique(seen.frame_robot(it.child) for it in edges):
@@ -263,6 +275,8 @@ def transform_of_two_senders(seen: Index) -> Iterator[Finding]:
             senders = _senders(tree, own)
             who = robot or only(robots_of(seen, senders))
             nodes = [it for it in senders if seen.robot(it) in ("", who)] or senders
+            right = {it for edge in own for it in seen.known.senders.get(edge[1::-1], ())}
+            nodes = sorted(nodes, key=lambda it: it not in right)
             listed_nodes = shorten(nodes, SEVERAL)
             cause = f"stop one, or its tf (publish_tf, enable_odom_tf): two of {listed_nodes}"
             others = [it for it in senders if it not in nodes]
@@ -282,11 +296,11 @@ def _sent_twice(tree: Tree) -> list[Edge]:
     return [it for it in tree.edges if it.several or len(known[it.parent, it.child, it.topic]) > 1]
 
 
-@danger_rule(
+@system_rule(
     "MG407",
     "robots-name-twice",
     ERROR,
-    planned="MG206",
+    robot_wide=True,
     what="A frame has the robot's name twice: `robot1/robot1/base_link`.",
     why="No other node uses that frame: every lookup fails.",
     fix="Leave `frame_prefix` of robot_state_publisher empty and set `tf_frame_prefix_enable: false`"

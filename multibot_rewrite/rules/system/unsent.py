@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from multibot_rewrite.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.nearest import nearest
-from multibot_rewrite.rules.declaration import danger_rule
+from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.index import Ends, Index, is_viewer, last_word, unique
 from multibot_rewrite.rules.places import where
 from multibot_rewrite.system.conventions import is_from_outside
@@ -20,7 +20,7 @@ _PLAIN_TYPES = "std_"
 _LISTED = 8
 
 
-@danger_rule(
+@system_rule(
     "MG316",
     "nothing-known-sends",
     NOTE,

@@ -88,7 +88,7 @@ def test_what_is_wrong_is_found(
         assert check(plan, address, 3) == 1
     shown = capsys.readouterr().out
     assert "/robot2/drive: error: MG102" in shown
-    assert "MG103 uses /cmd_vel" in shown
+    assert "MG310 uses /cmd_vel" in shown
 
 
 def test_another_version_of_a_type_is_found_and_other_qos_is_none(
@@ -105,8 +105,8 @@ def test_another_version_of_a_type_is_found_and_other_qos_is_none(
         there.end(8, "/", "rviz2", "MS", "/robot2/odom", STRING, hash=TF_HASH)
         assert check(plan, address, 4) == 1
     shown = capsys.readouterr().out
-    assert "MG107" not in shown and "MG307" not in shown
-    assert "MG106 topic /robot2/odom has 2 versions of std_msgs/msg/String" in shown
+    assert "MG307" not in shown and "MG307" not in shown
+    assert "MG306 topic /robot2/odom has 2 versions of std_msgs/msg/String" in shown
 
 
 def test_tf_is_heard_latched_and_not(address: str) -> None:

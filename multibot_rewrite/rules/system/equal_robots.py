@@ -1,0 +1,59 @@
+"""Equal robots compared: what comes from one and not, or less often, from another."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
+
+from multibot_rewrite.findings.finding import WARNING, Finding
+from multibot_rewrite.rules.declaration import system_rule
+from multibot_rewrite.rules.index import Index
+
+# Topics of one robot and of another are as often, unless something is wrong: so many times.
+RATIO = 3.0
+# Fewer messages say nothing of a rate.
+ENOUGH = 10
+
+
+@system_rule(
+    "MG326",
+    "less-than-another-robot",
+    WARNING,
+    what="On a robot's topic came no message, or three times fewer than on the same topic of another"
+    " robot, while a bag was recorded.",
+    why="Its node runs and sends nothing, has no time, or its messages were lost in the network.",
+    fix="Look at the node's log: a sensor without a connection, a plugin without its link. Compare CPU"
+    " and network of the robots, and the QoS of the recorder: best effort loses messages.",
+    bad="""\
+running: /robot1/scan came 600 times
+running: /robot2/scan came 0 times
+""",
+    good="""\
+running: /robot1/scan came 600 times
+running: /robot2/scan came 588 times
+""",
+    line=2,
+)
+def less_than_another_robot(seen: Index) -> Iterator[Finding]:
+    """Of the robots that have the topic, the one with the most messages is the measure."""
+    for there in _of_each(seen).values():
+        best = max(there.values(), key=lambda it: seen.known.messages[it])
+        most = seen.known.messages[best]
+        for robot, name in there.items() if most >= ENOUGH else ():
+            count = seen.known.messages[name]
+            if not count:
+                message = f"{name} has no message, {best} has {most}"
+                yield less_than_another_robot.finding(message, robot=robot, names=(name,))
+            elif count * RATIO <= most and seen.known.seconds:
+                slow, usual = (f"{it / seen.known.seconds:.1f} Hz" for it in (count, most))
+                message = f"{name} came at {slow}, {best} at {usual}"
+                yield less_than_another_robot.finding(message, robot=robot, names=(name,))
+
+
+def _of_each(seen: Index) -> Mapping[str, Mapping[str, str]]:
+    """Name without the robot's -> robot -> name, of the topics whose messages were counted."""
+    found: dict[str, dict[str, str]] = defaultdict(dict)
+    for name in seen.known.messages:
+        if robot := seen.robot(name):
+            found[seen.plain(name)][robot] = name
+    return found
