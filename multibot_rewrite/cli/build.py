@@ -43,9 +43,7 @@ def run(options: argparse.Namespace) -> int:
         raise UsageError("--count 0: a fleet has at least one robot")
     choice = Choice(number=options.count or 0)
     fleet = read_fleet(options.fleet, options.distro or "", os.environ, choice)
-    fleet = fleet._replace(
-        params_style=options.params_style or fleet.params_style, shape=options.shape or fleet.shape
-    )
+    fleet = fleet._replace(shape=options.shape or fleet.shape)
     plan = plan_fleet(fleet, trust=options.trust)
     note_interfaces(options, plan.fleet.facts)
     made = make_outputs(plan, os.path.abspath(options.output))

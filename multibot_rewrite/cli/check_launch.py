@@ -39,7 +39,7 @@ def run(options: argparse.Namespace) -> int:
 
 def order_of(options: argparse.Namespace, words: Sequence[str]) -> LaunchOrder:
     """The launch file that words name, with its arguments; raises UsageError for other words."""
-    order = order_in_words(words, shlex.join(words), options.launch_roots)
+    order = order_in_words(words, shlex.join(words), options.roots)
     return order._replace(trusted=True)
 
 

@@ -37,7 +37,7 @@ OF_FLEET_FILE = {
     "groups": "--groups",
     "vocabulary": "--vocabulary",
     "launch": "--launch",
-    "launch_roots": "--launch-roots",
+    "roots": "--roots",
 }
 
 
@@ -102,9 +102,7 @@ def _from_words(options: argparse.Namespace) -> Fleet:
         vocabulary=[*configured_vocabulary(options.input), *options.vocabulary],
         xacro_args=xacro_args(options),
         trust=options.trust,
-        launch=[
-            launch_order(it, options.launch_roots)._replace(trusted=True) for it in options.launch
-        ],
+        launch=[launch_order(it, options.roots)._replace(trusted=True) for it in options.launch],
         release=release_here(options.distro),
     )
 

@@ -43,13 +43,10 @@ CRASHED = "MB001"
 
 def run(options: argparse.Namespace) -> int:
     """Lint, fix or explain; returns the exit code."""
-    if options.list_rules or options.explain:
+    if options.explain:
         from multibot_rewrite.cli import explain  # a lint does not need it
-        from multibot_rewrite.lint.registry import RULES
 
-        return (
-            explain.list_rules(options, RULES) if options.list_rules else explain.of_option(options)
-        )
+        return explain.of_option(options)
     check_use(options)
     config = configured(".", options.config)
     release = release_here(options.distro or config.distro)

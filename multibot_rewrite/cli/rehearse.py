@@ -10,6 +10,7 @@ from contextlib import ExitStack, contextmanager
 
 from multibot_rewrite.cli import fleet, live, pictures
 from multibot_rewrite.cli.check import conclude
+from multibot_rewrite.cli.declared.fleet import EVERY_WAY
 from multibot_rewrite.cli.output import note, say, write_files
 from multibot_rewrite.cli.process import PROGRAM
 from multibot_rewrite.cli.walk import check_folder, check_target
@@ -71,7 +72,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _left_out(options: argparse.Namespace) -> Sequence[str]:
     """The ways of which no rules are given."""
-    return WAYS if options.without_rules else list(options.without_rules_at)
+    return WAYS if EVERY_WAY in options.without_rules else list(options.without_rules)
 
 
 def _check_use(options: argparse.Namespace) -> None:

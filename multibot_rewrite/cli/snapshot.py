@@ -69,7 +69,7 @@ def run(options: argparse.Namespace) -> int:
 def _check_use(options: argparse.Namespace) -> None:
     live.check_source(options)
     if options.snapshot and (options.expect or options.topic):
-        raise UsageError("--expect and --topic are for the live graph, leave out --merge")
+        raise UsageError("--expect and --topic are for the live graph, leave out --snapshot")
     if options.output not in (None, STANDARD):
         check_folder(options.output)
         check_target(options.output, options.snapshot)

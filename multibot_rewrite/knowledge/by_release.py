@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from multibot_rewrite.knowledge.conditions import joined
+from multibot_rewrite.knowledge.conditions import joined, of_release
 from multibot_rewrite.knowledge.node_library import NodeLibrary, Stack
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.releases import RELEASES, has_release, releases_with, since_version
@@ -78,7 +78,7 @@ def _node(node: NodeFacts, release: str) -> NodeFacts:
 
 def _endpoints(endpoints: Iterable[Endpoint], package: str, release: str) -> tuple[Endpoint, ...]:
     return tuple(
-        _endpoint(it, package, release) if it.releases or it.above else it
+        _endpoint(it, package, release) if it.releases or it.above or it.types else it
         for it in endpoints
         if has_release(it.releases, release)
     )
@@ -86,7 +86,12 @@ def _endpoints(endpoints: Iterable[Endpoint], package: str, release: str) -> tup
 
 def _endpoint(it: Endpoint, package: str, release: str) -> Endpoint:
     above = it.above if it.above and has_release(it.above, release) else ""
-    return it._replace(when=_condition(it.when, it.releases, package, release), above=above)
+    types = ((of_release(condition, release), type_) for condition, type_ in it.types)
+    return it._replace(
+        when=_condition(it.when, it.releases, package, release),
+        above=above,
+        types=tuple((condition, type_) for condition, type_ in types if condition is not None),
+    )
 
 
 def _condition(when: str, words: str, package: str, release: str) -> str:

@@ -22,9 +22,10 @@ from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.nearest import did_you_mean_one_of
 from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.releases import has_release
 
 Values = Callable[[str], object]
-UNKNOWN = "unknown"
+RELEASE, UNKNOWN = "release", "unknown"
 # Subject -> what its words are.
 KINDS = {
     "argument": "an argument of the command line that starts it",
@@ -43,6 +44,7 @@ KINDS = {
     "phase": "what it is doing",
     "plugin": "a plugin of its own that is loaded",
     "program": "the executable that runs it",
+    RELEASE: "releases of ROS, for the type of an endpoint",
     "run": "simulated or real",
     "stream": "a stream of the device that is enabled",
     "tool": "a tool of the RViz config",
@@ -85,6 +87,17 @@ def joined(text: str, other: str) -> str:
     if not text or text.startswith(f"{UNKNOWN}: "):
         return other if not text else f"{other}{AND}{text}"
     return OR.join(f"{it}{AND}{other}" for it in text.split(OR))
+
+
+def of_release(text: str, release: str) -> str | None:
+    """The condition without what it says of releases; None where it never holds in this one."""
+    asked = f"{RELEASE}: "
+    left = [
+        AND.join(it for it in terms if not it.startswith(asked))
+        for terms in (it.split(AND) for it in text.split(OR))
+        if all(has_release(it.removeprefix(asked), release) for it in terms if it.startswith(asked))
+    ]
+    return OR.join(left) if left else None
 
 
 def _one(text: str) -> Condition:

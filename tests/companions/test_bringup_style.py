@@ -129,14 +129,6 @@ def test_a_layout_that_nav2_bringup_cannot_start_is_refused(
     assert not (tmp_path / "out").exists()
 
 
-def test_the_option_counts_more_than_the_file(tmp_path: Path) -> None:
-    with pytest.raises(UsageError):
-        built(tmp_path, "frames-per-robot")
-    command = ["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out"), "-q"]
-    assert main([*command, "--params-style", "full", "--ignore", "MF"]) == 0
-    assert "/robot1/amcl:" in (tmp_path / "out" / "robot1" / "params.yaml").read_text()
-
-
 def test_a_node_that_bringup_starts_cannot_be_shared(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="nav2_bringup starts map_server for each robot"):
         built(tmp_path, more="shared_nodes: [map_server]")

@@ -417,7 +417,7 @@ def test_a_prefix_of_links_is_put_before_what_is_there() -> None:
     text = 'arm: {kinematics_solver: a/IKFast, link_prefix: ""}\n'
     assert 'link_prefix: "sp/"' in text_of(text, context())
     new, found = run(text, context("L4"))
-    assert new == text and [it.code for it in found] == ["MF306"]
+    assert new == text and [it.code for it in found] == ["MF117"]
     assert run(text, context("L1")) == (text, ())
 
 
@@ -456,3 +456,11 @@ def test_lists_of_joints(joints: list[str], layout: str, quote: str, flow: bool)
     wanted = [spell.format(it) if it in JOINTS else it for it in old]
     assert (after["controller_list"][0]["joints"] or []) == wanted
     assert text_of(text, context(layout)).count("# j1") == text.count("# j1")
+
+
+def test_a_file_of_another_robot_is_told_at_its_first_name() -> None:
+    """A name that comes again is at its first place, too."""
+    text = "controller_list:\n  - {name: c, joints: [a]}\n  - {name: d, joints: [b, q, a]}\n"
+    (found,) = run(text, context())[1]
+    assert (found.code, found.level, found.line) == ("MB875", "error", 2)
+    assert found.message.startswith("3 of the 3 names in this file are in no description: a, b")

@@ -223,7 +223,9 @@ def test_looks_from_two_machines_that_see_the_same_are_one_graph(
             for host, file in zip((one, two), files, strict=True):
                 assert run(host, "snapshot", "-o", file, **SUBNET).returncode == 0
     target, env = tmp_path / "all.json", live_fleet.environ(DOMAIN)
-    joined = multibot("snapshot", "--merge", *files, "-o", target, env=env)
+    joined = multibot(
+        "snapshot", *(it for path in files for it in ("--snapshot", path)), "-o", target, env=env
+    )
     assert joined.returncode == 0, joined.stderr
     assert "2 nodes in 2 participants" in joined.stderr
     done = multibot("check", plan, "-v", "--snapshot", target, env=env)
@@ -240,7 +242,11 @@ def test_a_robot_of_another_domain(plan: Path, tmp_path: Path) -> None:
         assert_not_seen_from_here(run(one, "check", plan, "-v", **SUBNET))
         for file, domain in zip(files, (DOMAIN, DOMAIN + 1), strict=True):
             run(one, "snapshot", "-o", file, "--domain", domain, **SUBNET)
-    done = multibot("snapshot", "--merge", *files, env=live_fleet.environ(DOMAIN))
+    done = multibot(
+        "snapshot",
+        *(it for path in files for it in ("--snapshot", path)),
+        env=live_fleet.environ(DOMAIN),
+    )
     assert done.returncode == 2
     assert "nodes of two domains never meet" in done.stderr
 

@@ -89,7 +89,16 @@ def actions(graph: System) -> set[str]:
 
 
 def test_without_rules_it_leaks_and_is_reported() -> None:
-    words = [*PAIR, "--stack", "robot_state", "--layout", "tf-per-robot", "--without-rules", "-v"]
+    words = [
+        *PAIR,
+        "--stack",
+        "robot_state",
+        "--layout",
+        "tf-per-robot",
+        "--without-rules",
+        "all",
+        "-v",
+    ]
     done = rehearse(4, *words)
     assert done.returncode == 1, done.stderr
     assert "graph: error: MG402 robot1 and robot2 send frames without" in done.stdout

@@ -56,7 +56,7 @@ def _rehearsed(folder: Path, at: int, case: Case) -> CompletedProcess[str]:
     file.write_text(FLEET.format(release=release, stack=stack, robot=robot))
     domain = live_commands.domain(90 + at)
     words = ["rehearse", str(file), "--domain", domain, "--ignore", "MB425"]
-    words += ["--without-rules-at", left_out] if left_out else []
+    words += ["--without-rules", left_out] if left_out else []
     return live_commands.multibot(*words, env=live_fleet.environ(domain))
 
 

@@ -137,7 +137,17 @@ def test_the_command_joins_and_check_takes_all(
     twice = [word for it in files for word in ("--snapshot", str(it))]
     assert main(["check", file, *twice]) == 0
     target = tmp_path / "all.json"
-    assert main(["snapshot", "--merge", *map(str, files), "-o", str(target)]) == 0
+    assert (
+        main(
+            [
+                "snapshot",
+                *(it for path in files for it in ("--snapshot", str(path))),
+                "-o",
+                str(target),
+            ]
+        )
+        == 0
+    )
     assert main(["check", file, "--snapshot", str(target)]) == 0
     joined = from_json(target.read_bytes(), "all.json")
     assert len(joined.nodes) == len(whole.nodes)
@@ -150,20 +160,19 @@ def test_the_table_says_how_many_machines_were_seen(
     files = [tmp_path / "one.json", tmp_path / "two.json"]
     for file, robot, process in zip(files, ("robot1", "robot2"), (ONE, TWO), strict=True):
         file.write_bytes(to_json(look(node(robot, process))))
-    assert main(["snapshot", "--merge", *map(str, files)]) == 0
+    assert main(["snapshot", *(it for path in files for it in ("--snapshot", str(path)))]) == 0
     assert "2 nodes in 2 participants on 2 machines after" in capsys.readouterr().out
-    assert main(["snapshot", "--merge", str(files[0])]) == 0
+    assert main(["snapshot", "--snapshot", str(files[0])]) == 0
     assert "machine" not in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["snapshot", "--merge", "gone.json"], "gone.json"),
-        (["snapshot", "--merge", "a.json", "--expect", "/x"], "leave out --merge"),
-        (["snapshot", "--merge"], "expected at least one argument"),
-        (["snapshot", "--merge", "a.json", "-o", "a.json"], "a.json is a file that is read"),
-        (["snapshot", "--merge", "a.json", "--zenoh", "tcp/h:1"], "two sources"),
+        (["snapshot", "--snapshot", "gone.json"], "gone.json"),
+        (["snapshot", "--snapshot", "a.json", "--expect", "/x"], "leave out --snapshot"),
+        (["snapshot", "--snapshot", "a.json", "-o", "a.json"], "a.json is a file that is read"),
+        (["snapshot", "--snapshot", "a.json", "--zenoh", "tcp/h:1"], "two sources"),
         (["check", "plan.yaml", "--snapshot", "a.json", "--zenoh", "tcp/h:1"], "two sources"),
         (["snapshot", "--zenoh", "h:7447"], "write PROTOCOL/HOST:PORT"),
         (["snapshot", "--zenoh", ""], "write PROTOCOL/HOST:PORT"),

@@ -53,7 +53,7 @@ def test_all_that_is_seen_runs_on_one_machine(tmp_path: Path) -> None:
     found = absent(tmp_path, graph)
     assert found.level == INCONCLUSIVE
     assert "all that is seen runs on one machine (/robot1/drive)" in found.hint
-    assert "ROS_STATIC_PEERS" in found.hint and "--merge" in found.hint
+    assert "ROS_STATIC_PEERS" in found.hint and "--snapshot" in found.hint
     assert judge([found], graph) == Verdict.INCONCLUSIVE
 
 

@@ -4,7 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from multibot_rewrite.knowledge.conditions import holds, joined, parse_condition, verdict
+from multibot_rewrite.knowledge.conditions import (
+    holds,
+    joined,
+    of_release,
+    parse_condition,
+    verdict,
+)
 from multibot_rewrite.model import UsageError
 
 VALUES: dict[str, object] = {
@@ -94,3 +100,19 @@ def test_a_word_that_is_no_kind_has_the_nearest_one() -> None:
 def test_what_is_no_condition(text: str) -> None:
     with pytest.raises(UsageError, match="no condition"):
         parse_condition(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "release", "left"),
+    [
+        ("on", "jazzy", "on"),
+        ("on and release: kilted+", "jazzy", None),
+        ("on and release: kilted+", "lyrical", "on"),
+        ("release: <=jazzy and on or off", "kilted", "off"),
+        ("release: <=jazzy and on or off", "humble", "on or off"),
+    ],
+)
+def test_what_a_condition_says_of_releases_is_settled(
+    text: str, release: str, left: str | None
+) -> None:
+    assert of_release(text, release) == left

@@ -91,7 +91,6 @@ ENDS: list[tuple[Sequence[str], int]] = [
     ([ROVER, "--target", "usd"], 0),
     (["--explain", "MB202"], 0),
     (["--explain", "MB5"], 0),
-    (["--list-rules"], 0),
     (["--help"], 0),
     (["--version"], 0),
 ]
@@ -240,12 +239,6 @@ def test_explain_tells_one_rule_or_a_group(capsys: pytest.CaptureFixture[str]) -
     assert said(capsys, "--explain", "MB2")[1].count("Why: ") == sum(
         code.startswith("MB2") for code in RULES
     )
-
-
-def test_list_rules_lists_each_in_a_line(capsys: pytest.CaptureFixture[str]) -> None:
-    lines = said(capsys, "--list-rules")[1].splitlines()
-    assert [line.split()[0] for line in lines] == list(RULES)
-    assert all(line.split()[1] == RULES[line.split()[0]].level for line in lines)
 
 
 def test_help_names_every_option(capsys: pytest.CaptureFixture[str]) -> None:

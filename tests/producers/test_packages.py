@@ -39,7 +39,7 @@ def test_what_is_installed_is_found_first(tmp_path: Path, monkeypatch: pytest.Mo
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("other b.launch.py", "'other' is not found; .*--launch-roots"),
+        ("other b.launch.py", "'other' is not found; .*--roots"),
         ("acme c.launch.py", "acme has no such file"),
         ("acme b.launch.py", "it has a/b.launch.py and b.launch.py; give the path"),
     ],

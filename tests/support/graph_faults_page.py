@@ -12,19 +12,23 @@ from graph_faults import FAULTS, LIVE
 from healthy_systems import SYSTEMS, plan
 
 from multibot_rewrite.findings.finding import ERROR, Finding
+from multibot_rewrite.graph.bags.recording import RECORDER, ROSBAG
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.plural import plural
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.system.records import System
+from multibot_rewrite.system.records import PUBLISHES, System
 
 HEAD = """\
 # Seeded faults
 
 Made by `python tests/support/graph_faults_page.py > docs/graph-faults.md`. Each row is a fault that was
 put into a system in which nothing was wrong (`tests/support/graph_faults.py`): what `multibot check`
-finds without a plan, its exit code, whether the finding names who did it and what to do (*cause*), and
-which codes `multibot check` adds with the plan of the system. `-`: nothing more than in the healthy
-system; no entry: the system has no plan.
+finds without a plan, its exit code, whether the finding names who did it and what to do (*cause*),
+which codes `multibot check` adds with the plan of the system, and which are found in a recording of it
+without a plan. `-`: nothing more than in the healthy system; no entry: the system has no plan.
+`check-launch` asks the same of the system that a launch file makes. With a plan nothing is hidden
+(`tests/graph/test_inclusion.py`): a name that a node lacks by its plan is MG102 or MG101 there. A
+recording has neither nodes nor who reads: faults of these alone are not in it.
 *Live*: played by real nodes as well (`tests/graph/test_live_doctor.py`).
 """
 # The systems that are those of a plan.
@@ -44,6 +48,7 @@ class Outcome(NamedTuple):
     exit: int
     cause: bool
     checked: str
+    recorded: str
 
 
 def outcome(fault: Fault) -> Outcome:
@@ -53,7 +58,8 @@ def outcome(fault: Fault) -> Outcome:
     hits = [it for it in findings if it.code == fault.code and it.level == fault.level]
     named = any(all(word in str(it) for word in fault.words) for it in hits)
     failed = any(it.level == ERROR for it in findings)
-    return Outcome(bool(hits), fault.code, fault.level, int(failed), named, _checked(fault, graph))
+    both = _checked(fault, graph), _recorded(fault, graph)
+    return Outcome(bool(hits), fault.code, fault.level, int(failed), named, *both)
 
 
 def _checked(fault: Fault, graph: System) -> str:
@@ -63,6 +69,20 @@ def _checked(fault: Fault, graph: System) -> str:
     before = _healthy_findings(planned, fault.system())
     new = {it.code for it in check(planned, graph) if it not in before}
     return ", ".join(sorted(new)) or "-"
+
+
+def _recorded(fault: Fault, graph: System) -> str:
+    before = {it.code for it in diagnose(recording(fault.system())).findings}
+    new = {it.code for it in diagnose(recording(graph)).findings} - before
+    return ", ".join(sorted(new)) or "-"
+
+
+def recording(graph: System) -> System:
+    """What a bag of the system holds: what was sent, and not by whom."""
+    sent = (it._replace(node=RECORDER) for it in graph.ends if it.role == PUBLISHES)
+    edges = (it._replace(publishers=(RECORDER,), several=False) for it in graph.edges)
+    around = graph.environment._replace(rmw=ROSBAG)
+    return System((), tuple(sent), tuple(edges), around, graph.heard)
 
 
 @cache
@@ -78,13 +98,14 @@ def lines() -> Iterator[str]:
     yield f"{plural(len(found), 'fault')}, {sum(it.found for _, it in found)} found, {causes} with the"
     yield f"cause; {len(LIVE)} of them live. {len(SYSTEMS)} healthy systems: 0 findings each."
     yield ""
-    yield "| fault | no plan | level | exit | cause | live | check |"
-    yield "|---|---|---|--:|---|---|---|"
+    yield "| fault | no plan | level | exit | cause | live | with the plan | recorded |"
+    yield "|---|---|---|--:|---|---|---|---|"
     for fault, it in found:
         code = it.code if it.found else "not found"
         live = "yes" if fault.name in LIVE else ""
         cause = "yes" if it.cause else "no"
-        yield f"| {fault.name} | {code} | {it.level} | {it.exit} | {cause} | {live} | {it.checked} |"
+        said = f"{code} | {it.level} | {it.exit} | {cause} | {live} | {it.checked} | {it.recorded}"
+        yield f"| {fault.name} | {said} |"
     yield ""
     yield "Healthy systems:"
     yield ""

@@ -11,6 +11,7 @@ from multibot_rewrite.cli.declared.shared import (
     GENERAL,
     NAMING,
     ROBOTS,
+    ROOTS,
     TRUST,
     URDF,
     VOCABULARY,
@@ -149,7 +150,7 @@ LINT = Command(
                 value(
                     "--changed-since", metavar="REV", about="only files that git shows as changed"
                 ),
-                several("--roots", "A,B", "folders to look for package://NAME and $(find NAME) in"),
+                ROOTS._replace(keywords={**ROOTS.keywords, "default": None}),
                 URDF,
                 VOCABULARY,
                 DISTRO,
@@ -188,7 +189,7 @@ LINT = Command(
         ),
         NAMING,
         FINDINGS,
-        OptionGroup("rules", (EXPLAIN_OPTION, switch("--list-rules", about="list all rules"))),
+        OptionGroup("rules", (EXPLAIN_OPTION,)),
         GENERAL,
     ),
     "0 nothing found (notes do not count); 1 findings; 2 wrong use, nothing to lint, or a rule that"

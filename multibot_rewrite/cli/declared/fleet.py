@@ -9,13 +9,13 @@ from multibot_rewrite.cli.declared.shared import (
     FINDINGS_OUTPUT,
     GENERAL,
     KNOWN_NODES,
-    LAUNCH_ROOTS,
     LAYOUT_NAMES,
     LIVE,
     LIVE_CODES,
     NAMING,
     PICTURES,
     ROBOTS,
+    ROOTS,
     TRUST,
     VOCABULARY,
 )
@@ -37,11 +37,10 @@ from multibot_rewrite.findings.finding import ERROR
 
 # The plan, and besides those of ``remap.table_formats``, which a help text does not import.
 PLAN_FORMS = ("plan", "table", "ros-args", "launch", "yaml", "json", "gazebo", "bridge", "sros2")
-# Those of the fleet file's ``params_style``.
-PARAMS_STYLES = ("full", "bringup")
 # Those of ``fleets/shapes.yaml``.
 SHAPES = ("clearpath", "husarion", "nav2", "turtlebot4")
 # Those of ``remap.ways``.
+EVERY_WAY = "all"
 WAYS = ("process", "host", "component", "spawner", "plugin")
 
 _DESCRIPTION = OptionGroup(
@@ -63,7 +62,7 @@ _DESCRIPTION = OptionGroup(
             "a launch file that starts each robot's nodes, with its arguments, as ros2 launch takes it,"
             " or a system_model.yaml; it is read, nothing is started (docs/launch.md)",
         ),
-        LAUNCH_ROOTS,
+        ROOTS,
         VOCABULARY,
         DISTRO,
         TRUST,
@@ -167,13 +166,6 @@ BUILD = Command(
             switch("--check", about="list what is stale, write nothing"),
             switch("--force", about="overwrite files that no build made"),
             choice(
-                "--params-style",
-                "STYLE",
-                PARAMS_STYLES,
-                "how parameter files are written: full (with the full names of nodes) or bringup (for"
-                " the launch files of nav2_bringup, docs/nav2.md); default: that of the fleet file",
-            ),
-            choice(
                 "--shape",
                 "VENDOR",
                 SHAPES,
@@ -235,7 +227,7 @@ REHEARSE = Command(
         Example("multibot rehearse rover.urdf robot1 robot2 --stack nav2"),
         Example("multibot rehearse rover.urdf robot1 robot2 --stack nav2 --report nav2.html"),
         Example(
-            "multibot rehearse rover.urdf robot1 robot2 --stack nav2 --without-rules",
+            "multibot rehearse rover.urdf robot1 robot2 --stack nav2 --without-rules all",
             "which names would collide?",
         ),
     ),
@@ -253,13 +245,13 @@ REHEARSE = Command(
         OptionGroup(
             "rehearsal",
             (
-                switch("--without-rules", about="start nodes with namespace and name alone"),
                 several(
-                    "--without-rules-at",
+                    "--without-rules",
                     "WAY",
-                    f"leave out rules that are given at {', '.join(WAYS)}",
+                    f"leave out rules that are given at {', '.join(WAYS)}; all: start nodes with"
+                    " namespace and name alone",
                     [],
-                    values.some_of(WAYS),
+                    values.some_of((EVERY_WAY, *WAYS)),
                 ),
             ),
         ),

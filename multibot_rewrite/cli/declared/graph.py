@@ -9,11 +9,12 @@ from multibot_rewrite.cli.declared.shared import (
     FINDINGS_OUTPUT,
     GENERAL,
     KNOWN_NODES,
-    LAUNCH_ROOTS,
     LIVE,
     LIVE_CODES,
     PICTURES,
     RESULT_OUTPUT,
+    ROOTS,
+    SAVED,
     SOURCE,
     SOURCE_OR_BAG,
     TRUST,
@@ -22,7 +23,6 @@ from multibot_rewrite.cli.declared.shared import (
 from multibot_rewrite.cli.options import (
     Command,
     Example,
-    Option,
     OptionGroup,
     argument,
     choice,
@@ -46,18 +46,6 @@ WATCH = switch(
     "--watch",
     about="show every change until Ctrl-C or --timeout; with --state, nodes are asked when nothing has"
     " changed for a while, and again every 10 s",
-)
-MERGE = Option(
-    ("--merge",),
-    "no look: join snapshots that were taken on several machines",
-    {
-        "metavar": "FILE",
-        "dest": "snapshot",
-        "nargs": "+",
-        "action": "extend",
-        "type": values.path,
-        "default": [],
-    },
 )
 LISTENING = SOURCE_OR_BAG._replace(options=(*SOURCE_OR_BAG.options, HEADERS))
 CHECK = Command(
@@ -140,7 +128,7 @@ CHECK_LAUNCH = Command(
                     type=values.path,
                 ),
                 *KNOWN_NODES,
-                LAUNCH_ROOTS,
+                ROOTS,
                 DISTRO,
                 TRUST,
             ),
@@ -225,7 +213,8 @@ SNAPSHOT = Command(
         Example("multibot snapshot --form rosgraph -o graph.yaml", "for other tools"),
         Example("multibot snapshot --zenoh tcp/localhost:7447", "what a Zenoh router knows"),
         Example(
-            "multibot snapshot --merge robot1.json robot2.json -o all.json", "from two machines"
+            "multibot snapshot --snapshot robot1.json --snapshot robot2.json -o all.json",
+            "from two machines",
         ),
     ),
     (
@@ -247,7 +236,7 @@ SNAPSHOT = Command(
                 several(
                     "--topic", "TOPIC", "look up QoS of these topics, too", [], values.full_names
                 ),
-                MERGE,
+                SAVED,
                 ZENOH,
                 STATE,
                 HEADERS,

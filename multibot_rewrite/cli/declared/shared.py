@@ -96,11 +96,8 @@ KNOWN_NODES = (
         [],
     ),
 )
-LAUNCH_ROOTS = several(
-    "--launch-roots",
-    "A,B",
-    "folders with packages that a launch file needs, if not installed",
-    [],
+ROOTS = several(
+    "--roots", "A,B", "folders to look for packages in, beside those that are installed", []
 )
 FINDINGS = OptionGroup(
     "findings",

@@ -8,6 +8,7 @@ from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.moveit.controller_manager import unreachable_managers
 from multibot_rewrite.companions.moveit.name_sites import MoveitName, MoveitNames
 from multibot_rewrite.companions.names.by_kind import expressible
+from multibot_rewrite.companions.params import name_checks
 from multibot_rewrite.companions.yaml_text import YamlText, found_at
 from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import Rule, declare
@@ -73,35 +74,10 @@ def _no_srdf(context: Context, word: str, text: str) -> _Problem | None:
     return GROUPS_WITHOUT_SRDF, message, "name the SRDF under srdf:"
 
 
-PREFIX_ONLY = declare(
-    "MF306",
-    "moveit-prefix-only",
-    WARNING,
-    what="The link_prefix of an IKFast solver can only add a prefix, but the fleet uses a postfix.",
-    why="IKFast puts link_prefix in front of the link names that it was generated with. It cannot "
-    "make base_link_robot1, so the solver does not find the links of the robot.",
-    fix="Write affix: prefix in the fleet file, or take a solver that reads its links from the "
-    "SRDF.",
-    bad="""\
-arm:
-  kinematics_solver: my_arm_ikfast/IKFastKinematicsPlugin
-  link_prefix: ""
-""",
-    good="""\
-arm:
-  kinematics_solver: kdl_kinematics_plugin/KDLKinematicsPlugin
-""",
-    line=3,
-    formats=("moveit",),
-    options={"affix": "postfix"},
-)
-
-
 def _prefix_only(context: Context, word: str, text: str) -> _Problem | None:
     if expressible(context, word):
         return None
-    message = f"{word} can only add a prefix, but the fleet uses a postfix"
-    return PREFIX_ONLY, message, "set affix: prefix"
+    return name_checks.PREFIX_ONLY, *name_checks.prefix_only_message(word)
 
 
 # Only the first problem of a name is reported.

@@ -41,8 +41,8 @@ PREFIX_ONLY = declare(
     "MF117",
     "parameter-adds-prefix-only",
     WARNING,
-    what="A parameter can only put something before names, but the fleet puts the robot's name behind "
-    "them.",
+    what="A parameter, or the link_prefix of an IKFast solver, can only put something before names, "
+    "but the fleet puts the robot's name behind them.",
     why="The node makes its frames or joints out of this parameter: none of them gets the robot's "
     "name, so two robots publish the same frames.",
     fix="Set affix: prefix in the fleet file.",
@@ -64,8 +64,12 @@ usb_cam:
 
 def prefix_only(document: YamlText, node: yaml.Node, name: str) -> Finding:
     """The finding about a parameter that cannot express a postfix."""
-    message = f"{name} can only add a prefix, but the fleet uses a postfix"
-    return found_at(document, node, PREFIX_ONLY, message, "set affix: prefix")
+    return found_at(document, node, PREFIX_ONLY, *prefix_only_message(name))
+
+
+def prefix_only_message(name: str) -> tuple[str, str]:
+    """Message and hint."""
+    return f"{name} can only add a prefix, but the fleet uses a postfix", "set affix: prefix"
 
 
 def _inexpressible(job: ParamsJob, site: NameSite) -> Iterator[Finding]:

@@ -65,7 +65,7 @@ def check_codes(codes: Sequence[str], where: str) -> None:
     known = known_beginnings(RULES)
     wrong = next((it for it in codes if it not in known), None)
     if wrong is not None:
-        raise UsageError(f"{where}: {no_rule(wrong, RULES, 'urdf-lint --list-rules')}")
+        raise UsageError(f"{where}: {no_rule(wrong, RULES, 'multibot explain')}")
 
 
 def _levels(given: Given) -> dict[str, str]:

@@ -64,7 +64,7 @@ def failure(error: BaseException) -> str:
     found = _NOT_FOUND.search(str(error))
     if found:
         name = found[1] or found[2]
-        hint = "source its workspace, or give the folder of its sources with --launch-roots"
+        hint = "source its workspace, or give the folder of its sources with --roots"
         return f"package {name!r} is not installed here; {hint}"
     return " ".join(f"{type(error).__name__}: {error}".split())
 

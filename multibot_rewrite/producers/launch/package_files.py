@@ -12,9 +12,7 @@ from collections.abc import Iterator
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.sources.packages import package_folders
 
-_ROOTS = (
-    "source its workspace, or give the folder of its sources with --launch-roots (launch_roots:)"
-)
+_ROOTS = "source its workspace, or give the folder of its sources with --roots (launch_roots:)"
 
 
 def file_of_package(package: str, name: str, roots: tuple[str, ...]) -> str:

@@ -13,15 +13,13 @@ from multibot_rewrite.record import NamedTuple
 class Programs(NamedTuple):
     """Executables whose node is known under another word, those whose node has another name, and those
     that are no node of a robot. ``spawners`` put a description into a simulator, ``simulators`` are
-    packages that only a simulated robot needs, ``stamped`` parameters that are true by default, with
-    their releases."""
+    packages that only a simulated robot needs."""
 
     nodes: Mapping[str, str]
     names: Mapping[str, str]
     passing: Collection[str]
     spawners: Collection[str]
     simulators: Collection[str]
-    stamped: Mapping[str, str]
 
 
 @cache

@@ -8,19 +8,20 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import partial
 
 from lxml import etree
 
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER, edges_in, sent_by
 from multibot_rewrite.graph.transforms import Edge as SentEdge
 from multibot_rewrite.graph.wording import SEVERAL, shorten
+from multibot_rewrite.knowledge.conditions import holds
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
 from multibot_rewrite.producers.launch.bridges import bridged_by, is_bridge
 from multibot_rewrite.producers.launch.findings import STOOD_IN
 from multibot_rewrite.producers.launch.models import Models, sent_in_simulator
-from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchNote
 from multibot_rewrite.producers.launch.running import (
     CLOCK_TYPE,
@@ -32,7 +33,6 @@ from multibot_rewrite.producers.launch.running import (
 )
 from multibot_rewrite.producers.launch.static_transforms import STATIC
 from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.releases import has_release
 from multibot_rewrite.rosnames import (
     BoundNode,
     expand,
@@ -85,7 +85,7 @@ def would_run(graph: LaunchGraph, known: Knowledge) -> System:
     parts = []
     for it in nodes:
         try:
-            parts.append(_part(it, known.release, inside))
+            parts.append(_part(it, inside))
         except UsageError as error:
             refused.append(f"{it.full_name} ({it.place}: {error})")
             parts.append(_Part(it.full_name, (), ()))
@@ -160,11 +160,11 @@ def _of_models(models: Models) -> Iterator[Caveat]:
         yield Caveat(NOT_KNOWN, True, f"{text}; describe them (docs/add-a-plugin.md)")
 
 
-def _part(it: RunningNode, release: str, inside: Sent) -> _Part:
+def _part(it: RunningNode, inside: Sent) -> _Part:
     bound = bound_of(it.name, it.namespace, it.rules)
     name = f"{bound.namespace.rstrip('/')}/{bound.node}"
     helper = bound_of(it.name, it.process_namespace, it.process_rules)
-    own = _endpoints(it, name, bound, helper, release)
+    own = _endpoints(it, name, bound, helper)
     ends = [*own, *_bridged(it, name, bound)]
     if _value(it, SIM_TIME) is True and all(end.name != CLOCK for end in ends):
         ends.append(End(TOPIC, SUBSCRIBES, CLOCK, CLOCK_TYPE, "", name, None, it.process))
@@ -173,30 +173,20 @@ def _part(it: RunningNode, release: str, inside: Sent) -> _Part:
     )
 
 
-def _endpoints(
-    it: RunningNode, name: str, bound: BoundNode, helper: BoundNode, release: str
-) -> Iterator[End]:
+def _endpoints(it: RunningNode, name: str, bound: BoundNode, helper: BoundNode) -> Iterator[End]:
     for end in it.facts.endpoints if it.facts and not is_bridge(it) else ():
         if not end.when and end.name and "<" not in end.name:
             own = end._replace(name=_below_namespace_above(it, end))
             full = _resolved(own, helper if end.helper else bound)
-            type_ = _type(it, end, release)
+            type_ = _type(it, end)
             yield End(end.kind, end.role, full, type_, "", f"{name}{end.by}", None, it.process)
 
 
-def _type(it: RunningNode, end: Endpoint, release: str) -> str:
+def _type(it: RunningNode, end: Endpoint) -> str:
     """Its type, where a parameter such as ``enable_stamped_cmd_vel`` chooses between two."""
-    chosen = [given.value for name, given in it.values.items() if "stamped" in name]
-    usual = (has_release(them, release) for word, them in _stamped() if word in end.note)
-    for wanted in chosen or usual:
-        fitting = (type_ for type_ in end.also if type_.endswith("Stamped") == wanted)
-        if end.type.endswith("Stamped") != wanted:
-            return next(fitting, end.type)
-    return end.type
-
-
-def _stamped() -> Iterable[tuple[str, str]]:
-    return programs().stamped.items()
+    return next(
+        (type_ for asked, type_ in end.types if holds(asked, partial(_value, it))), end.type
+    )
 
 
 def _below_namespace_above(it: RunningNode, end: Endpoint) -> str:

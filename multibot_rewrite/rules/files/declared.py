@@ -50,12 +50,13 @@ class Given(NamedTuple):
 
 
 class Section(NamedTuple):
-    """The parameters of one node, and what it declares."""
+    """The parameters of one node, each with what declares it, and all that the node declares."""
 
     title: str
     node: KnownNode | None
     given: tuple[Given, ...]
     facts: tuple[Declared, ...]
+    known: tuple[tuple[Given, tuple[Declared, ...]], ...]
 
 
 def sections(file: NamedFile) -> tuple[Section, ...]:
@@ -79,8 +80,23 @@ def _sections(file: NamedFile) -> Iterator[Section]:
             node = None
         facts = facts_of_node(node, type_, file.file, file.roots)
         below, rest = _of_plugins(it.path, given)
-        yield Section(it.path, node, rest, facts)
+        yield _section(it.path, node, rest, facts)
         yield from below
+
+
+def _section(
+    title: str, node: KnownNode | None, given: tuple[Given, ...], facts: tuple[Declared, ...]
+) -> Section:
+    exact: dict[str, list[Declared]] = {}
+    wild: list[Declared] = []
+    for fact in facts:
+        (wild if "<" in fact.path else exact.setdefault(fact.path, [])).append(fact)
+    known = tuple((it, (*exact.get(it.name, ()), *_matching(wild, it.name))) for it in given)
+    return Section(title, node, given, facts, known)
+
+
+def _matching(wild: Sequence[Declared], name: str) -> Iterator[Declared]:
+    return (it for it in wild if it.pattern.fullmatch(name))
 
 
 def _of_plugins(title: str, given: Sequence[Given]) -> tuple[list[Section], tuple[Given, ...]]:
@@ -96,7 +112,7 @@ def _of_plugins(title: str, given: Sequence[Given]) -> tuple[list[Section], tupl
     for name, its in of.items():
         class_, facts = plugins[name]
         own = tuple(it._replace(name=it.name.removeprefix(f"{name}.")) for it in its)
-        found.append(Section(f"{title}: {name} ({class_})", None, own, facts))
+        found.append(_section(f"{title}: {name} ({class_})", None, own, facts))
     return found, tuple(rest)
 
 
@@ -132,14 +148,17 @@ def unknown_parameters(file: NamedFile) -> Iterator[Remark]:
     """Parameters that no release of their node declares, with a name nearly that of one."""
     guesses = Guesses()
     for section in sections(file):
+        unknown = [it for it, found in section.known if not found and not _is_known(section, it)]
+        if not unknown:
+            continue
         facts = [it for it in section.facts if it.how != READ]
         paths = [it.path for it in of_release(facts, file.context.distro)]
         there = [it for it in paths if "<" not in it]
         there += _in_blocks(section, paths) if section.node is None else ()
         said = {it.name for it in section.given}
         free = [it for it in there if it not in said]
-        for it in section.given if there else ():
-            near = "" if _is_known(section, it) else _meant(it.name, free, guesses)
+        for it in unknown if there else ():
+            near = _meant(it.name, free, guesses)
             if near:
                 message = f"{section.title} has no parameter {it.name!r}"
                 yield remark_at(it.key, message, f"did you mean {near!r}?")
@@ -153,11 +172,9 @@ def _in_blocks(section: Section, paths: Sequence[str]) -> Iterator[str]:
 
 
 def _is_known(section: Section, it: Given) -> bool:
-    return (
-        any(fact.pattern.fullmatch(it.name) for fact in section.facts)
-        or _EVERYWHERE.fullmatch(it.name) is not None
-        or (section.node is not None and bool(params_at(section.node, it.name, it.key)))
-    )
+    """Has every node such a parameter, or does it hold names?"""
+    of_node = section.node is not None and bool(params_at(section.node, it.name, it.key))
+    return of_node or _EVERYWHERE.fullmatch(it.name) is not None
 
 
 def _meant(name: str, known: Sequence[str], guesses: Guesses) -> str:
@@ -207,9 +224,8 @@ def _is_filled_in(value: Value) -> bool:
 
 def _declared(section: Section, release: str) -> Iterator[tuple[Given, list[Declared]]]:
     """Each parameter with its declarations in a release: those of its name, else those of a pattern."""
-    facts = [it for it in of_release(section.facts, release) if it.how != READ]
-    for it in section.given:
-        found = [fact for fact in facts if fact.pattern.fullmatch(it.name)]
+    for it, known in section.known:
+        found = [fact for fact in of_release(known, release) if fact.how != READ]
         exact = [fact for fact in found if fact.path == it.name]
         if found:
             yield it, exact or found

@@ -193,8 +193,10 @@ def _foreign(file: NamedFile) -> tuple[list[tuple[str, str]], int, Site | None]:
     """The names that are missing where most are, how many there are in all, and the first."""
     if file.kind != MOVEIT or not file.is_certain:
         return [], 0, None
-    closed = {(it.kind, it.text): it for it in reversed(file.names) if it.kind in KINDS}
-    closed = {key: it for key, it in reversed(closed.items()) if key[0] in (*_FRAMES, *_PARTS)}
+    closed: dict[tuple[str, str], Site] = {}
+    for it in file.names:
+        if it.kind in (*_FRAMES, *_PARTS):
+            closed.setdefault((it.kind, it.text), it)
     missing = [key for key, it in closed.items() if _missing(file, it)]
     if len(missing) < _FEWEST or 2 * len(missing) <= len(closed):
         return [], 0, None
@@ -223,10 +225,11 @@ def unknown_use(file: NamedFile) -> Iterator[Remark]:
         return
     level = "" if file.is_certain else NOTE
     known, renamed = _robots_names(file), _renamed(file)
-    misspelt = {it.line for it in unknown_parameters(file)}
-    for site in file.others:
-        found = _said(file, site, known, renamed)
-        if found and site.line not in misspelt:
+    said = [(site, _said(file, site, known, renamed)) for site in file.others]
+    said = [(site, found) for site, found in said if found]
+    misspelt = {it.line for it in unknown_parameters(file)} if said else set()
+    for site, found in said:
+        if site.line not in misspelt:
             message = f"{found} of the robot, but its use here is not known"
             yield remark(site, message, "it stays as it is; if it is a name, rename it", level)
 

@@ -18,11 +18,14 @@ from multibot_rewrite.system.records import End
 def type_not_planned(plan: Planned, seen: Index) -> Iterator[Finding]:
     """Each end of a planned name whose type is none that the plan has for it."""
     planned = _types(plan)
-    for end in dict.fromkeys(it._replace(qos=None, process="") for it in seen.system.ends):
+    said = set()
+    for end in seen.system.ends:
         known = plan.ends.get((end.node, end.kind, end.role, end.name))
         by_name = planned.get((end.kind, end.name), frozenset())
         wanted = {known.type, *known.also} if known and known.type else by_name
-        if end.type and wanted and end.type not in wanted:
+        differs = end.type and wanted and end.type not in wanted
+        if differs and (end.node, end.name, end.type) not in said:
+            said.add((end.node, end.name, end.type))
             yield _not_as_planned(plan, seen, end, wanted)
 
 

@@ -1,0 +1,337 @@
+"""The house in figures: rooms, lines, functions, and what runs for a command.
+
+python benchmarks/house.py                  this checkout
+python benchmarks/house.py CHECKOUT         another one
+python benchmarks/house.py --write          put them into the pages that state them
+python benchmarks/house.py --write --loop   and the CPU seconds of the fast tests: it runs them
+
+A room is a file or folder right below the package; its floor is the longest chain of imports below it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import os
+import re
+import subprocess
+import sys
+import tempfile
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator
+from functools import cache
+from pathlib import Path
+from resource import RUSAGE_CHILDREN, getrusage
+from types import CodeType, FrameType
+from typing import NamedTuple
+
+ROOT = Path(__file__).parents[1]
+PACKAGE = "multibot_rewrite"
+SMALL, LONG, EQUAL = 40, 350, 6
+KINDS = ("code", "blank", "imports", "docstrings", "words", "data", "comments")
+# What declares a rule: its words and examples are the arguments.
+DECLARING = {"declare", "rule", "danger_rule", "graph_rule", "srdf_rule"}
+ROVER, GRAPHS = "fixtures/robots/rover.urdf", "fixtures/graphs"
+# What a user asks for.
+COMMANDS = {
+    "rewrite": ("urdf_postfix", ROVER, "robot1", "robot2", "-o", "{}/{{robot}}.urdf"),
+    "lint": ("urdf_lint", ROVER),
+    "check": ("multibot", "check", f"{GRAPHS}/plan.yaml", "--snapshot", f"{GRAPHS}/healthy.json"),
+    "build": ("multibot", "build", "examples/two_robots_nav2/fleet.yaml", "-o", "{}/fleet"),
+}
+BESIDE = (
+    "names (`naming.py`), the order of a rewrite (`pipeline.py`), the public calls (`library.py`)"
+)
+FAST = ("-q", "-m", "not live and not slow")
+
+
+class Module(NamedTuple):
+    """A file of the package: where it is below it, its lines and its tree."""
+
+    file: str
+    lines: tuple[str, ...]
+    tree: ast.Module
+
+    @property
+    def room(self) -> str:
+        return self.file.partition("/")[0].removesuffix(".py")
+
+
+def modules(checkout: Path) -> list[Module]:
+    """Every module of the package."""
+    package = checkout / PACKAGE
+    found = []
+    for path in sorted(package.rglob("*.py")):
+        text = path.read_text()
+        file = path.relative_to(package).as_posix()
+        found.append(Module(file, tuple(text.splitlines()), ast.parse(text)))
+    return found
+
+
+def kinds(module: Module) -> Counter[str]:
+    """How many lines of each kind a module has."""
+    found = Counter(_kinds_of_lines(module))
+    return Counter({kind: found[kind] for kind in KINDS})
+
+
+def _kinds_of_lines(module: Module) -> list[str]:
+    kind = [_plain_kind(line) for line in module.lines]
+    for node in ast.walk(module.tree):
+        for marked, first, last in _marked(node):
+            kind[first - 1 : last] = [marked] * (last - first + 1)
+    for node in module.tree.body:
+        if isinstance(node, ast.Assign | ast.AnnAssign) and _is_data(node.value):
+            first, last = node.lineno, node.end_lineno or node.lineno
+            kind[first - 1 : last] = ["data"] * (last - first + 1)
+    return kind
+
+
+def _plain_kind(line: str) -> str:
+    stripped = line.strip()
+    return "comments" if stripped.startswith("#") else "code" if stripped else "blank"
+
+
+def _marked(node: ast.AST) -> Iterator[tuple[str, int, int]]:
+    """The lines of an import, a docstring, or the declaration of a rule."""
+    if isinstance(node, ast.Import | ast.ImportFrom):
+        yield "imports", node.lineno, node.end_lineno or node.lineno
+    elif isinstance(node, ast.Call) and _name(node.func) in DECLARING:
+        yield "words", node.lineno, node.end_lineno or node.lineno
+    elif isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and ast.get_docstring(node):
+        text = node.body[0]
+        yield "docstrings", text.lineno, text.end_lineno or text.lineno
+
+
+def _name(node: ast.AST) -> str:
+    return node.id if isinstance(node, ast.Name) else getattr(node, "attr", "")
+
+
+def _is_data(value: ast.AST | None) -> bool:
+    """A table or text: nothing in it is computed."""
+    computed = (ast.Call, ast.Lambda, ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
+    return value is not None and not any(isinstance(it, computed) for it in ast.walk(value))
+
+
+def arrows(every: list[Module]) -> Counter[tuple[str, str]]:
+    """From room to room, and how many modules import along them."""
+    files = {it.file: it.room for it in every}
+    pairs = ((it.room, files[other]) for it in every for other in imported(it.tree, files))
+    return Counter((one, other) for one, other in pairs if one != other)
+
+
+def imported(tree: ast.Module, files: Iterable[str]) -> set[str]:
+    """The modules of the package that one of them imports."""
+    found: set[str] = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith(PACKAGE):
+            for name in node.names:
+                parts = f"{node.module}.{name.name}".split(".")[1:]
+                bases = ("/".join(parts[:end]) for end in range(len(parts), -1, -1))
+                paths = (
+                    f"{it}{end}".lstrip("/") for it in bases for end in (".py", "/__init__.py")
+                )
+                found.update(next(([it] for it in paths if it in files), []))
+    return found
+
+
+def floors(between: Iterable[tuple[str, str]]) -> int:
+    """The longest chain of imports from room to room."""
+    below: dict[str, set[str]] = defaultdict(set)
+    for one, other in between:
+        below[one].add(other)
+
+    @cache
+    def floor(room: str) -> int:
+        return 1 + max(map(floor, below[room]), default=0)
+
+    return max(map(floor, list(below)), default=1)
+
+
+def equal_pairs(every: list[Module]) -> int:
+    """How often six lines of code stand in two places; longer ones are one pair."""
+    places: dict[tuple[str, ...], list[tuple[int, int]]] = defaultdict(list)
+    for number, module in enumerate(every):
+        code = _code_lines(module)
+        for at in range(len(code) - EQUAL + 1):
+            places[tuple(code[at : at + EQUAL])].append((number, at))
+    pairs = {
+        (one, other)
+        for found in places.values()
+        for index, one in enumerate(found)
+        for other in found[index + 1 :]
+    }
+    return sum(((a, i - 1), (b, j - 1)) not in pairs for (a, i), (b, j) in pairs)
+
+
+def _code_lines(module: Module) -> list[str]:
+    kinds_ = _kinds_of_lines(module)
+    return [line.strip() for line, kind in zip(module.lines, kinds_, strict=True) if kind == "code"]
+
+
+def referred_once(every: list[Module], functions: Iterable[ast.FunctionDef]) -> int:
+    """Functions whose name stands in one other place."""
+    words = Counter(
+        _name(node)
+        for it in every
+        for node in ast.walk(it.tree)
+        if isinstance(node, ast.Name | ast.Attribute)
+    )
+    return sum(words[it.name] == 1 for it in functions)
+
+
+def figures(every: list[Module]) -> dict[str, str]:
+    """The figures of the house, without those of its rooms and of what runs."""
+    nodes = [node for it in every for node in ast.walk(it.tree)]
+    functions = [it for it in nodes if isinstance(it, ast.FunctionDef)]
+    lengths = sorted((it.end_lineno or it.lineno) - it.lineno + 1 for it in functions)
+    classes = Counter(it.name for it in nodes if isinstance(it, ast.ClassDef))
+    between = arrows(every)
+    codes = {it for m in every for it in re.findall(r'"(M[BFGR]\d{3})"', "\n".join(m.lines))}
+    return {
+        "lines": f"{sum(len(it.lines) for it in every):,}",
+        "modules": f"{len(every):,}",
+        f"modules under {SMALL} lines": f"{sum(len(it.lines) < SMALL for it in every):,}",
+        f"modules over {LONG} lines": f"{sum(len(it.lines) > LONG for it in every):,}",
+        "rooms": f"{len({it.room for it in every}):,}",
+        "floors": f"{floors(between):,}",
+        "arrows between rooms": f"{len(between):,}",
+        "functions": f"{len(functions):,}",
+        "lines of a function: median": f"{_share(lengths, 50)}",
+        "lines of a function: nine of ten have at most": f"{_share(lengths, 90)}",
+        "lines of a function: the longest": f"{lengths[-1]}",
+        "functions that one place refers to": f"{referred_once(every, functions):,}",
+        "names of classes that stand twice": f"{sum(it > 1 for it in classes.values()):,}",
+        f"pairs of {EQUAL} equal lines": f"{equal_pairs(every):,}",
+        "codes of findings": f"{len(codes):,}",
+    }
+
+
+def _share(values: list[int], percent: int) -> int:
+    return values[len(values) * percent // 100]
+
+
+def room_rows(every: list[Module]) -> Iterator[tuple[str, Counter[str]]]:
+    """Each folder of the package with its lines; what stands beside them is one row."""
+    found: dict[str, Counter[str]] = defaultdict(Counter)
+    for it in every:
+        found[f"{it.room}/" if "/" in it.file else "beside them"] += kinds(it)
+    yield from sorted(found.items())
+    yield "all", sum(found.values(), Counter())
+
+
+def functions_run(checkout: Path) -> dict[str, str]:
+    """How many functions of the package run for each command, in how many modules."""
+    with tempfile.TemporaryDirectory() as folder:
+        asked = {name: [it.format(folder) for it in words] for name, words in COMMANDS.items()}
+        return {
+            f"functions (modules) that run for {name}": _run(checkout, words, folder)
+            for name, words in asked.items()
+        }
+
+
+def _run(checkout: Path, words: Iterable[str], cache_home: str) -> str:
+    line = [sys.executable, str(Path(__file__)), "--run", *words]
+    environment = {**os.environ, "PYTHONPATH": str(checkout), "XDG_CACHE_HOME": cache_home}
+    done = subprocess.run(
+        line, cwd=checkout, env=environment, capture_output=True, text=True, check=False
+    )
+    if done.returncode:
+        sys.exit(f"{' '.join(line)}: {done.stderr}")
+    return done.stderr.rpartition("RAN ")[2].strip()
+
+
+def run_counted(command: str, *words: str) -> None:
+    """Run a command in this process; what of the package ran is the last line of the errors."""
+    module = __import__(f"{PACKAGE}.cli.{command}", fromlist=["main"])
+    seen: set[CodeType] = set()
+
+    def note(frame: FrameType, event: str, _: object) -> None:
+        if event == "call":
+            seen.add(frame.f_code)
+
+    sys.setprofile(note)
+    code = module.main(list(words))
+    sys.setprofile(None)
+    ours = {it for it in seen if f"/{PACKAGE}/" in it.co_filename and it.co_name[0] != "<"}
+    print("RAN", f"{len(ours):,} ({len({it.co_filename for it in ours})})", file=sys.stderr)
+    sys.exit(code)
+
+
+def loop_seconds(checkout: Path) -> float:
+    """CPU seconds of the fast tests, with what they start."""
+    before = getrusage(RUSAGE_CHILDREN)
+    line = [sys.executable, "-m", "pytest", *FAST]
+    subprocess.run(line, cwd=checkout, stdout=subprocess.DEVNULL, check=True)
+    after = getrusage(RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def table(head: Iterable[str], rows: Iterable[Iterable[object]]) -> str:
+    """Markdown: what stands in the first column is text, the rest numbers."""
+    names = list(head)
+    lines = [names, ["---", *["--:"] * (len(names) - 1)], *rows]
+    return "\n".join(f"| {' | '.join(str(it) for it in line)} |" for line in lines)
+
+
+def kinds_table(every: list[Module]) -> str:
+    """The lines of each room, by kind."""
+    rows = room_rows(every)
+    cells = ([name, it.total(), *(it[kind] for kind in KINDS)] for name, it in rows)
+    return table(("lines in", "all", *KINDS), cells)
+
+
+def rooms_table(checkout: Path, every: list[Module]) -> str:
+    """What each room is for, as it says itself, and its lines."""
+    package = checkout / PACKAGE
+    about = {f"{it.name}/": _about(it / "__init__.py") for it in package.iterdir() if it.is_dir()}
+    about["beside them"] = BESIDE
+    rows = [(name, it) for name, it in room_rows(every) if name != "all"]
+    cells = ((f"`{name}` {about[name]}", f"{it.total():,}", f"{it['code']:,}") for name, it in rows)
+    return table(("room", "lines", "code"), cells)
+
+
+def _about(path: Path) -> str:
+    text = ast.get_docstring(ast.parse(path.read_text())) if path.exists() else ""
+    return (text or "").partition("\n")[0].replace("``", "`")
+
+
+def figures_table(checkout: Path, every: list[Module]) -> str:
+    """The house, its lines by kind, and what runs for a command."""
+    found = sum((kinds(it) for it in every), Counter())
+    said = ", ".join(f"{kind} {found[kind] * 100 / found.total():.0f}" for kind in KINDS)
+    rows = {**figures(every), **functions_run(checkout), "lines by kind, of a hundred": said}
+    return table(("figure", ""), rows.items())
+
+
+def write(path: Path, word: str, new: str) -> None:
+    """Put the text between the markers of a page."""
+    mark = f"<!-- {word} -->\n"
+    before, _, after = path.read_text().split(mark)
+    path.write_text(mark.join((before, f"{new}\n", after)))
+
+
+def main(words: list[str]) -> None:
+    if words[:1] == ["--run"]:
+        run_counted(*words[1:])
+        return
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("checkout", nargs="?", type=Path, default=ROOT)
+    parser.add_argument("--write", action="store_true", help="into the pages that state them")
+    parser.add_argument("--loop", action="store_true", help="and the time of the fast tests")
+    options = parser.parse_args(words)
+    every = modules(options.checkout)
+    rooms = rooms_table(options.checkout, every)
+    made = {"rooms": rooms, "figures": figures_table(options.checkout, every)}
+    print(*made.values(), kinds_table(every), sep="\n\n")
+    if options.write:
+        for word, text in made.items():
+            write(options.checkout / "docs" / "architecture.md", word, text)
+    if options.loop:
+        said = f"The fast tests take {loop_seconds(options.checkout):.0f} seconds of CPU."
+        print(said)
+        if options.write:
+            write(options.checkout / "CONTRIBUTING.md", "loop", said)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
