@@ -133,7 +133,9 @@ def _tests_of(bug: Bug, bench: Bench, chance: random.Random) -> list[str]:
         mine = (key for key in bench.called if key.rpartition(":")[0] == bug.file)
         found.update(test for key in mine for test in bench.called[key])
     name = Path(bug.file).stem if Path(bug.file).stem != "__init__" else Path(bug.file).parent.name
-    files = {test.partition("::")[0] for test in found}
+    # Notes of an earlier run may name files that are gone.
+    files = {it for test in found if (bench.copy / (it := test.partition("::")[0])).exists()}
+    found = {test for test in found if test.partition("::")[0] in files}
     named = {it: (bench.copy / it).read_text().count(name) for it in files}
     nearest = sorted(found, key=lambda it: (-named[it.partition("::")[0]], it))
     near, far = nearest[:AT_ONCE], nearest[AT_ONCE:]

@@ -266,6 +266,12 @@ FILES = {
             "status_topic: ~/status\ncommand_out_type: trajectory_msgs/JointTrajectory\n",
         },
     ),
+    "servo with a private topic": (
+        "move_group_name: arm\ncommand_out_topic: ~/joint_trajectory\n",
+        dict.fromkeys(
+            ("L1", "L2", "L4"), "move_group_name: arm\ncommand_out_topic: ~/joint_trajectory\n"
+        ),
+    ),
     "sensors": (
         "sensors:\n  - {sensor_plugin: a/B, point_cloud_topic: /eye/points, filtered_cloud_topic: f}\n"
         "octomap_frame: odom\n",

@@ -221,6 +221,13 @@ def test_a_node_for_all_robots_keeps_its_section() -> None:
     assert codes(companion.findings).count("MF103") == 1
 
 
+@pytest.mark.parametrize("name", ["amcl", "/**/amcl"])
+def test_a_topic_that_the_nodes_rules_move_stays_in_a_wildcard_section_too(name: str) -> None:
+    """The rule ``scan:=scan/robot1`` of amcl finds no topic that was renamed in its file already."""
+    assert value(name, "scan_topic: scan", L4) == "scan_topic: scan"
+    assert value(name.replace("amcl", "ekf_filter_node"), "odom0: odom", L4) == "odom0: odom/robot1"
+
+
 def test_a_wildcard_behind_an_exact_section_wins() -> None:
     exact, wild = section("amcl", "alpha1: 0.1"), section("/**", "alpha1: 0.2")
     assert "MB867" in codes(made(exact + wild)[1])

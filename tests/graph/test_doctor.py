@@ -162,6 +162,14 @@ def test_a_bag_that_is_played_to_a_viewer_alone_is_what_bags_are_for() -> None:
     assert diagnose(player).findings == ()
 
 
+def test_a_command_typed_under_a_wrong_name_is_an_error() -> None:
+    """``ros2 topic pub /cmd_vel``: its node is hidden, and no viewer that sends when it is asked."""
+    graph = with_node(nav2_with_tools(), "/_ros2cli_4711", (PUBLISHES, "/cmd_vel", TWIST))
+    found = diagnose(graph).findings
+    assert [(it.node, it.level) for it in found] == [("/_ros2cli_4711", "error")]
+    assert "/robot1/cmd_vel" in str(found[0])
+
+
 def test_tools_on_another_clock_are_none_of_a_robot() -> None:
     graph = with_ends(simulated("robot1"), "/rosbag2_recorder", (SUBSCRIBES, "/clock", CLOCK))
     assert diagnose(graph).findings == ()

@@ -68,6 +68,14 @@ CASES = [
         links("ab") + joint("j", "ab") + joint("j", "ab"), "", id="a joint twice is MB201"
     ),
     pytest.param(
+        links("ab") + joint("j", "ab") + joint("k", "ab"), "MB504:3", id="two parents are told once"
+    ),
+    pytest.param(
+        links("ab") + joint("j", "ab") + joint("k", "ab") + joint("l", "ab"),
+        "MB504:3 MB504:4",
+        id="each parent too many is told",
+    ),
+    pytest.param(
         links("abc") + joint("j", "bb") + joint("k", "bc"),
         "MB505:1 MB506:2",
         id="below a joint to itself",

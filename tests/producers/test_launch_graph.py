@@ -308,7 +308,7 @@ def test_a_missing_package_is_named_and_found_in_its_sources(tmp_path: Path) -> 
     inner = HEAD + '        Node(package="acme", executable="d"),\n    ])\n'
     (sources / "launch" / "a.launch.py").write_text(inner)
     found = one(read(tmp_path, include, roots=str(tmp_path / "src")))
-    assert found.place == (str(sources / "launch" / "a.launch.py"), NAMES + 1)
+    assert found.place[:2] == (str(sources / "launch" / "a.launch.py"), NAMES + 1)
 
 
 @pytest.mark.parametrize(
