@@ -58,7 +58,7 @@ def test_a_plan_as_json_too(tmp_path: Path) -> None:
 
 
 def test_what_is_wrong_is_what_the_commands_say(capsys: pytest.CaptureFixture[str]) -> None:
-    broken = GRAPHS / "MG103.json"
+    broken = GRAPHS / "MG320.json"
     plan = GRAPHS / "plan.yaml"
     assert main(["check", str(plan), "--snapshot", str(broken)]) == 1
     said = capsys.readouterr().out.splitlines()
