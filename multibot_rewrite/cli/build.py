@@ -28,6 +28,7 @@ from multibot_rewrite.fleets.manifest import (
     read_manifest,
 )
 from multibot_rewrite.fleets.output_file import OutputFile
+from multibot_rewrite.fleets.read_back import read_back
 from multibot_rewrite.fleets.robot_choice import Choice
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
@@ -47,7 +48,8 @@ def run(options: argparse.Namespace) -> int:
     plan = plan_fleet(fleet, trust=options.trust)
     note_interfaces(options, plan.fleet.facts)
     made = make_outputs(plan, os.path.abspath(options.output))
-    if _reported(options, plan, made.findings):
+    back = read_back(plan, made.files, os.path.abspath(options.output))
+    if _reported(options, plan, (*made.findings, *back)):
         say("nothing was written", PROGRAM)
         return STOPPED
     read = _read(plan, made.files)

@@ -109,14 +109,6 @@ def count(text: str) -> int:
     return int(text)
 
 
-def percent(text: str) -> float:
-    """A percentage, with or without the sign."""
-    value = _number(text.removesuffix("%"))
-    if not 0 <= value <= 100:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a percentage, give 0 to 100")
-    return value
-
-
 def _number(text: str) -> float:
     try:
         return float(text)

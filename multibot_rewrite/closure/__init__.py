@@ -1,1 +1,1 @@
-"""Does a robot close: is what its nodes read sent, what its controllers claim exported?"""
+"""What MoveIt, an SRDF, a bridge and lists of parameters name, against what the same robot has."""

@@ -8,7 +8,7 @@ controller_manager/spawner.py (``type`` of a controller's own section is set as 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import suppress
 
 import yaml
@@ -55,8 +55,11 @@ class _Section(NamedTuple):
         return "/".join(tokens) if not set(tokens) & set(ANY) else ""
 
 
-def given_nodes(documents: Iterable[YamlText], known: KnownNodes) -> list[GivenNode]:
-    """The nodes that these files have sections for, and the controllers that they declare.
+def given_nodes(
+    documents: Iterable[YamlText], known: KnownNodes, only: Collection[str] = ()
+) -> list[GivenNode]:
+    """The nodes that these files have sections for, and the controllers that they declare; ``only``
+    some of them, by name.
 
     Raises InputError for a file that is not a parameter file, and for a controller whose name no node
     can have.
@@ -66,7 +69,8 @@ def given_nodes(documents: Iterable[YamlText], known: KnownNodes) -> list[GivenN
     for name, it in controllers.items():
         _check_name(name.rpartition("/")[2], it.type.place)
     names = dict.fromkeys((*(it.name for it in sections if it.name), *controllers))
-    return [_node(name, sections, controllers.get(name), known) for name in names]
+    wanted = (it for it in names if it in only) if only else names
+    return [_node(name, sections, controllers.get(name), known) for name in wanted]
 
 
 def _check_name(name: str, place: Place) -> None:

@@ -14,7 +14,7 @@ from multibot_rewrite.fleets.gap_findings import at_gap, in_source, meant
 from multibot_rewrite.fleets.judged import controlled
 from multibot_rewrite.fleets.output_values import OutputText
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
-from multibot_rewrite.fleets.systems import RobotSystem as System
+from multibot_rewrite.fleets.systems import RobotSystem
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.interfaces import control_system
 
@@ -123,8 +123,8 @@ collision_monitor:
 
 def controller_findings(
     robot: RewrittenRobot,
-    before: System,
-    after: System,
+    before: RobotSystem,
+    after: RobotSystem,
     known: Mapping[str, NodeFacts],
     texts: Sequence[OutputText],
     active: Collection[str],

@@ -13,7 +13,7 @@ from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.gap_findings import at_gap, meant
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
-from multibot_rewrite.fleets.systems import RobotSystem as System
+from multibot_rewrite.fleets.systems import RobotSystem
 from multibot_rewrite.steps.document import read_document
 
 _ARM = """\
@@ -82,7 +82,7 @@ NOT_LOCATED = declare(
 
 
 def semantic_findings(
-    plan: FleetPlan, robot: RewrittenRobot, before: System, after: System
+    plan: FleetPlan, robot: RewrittenRobot, before: RobotSystem, after: RobotSystem
 ) -> Iterator[Finding]:
     """What a robot's SRDF names and nothing else of the robot has."""
     job = plan.jobs[robot.spec.sources].srdf

@@ -53,7 +53,7 @@ def consistency(
     lines = {(it.file, it.line, level) for it in known for level in {it.level, WARNING}}
     in_files = (*_in_files(plan, robots, files), *_in_common(robots, files))
     return (
-        *_of_two_robots(plan, fleet),
+        *_of_two_robots(plan),
         *_counted(it for it in in_files if (it.file, it.line, it.level) not in lines),
     )
 
@@ -99,10 +99,10 @@ SAME_NAME = declare(
     "MF601",
     "robots-declare-same-name",
     ERROR,
-    what="Two robots have the same link, joint, frame, sensor, hardware component or node name, though "
-    "robots of the layout differ in it.",
+    what="Two robots have the same link, joint, frame, sensor or hardware component, though robots of "
+    "the layout differ in it.",
     why="Messages with this name belong to both robots: joint states of one move the model of the "
-    "other, and the second node of a name replaces the first one in tools.",
+    "other.",
     fix="Give one of the two robots another name, prefix or postfix, or choose another separator.",
     bad="""\
 # rover.urdf has a joint left_wheel, cart.urdf a joint wheel
@@ -137,11 +137,10 @@ robots:
 )
 
 
-def _of_two_robots(plan: FleetPlan, fleet: Fleet) -> Iterator[Finding]:
-    """Names that two robots have though they are not shared."""
+def _of_two_robots(plan: FleetPlan) -> Iterator[Finding]:
+    """What two robots declare though it is not shared; of nodes and topics the remap table says it."""
     first: dict[tuple[str, str], RewrittenRobot] = {}
-    by_space = {robot.spec.namespace: robot for robot in plan.robots}
-    for robot, kind, name in (*_declared(plan), *_nodes(fleet, by_space)):
+    for robot, kind, name in _declared(plan):
         other = first.setdefault((kind, name), robot)
         if other is not robot:
             both = f"{other.spec.name!r} and {robot.spec.name!r}"
@@ -161,17 +160,6 @@ def _declared(plan: FleetPlan) -> Iterator[tuple[RewrittenRobot, str, str]]:
         for kind in kinds:
             names = robot.member.inventory.declared.get(kind, ())
             yield from ((robot, kind, it) for it in names if it not in naming.shared_frames)
-
-
-def _nodes(
-    fleet: Fleet, robots: Mapping[str, RewrittenRobot]
-) -> Iterator[tuple[RewrittenRobot, str, str]]:
-    # Nodes whose topics collide are reported already.
-    reported = {name for it in fleet.table.problems for name in (it.node, *it.names)}
-    for node in fleet.table.nodes:
-        full = f"{node.namespace.rstrip('/')}/{node.name}"
-        if node.robot and full not in reported:
-            yield robots[node.robot], "node", full
 
 
 def _in_files(

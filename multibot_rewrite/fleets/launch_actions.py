@@ -187,7 +187,7 @@ def _called(given: _Given, node: str) -> str:
 
 
 def _description(robot: RewrittenRobot) -> str:
-    return path_for(robot, robot.spec.description.removesuffix(".xacro"))
+    return path_for(robot, expanded_name(robot.spec.description))
 
 
 def _controller(given: _Given, it: Started) -> Start:

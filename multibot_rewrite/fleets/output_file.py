@@ -13,6 +13,9 @@ from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.sources.read import read_file
 
+# The plan of a built fleet.
+PLAN = "plan.yaml"
+
 
 class OutputFile(NamedTuple):
     """A file to be written: its path below the output folder, its bytes, the files it is made from."""

@@ -117,7 +117,7 @@ def system_of_graph(
 
 
 def judge(system: System) -> list[Finding]:
-    """What is wrong with a system, as ``multibot doctor`` says it. Raises nothing."""
+    """What is wrong with a system, as ``multibot check`` says it. Raises nothing."""
     return list(diagnose(system).findings)
 
 

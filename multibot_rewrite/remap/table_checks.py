@@ -157,13 +157,14 @@ nodes:
 
 
 def shared_nodes(tables: Iterable[NodeTable]) -> Iterator[Finding]:
-    """Full names that nodes of two robots would have; descriptions have a judge of their own."""
+    """Full names that nodes of two robots would have; two of descriptions have a judge of their own."""
     first: dict[str, NodeTable] = {}
     reported = set()
-    for table in (it for it in tables if it.robot and not it.home.written):
+    for table in (it for it in tables if it.robot):
         full = table.full_name
         other = first.setdefault(full, table)
-        if other.robot == table.robot or full in reported:
+        written = other.home.written and table.home.written
+        if other.robot == table.robot or full in reported or written:
             continue
         reported.add(full)
         message = f"two robots would share the node {full}: {other.node} and {table.node}"

@@ -15,7 +15,6 @@ from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.graph.bags.recording import is_recorded
 from multibot_rewrite.graph.patterns import fitted
-from multibot_rewrite.graph.questions import SIM_TIME
 from multibot_rewrite.rules.declaration import PAIR, SYSTEM, Finder
 from multibot_rewrite.rules.index import NO_COUNTS, Index, ends_of
 from multibot_rewrite.rules.pair import (
@@ -50,7 +49,7 @@ from multibot_rewrite.rules.system import (
 )
 from multibot_rewrite.rules.system import nodes as running_nodes
 from multibot_rewrite.rules.system import transforms as any_transforms
-from multibot_rewrite.system.records import PUBLISHES, Caveat, End, System, incomplete
+from multibot_rewrite.system.records import PUBLISHES, SIM_TIME, Caveat, End, System, incomplete
 
 _SYSTEM = (
     *(running_nodes, names, matching, commands, relays, sharing, any_transforms, tf_topics),

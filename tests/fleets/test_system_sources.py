@@ -63,7 +63,7 @@ def test_what_is_wrong_is_what_the_commands_say(capsys: pytest.CaptureFixture[st
     assert main(["check", str(plan), "--snapshot", str(broken)]) == 1
     said = capsys.readouterr().out.splitlines()
     assert [str(it) for it in compare(system_of_files(plan), system_of_files(broken))] == said
-    main(["doctor", "--snapshot", str(broken)])
+    main(["check", "--snapshot", str(broken)])
     said = capsys.readouterr().out.splitlines()
     assert [str(it) for it in judge(system_of_files(broken))] == said
 

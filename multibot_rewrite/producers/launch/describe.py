@@ -236,7 +236,8 @@ def _keep_files(values: Iterable[Any], here: Visit) -> None:
 
 def _values(values: Any) -> ParameterText:
     body = {"/**": {"ros__parameters": {name: _plain(it) for name, it in values.items()}}}
-    return ParameterText("", yaml.safe_dump(body, sort_keys=False))
+    dumper = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
+    return ParameterText("", yaml.dump(body, None, dumper, sort_keys=False))
 
 
 def _plain(value: Any) -> Any:

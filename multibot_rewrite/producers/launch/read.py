@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+import tempfile
 from typing import Any
 
 from multibot_rewrite.producers.launch.commands import faults, read_commands
@@ -13,6 +14,7 @@ from multibot_rewrite.producers.launch.made_files import keep_sources
 from multibot_rewrite.producers.launch.places import keep_places
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder
 from multibot_rewrite.producers.launch.source_packages import add_sources
+from multibot_rewrite.producers.launch.stand_in import standing_in
 from multibot_rewrite.producers.launch.visit import visit_all
 from multibot_rewrite.system.records import Place
 
@@ -38,6 +40,26 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
         description = _included(order)
     except (Exception, SystemExit) as error:
         raise UnreadableError(failure(error)) from error
+    return _visited(description, order)
+
+
+def read_own(file: str, folder: str) -> LaunchGraph:
+    """The same of a launch file that ``build`` wrote, read by the stand-in in this process; ``folder``
+    is for temporary files. Raises as ``read_graph``."""
+    before, order = tempfile.tempdir, LaunchOrder(file)
+    with standing_in():
+        tempfile.tempdir = folder
+        keep_places()
+        try:
+            description = _included(order)
+            return _visited(description, order)
+        except (Exception, SystemExit) as error:
+            raise UnreadableError(failure(error)) from error
+        finally:
+            tempfile.tempdir = before
+
+
+def _visited(description: Any, order: LaunchOrder) -> LaunchGraph:
     context = of_launch().LaunchContext(noninteractive=True)
     seen = Visit(context, [], [], {}, [], Place(os.path.abspath(order.file), 1))
     visit_all(description, seen)

@@ -221,7 +221,9 @@ def _values_by_name(
     sections = "".join(f"{name}:\n  ros__parameters: {{}}\n" for name in names)
     texts = [text for text in it.parameters if has_sections(text)]
     documents = [document_of("", sections), *(document_of(text.file, text.text) for text in texts)]
-    found = {f"/{one.name}": one for one in given_nodes(documents, known.parameters)}
+    wanted = {name.strip("/") for name in names}
+    given = given_nodes(documents, known.parameters, wanted)
+    found = {f"/{one.name}": one for one in given}
     return {name: found[name] for name in names}
 
 

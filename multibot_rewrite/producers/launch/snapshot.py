@@ -138,7 +138,7 @@ def _of_bridges(nodes: Sequence[RunningNode], inside: Sent) -> Iterator[Caveat]:
     bridges = [it.full_name for it in nodes if not {*_tf_topics(it)} <= inside.keys()]
     if bridges:
         text = f"the transforms that the simulator sends are not known: {shorten(bridges)}"
-        yield Caveat(NO_TREE, True, text)
+        yield Caveat(NOT_KNOWN, True, text)
 
 
 def _tf_topics(it: RunningNode) -> Iterator[str]:

@@ -117,8 +117,9 @@ def _placeholder(site: Site) -> str:
 def robot_in_name(file: NamedFile) -> Iterator[Remark]:
     """The first name that holds one of the robots."""
     for site in file.names if file.robots else ():
-        if site.kind == GZ_TOPIC:
-            continue  # the model in it is the robot, whatever it is called
+        # In a topic of gz the model is the robot, whatever it is called; a planning group has any name.
+        if site.kind in (GZ_TOPIC, "group"):
+            continue
         robot = next(iter(sorted(file.robots.intersection(site.text.strip("/").split("/")))), "")
         if robot and (file.kind != RVIZ or "/" in site.text.strip("/")):
             message = (

@@ -130,7 +130,7 @@ def _unsent_leaks(plan: Planned, seen: Index) -> Iterator[Finding]:
         meant = [name for plain in likely for name in names.get(plain, ())]
         if meant:
             message = f"{ends.name} is of no robot; planned: {shorten(meant, SEVERAL)}"
-            cause = "start its node in its robot's namespace, with the rules of multibot remap"
+            cause = "start its node in its robot's namespace, with the rules of multibot plan"
             rule = _rule_of(seen, ends.kind, ends.name, ends.type)
             yield rule.finding(message, cause, names=(ends.name,))
 

@@ -14,6 +14,7 @@ from typing import Any
 
 import yaml
 
+from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.producers.launch.stand_in.actions import (
     Action,
     EventHandler,
@@ -283,7 +284,7 @@ def _read(text: str, name: str) -> Any:
         "if it is meant to be a string, try wrapping it in ParameterValue(value, value_type=str)"
     )
     try:
-        found = yaml.safe_load(text) if text else ""
+        found = load_yaml(text) if text else ""
     except yaml.YAMLError:
         raise TypeError(f"Unable to parse {name} as yaml; {wrapped}") from None
     if not isinstance(found, (*_PLAIN, list)):
