@@ -40,6 +40,8 @@ ROOMS = (
 # A bug in a file with one of these could reach beyond the copy: it ends processes or deletes folders.
 UNSAFE = re.compile(r"\b(?:os\.kill|killpg|os\.fork|os\._exit|rmtree|subprocess|signal)\b")
 AT_ONCE, MOST_TESTS, FEW_TESTS = 80, 600, 10
+# Exit codes of pytest.
+WRONG_USE, NO_TESTS = 4, 5
 FAST = ("-q", "-x", "-m", "not live and not slow", "-p", "no:cacheprovider", "--tb=no")
 
 
@@ -168,11 +170,14 @@ def _fails(tests: list[str], bench: Bench) -> bool:
         start_new_session=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
     )  # fmt: skip
     try:
-        return run.wait(bench.seconds) not in (0, 5)
+        ended = run.wait(bench.seconds)
     except subprocess.TimeoutExpired:
         return True
     finally:
         _end(run)
+    if ended == WRONG_USE:
+        sys.exit("the notes name tests that are not there: make them anew")
+    return ended not in (0, NO_TESTS)
 
 
 def _end(run: subprocess.Popen[bytes]) -> None:

@@ -92,8 +92,9 @@ def _look(request: Request, environ: dict[str, str], plan: System) -> System:
 
 
 def _without_places(graph: System) -> System:
-    """Stubs send which frame hangs on which, not where."""
-    return graph._replace(edges=tuple(it._replace(transform=()) for it in graph.edges))
+    """Stubs send which frame hangs on which, not where, and all with one quality of service."""
+    ends = tuple(it._replace(qos=None) for it in graph.ends)
+    return graph._replace(ends=ends, edges=tuple(it._replace(transform=()) for it in graph.edges))
 
 
 def _edges(made: Fleet) -> tuple[Edges, list[str]]:
