@@ -58,6 +58,8 @@ def kind_alone(data: bytes, file: str) -> str:
     with suppress(InputError):
         if find_kind(read_yaml(data, file)):
             return MOVEIT
+    if not data.strip():
+        raise InputError(f"{file}: the file is empty; a robot description starts with <robot>")
     hint = "name a description, or a file of parameters, RViz, MoveIt, ros_gz_bridge, Nav2 or Lua"
     raise InputError(f"{file}:1:1: it is none of the files that are rewritten; {hint}")
 

@@ -168,10 +168,13 @@ def _parameters(given: _Given, name: str) -> tuple[File | Mapping[str, Any], ...
         prefix = {"frame_prefix": robot.frame_prefix} if robot.frame_prefix else {}
         found.append({"robot_description": Text(_description(robot)), **prefix})
     if known in ("move_group", "servo_node"):
-        srdf = Text(path_for(robot, expanded_name(robot.spec.srdf)))
+        found.append({"robot_description": Text(_description(robot))})
         made = File(path_for(robot, moveit_parameters.FILE))
-        semantic = made if made.path in given.files else {"robot_description_semantic": srdf}
-        found += [{"robot_description": Text(_description(robot))}, semantic]
+        if made.path in given.files:
+            found.append(made)
+        elif robot.spec.srdf:
+            srdf = Text(path_for(robot, expanded_name(robot.spec.srdf)))
+            found.append({moveit_parameters.SEMANTIC: srdf})
     if known == LIFECYCLE_MANAGER:
         managed = (_called(given, it) for it in given.names.managed.get(name, ()))
         found.append({"autostart": True, "node_names": list(filter(None, managed))})

@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from tempfile import TemporaryDirectory
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
@@ -18,6 +19,7 @@ from multibot_rewrite.fleets.launch_file import LAUNCH
 from multibot_rewrite.fleets.output_file import PLAN, OutputFile
 from multibot_rewrite.graph.plan_file import read_plan
 from multibot_rewrite.knowledge.parameters import load_known_nodes
+from multibot_rewrite.model import MultibotError
 from multibot_rewrite.producers.launch.findings import NOT_WHOLE
 from multibot_rewrite.producers.launch.read import UnreadableError, read_own
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph
@@ -30,8 +32,11 @@ _HINT = "the fleet would not start as planned; please report it, with the fleet 
 
 
 def read_back(plan: FleetPlan, files: Sequence[OutputFile], folder: str) -> list[Finding]:
-    """What is wrong with the files of a fleet, which will be in ``folder``."""
-    with TemporaryDirectory(prefix="multibot_built_") as above:
+    """What is wrong with the files of a fleet, which will be in ``folder``.
+
+    Raises MultibotError where no temporary file can be written.
+    """
+    with _temporary_folder() as above:
         home, own = os.path.join(above, "built"), os.path.join(above, "launch")
         os.makedirs(own)
         _write(files, plan.file.installed or folder, home)
@@ -47,6 +52,17 @@ def read_back(plan: FleetPlan, files: Sequence[OutputFile], folder: str) -> list
         seen = would_run(graph, known)
         planned = read_plan(next(it.data for it in files if it.path == PLAN), PLAN)
         return [*_lost(graph, seen, home), *_wrong(planned, seen)]
+
+
+@contextmanager
+def _temporary_folder() -> Iterator[str]:
+    try:
+        with TemporaryDirectory(prefix="multibot_built_") as folder:
+            yield folder
+    except OSError as error:
+        file = f" {error.filename}" if error.filename else ""
+        reason = error.strerror or error
+        raise MultibotError(f"a temporary file{file} cannot be written: {reason}") from None
 
 
 def _write(files: Iterable[OutputFile], planned: str, home: str) -> None:

@@ -228,6 +228,9 @@ def test_the_examples_of_the_help_work(folder: Path) -> None:
     assert len(lines) >= 6
     (folder / "out").mkdir()
     shutil.copytree(FIXTURES / "xacros", folder, dirs_exist_ok=True)
+    (folder / "nav2_params.yaml").write_text(
+        "amcl: {ros__parameters: {base_frame_id: base_link}}\n"
+    )
     shim = folder / "urdf-postfix"
     shim.write_text(f'#!/bin/sh\nexec {" ".join(COMMAND)} "$@"\n')
     shim.chmod(0o755)
@@ -238,7 +241,9 @@ def test_the_examples_of_the_help_work(folder: Path) -> None:
             ["sh", "-c", command], cwd=folder, env=path, capture_output=True, check=False
         )
         assert done.returncode == 0, (command, done.stderr)
-    names = ["left.urdf", "right.urdf", "robot1.urdf", "robot2.urdf"]
+    names = [
+        "left.urdf", "right.urdf", "robot1.urdf", "robot1.yaml", "robot2.urdf", "robot2.yaml",
+    ]  # fmt: skip
     assert sorted(contents(folder / "out")) == names
 
 

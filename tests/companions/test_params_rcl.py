@@ -12,7 +12,16 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from params_corpus import POLICIES, ROBOT, declared, facts, files, is_filled, is_respelled
+from params_corpus import (
+    POLICIES,
+    ROBOT,
+    declared,
+    facts,
+    files,
+    findings_of,
+    is_filled,
+    is_respelled,
+)
 from paths import SUPPORT
 from real_robots import spread
 
@@ -92,10 +101,10 @@ def cases(sources: dict[str, bytes], policies: Sequence[tuple[str, str]]) -> Ite
                 document = read_yaml(data, file)
                 naming = make_naming(layout=layout, affix=affix)
                 context = make_context(declared(document), naming, facts(), distro=NEWEST_LTS)  # type: ignore[arg-type]
-                companion = rewrite_params(document, context, robots=(ROBOT,))
+                companion = rewrite_params(document, context)
             except InputError:
                 continue
-            if all(it.level != ERROR for it in companion.findings):
+            if all(it.level != ERROR for it in findings_of(companion, [ROBOT])):
                 yield Case(document, context, fill_template(companion.template, ROBOT, ROBOT))
 
 

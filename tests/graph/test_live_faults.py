@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 import live_commands
 import live_fleet
+import live_graphs
 import pytest
 import tf2_build
 from paths import ROOT
@@ -67,7 +68,9 @@ def fleet_of(layout: str) -> Fleet:
             nodes[node] = {"name": name, "namespace": space, **_lists()}
     for it in plan.ends:
         if it.type != TF:
-            nodes[it.node][LISTS[it.role]].append([it.name, it.type])
+            latched = it.role == PUBLISHES and it.name.endswith(live_graphs.LATCHED)
+            words = ["latched"] if latched else []
+            nodes[it.node][LISTS[it.role]].append([it.name, it.type, *words])
     fleet = {
         robot.name: {node: nodes[node] for node in own(plan, robot.name)} for robot in plan.robots
     }

@@ -23,10 +23,8 @@ from paths import FIXTURES, ROBOTS, ROOT, SUPPORT
 from vendor_sources import VARIABLE, sources_folder
 
 from multibot_rewrite import launch
-from multibot_rewrite.cli.declared.commands import PROGRAMS
 from multibot_rewrite.cli.rehearse import stage
-from multibot_rewrite.closure.moveit import MANAGER
-from multibot_rewrite.knowledge.programs import SLAM
+from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER, PROGRAMS, SLAM
 from multibot_rewrite.releases import RELEASES
 
 REASON = f"not tried in the real launch, which is not here: {launch.missing()}"
@@ -189,7 +187,7 @@ def test_programs_are_those_of_launch_files_of_some_release() -> None:
         words = {("node", it.package, it.executable), ("lifecycle_node", it.package, it.executable)}
         assert words & known, name
         assert not it.plugin or ("component", it.package, it.plugin) in known, name
-    assert list(PROGRAMS)[-1] == MANAGER
+    assert list(PROGRAMS)[-1] == LIFECYCLE_MANAGER
 
 
 WITHOUT = launch.missing() or ("" if sources_folder() else f"set {VARIABLE}")

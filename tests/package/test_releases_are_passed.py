@@ -9,7 +9,13 @@ from parsed import sources
 
 WORDS = ("release", "distro", "environment")
 # The public calls, which ask ROS_DISTRO.
-PUBLIC = ("library.py", "fleets/one_file.py", "fleets/scripts.py", "releases.py")
+PUBLIC = (
+    "library.py",
+    "fleets/one_file.py",
+    "fleets/system_sources.py",
+    "fleets/scripts.py",
+    "releases.py",
+)
 # A lint without a command has no other.
 NEWEST = {"releases.py", "cli/declared/shared.py", "lint/config/settings.py"}
 

@@ -41,6 +41,10 @@ def processes(graph: System) -> list[list[dict[str, Any]]]:
     return list(groups.values())
 
 
+# Offered so by robot_state_publisher (robot_state_publisher.cpp) and map_server (map_server.cpp).
+LATCHED = ("/robot_description", "/map")
+
+
 def _can_be_played(end: End) -> bool:
     return end.name not in _OWN and end.kind != "action" and bool(end.type) and _is_there(end.type)
 
@@ -73,7 +77,8 @@ def _word(type_: str) -> str:
 def _words(end: End) -> Iterator[str]:
     if end.qos and end.qos.reliability == "BEST_EFFORT":
         yield "best_effort"
-    if end.qos and end.qos.durability == "TRANSIENT_LOCAL":
+    latched = not end.qos and end.role == PUBLISHES and end.name.endswith(LATCHED)
+    if latched or (end.qos and end.qos.durability == "TRANSIENT_LOCAL"):
         yield "latched"
 
 
