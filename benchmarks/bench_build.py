@@ -20,15 +20,15 @@ import yaml
 from pairs import HOW, MACHINE, Row, as_installed, child, least_seconds, paired, seconds, table
 from robots import robot
 
+from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.companions.context import make_context
 from multibot_rewrite.companions.params.rewrite import rewrite_params
 from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.companions.yaml_text import read_yaml
-from multibot_rewrite.fleets.build import Outputs, make_outputs
-from multibot_rewrite.fleets.fleet_file import read_fleet
-from multibot_rewrite.fleets.fleet_plan import plan_fleet
-from multibot_rewrite.fleets.robot_groups import group_robots
-from multibot_rewrite.releases import NEWEST_LTS
+from multibot_rewrite.fleet.build import Outputs, make_outputs
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
+from multibot_rewrite.fleet.robots.robot_groups import group_robots
 
 PAGE = Path(__file__).parent.parent / "docs" / "benchmark-build.md"
 ROBOTS = 100

@@ -26,17 +26,17 @@ sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "support"))
 import live_fleet  # the nodes of the tests
 import zenoh_robots  # and its sessions
 
+from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.cli.files import write_all
-from multibot_rewrite.graph.plan_file import from_json as plan_from_json
-from multibot_rewrite.graph.plan_file import from_yaml, to_yaml
-from multibot_rewrite.graph.plan_file import to_json as plan_to_json
 from multibot_rewrite.knowledge.node_library import stack_of
 from multibot_rewrite.knowledge.stacks import built_in
-from multibot_rewrite.naming import make_naming
-from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.remap.table import build_table
 from multibot_rewrite.rules.check import check
 from multibot_rewrite.spelling.plan import planned_end
+from multibot_rewrite.spelling.plan_file import from_json as plan_from_json
+from multibot_rewrite.spelling.plan_file import from_yaml, to_yaml
+from multibot_rewrite.spelling.plan_file import to_json as plan_to_json
+from multibot_rewrite.spelling.table import build_table
 from multibot_rewrite.system.json import from_json, to_json
 from multibot_rewrite.system.records import (
     PUBLISHES,

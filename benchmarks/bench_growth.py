@@ -16,7 +16,7 @@ from lxml import etree
 
 from multibot_rewrite import MultibotError, rewrite
 from multibot_rewrite.lint.check import lint_data
-from multibot_rewrite.lint.config.settings import Settings
+from multibot_rewrite.rules.settings import Settings
 
 ROOT = Path(__file__).parent.parent
 PAGE = ROOT / "docs" / "benchmark-growth.md"

@@ -30,9 +30,9 @@ from pairs import HOW, MACHINE, Job, Row, as_installed, child, least_seconds, pa
 from public_files import PublicFiles, public_files
 from robots import robot
 
-from multibot_rewrite.gc_pause import gc_paused
+from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.lint.check import lint_data
-from multibot_rewrite.lint.config.settings import Settings
+from multibot_rewrite.rules.settings import Settings
 
 PAGE = Path(__file__).parent.parent / "docs" / "benchmark-lint.md"
 FILES = 1000

@@ -29,16 +29,17 @@ from pairs import HOW, MACHINE, Row, as_installed, child, least_seconds, paired,
 from public_files import PublicFiles, public_files
 from robots import robot
 
-from multibot_rewrite import MultibotError, pipeline
+from multibot_rewrite import MultibotError
+from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.cli.files import write_all
-from multibot_rewrite.library import rewrite_all
-from multibot_rewrite.naming import make_naming
-from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.rewriters.builtin import builtin_tree
-from multibot_rewrite.steps.apply import cut, fill
-from multibot_rewrite.steps.collect import collect
-from multibot_rewrite.steps.document import read_document
-from multibot_rewrite.steps.plan import make_plan
+from multibot_rewrite.description import pipeline
+from multibot_rewrite.description.library import rewrite_all
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.steps.apply import cut, fill
+from multibot_rewrite.description.steps.collect import collect
+from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.description.steps.plan import make_plan
 
 PAGE = Path(__file__).parent.parent / "docs" / "benchmark.md"
 ATTRIBUTES = {"name", "link", "joint", "reference"}

@@ -39,9 +39,7 @@ COMMANDS = {
     "check": ("multibot", "check", f"{GRAPHS}/plan.yaml", "--snapshot", f"{GRAPHS}/healthy.json"),
     "build": ("multibot", "build", "examples/two_robots_nav2/fleet.yaml", "-o", "{}/fleet"),
 }
-BESIDE = (
-    "names (`naming.py`), the order of a rewrite (`pipeline.py`), the public calls (`library.py`)"
-)
+BESIDE = "the public names (`__init__.py`), the version"
 FAST = ("-q", "-m", "not live and not slow")
 
 

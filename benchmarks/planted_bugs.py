@@ -4,7 +4,7 @@ python benchmarks/planted_bugs.py                     6 bugs in each room, and t
 python benchmarks/planted_bugs.py --write             and put it into docs/planted-bugs.md
 python benchmarks/planted_bugs.py steps remap -n 20   more of them in some rooms
 python benchmarks/planted_bugs.py --seed 2            other ones
-python benchmarks/planted_bugs.py evidence --tests tests/evidence    do these tests alone notice?
+python benchmarks/planted_bugs.py producers --tests tests/producers    do these tests alone notice?
 
 A bug survives if no test fails. ``fixtures/harmless_bugs.tsv`` lists those that change nothing anybody
 could see, with the reason. Bugs are made by ``bugs.py`` beside this file.

@@ -8,11 +8,17 @@ from typing import TYPE_CHECKING
 from multibot_rewrite.version import __version__ as __version__
 
 if TYPE_CHECKING:
-    from multibot_rewrite.findings.finding import Finding, RewriteRefused
-    from multibot_rewrite.fleets.loaded_robot import LoadedRobot
-    from multibot_rewrite.fleets.one_file import RewrittenFile, rewrite_file, rewrite_files
-    from multibot_rewrite.fleets.scripts import LoadedFleet, load_fleet
-    from multibot_rewrite.fleets.system_sources import (
+    from multibot_rewrite.base.findings.finding import Finding, RewriteRefused
+    from multibot_rewrite.base.model import (
+        Change,
+        InputError,
+        MultibotError,
+        ProofError,
+        UsageError,
+        VocabularyError,
+    )
+    from multibot_rewrite.description.library import Rewrite, explain, rewrite, rewrite_all, strip
+    from multibot_rewrite.fleet.file.system_sources import (
         compare,
         judge,
         system_of_bag,
@@ -22,15 +28,9 @@ if TYPE_CHECKING:
         system_of_graph,
         system_of_launch,
     )
-    from multibot_rewrite.library import Rewrite, explain, rewrite, rewrite_all, strip
-    from multibot_rewrite.model import (
-        Change,
-        InputError,
-        MultibotError,
-        ProofError,
-        UsageError,
-        VocabularyError,
-    )
+    from multibot_rewrite.fleet.one_file import RewrittenFile, rewrite_file, rewrite_files
+    from multibot_rewrite.fleet.robots.loaded_robot import LoadedRobot
+    from multibot_rewrite.fleet.scripts import LoadedFleet, load_fleet
     from multibot_rewrite.system.records import System
 
 __all__ = [
@@ -64,16 +64,18 @@ __all__ = [
     "system_of_launch",
 ]
 _HOMES = {
-    **dict.fromkeys(("Rewrite", "explain", "rewrite", "rewrite_all", "strip"), "library"),
-    **dict.fromkeys(("Finding", "RewriteRefused"), "findings.finding"),
-    **dict.fromkeys(("LoadedFleet", "load_fleet"), "fleets.scripts"),
-    **dict.fromkeys(("RewrittenFile", "rewrite_file", "rewrite_files"), "fleets.one_file"),
-    "LoadedRobot": "fleets.loaded_robot",
+    **dict.fromkeys(
+        ("Rewrite", "explain", "rewrite", "rewrite_all", "strip"), "description.library"
+    ),
+    **dict.fromkeys(("Finding", "RewriteRefused"), "base.findings.finding"),
+    **dict.fromkeys(("LoadedFleet", "load_fleet"), "fleet.scripts"),
+    **dict.fromkeys(("RewrittenFile", "rewrite_file", "rewrite_files"), "fleet.one_file"),
+    "LoadedRobot": "fleet.robots.loaded_robot",
     "System": "system.records",
-    **dict.fromkeys(("compare", "judge"), "fleets.system_sources"),
+    **dict.fromkeys(("compare", "judge"), "fleet.file.system_sources"),
     **dict.fromkeys(
         (f"system_of_{it}" for it in ("bag", "description", "files", "fleet", "graph", "launch")),
-        "fleets.system_sources",
+        "fleet.file.system_sources",
     ),
 }
 
@@ -82,5 +84,5 @@ def __getattr__(name: str) -> object:
     # A command loads what it needs: each of them starts by importing this package.
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    module = import_module(f"{__name__}.{_HOMES.get(name, 'model')}")
+    module = import_module(f"{__name__}.{_HOMES.get(name, 'base.model')}")
     return getattr(module, name)

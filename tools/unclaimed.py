@@ -11,15 +11,15 @@ from collections.abc import Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
 
+from multibot_rewrite.base.model import InputError, MultibotError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.cli.walk import find_files
-from multibot_rewrite.model import InputError, MultibotError
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.reports.survey import MentionPlace, Survey, Tally, add, survey
-from multibot_rewrite.rewriters.builtin import builtin_tree
-from multibot_rewrite.sources.read import read_whole
-from multibot_rewrite.steps.collect import collect
-from multibot_rewrite.steps.document import read_document
+from multibot_rewrite.description.reports.survey import MentionPlace, Survey, Tally, add, survey
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.sources.read import read_whole
+from multibot_rewrite.description.steps.collect import collect
+from multibot_rewrite.description.steps.document import read_document
 
 
 class Reason(NamedTuple):

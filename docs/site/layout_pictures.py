@@ -15,7 +15,7 @@ import yaml
 from lxml import etree
 
 from multibot_rewrite import load_fleet
-from multibot_rewrite.naming import LAYOUTS
+from multibot_rewrite.base.naming import LAYOUTS
 
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "docs" / "pictures"

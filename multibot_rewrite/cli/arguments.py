@@ -9,15 +9,15 @@ from collections.abc import Iterator, Sequence
 from multibot_rewrite.cli.tables import Grid, clip
 from multibot_rewrite.cli.usage import xacro_args
 from multibot_rewrite.cli.walk import check_target
-from multibot_rewrite.reports.xacro_arguments import (
+from multibot_rewrite.description.reports.xacro_arguments import (
     Argument,
     XacroArguments,
     find_arguments,
 )
-from multibot_rewrite.rewriters.tree import Tree
-from multibot_rewrite.sources.access import Reach
-from multibot_rewrite.sources.own_names import filled
-from multibot_rewrite.sources.read import is_xacro
+from multibot_rewrite.description.rewriters.tree import Tree
+from multibot_rewrite.description.sources.access import Reach
+from multibot_rewrite.description.sources.own_names import filled
+from multibot_rewrite.description.sources.read import is_xacro
 
 COLUMNS = ("argument", "default", "goes into", "as", "count", "example")
 

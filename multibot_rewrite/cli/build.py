@@ -6,19 +6,25 @@ import argparse
 import os
 from collections.abc import Collection, Iterable, Mapping, Sequence
 
-from multibot_rewrite.checks.verdict import not_proved
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.plural import plural
+from multibot_rewrite.base.releases import facts_of_release
 from multibot_rewrite.cli.fleet import note_interfaces, words_of
 from multibot_rewrite.cli.folders import change_folder, check_inside, clear_leftovers, locked
 from multibot_rewrite.cli.output import detail, note, print_lines, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.report import About, check_report, chosen, report_beside
 from multibot_rewrite.cli.walk import is_same_file
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.fleets.build import make_outputs
-from multibot_rewrite.fleets.fleet_file import input_files, read_fleet
-from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
-from multibot_rewrite.fleets.launch_file import LAUNCH
-from multibot_rewrite.fleets.manifest import (
+from multibot_rewrite.description.checks.verdict import not_proved
+from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.fleet.checks.read_back import read_back
+from multibot_rewrite.fleet.file.fleet_file import input_files, read_fleet
+from multibot_rewrite.fleet.file.robot_choice import Choice
+from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleet.launch.launch_file import LAUNCH
+from multibot_rewrite.fleet.manifest import (
     MANIFEST,
     NOTE,
     OutputChanges,
@@ -27,13 +33,7 @@ from multibot_rewrite.fleets.manifest import (
     output_changes,
     read_manifest,
 )
-from multibot_rewrite.fleets.output_file import OutputFile
-from multibot_rewrite.fleets.read_back import read_back
-from multibot_rewrite.fleets.robot_choice import Choice
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.plural import plural
-from multibot_rewrite.releases import facts_of_release
-from multibot_rewrite.sources.read import read_file
+from multibot_rewrite.fleet.outputs.output_file import OutputFile
 
 
 def run(options: argparse.Namespace) -> int:

@@ -7,28 +7,28 @@ import os
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 
-from multibot_rewrite.bounded import MAX_FLEET_BYTES
+from multibot_rewrite.base.bounded import MAX_FLEET_BYTES
+from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, NOTE, Finding
+from multibot_rewrite.base.findings.selection import fails
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.plural import plural
+from multibot_rewrite.base.releases import facts_of_release
 from multibot_rewrite.cli import live, pictures
 from multibot_rewrite.cli.output import note, print_lines, say
 from multibot_rewrite.cli.process import PROGRAM, STOPPED
 from multibot_rewrite.cli.report import TEXT, About, check_report, chosen, report_first
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.cli.watch import follow
-from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, NOTE, Finding
-from multibot_rewrite.findings.selection import fails
-from multibot_rewrite.fleets.fleet_or_plan import is_fleet
-from multibot_rewrite.graph.bags.read import BagsUnusable, read_bag
-from multibot_rewrite.graph.bags.recording import as_snapshot, counted
-from multibot_rewrite.graph.live.request import RosUnusable
-from multibot_rewrite.graph.plan_file import is_json, read_plan
+from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.fleet.file.fleet_or_plan import is_fleet
 from multibot_rewrite.live.watching import WORDS, Outcome, Verdict, final
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.plural import plural
-from multibot_rewrite.releases import facts_of_release
+from multibot_rewrite.producers.bags.read import BagsUnusable, read_bag
+from multibot_rewrite.producers.bags.recording import as_snapshot, counted
+from multibot_rewrite.producers.ros.request import RosUnusable
 from multibot_rewrite.rules.check import check, doubts
 from multibot_rewrite.rules.index import NO_COUNTS
-from multibot_rewrite.sources.read import read_file
 from multibot_rewrite.spelling.plan import robot_words
+from multibot_rewrite.spelling.plan_file import is_json, read_plan
 from multibot_rewrite.system.records import System, answering
 
 
@@ -56,7 +56,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _with_files(options: argparse.Namespace, plan: System) -> System:
     """The plan with the parameters in the files beside it."""
-    from multibot_rewrite.fleets.built_states import with_built
+    from multibot_rewrite.fleet.outputs.built_states import with_built
 
     return with_built(plan, options.built or os.path.dirname(options.plan))
 
@@ -102,10 +102,10 @@ def plan_of(options: argparse.Namespace) -> System:
     if is_json(data) or not is_fleet(data):
         return _of_release(options, read_plan(data, path))
     from multibot_rewrite.cli.fleet import check_unread, note_interfaces  # a plan needs none of it
-    from multibot_rewrite.fleets.closed_plan import closed_plan
-    from multibot_rewrite.fleets.fleet import expected
-    from multibot_rewrite.fleets.fleet_file import input_files, read_fleet
-    from multibot_rewrite.fleets.fleet_plan import plan_fleet
+    from multibot_rewrite.fleet.checks.closed_plan import closed_plan
+    from multibot_rewrite.fleet.file.fleet_file import input_files, read_fleet
+    from multibot_rewrite.fleet.fleet import expected
+    from multibot_rewrite.fleet.fleet_plan import plan_fleet
 
     file = read_fleet(path, options.distro or "", os.environ)
     if options.output:

@@ -6,18 +6,18 @@ import argparse
 import shlex
 from collections.abc import Sequence
 
+from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.cli import check, pictures, unplanned
 from multibot_rewrite.cli.output import note
 from multibot_rewrite.cli.report import check_report
 from multibot_rewrite.cli.walk import check_target
-from multibot_rewrite.fleets.fleet import known_nodes
+from multibot_rewrite.fleet.fleet import known_nodes
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.producers.launch.child import launch_graph
 from multibot_rewrite.producers.launch.records import LaunchOrder, order_in_words
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import would_run
-from multibot_rewrite.releases import release_here
 from multibot_rewrite.system.records import System
 
 

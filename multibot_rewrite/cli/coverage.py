@@ -6,6 +6,11 @@ import argparse
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
+from multibot_rewrite.base.config import configured_vocabulary
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.plural import plural
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.releases import facts_of_release, release_here
 from multibot_rewrite.cli.arguments import arguments_of, xacro_parts
 from multibot_rewrite.cli.output import deliver, say, watched
 from multibot_rewrite.cli.parser import UNUSABLE
@@ -13,12 +18,7 @@ from multibot_rewrite.cli.process import DONE, PROGRAM
 from multibot_rewrite.cli.tables import JSON, Grid, clip, deliver_report, json_bytes
 from multibot_rewrite.cli.usage import check_xacro, plain_words, xacro_args
 from multibot_rewrite.cli.walk import check_target, find_files
-from multibot_rewrite.config import configured_vocabulary
-from multibot_rewrite.model import InputError
-from multibot_rewrite.plural import plural
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.releases import facts_of_release, release_here
-from multibot_rewrite.reports.survey import (
+from multibot_rewrite.description.reports.survey import (
     Loaded,
     MentionPlace,
     Survey,
@@ -28,13 +28,13 @@ from multibot_rewrite.reports.survey import (
     share,
     survey,
 )
-from multibot_rewrite.reports.xacro_arguments import as_json as xacro_json
-from multibot_rewrite.rewriters.builtin import builtin_tree
-from multibot_rewrite.rewriters.tree import Tree
-from multibot_rewrite.sources.own_names import filled
-from multibot_rewrite.sources.read import read_whole
-from multibot_rewrite.steps.collect import collect
-from multibot_rewrite.steps.document import read_document
+from multibot_rewrite.description.reports.xacro_arguments import as_json as xacro_json
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import Tree
+from multibot_rewrite.description.sources.own_names import filled
+from multibot_rewrite.description.sources.read import read_whole
+from multibot_rewrite.description.steps.collect import collect
+from multibot_rewrite.description.steps.document import read_document
 
 SUFFIXES = (".urdf", ".sdf")
 # So many rows has a table.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import os
 
-from multibot_rewrite.printable import one_line
+from multibot_rewrite.base.printable import one_line
 
 _PAINT = {b"+": b"\033[32m", b"-": b"\033[31m", b"@": b"\033[36m"}
 _PLAIN = b"\033[0m"

@@ -5,14 +5,14 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.cli.declared.commands import COMMANDS, INSTEAD
 from multibot_rewrite.cli.options import Command
 from multibot_rewrite.cli.output import print_bytes
 from multibot_rewrite.cli.parser import painted
 from multibot_rewrite.cli.process import DONE, PROGRAM, start
 from multibot_rewrite.cli.terminal import AUTO, is_coloured
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.nearest import did_you_mean_one_of
 from multibot_rewrite.version import __version__
 
 # The same as --help behind the next word.

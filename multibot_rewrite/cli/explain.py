@@ -5,13 +5,13 @@ from __future__ import annotations
 import argparse
 from collections.abc import Mapping, Sequence
 
-from multibot_rewrite.catalogue import rules
+from multibot_rewrite.base.findings.codes import find_rules, no_rule
+from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.findings.rule_docs import explained, listed
+from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.cli.output import deliver
 from multibot_rewrite.cli.process import DONE
-from multibot_rewrite.findings.codes import find_rules, no_rule
-from multibot_rewrite.findings.rule import Rule
-from multibot_rewrite.findings.rule_docs import explained, listed
-from multibot_rewrite.model import UsageError
+from multibot_rewrite.lint.catalogue import rules
 
 LISTING = "multibot explain"
 

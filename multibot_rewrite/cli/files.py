@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from typing import ParamSpec, TypeVar
 
-from multibot_rewrite.model import UsageError
+from multibot_rewrite.base.model import UsageError
 
 P = ParamSpec("P")
 R = TypeVar("R")

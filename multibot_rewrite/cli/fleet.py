@@ -6,17 +6,17 @@ import argparse
 import os
 from collections.abc import Iterable
 
+from multibot_rewrite.base.config import configured_vocabulary
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.cli.output import note
 from multibot_rewrite.cli.report import About, check_report, chosen, report_beside
 from multibot_rewrite.cli.usage import check_xacro, given_options, policy, robots, xacro_args
 from multibot_rewrite.cli.walk import check_folder, check_target
-from multibot_rewrite.config import configured_vocabulary
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.fleets.fleet import Fleet, make_fleet
+from multibot_rewrite.fleet.fleet import Fleet, make_fleet
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.model import UsageError
 from multibot_rewrite.producers.launch.records import launch_order
-from multibot_rewrite.releases import release_here
 
 # Options that name files to write.
 WRITTEN = ("output", "sros2", "save_snapshot", "report")
@@ -71,12 +71,12 @@ def note_interfaces(options: argparse.Namespace, facts: Iterable[NodeFacts]) -> 
 
 
 def _from_file(options: argparse.Namespace) -> Fleet:
-    from multibot_rewrite.fleets.closed_plan import closed_plan
-    from multibot_rewrite.fleets.fleet_file import (  # one description needs none of it
+    from multibot_rewrite.fleet.checks.closed_plan import closed_plan
+    from multibot_rewrite.fleet.file.fleet_file import (  # one description needs none of it
         input_files,
         read_fleet,
     )
-    from multibot_rewrite.fleets.fleet_plan import plan_fleet
+    from multibot_rewrite.fleet.fleet_plan import plan_fleet
 
     given = given_options(options, OF_FLEET_FILE)
     if given:

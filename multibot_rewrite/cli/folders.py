@@ -16,8 +16,8 @@ import stat
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 
+from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.cli.files import explained, make_folders, see_on_disk, write_all, write_new
-from multibot_rewrite.model import UsageError
 
 STAGE = ".multibot-build"
 # What a killed process may have left between files (see ``files``).

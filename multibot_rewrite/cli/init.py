@@ -6,19 +6,19 @@ import argparse
 import os
 import sys
 
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.naming import find_layout
+from multibot_rewrite.base.plural import plural
+from multibot_rewrite.base.releases import VARIABLE, release_here
+from multibot_rewrite.base.rosnames import check_robot_name
 from multibot_rewrite.cli.output import STANDARD, deliver, goes_to_file, note, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.questions import MEANT, ask_for_fleet
 from multibot_rewrite.cli.usage import plain_words, xacro_args
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.naming import find_layout
-from multibot_rewrite.plural import plural
-from multibot_rewrite.proposal.choosing import Choice
-from multibot_rewrite.proposal.fleet_text import Proposal, text_of
-from multibot_rewrite.proposal.propose import Wanted, see
-from multibot_rewrite.proposal.trying import first_that_builds, that_builds
-from multibot_rewrite.releases import VARIABLE, release_here
-from multibot_rewrite.rosnames import check_robot_name
+from multibot_rewrite.fleet.proposal.choosing import Choice
+from multibot_rewrite.fleet.proposal.fleet_text import Proposal, text_of
+from multibot_rewrite.fleet.proposal.propose import Wanted, see
+from multibot_rewrite.fleet.proposal.trying import first_that_builds, that_builds
 
 
 def run(options: argparse.Namespace) -> int:

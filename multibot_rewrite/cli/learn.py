@@ -6,22 +6,22 @@ import argparse
 import os
 from collections.abc import Iterator, Sequence
 
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.plural import plural
+from multibot_rewrite.base.releases import facts_of_release, release_here
 from multibot_rewrite.cli import live
 from multibot_rewrite.cli.output import deliver, goes_to_file, note, say, write_files
 from multibot_rewrite.cli.process import DONE, PROGRAM
 from multibot_rewrite.cli.walk import check_target
-from multibot_rewrite.graph.learning.choosing import choose_nodes, helpers_without_owner, left_out
-from multibot_rewrite.graph.learning.learn import LearnedNode, learn
-from multibot_rewrite.graph.learning.nodes_file import to_yaml
-from multibot_rewrite.graph.learning.nodl_file import to_nodl
-from multibot_rewrite.graph.live.request import RosUnusable
 from multibot_rewrite.knowledge.node_library import NodeLibrary
 from multibot_rewrite.knowledge.nodl.lookup import SUFFIXES
 from multibot_rewrite.knowledge.nodl.writing import NodlFile, file_name
 from multibot_rewrite.knowledge.stacks import built_in
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.plural import plural
-from multibot_rewrite.releases import facts_of_release, release_here
+from multibot_rewrite.live.learning.choosing import choose_nodes, helpers_without_owner, left_out
+from multibot_rewrite.live.learning.learn import LearnedNode, learn
+from multibot_rewrite.live.learning.nodes_file import to_yaml
+from multibot_rewrite.live.learning.nodl_file import to_nodl
+from multibot_rewrite.producers.ros.request import RosUnusable
 from multibot_rewrite.rules.check import doubts
 from multibot_rewrite.system.records import System
 

@@ -7,6 +7,11 @@ from collections import Counter
 from collections.abc import Sequence
 from functools import partial
 
+from multibot_rewrite.base.findings.finding import LEVELS, Finding
+from multibot_rewrite.base.findings.selection import fails
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.plural import plural
+from multibot_rewrite.base.releases import facts_of_release, release_here
 from multibot_rewrite.cli.lint_use import cached, check_use, given
 from multibot_rewrite.cli.output import (
     note,
@@ -22,19 +27,14 @@ from multibot_rewrite.cli.usage import plain_words
 from multibot_rewrite.cli.walk import check_folder, check_target, find_files, standard_input
 from multibot_rewrite.companions.kinds import SUFFIXES as BESIDE
 from multibot_rewrite.companions.kinds import is_linted
-from multibot_rewrite.findings.finding import LEVELS, Finding
-from multibot_rewrite.findings.selection import fails
 from multibot_rewrite.lint.config.configured import (
     Configured,
     configured,
     is_excluded,
     with_options,
 )
-from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.run import among, lint_files
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.plural import plural
-from multibot_rewrite.releases import facts_of_release, release_here
+from multibot_rewrite.rules.settings import Settings
 
 SUFFIXES = (".urdf", ".xacro", ".srdf", *BESIDE)
 STDIN = "-"
@@ -113,8 +113,8 @@ def _lint(options: argparse.Namespace, settings: Settings, paths: Sequence[str])
 def _fixed(options: argparse.Namespace, settings: Settings, findings: list[Finding]) -> list[str]:
     """The files that are fixed. With --diff none is, and the changes are printed."""
     from multibot_rewrite.cli.diffs import diff
+    from multibot_rewrite.description.sources.read import read_file
     from multibot_rewrite.lint.fix import fix
-    from multibot_rewrite.sources.read import read_file
 
     files = sorted({it.file for it in findings if it.edits})
     old = {file: read_file(file) for file in files}

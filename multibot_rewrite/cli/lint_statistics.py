@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator, Sequence
 
+from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.cli.tables import Grid, deliver_report
-from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint.registry import RULES
 
 COLUMNS = ("count", "files", "fixable", "code", "level", "rule")

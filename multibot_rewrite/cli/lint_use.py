@@ -7,11 +7,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+from multibot_rewrite.base.model import UsageError, VocabularyError
 from multibot_rewrite.cli.output import detail
 from multibot_rewrite.cli.usage import plain_words, policy, xacro_args
-from multibot_rewrite.lint.config.settings import Settings
-from multibot_rewrite.model import UsageError, VocabularyError
-from multibot_rewrite.sources.own_names import filled
+from multibot_rewrite.description.sources.own_names import filled
+from multibot_rewrite.rules.settings import Settings
 
 if TYPE_CHECKING:
     from multibot_rewrite.lint.cache.cache import Cache

@@ -12,19 +12,19 @@ from collections.abc import Collection, Generator, Mapping
 from math import inf
 from typing import TYPE_CHECKING
 
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.plural import plural
 from multibot_rewrite.cli.output import note
 from multibot_rewrite.cli.process import DONE, STOPPED
-from multibot_rewrite.graph.environment import settings
-from multibot_rewrite.graph.live.request import Request
-from multibot_rewrite.graph.questions import ANSWER_SECONDS, NO_MORE, questions
 from multibot_rewrite.live.watching import Verdict
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.plural import plural
+from multibot_rewrite.producers.ros.request import Request
 from multibot_rewrite.system.answers import with_answers
+from multibot_rewrite.system.environment import settings
+from multibot_rewrite.system.questions import ANSWER_SECONDS, NO_MORE, questions
 from multibot_rewrite.system.records import System, answering
 
 if TYPE_CHECKING:
-    from multibot_rewrite.graph.zenoh.observe import Router
+    from multibot_rewrite.producers.zenoh.observe import Router
 
 INCONCLUSIVE, NO_ROS = 3, 4
 CODES = {Verdict.PLANNED: DONE, Verdict.WRONG: STOPPED, Verdict.INCONCLUSIVE: INCONCLUSIVE}
@@ -59,21 +59,21 @@ def graph(options: argparse.Namespace, request: Request | None = None) -> System
     name or a leak may come after the planned nodes.
     """
     if options.snapshot:
-        from multibot_rewrite.graph.snapshot_file import read_snapshots
+        from multibot_rewrite.producers.snapshot_file import read_snapshots
 
         return read_snapshots(options.snapshot)
     if getattr(options, "bag", None):
-        from multibot_rewrite.graph.bags.read import read_bag
-        from multibot_rewrite.graph.bags.recording import as_snapshot
+        from multibot_rewrite.producers.bags.read import read_bag
+        from multibot_rewrite.producers.bags.recording import as_snapshot
 
         return as_snapshot(read_bag(options.bag))
     asked = request or Request(options.timeout or LOOK_SECONDS)
     asked = asked._replace(headers=vars(options).get("no_frame_ids") is False)
     if options.zenoh:
-        from multibot_rewrite.graph.zenoh.observe import look
+        from multibot_rewrite.producers.zenoh.observe import look
 
         return look(asked, _router(options))
-    from multibot_rewrite.graph.live.child import observe
+    from multibot_rewrite.producers.ros.child import observe
 
     return observe(asked, environ(options.domain))
 
@@ -87,7 +87,7 @@ def with_states(
     the graph as it is. ``parameters`` are asked of the nodes besides."""
     if not options.state:
         return seen
-    from multibot_rewrite.graph.live.child import ask
+    from multibot_rewrite.producers.ros.child import ask
 
     asked = list(questions(seen, parameters))
     found = ask(asked, ANSWER_SECONDS, environ(options.domain))
@@ -111,17 +111,17 @@ def watched(
     asks = dict(parameters) if options.state else None
     asked = Request(options.timeout or inf, watch=True, asks=asks)
     if options.zenoh:
-        from multibot_rewrite.graph.zenoh import observe
+        from multibot_rewrite.producers.zenoh import observe
 
         return observe.watch(asked, _router(options))
-    from multibot_rewrite.graph.live import child
+    from multibot_rewrite.producers.ros import child
 
     return child.watch(asked, environ(options.domain))
 
 
 def _router(options: argparse.Namespace) -> Router:
     """The domain is that of the option, else of ROS_DOMAIN_ID; it is a part of every key."""
-    from multibot_rewrite.graph.zenoh.observe import Router
+    from multibot_rewrite.producers.zenoh.observe import Router
 
     return Router(options.zenoh, settings(environ(options.domain)).domain)
 

@@ -9,8 +9,8 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any
 
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.cli import values
-from multibot_rewrite.record import NamedTuple
 
 NOTHING: Mapping[str, Any] = MappingProxyType({})
 

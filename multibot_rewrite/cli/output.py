@@ -9,10 +9,10 @@ import sys
 from collections.abc import Iterable, Iterator
 from typing import TextIO, TypeVar
 
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.printable import for_terminal, one_line
 from multibot_rewrite.cli.terminal import is_coloured
 from multibot_rewrite.cli.walk import check_target
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.printable import for_terminal, one_line
 
 MANY = 20
 STANDARD = "-"

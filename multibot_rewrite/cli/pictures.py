@@ -6,12 +6,12 @@ import argparse
 import os
 from collections.abc import Iterable, Sequence
 
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.model import MultibotError, UsageError
 from multibot_rewrite.cli.output import STANDARD, write_files
 from multibot_rewrite.cli.walk import check_folder, check_target
-from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.live.watching import Outcome
-from multibot_rewrite.model import MultibotError, UsageError
-from multibot_rewrite.sources.read import read_file
 from multibot_rewrite.system.records import System
 
 # What a command may have read.
@@ -47,8 +47,8 @@ def deliver(
     """Write the page if it is asked for; raises UsageError where it cannot be written."""
     if not options.report:
         return
-    from multibot_rewrite.catalogue import rules
     from multibot_rewrite.cli.view import framed
+    from multibot_rewrite.lint.catalogue import rules
     from multibot_rewrite.pages.page import to_html  # few checks draw
     from multibot_rewrite.pages.scene import make_scene
 

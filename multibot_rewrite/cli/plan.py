@@ -5,20 +5,20 @@ from __future__ import annotations
 import argparse
 import re
 
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.cli import check_launch, fleet
 from multibot_rewrite.cli.output import deliver, goes_to_file, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.remap import deliver_rules
 from multibot_rewrite.cli.usage import given_options
 from multibot_rewrite.cli.walk import check_folder, check_target
-from multibot_rewrite.fleets.fleet import expected, possible
-from multibot_rewrite.graph.enclaves import to_policy
-from multibot_rewrite.graph.plan_file import to_json, to_yaml
+from multibot_rewrite.fleet.fleet import expected, possible
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.live.seen_plan import seen_plan
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.releases import release_here
 from multibot_rewrite.rules.check import doubts
+from multibot_rewrite.spelling.enclaves import to_policy
+from multibot_rewrite.spelling.plan_file import to_json, to_yaml
 from multibot_rewrite.system.records import System
 
 PLAN, POLICY = "plan", "sros2"

@@ -13,11 +13,11 @@ from collections.abc import Callable, Sequence
 from importlib import import_module
 from typing import NoReturn
 
+from multibot_rewrite.base.findings.finding import RewriteRefused
+from multibot_rewrite.base.model import MultibotError, ProofError
 from multibot_rewrite.cli.options import Command
 from multibot_rewrite.cli.output import detail, say
 from multibot_rewrite.cli.parser import UNUSABLE, make_parser, parsed
-from multibot_rewrite.findings.finding import RewriteRefused
-from multibot_rewrite.model import MultibotError, ProofError
 
 DONE, STOPPED, INTERRUPTED = 0, 1, 130
 PROGRAM = "multibot"

@@ -6,16 +6,16 @@ import re
 from collections.abc import Callable, Sequence
 from itertools import pairwise
 
+from multibot_rewrite.base.naming import LAYOUTS
+from multibot_rewrite.base.plural import plural
+from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.cli.output import say
 from multibot_rewrite.cli.process import PROGRAM
-from multibot_rewrite.naming import LAYOUTS
-from multibot_rewrite.plural import plural
-from multibot_rewrite.proposal.choosing import Choice, names_of
-from multibot_rewrite.proposal.fleet_text import Proposal
-from multibot_rewrite.proposal.looking import Looked
-from multibot_rewrite.proposal.propose import Seen, Wanted, release_of, with_arguments
-from multibot_rewrite.proposal.trying import in_layout, that_builds
-from multibot_rewrite.releases import RELEASES
+from multibot_rewrite.fleet.proposal.choosing import Choice, names_of
+from multibot_rewrite.fleet.proposal.fleet_text import Proposal
+from multibot_rewrite.fleet.proposal.looking import Looked
+from multibot_rewrite.fleet.proposal.propose import Seen, Wanted, release_of, with_arguments
+from multibot_rewrite.fleet.proposal.trying import in_layout, that_builds
 
 MEANT = "as it was asked for"
 SIMULATORS = ("gazebo", "none")

@@ -8,16 +8,16 @@ import os
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 
+from multibot_rewrite.base.plural import plural
+from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.cli import fleet, live, pictures
 from multibot_rewrite.cli.check import conclude
 from multibot_rewrite.cli.declared.fleet import EVERY_WAY
 from multibot_rewrite.cli.output import note, say, write_files
 from multibot_rewrite.cli.process import PROGRAM
 from multibot_rewrite.cli.walk import check_folder, check_target
-from multibot_rewrite.fleets.fleet import Fleet, expected
-from multibot_rewrite.graph.live.child import RUN_STUBS, observe, running
-from multibot_rewrite.graph.live.request import Request, RosUnusable, to_text
-from multibot_rewrite.graph.rehearsal import (
+from multibot_rewrite.fleet.fleet import Fleet, expected
+from multibot_rewrite.live.rehearsal import (
     StubNode,
     bridge_stub,
     split_over_processes,
@@ -25,11 +25,11 @@ from multibot_rewrite.graph.rehearsal import (
     to_order,
     with_substitutes,
 )
-from multibot_rewrite.graph.transforms import Edges, with_odometry
-from multibot_rewrite.graph.wording import SEVERAL, shorten
-from multibot_rewrite.plural import plural
-from multibot_rewrite.remap.ways import WAYS
+from multibot_rewrite.producers.ros.child import RUN_STUBS, observe, running
+from multibot_rewrite.producers.ros.request import Request, RosUnusable, to_text
 from multibot_rewrite.rules.check import check
+from multibot_rewrite.spelling.transforms import Edges, with_odometry
+from multibot_rewrite.spelling.ways import WAYS
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.records import System
 

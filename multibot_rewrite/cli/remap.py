@@ -5,13 +5,13 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator
 
+from multibot_rewrite.base.releases import facts_of_release
 from multibot_rewrite.cli.output import deliver, note
 from multibot_rewrite.cli.tables import Grid, deliver_report
-from multibot_rewrite.fleets.fleet import NO_STATE_PUBLISHER, Fleet
-from multibot_rewrite.releases import facts_of_release
-from multibot_rewrite.remap.bridged_topics import as_yaml, bridged_topics
-from multibot_rewrite.remap.records import Table
-from multibot_rewrite.remap.table_formats import FORMS, given_to, standing_by_robot
+from multibot_rewrite.fleet.fleet import NO_STATE_PUBLISHER, Fleet
+from multibot_rewrite.spelling.bridged_topics import as_yaml, bridged_topics
+from multibot_rewrite.spelling.records import Table
+from multibot_rewrite.spelling.table_formats import FORMS, given_to, standing_by_robot
 
 TABLE, BRIDGE = "table", "bridge"
 

@@ -7,16 +7,16 @@ import sys
 from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
 
+from multibot_rewrite.base.findings.codes import known_beginnings, no_rule
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.formats import Report, rendered
+from multibot_rewrite.base.findings.grouping import grouped
+from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.findings.selection import Selection, fails, selected
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.cli.output import deliver, print_bytes, prints_colour
 from multibot_rewrite.cli.terminal import is_coloured
-from multibot_rewrite.findings.codes import known_beginnings, no_rule
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.findings.formats import Report, rendered
-from multibot_rewrite.findings.grouping import grouped
-from multibot_rewrite.findings.rule import Rule
-from multibot_rewrite.findings.selection import Selection, fails, selected
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.record import NamedTuple
 
 TEXT = "text"
 NO_ROBOTS: Mapping[str, str] = MappingProxyType({})
@@ -51,7 +51,7 @@ def check_report(options: argparse.Namespace, printed: bool) -> None:
 def _check_codes(option: str, codes: Sequence[str]) -> None:
     if not codes:
         return
-    from multibot_rewrite.catalogue import rules  # it imports every check
+    from multibot_rewrite.lint.catalogue import rules  # it imports every check
 
     known = known_beginnings(rules())
     for code in codes:
@@ -97,7 +97,7 @@ def _text(
 ) -> str:
     shown = findings if options.verbose else grouped(findings, about.robots)
     if options.format != TEXT and not rules:
-        from multibot_rewrite.catalogue import rules as all_rules  # it imports every check
+        from multibot_rewrite.lint.catalogue import rules as all_rules  # it imports every check
 
         rules = all_rules()
     made_by = f"{options.program} {options.command}".removesuffix(f" {options.program}")

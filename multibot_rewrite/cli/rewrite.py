@@ -7,7 +7,10 @@ from collections import Counter
 from collections.abc import Sequence
 from itertools import chain
 
-from multibot_rewrite.checks.verdict import not_proved
+from multibot_rewrite.base.config import configured_vocabulary
+from multibot_rewrite.base.naming import SEPARATORS
+from multibot_rewrite.base.plural import plural
+from multibot_rewrite.base.releases import facts_of_release
 from multibot_rewrite.cli.output import (
     STANDARD,
     say,
@@ -25,13 +28,10 @@ from multibot_rewrite.cli.rewrite_use import check_unread, check_use, input_name
 from multibot_rewrite.cli.usage import policy, robots, xacro_args
 from multibot_rewrite.cli.walk import standard_input
 from multibot_rewrite.companions.kinds import is_text_beside
-from multibot_rewrite.config import configured_vocabulary
-from multibot_rewrite.library import Rewrite, rewrite_all, strip
-from multibot_rewrite.naming import SEPARATORS
-from multibot_rewrite.plural import plural
-from multibot_rewrite.releases import facts_of_release
-from multibot_rewrite.sources.own_names import filled, name_robot
-from multibot_rewrite.sources.read import Source, read_whole
+from multibot_rewrite.description.checks.verdict import not_proved
+from multibot_rewrite.description.library import Rewrite, rewrite_all, strip
+from multibot_rewrite.description.sources.own_names import filled, name_robot
+from multibot_rewrite.description.sources.read import Source, read_whole
 
 # What the summary calls a kind whose own word says little; the others are their own word.
 WORDS = {"stem": "topic word"}

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import argparse
 
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.plural import plural
+from multibot_rewrite.base.releases import facts_of_release, release_here
 from multibot_rewrite.cli.output import say
 from multibot_rewrite.cli.process import DONE, STOPPED
 from multibot_rewrite.cli.report import About, by_themselves, chosen, report_beside
@@ -11,11 +14,8 @@ from multibot_rewrite.cli.rewrite_output import deliver, tell, told
 from multibot_rewrite.cli.rewrite_use import check_unread, input_name
 from multibot_rewrite.cli.usage import policy, xacro_args
 from multibot_rewrite.companions.kinds import BRIDGE, LUA, MOVEIT, PARAMS, RVIZ, TREE
-from multibot_rewrite.fleets.one_file import RewrittenFile, rewrite_files
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.plural import plural
-from multibot_rewrite.releases import facts_of_release, release_here
-from multibot_rewrite.sources.read import Source, read_whole
+from multibot_rewrite.description.sources.read import Source, read_whole
+from multibot_rewrite.fleet.one_file import RewrittenFile, rewrite_files
 
 WORDS = {
     PARAMS: "a parameter file",

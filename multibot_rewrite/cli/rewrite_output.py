@@ -6,11 +6,11 @@ import argparse
 from collections.abc import Iterable, Sequence
 from itertools import chain
 
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.selection import fails
 from multibot_rewrite.cli.diffs import diff
 from multibot_rewrite.cli.output import note, print_bytes, prints_colour, watched, write_files
 from multibot_rewrite.cli.rewrite_use import input_name, target_path
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.findings.selection import fails
 
 
 def told(options: argparse.Namespace, findings: Sequence[Finding]) -> Sequence[Finding]:

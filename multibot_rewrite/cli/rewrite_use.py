@@ -7,11 +7,11 @@ import os
 import re
 from collections.abc import Iterable
 
+from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.cli.report import check_report
 from multibot_rewrite.cli.usage import xacro_args
 from multibot_rewrite.cli.walk import check_target
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.sources.read import is_xacro
+from multibot_rewrite.description.sources.read import is_xacro
 
 PLACEHOLDER = "{robot}"
 

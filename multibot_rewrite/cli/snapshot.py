@@ -6,17 +6,17 @@ import argparse
 from collections import Counter
 from collections.abc import Iterable, Iterator
 
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.plural import plural
 from multibot_rewrite.cli import live
 from multibot_rewrite.cli.output import STANDARD, deliver, note, say
 from multibot_rewrite.cli.process import DONE, PROGRAM
 from multibot_rewrite.cli.tables import Grid, deliver_report
 from multibot_rewrite.cli.walk import check_folder, check_target
-from multibot_rewrite.graph.live.request import Request, RosUnusable
-from multibot_rewrite.graph.reach import machines
-from multibot_rewrite.graph.rosgraph.writing import to_yaml
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.plural import plural
+from multibot_rewrite.producers.ros.request import Request, RosUnusable
+from multibot_rewrite.producers.rosgraph.writing import to_yaml
 from multibot_rewrite.system.json import to_json
+from multibot_rewrite.system.reach import machines
 from multibot_rewrite.system.records import (
     ACTION,
     CALLS,

@@ -9,9 +9,9 @@ import sys
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import zip_longest
 
+from multibot_rewrite.base.printable import in_json, one_line
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.cli.output import deliver, goes_to_file, prints_colour
-from multibot_rewrite.printable import in_json, one_line
-from multibot_rewrite.record import NamedTuple
 
 JSON = "json"
 # Columns with these names are set to the right.

@@ -6,6 +6,10 @@ import argparse
 import os
 from collections.abc import Iterator, Sequence
 
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.plural import plural
+from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.cli import live, pictures
 from multibot_rewrite.cli.output import note, say, write_files
 from multibot_rewrite.cli.process import PROGRAM
@@ -19,21 +23,17 @@ from multibot_rewrite.cli.report import (
 )
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.cli.watch import follow
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.graph.bags.read import BagsUnusable, read_bag
-from multibot_rewrite.graph.bags.recording import as_snapshot, counted, is_recorded
-from multibot_rewrite.graph.live.request import RosUnusable
-from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.live.diagnose import Diagnosis, diagnose, survey
 from multibot_rewrite.live.seen_plan import seen_plan
 from multibot_rewrite.live.suggestion import FILES, suggestion
 from multibot_rewrite.live.watching import Outcome, Verdict, final
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.plural import plural
-from multibot_rewrite.releases import release_here
+from multibot_rewrite.producers.bags.read import BagsUnusable, read_bag
+from multibot_rewrite.producers.bags.recording import as_snapshot, counted, is_recorded
+from multibot_rewrite.producers.ros.request import RosUnusable
 from multibot_rewrite.rules.check import doubts
 from multibot_rewrite.system.records import System
+from multibot_rewrite.system.tool_nodes import is_tool
 
 WORDS = {
     Verdict.PLANNED: "nothing wrong seen",

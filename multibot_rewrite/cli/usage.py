@@ -6,12 +6,12 @@ import argparse
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.naming import ROS_SEPARATORS, SEPARATORS
-from multibot_rewrite.sources.read import is_xacro
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.naming import ROS_SEPARATORS, SEPARATORS
+from multibot_rewrite.description.sources.read import is_xacro
 
 if TYPE_CHECKING:
-    from multibot_rewrite.policy import Policy
+    from multibot_rewrite.base.policy import Policy
 
 # Kinds that ``--separator SEP`` without a kind is for.
 OF_DESCRIPTION = tuple(kind for kind in SEPARATORS if kind not in ROS_SEPARATORS)

@@ -6,8 +6,8 @@ import argparse
 import math
 from collections.abc import Callable, Collection
 
-from multibot_rewrite.lazy import lazy_compile
-from multibot_rewrite.nearest import did_you_mean_one_of
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.nearest import did_you_mean_one_of
 
 MAX_SECONDS = 3600
 # The highest ROS_DOMAIN_ID that rcl takes.

@@ -7,27 +7,27 @@ import os
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from multibot_rewrite.base.model import MultibotError, UsageError
+from multibot_rewrite.base.plural import plural
+from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.cli.output import deliver, note, say
 from multibot_rewrite.cli.process import DONE, PROGRAM
 from multibot_rewrite.cli.usage import check_xacro, policy, robots, xacro_args
 from multibot_rewrite.cli.walk import check_target
-from multibot_rewrite.fleets.fleet_file import input_files, read_fleet
-from multibot_rewrite.fleets.fleet_or_plan import is_fleet
-from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
-from multibot_rewrite.fleets.manifest import hash_of, inputs_of
-from multibot_rewrite.graph.bags.read import BagsUnusable, read_bag
-from multibot_rewrite.graph.bags.recording import as_snapshot
-from multibot_rewrite.graph.snapshot_file import read_snapshots
-from multibot_rewrite.graph.wording import SEVERAL, shorten
-from multibot_rewrite.model import MultibotError, UsageError
+from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.fleet.file.fleet_file import input_files, read_fleet
+from multibot_rewrite.fleet.file.fleet_or_plan import is_fleet
+from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleet.manifest import hash_of, inputs_of
 from multibot_rewrite.pages.page import Framed
-from multibot_rewrite.plural import plural
-from multibot_rewrite.sources.read import read_file
+from multibot_rewrite.pages.view.heard import moved
+from multibot_rewrite.pages.view.models import ViewUnusable
+from multibot_rewrite.pages.view.page import Meshes, meshes_of, title_of, to_frame, to_html
+from multibot_rewrite.pages.view.scene import ViewedRobot, scene_of
+from multibot_rewrite.producers.bags.read import BagsUnusable, read_bag
+from multibot_rewrite.producers.bags.recording import as_snapshot
+from multibot_rewrite.producers.snapshot_file import read_snapshots
 from multibot_rewrite.system.records import System
-from multibot_rewrite.view.heard import moved
-from multibot_rewrite.view.models import ViewUnusable
-from multibot_rewrite.view.page import Meshes, meshes_of, title_of, to_frame, to_html
-from multibot_rewrite.view.scene import ViewedRobot, scene_of
 
 NO_VIEW = 4
 

@@ -5,28 +5,28 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator, Sequence
 
+from multibot_rewrite.base.config import configured_vocabulary
+from multibot_rewrite.base.model import Site, UsageError
+from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.cli.output import deliver, note
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.tables import JSON, Grid, deliver_report, json_bytes
 from multibot_rewrite.cli.usage import check_xacro, plain_words, xacro_args
 from multibot_rewrite.cli.walk import check_target
-from multibot_rewrite.config import configured_vocabulary
-from multibot_rewrite.model import Site, UsageError
-from multibot_rewrite.releases import release_here
-from multibot_rewrite.reports.suggest import suggest, vocabulary_text
-from multibot_rewrite.rewriters.builtin import builtin_tree
-from multibot_rewrite.rewriters.lookup import block_of, look_up, near_names
-from multibot_rewrite.rewriters.vocabulary import (
+from multibot_rewrite.description.reports.suggest import suggest, vocabulary_text
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.lookup import block_of, look_up, near_names
+from multibot_rewrite.description.rewriters.vocabulary import (
     TYPES,
     Vocabulary,
     VocabularySection,
     load_vocabulary,
 )
-from multibot_rewrite.rewriters.vocabulary.describe import facts
-from multibot_rewrite.sources.own_names import filled
-from multibot_rewrite.sources.read import read_whole
-from multibot_rewrite.steps.collect import collect
-from multibot_rewrite.steps.document import read_document
+from multibot_rewrite.description.rewriters.vocabulary.describe import facts
+from multibot_rewrite.description.sources.own_names import filled
+from multibot_rewrite.description.sources.read import read_whole
+from multibot_rewrite.description.steps.collect import collect
+from multibot_rewrite.description.steps.document import read_document
 
 
 def show(options: argparse.Namespace, name: str | None) -> int:

@@ -7,8 +7,8 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import NoReturn
 
-from multibot_rewrite.bounded import MAX_BYTES
-from multibot_rewrite.model import InputError, UsageError
+from multibot_rewrite.base.bounded import MAX_BYTES
+from multibot_rewrite.base.model import InputError, UsageError
 
 
 def _refuse(error: OSError) -> NoReturn:

@@ -7,11 +7,11 @@ from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import ExitStack, closing, contextmanager
 from functools import partial
 
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.plural import plural
 from multibot_rewrite.cli.output import print_lines
 from multibot_rewrite.cli.tables import Grid, render
-from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.live.watching import WORDS, Verdict, WatchState, with_found
-from multibot_rewrite.plural import plural
 from multibot_rewrite.system.records import CHANGING, System
 
 # As many findings as a screen holds beside the robots.

@@ -5,13 +5,13 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator
 
+from multibot_rewrite.base.config import configured_vocabulary
+from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.tables import deliver_report
 from multibot_rewrite.cli.usage import policy, robots, xacro_args
-from multibot_rewrite.config import configured_vocabulary
-from multibot_rewrite.library import explain
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.reports.explain import Explanation
+from multibot_rewrite.description.library import explain
+from multibot_rewrite.description.reports.explain import Explanation
 
 EXAMPLE_ROBOT = "robot1"
 

@@ -7,6 +7,9 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.behavior_tree.read import named_tree
 from multibot_rewrite.companions.behavior_tree.rewrite import rewrite_behavior_tree
 from multibot_rewrite.companions.bridge import rewrite_bridge
@@ -35,9 +38,6 @@ from multibot_rewrite.companions.rviz.values import RvizRobot
 from multibot_rewrite.companions.sites import NamedFile, Site
 from multibot_rewrite.companions.template import FileTemplate, fill_template
 from multibot_rewrite.companions.yaml_text import read_yaml
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.model import InputError
-from multibot_rewrite.record import NamedTuple
 
 _Rewrite = Callable[[bytes, str, Context], Companion]
 

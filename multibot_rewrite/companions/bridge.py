@@ -10,6 +10,10 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import yaml
 
+from multibot_rewrite.base.conventions import PLACEHOLDER
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.naming import POSTFIX
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.bridge_checks import model_of, other_models, shared_services
 from multibot_rewrite.companions.bridge_entry import (
     BOTH,
@@ -48,10 +52,6 @@ from multibot_rewrite.companions.yaml_text import (
     refuse_anchors,
     replaced,
 )
-from multibot_rewrite.model import InputError
-from multibot_rewrite.naming import POSTFIX
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.system.conventions import PLACEHOLDER
 
 # gz topics of the whole simulation, like those below /world.
 WORLD = frozenset({"clock", "stats"})

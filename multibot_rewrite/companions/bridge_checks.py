@@ -6,6 +6,9 @@ from collections.abc import Iterable, Iterator
 
 import yaml
 
+from multibot_rewrite.base.conventions import PLACEHOLDER
+from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.companions.bridge_entry import (
     BOTH,
     GZ,
@@ -15,9 +18,6 @@ from multibot_rewrite.companions.bridge_entry import (
 )
 from multibot_rewrite.companions.rviz.read_config import text_of
 from multibot_rewrite.companions.yaml_text import YamlText, found_at, items
-from multibot_rewrite.findings.finding import WARNING, Finding
-from multibot_rewrite.findings.rule import declare
-from multibot_rewrite.system.conventions import PLACEHOLDER
 
 SECOND_MODEL = declare(
     "MF505",

@@ -10,10 +10,10 @@ from collections.abc import Iterator, Mapping
 
 import yaml
 
+from multibot_rewrite.base.nearest import did_you_mean_one_of
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.yaml_blocks import Block
 from multibot_rewrite.companions.yaml_text import pairs
-from multibot_rewrite.nearest import did_you_mean_one_of
-from multibot_rewrite.record import NamedTuple
 
 # Stands for the name of the spawned model: it may differ from the namespace and the tag.
 MODEL_SLOT = "multibotModelSlot"

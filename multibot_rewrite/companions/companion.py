@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.sites import NamedFile
 from multibot_rewrite.companions.template import FileTemplate
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.record import NamedTuple
 
 
 class Companion(NamedTuple):

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
+from multibot_rewrite.base.naming import Naming
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.rename_map import NO_OWN, CompanionNames
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT
+from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.naming import Naming
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.targets import placed
-from multibot_rewrite.rewriters.forms import Declared
+from multibot_rewrite.spelling.targets import placed
 
 
 class Context(NamedTuple):

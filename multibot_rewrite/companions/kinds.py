@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from multibot_rewrite.bounded import MAX_BYTES
-from multibot_rewrite.lazy import lazy_compile
+from multibot_rewrite.base.bounded import MAX_BYTES
+from multibot_rewrite.base.lazy import lazy_compile
 
 SUFFIXES = (".yaml", ".yml", ".rviz")
 PARAMS, RVIZ, BRIDGE, MOVEIT, TREE, LUA = "params", "rviz", "bridge", "moveit", "tree", "lua"

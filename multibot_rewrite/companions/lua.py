@@ -9,6 +9,10 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Sequence
 
+from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.findings.rule import Rule, declare
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.companion import Companion
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.kinds import LUA
@@ -20,10 +24,6 @@ from multibot_rewrite.companions.template import (
     make_template,
 )
 from multibot_rewrite.companions.yaml_text import Splice
-from multibot_rewrite.findings.finding import WARNING, Finding
-from multibot_rewrite.findings.rule import Rule, declare
-from multibot_rewrite.model import InputError
-from multibot_rewrite.record import NamedTuple
 
 FRAMES = frozenset({"map_frame", "tracking_frame", "published_frame", "odom_frame"})
 # Cartographer's own files, which set no frames (cartographer/configuration_files).

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import yaml
 
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.base.record import NamedTuple
 
 if TYPE_CHECKING:
     from multibot_rewrite.companions.context import Context

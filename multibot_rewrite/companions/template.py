@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.yaml_text import Splice
-from multibot_rewrite.model import InputError
-from multibot_rewrite.record import NamedTuple
 
 # Stand for the robot's namespace, and for the tag (prefix or postfix) in its frames and joints:
 # ordinary letters, so that quoting and checks of names treat them as they will treat the names.

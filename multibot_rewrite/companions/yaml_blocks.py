@@ -7,8 +7,8 @@ from collections.abc import Iterable
 
 import yaml
 
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.yaml_text import Splice, YamlText
-from multibot_rewrite.record import NamedTuple
 
 
 class Block(NamedTuple):

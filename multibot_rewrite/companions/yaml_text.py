@@ -10,11 +10,11 @@ from collections.abc import Iterable, Iterator
 
 import yaml
 
-from multibot_rewrite.bounded import MAX_BYTES, compose_yaml
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.findings.rule import Rule
-from multibot_rewrite.model import InputError
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.base.bounded import MAX_BYTES, compose_yaml
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.record import NamedTuple
 
 # Reads back as the same text in any place, and never as a number, date, boolean or null.
 _PLAIN = re.compile(r"[A-Za-z_/~][A-Za-z0-9_./~-]*")

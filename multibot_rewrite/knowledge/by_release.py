@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from multibot_rewrite.base.releases import RELEASES, has_release, releases_with, since_version
 from multibot_rewrite.knowledge.conditions import joined, of_release
 from multibot_rewrite.knowledge.node_library import NodeLibrary, Stack
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
-from multibot_rewrite.releases import RELEASES, has_release, releases_with, since_version
 
 
 def in_release(library: NodeLibrary, release: str) -> NodeLibrary:

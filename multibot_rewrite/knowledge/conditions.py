@@ -18,11 +18,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from functools import lru_cache
 
-from multibot_rewrite.lazy import lazy_compile
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.nearest import did_you_mean_one_of
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.releases import has_release
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.nearest import did_you_mean_one_of
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.releases import has_release
 
 Values = Callable[[str], object]
 RELEASE, UNKNOWN = "release", "unknown"

@@ -10,8 +10,8 @@ import re
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 
-from multibot_rewrite.bounded import read_text
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.base.bounded import read_text
+from multibot_rewrite.base.record import NamedTuple
 
 FILE = os.path.join(os.path.dirname(__file__), "declared.schema")
 # How a source comes to a parameter: by a file of generate_parameter_library, in code, never declared.

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.rosnames import check_full_name, check_topic_name, expand
 from multibot_rewrite.knowledge.fact_words import (
     FACT_KEYS,
     check_apart,
@@ -23,8 +25,6 @@ from multibot_rewrite.knowledge.yaml_with_lines import (
     words_of,
     wrong,
 )
-from multibot_rewrite.lazy import lazy_compile
-from multibot_rewrite.rosnames import check_full_name, check_topic_name, expand
 from multibot_rewrite.system.records import ACTION, PUBLISHES, ROLES, SERVICE, SUBSCRIBES, TOPIC
 
 ENDPOINT_WORDS = ("type", "parameter", "remapped", "when", "fixed", "note", "by")

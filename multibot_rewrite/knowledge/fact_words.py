@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.releases import RELEASES, has_release, is_release_words
 from multibot_rewrite.knowledge.conditions import parse_condition
 from multibot_rewrite.knowledge.yaml_with_lines import (
     YamlItem,
@@ -14,9 +17,6 @@ from multibot_rewrite.knowledge.yaml_with_lines import (
     words_of,
     wrong,
 )
-from multibot_rewrite.lazy import lazy_compile
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.releases import RELEASES, has_release, is_release_words
 
 RELEASES_KEY, SOURCE_KEY = "releases", "source"
 FACT_KEYS = (RELEASES_KEY, SOURCE_KEY)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
+from multibot_rewrite.base.rosnames import check_node_name
 from multibot_rewrite.knowledge.endpoint_entries import endpoints_of
 from multibot_rewrite.knowledge.fact_words import (
     FACT_KEYS,
@@ -36,7 +37,6 @@ from multibot_rewrite.knowledge.yaml_with_lines import (
     words_of,
     wrong,
 )
-from multibot_rewrite.rosnames import check_node_name
 from multibot_rewrite.system.records import ROLES
 
 # A node with parameters and none of these is known by them alone: nobody says what it publishes.

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.releases import share_release
 from multibot_rewrite.knowledge.endpoint_entries import checked_endpoint, endpoints_of
 from multibot_rewrite.knowledge.fact_words import condition_of, releases_of
 from multibot_rewrite.knowledge.node_entries import (
@@ -34,9 +37,6 @@ from multibot_rewrite.knowledge.yaml_with_lines import (
     words_of,
     wrong,
 )
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.releases import share_release
 from multibot_rewrite.system.records import ROLES
 
 STACK_KEYS = ("about", "include", "container", "nodes", "releases")

@@ -6,12 +6,12 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
 
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.knowledge.node_library import NodeLibrary
 from multibot_rewrite.knowledge.parameter_entries import has_default
 from multibot_rewrite.knowledge.records import NodeParameters, Param
 from multibot_rewrite.knowledge.stacks import every_release, with_file
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.releases import has_release
 
 # Undeclared names of these kinds stay as they are, so a wrong guess does no harm.
 SAFE_KINDS = ("link", "joint")

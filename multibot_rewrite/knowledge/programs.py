@@ -11,9 +11,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.releases import has_release
 
 LIFECYCLE_MANAGER, SLAM, CONTAINER = "lifecycle_manager", "slam_toolbox", "component_container"
 

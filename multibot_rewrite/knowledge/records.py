@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.base.record import NamedTuple
 
 MANAGER = "controller_manager"
 # Topics that image_transport's plugins derive from a base name.
@@ -27,7 +27,7 @@ class Endpoint(NamedTuple):
     must hold for it to exist (``remap.conditions``), for where these are known. ``named_from`` is what
     its entry calls it, if a stack gives it another name. ``above`` are the releases in which its node
     resolves a relative name from its parameter in the namespace above its own.
-    ``releases`` are release words (see ``multibot_rewrite.releases``), ``source`` the places where it
+    ``releases`` are release words (see ``base.releases``), ``source`` the places where it
     can be read. ``by`` names the helper node, as what follows the name of its node, with a ``*`` for
     what is made at run time (``_private_*``); the usual helper, tf2's, has no name of its own.
     ``types`` are conditions as ``condition``, each with the type that it has where that holds.
@@ -71,7 +71,7 @@ class FrameParameter(NamedTuple):
 class Param(NamedTuple):
     """A parameter by its dotted path: what its value is, and its default.
 
-    ``releases`` are release words (``multibot_rewrite.releases``), ``absolute`` those in which a
+    ``releases`` are release words (``multibot_rewrite.base.releases``), ``absolute`` those in which a
     relative topic in it is not resolved in the robot's namespace, ``deprecated`` those that warn of
     it, both empty for none; ``source`` are the places where it can be read. ``own`` is true for a
     frame that the node itself makes, so no description has it.

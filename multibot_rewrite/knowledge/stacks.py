@@ -5,12 +5,12 @@ from __future__ import annotations
 import os
 from functools import lru_cache
 
-from multibot_rewrite.bounded import read_text
+from multibot_rewrite.base.bounded import read_text
+from multibot_rewrite.base.conventions import SENT_FRAMES
+from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.knowledge.by_release import in_release
 from multibot_rewrite.knowledge.node_library import NodeLibrary, extend, stack_of
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.system.conventions import SENT_FRAMES
 
 HERE = os.path.dirname(__file__)
 # What the others refer to is read first.

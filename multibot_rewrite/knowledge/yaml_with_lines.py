@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, NoReturn, TypeAlias, TypeVar
 
-from multibot_rewrite.bounded import compose_own_yaml, compose_yaml
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.nearest import did_you_mean_one_of
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.base.bounded import compose_own_yaml, compose_yaml
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.nearest import did_you_mean_one_of
+from multibot_rewrite.base.record import NamedTuple
 
 if TYPE_CHECKING:
     import yaml

@@ -6,10 +6,11 @@ from collections.abc import Callable, Iterable, Mapping
 from types import MappingProxyType
 from typing import Any
 
+from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.companions.params.rcl_parameters import parameters_text
-from multibot_rewrite.fleets import spawn as spawning
-from multibot_rewrite.fleets.loaded_robot import LoadedRobot
-from multibot_rewrite.fleets.scripts import LoadedFleet
+from multibot_rewrite.fleet.outputs import spawn as spawning
+from multibot_rewrite.fleet.robots.loaded_robot import LoadedRobot
+from multibot_rewrite.fleet.scripts import LoadedFleet
 from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.launch import later
 from multibot_rewrite.launch.context import (
@@ -33,7 +34,6 @@ from multibot_rewrite.launch.context import (
 )
 from multibot_rewrite.launch.node_options import check_options, node_options
 from multibot_rewrite.launch.node_options import listed as option_list
-from multibot_rewrite.model import UsageError
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 
 Make = Callable[[LoadedRobot], Iterable[Action]]

@@ -14,12 +14,12 @@ from tempfile import TemporaryDirectory
 from types import MappingProxyType
 from typing import Any
 
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.fleets.loaded_robot import LoadedRobot
-from multibot_rewrite.fleets.scripts import LoadedFleet, load_fleet
-from multibot_rewrite.model import UsageError
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.fleet.robots.loaded_robot import LoadedRobot
+from multibot_rewrite.fleet.scripts import LoadedFleet, load_fleet
 from multibot_rewrite.producers.launch.door import of_launch
-from multibot_rewrite.record import NamedTuple
 
 # launch's SomeSubstitutionsType: a string, a substitution, or several of both.
 Text = Any

@@ -13,12 +13,14 @@ from collections.abc import Iterator
 from functools import partial
 from typing import Any
 
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.companions.rviz.rewrite import RvizText
-from multibot_rewrite.fleets.loaded_robot import LoadedRobot
-from multibot_rewrite.fleets.node_names import NodeNames
-from multibot_rewrite.fleets.relays import BRIDGE, Relay, not_bridged
-from multibot_rewrite.fleets.rviz_outputs import robot_windows
-from multibot_rewrite.fleets.scripts import LoadedFleet
+from multibot_rewrite.fleet.outputs.relays import BRIDGE, Relay, not_bridged
+from multibot_rewrite.fleet.outputs.rviz_outputs import robot_windows
+from multibot_rewrite.fleet.robots.loaded_robot import LoadedRobot
+from multibot_rewrite.fleet.robots.node_names import NodeNames
+from multibot_rewrite.fleet.scripts import LoadedFleet
 from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.launch import nav2_programs as programs
 from multibot_rewrite.launch.actions import (
@@ -31,9 +33,7 @@ from multibot_rewrite.launch.actions import (
     place,
 )
 from multibot_rewrite.launch.context import Action, Context, fleet_of, sim_time, written
-from multibot_rewrite.model import UsageError
 from multibot_rewrite.producers.launch.door import is_installed, of_launch, of_launch_ros
-from multibot_rewrite.releases import has_release
 
 NONE, ONE, EACH = "none", "one", "each"
 # Launch arguments: name, default (None if it has to be given), what it is.

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from multibot_rewrite.fleets.loaded_robot import LoadedRobot
-from multibot_rewrite.model import UsageError
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.fleet.robots.loaded_robot import LoadedRobot
 
 # The fleet decides these; a launch file that sets them would contradict it.
 FROM_THE_FLEET = ("name", "namespace")

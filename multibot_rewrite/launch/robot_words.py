@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
-from multibot_rewrite.fleets.fleet_file import Pose
-from multibot_rewrite.fleets.loaded_robot import LoadedRobot
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.fleet.file.fleet_file import Pose
+from multibot_rewrite.fleet.robots.loaded_robot import LoadedRobot
 from multibot_rewrite.knowledge.yaml_with_lines import unknown
-from multibot_rewrite.model import UsageError
 
 # Words whose values are numbers.
 NUMBERS = frozenset({"pose"})

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from functools import cache
 from typing import Any
 
+from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.launch.context import (
     Context,
@@ -18,7 +19,6 @@ from multibot_rewrite.launch.context import (
     robot_of,
 )
 from multibot_rewrite.launch.robot_words import NUMBERS, WORDS
-from multibot_rewrite.model import UsageError
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 
 FILE = "file"

@@ -8,21 +8,21 @@ from contextlib import contextmanager, suppress
 from functools import partial
 from typing import Any, NoReturn
 
-from multibot_rewrite.checks.problem import Problem
+from multibot_rewrite.base.findings.finding import Finding, by_place
+from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.findings.selection import level_of
+from multibot_rewrite.base.gc_pause import gc_paused
+from multibot_rewrite.base.model import InputError, VocabularyError
 from multibot_rewrite.companions.kinds import is_beside
-from multibot_rewrite.findings.finding import Finding, by_place
-from multibot_rewrite.findings.rule import Rule
-from multibot_rewrite.findings.selection import level_of
-from multibot_rewrite.gc_pause import gc_paused
-from multibot_rewrite.lint.config.settings import Settings
+from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.lint.config.suppress import unsuppressed
 from multibot_rewrite.lint.failures import breakdown, crash, failure, too_long
 from multibot_rewrite.lint.files.subjects import Failed, read_subjects
 from multibot_rewrite.lint.groups import active_rules
 from multibot_rewrite.lint.places import numbered, placed
-from multibot_rewrite.lint.records import Subject
-from multibot_rewrite.model import InputError, VocabularyError
-from multibot_rewrite.sources.read import read_file
+from multibot_rewrite.rules.settings import Settings
+from multibot_rewrite.rules.subject import Subject
 
 AGAIN = 0.5
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import re
 import signal
 
-from multibot_rewrite.findings.finding import ERROR, Finding
-from multibot_rewrite.findings.rule import Rule
-from multibot_rewrite.findings.selection import level_of
-from multibot_rewrite.lazy import lazy_compile
-from multibot_rewrite.lint.config.settings import Settings
-from multibot_rewrite.lint.records import Subject
-from multibot_rewrite.outside import unrepeatable
+from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.findings.selection import level_of
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.outside import unrepeatable
+from multibot_rewrite.rules.settings import Settings
+from multibot_rewrite.rules.subject import Subject
 
 _PLACE = lazy_compile(r"(?P<file>.*?)(?::(?P<line>\d+):(?P<column>\d+))?: (?P<text>.*)", re.DOTALL)
 # What a reader's message says -> the rule that reports it.

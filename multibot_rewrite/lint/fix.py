@@ -9,13 +9,13 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from lxml.etree import _Element
 
-from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.model import Edit, ProofError
+from multibot_rewrite.description.steps.apply import cut
+from multibot_rewrite.description.steps.document import Document, read_document
 from multibot_rewrite.lint.check import lint_data
-from multibot_rewrite.lint.config.settings import Settings
-from multibot_rewrite.lint.convert.meaning import same_meaning
-from multibot_rewrite.model import Edit, ProofError
-from multibot_rewrite.steps.apply import cut
-from multibot_rewrite.steps.document import Document, read_document
+from multibot_rewrite.rules.convert.meaning import same_meaning
+from multibot_rewrite.rules.settings import Settings
 
 # A fix may make another one possible; more rounds than this never end.
 ROUNDS = 5

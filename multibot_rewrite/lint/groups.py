@@ -6,10 +6,10 @@ from functools import lru_cache
 from importlib import import_module
 from types import ModuleType
 
-from multibot_rewrite.findings.rule import URDF, Rule
-from multibot_rewrite.findings.selection import is_on
-from multibot_rewrite.lint.config.settings import Settings
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.base.findings.rule import URDF, Rule
+from multibot_rewrite.base.findings.selection import is_on
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.rules.settings import Settings
 
 
 class Group(NamedTuple):
@@ -38,7 +38,7 @@ GROUPS = (
 
 def rules_of(group: Group) -> list[Rule]:
     """The rules of a group's themes; a group of one file is its own theme."""
-    module = import_module(f"{__package__}.rules.{group.module}")
+    module = import_module(f"multibot_rewrite.rules.description.{group.module}")
     themes: tuple[ModuleType, ...] = getattr(module, "THEMES", (module,))
     return [it for theme in themes for it in vars(theme).values() if isinstance(it, Rule)]
 

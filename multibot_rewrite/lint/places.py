@@ -9,17 +9,17 @@ from typing import TYPE_CHECKING
 
 from lxml.etree import _Element
 
-from multibot_rewrite.checks.problem import Problem
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.findings.place import locate
-from multibot_rewrite.findings.rule import Rule
-from multibot_rewrite.lazy import lazy_compile
-from multibot_rewrite.lint.records import Subject
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.steps.document import tag_end
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.place import locate
+from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.description.steps.document import tag_end
+from multibot_rewrite.rules.subject import Subject
 
 if TYPE_CHECKING:
-    from multibot_rewrite.sources.trace import Call
+    from multibot_rewrite.description.sources.trace import Call
 
 Numbers = Mapping[_Element, int]
 # To look for so many elements is quicker than to number all.

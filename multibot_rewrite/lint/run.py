@@ -8,15 +8,15 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
-from multibot_rewrite.findings.finding import Finding, by_place
+from multibot_rewrite.base.findings.finding import Finding, by_place
+from multibot_rewrite.base.outside import Asked, digest, recorded
 from multibot_rewrite.lint.cache.written import (
     among_from,
     among_written,
     findings_from,
     findings_written,
 )
-from multibot_rewrite.lint.config.settings import Settings
-from multibot_rewrite.outside import Asked, digest, recorded
+from multibot_rewrite.rules.settings import Settings
 
 if TYPE_CHECKING:
     from multibot_rewrite.lint.cache.cache import Cache
@@ -50,7 +50,7 @@ def lint_files(
     unknown = [path for path in paths if found.get(path) is None]
     if unknown:
         # A faulty vocabulary is reported before anything is linted.
-        from multibot_rewrite.rewriters.builtin import builtin_tree
+        from multibot_rewrite.description.rewriters.builtin import builtin_tree
 
         builtin_tree(settings.vocabulary, settings.distro)
         linted = _linted(unknown, settings, jobs or os.cpu_count() or 1, watch)

@@ -15,8 +15,8 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import BinaryIO, Generic, NoReturn, TypeVar
 
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.record import NamedTuple
 
 _Item = TypeVar("_Item")
 _Made = TypeVar("_Made")

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.graph.bags.recording import RECORDER, is_recorded
-from multibot_rewrite.graph.wording import SEVERAL, shorten
-from multibot_rewrite.naming import LAYOUTS, Layout
-from multibot_rewrite.plural import plural
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.naming import LAYOUTS, Layout
+from multibot_rewrite.base.plural import plural
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.wording import SEVERAL, shorten
+from multibot_rewrite.producers.bags.recording import RECORDER, is_recorded
 from multibot_rewrite.rules.check import inconclusive_where_in_doubt, judge
 from multibot_rewrite.rules.guess import GuessedRobot, guess_robots, whose_by_guess
 from multibot_rewrite.rules.index import NO_COUNTS, TF, Index, Known, index, tree_topic

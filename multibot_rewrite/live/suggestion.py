@@ -9,19 +9,19 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from xml.sax.saxutils import quoteattr
 
-from multibot_rewrite.graph.learning.learn import learn
-from multibot_rewrite.graph.learning.nodes_file import to_yaml as nodes_to_yaml
-from multibot_rewrite.graph.plan_file import to_yaml as plan_to_yaml
-from multibot_rewrite.graph.tool_nodes import is_tool
-from multibot_rewrite.graph.transforms import STATE_PUBLISHER
+from multibot_rewrite.base.conventions import BODY_FRAMES, WORLD_FRAMES
+from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.knowledge.node_library import NodeLibrary
 from multibot_rewrite.live.diagnose import Diagnosis
+from multibot_rewrite.live.learning.learn import learn
+from multibot_rewrite.live.learning.nodes_file import to_yaml as nodes_to_yaml
 from multibot_rewrite.live.seen_plan import NAMELESS, robots_to_plan, seen_plan
-from multibot_rewrite.naming import LAYOUTS
 from multibot_rewrite.rules.guess import GuessedRobot
 from multibot_rewrite.rules.system.tf_topics import root_of
-from multibot_rewrite.system.conventions import BODY_FRAMES, WORLD_FRAMES
+from multibot_rewrite.spelling.plan_file import to_yaml as plan_to_yaml
+from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 from multibot_rewrite.system.records import Edge
+from multibot_rewrite.system.tool_nodes import is_tool
 
 STACK = "seen"
 FLEET_FILE, NODES_FILE, DESCRIPTION, PLAN_FILE = (

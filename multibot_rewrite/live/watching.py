@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from enum import IntEnum
 
-from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, Finding
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, Finding
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.rules.check import ABSENCE, doubts
 from multibot_rewrite.system.records import CHANGING, System, nodes_by_robot
 

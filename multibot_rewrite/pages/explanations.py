@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 
-from multibot_rewrite.findings.finding import ERROR
-from multibot_rewrite.findings.rule import Rule
+from multibot_rewrite.base.findings.finding import ERROR
+from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.pages.svg import safe
 
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.findings.rule import Rule
-from multibot_rewrite.graph.wording import SEVERAL, shorten
+from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.live.watching import Verdict
 from multibot_rewrite.pages.explanations import rule_link, with_code
 from multibot_rewrite.pages.page_sections import (
@@ -17,7 +18,6 @@ from multibot_rewrite.pages.page_sections import (
 )
 from multibot_rewrite.pages.scene import FindingRow, Scene
 from multibot_rewrite.pages.svg import Ids, safe
-from multibot_rewrite.record import NamedTuple
 
 # By whether the verdict is good, and whether there is a plan.
 NOTHING = {

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.pages.scene import DrawnEdge, DrawnGroup, DrawnName, DrawnNode
 from multibot_rewrite.pages.states import FAULTY, STATES
-from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.system.records import PUBLISHES, SERVES
 
 ROW, NODE_ROW, TOP = 24, 34, 40

@@ -10,10 +10,11 @@ from functools import cache
 from html import escape
 from importlib.resources import files
 
-from multibot_rewrite.findings.rule import Rule
-from multibot_rewrite.graph.wording import SEVERAL, shorten
+from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.naming import LAYOUTS
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.live.watching import Verdict
-from multibot_rewrite.naming import LAYOUTS
 from multibot_rewrite.pages.drawings import graphs, trees
 from multibot_rewrite.pages.explanations import explanations
 from multibot_rewrite.pages.finding_list import Sources, filters, finding_list
@@ -29,7 +30,6 @@ from multibot_rewrite.pages.scene import Scene
 from multibot_rewrite.pages.states import MISSING
 from multibot_rewrite.pages.svg import Ids, safe
 from multibot_rewrite.pages.text import counted
-from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules.check import RULES
 from multibot_rewrite.system.records import QUIET, ZENOH
 

@@ -6,13 +6,13 @@ from collections import Counter
 from collections.abc import Hashable, Iterable, Mapping
 from typing import TypeVar
 
-from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding
+from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.pages.scene import DrawnGroup, Scene
 from multibot_rewrite.pages.simplify import has_faults, without_common
 from multibot_rewrite.pages.states import Targets
 from multibot_rewrite.pages.svg import Ids
 from multibot_rewrite.pages.text import counted
-from multibot_rewrite.record import NamedTuple
 
 LEVELS = (ERROR, WARNING, INCONCLUSIVE)
 # In a larger fleet only faulty robots are unfolded, and no more than MOST_OPEN.

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.findings.grouping import said_of
-from multibot_rewrite.findings.rule import Rule
+from multibot_rewrite.base.findings.grouping import said_of
+from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.live.watching import Verdict
 from multibot_rewrite.pages.page_sections import (
     PageSection,
@@ -18,7 +19,6 @@ from multibot_rewrite.pages.scene import FindingRow, Scene
 from multibot_rewrite.pages.states import MISSING
 from multibot_rewrite.pages.svg import safe
 from multibot_rewrite.pages.text import counted
-from multibot_rewrite.record import NamedTuple
 
 # More robots or findings of a card are folded.
 MOST_ROBOTS, MOST_ROWS = 8, 5

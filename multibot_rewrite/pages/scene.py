@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Collection, Container, Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.findings.grouping import with_members
-from multibot_rewrite.graph.tool_nodes import is_tool
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.grouping import with_members
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.live.watching import WORDS, Outcome, judge
 from multibot_rewrite.pages.states import (
     FAULTY,
@@ -24,7 +24,6 @@ from multibot_rewrite.pages.states import (
     worst,
 )
 from multibot_rewrite.pages.tf_tree_rows import FrameTree, make_frame_trees
-from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules.check import side_by_side
 from multibot_rewrite.rules.index import EndKey, Index, by_node, types
 from multibot_rewrite.rules.pair.meeting import matches
@@ -39,6 +38,7 @@ from multibot_rewrite.system.records import (
     System,
     alternatives,
 )
+from multibot_rewrite.system.tool_nodes import is_tool
 
 # Packages with the types of endpoints that every node has: logging, parameters, life cycle; and
 # tf, which has its own picture.

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 
-from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.rules.check import RULES
 from multibot_rewrite.rules.index import Index, ends_of, tree_topic
 from multibot_rewrite.rules.pair.tf_trees import tf_trees

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from html import escape
 
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.pages.layout import OFFERING, GroupLayout, lay_out
 from multibot_rewrite.pages.scene import DrawnGroup, DrawnName, DrawnNode
 from multibot_rewrite.pages.states import (
@@ -19,7 +20,6 @@ from multibot_rewrite.pages.states import (
 )
 from multibot_rewrite.pages.text import clipped, columns, counted, visible
 from multibot_rewrite.pages.tf_tree_rows import FrameTree
-from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.system.records import ACTION, SERVICE
 
 # What each state means, for the legend and the tooltips.

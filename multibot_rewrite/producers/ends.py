@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.companions.bridge_entry import BOTH, ROS, below
 from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, pairs
-from multibot_rewrite.evidence.records import GivenNode
+from multibot_rewrite.description.readback.reading import Reading
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.readback.reading import Reading
-from multibot_rewrite.rosnames import expand
+from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.system.records import (
     CALLS,
     MAY,

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain
 
-from multibot_rewrite.evidence.filling import filled, lookup
-from multibot_rewrite.evidence.records import GivenNode
-from multibot_rewrite.graph.transforms import STATE_PUBLISHER, sent_by
-from multibot_rewrite.graph.transforms import Edge as Pair
 from multibot_rewrite.knowledge.conditions import AND, holds, parse_condition
 from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.producers.evidence.filling import filled, lookup
+from multibot_rewrite.producers.evidence.records import GivenNode
+from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, sent_by
+from multibot_rewrite.spelling.transforms import Edge as Pair
 from multibot_rewrite.system.records import NOWHERE, OFF, RUNS, Edge, Place, Sure
 
 TOPIC = "/tf"

@@ -10,11 +10,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
 from types import ModuleType
 
-from multibot_rewrite.findings.finding import INCONCLUSIVE, Finding
-from multibot_rewrite.findings.rule import Rule
-from multibot_rewrite.gc_pause import gc_paused
-from multibot_rewrite.graph.bags.recording import is_recorded
-from multibot_rewrite.graph.patterns import fitted
+from multibot_rewrite.base.findings.finding import INCONCLUSIVE, Finding
+from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.gc_pause import gc_paused
+from multibot_rewrite.producers.bags.recording import is_recorded
 from multibot_rewrite.rules.declaration import PAIR, SYSTEM, Finder
 from multibot_rewrite.rules.index import NO_COUNTS, Index, ends_of
 from multibot_rewrite.rules.pair import (
@@ -49,6 +48,7 @@ from multibot_rewrite.rules.system import (
 )
 from multibot_rewrite.rules.system import nodes as running_nodes
 from multibot_rewrite.rules.system import transforms as any_transforms
+from multibot_rewrite.system.patterns import fitted
 from multibot_rewrite.system.records import PUBLISHES, SIM_TIME, Caveat, End, System, incomplete
 
 _SYSTEM = (

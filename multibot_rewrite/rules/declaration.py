@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.findings.rule import Rule, rule
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.rule import Rule, rule
+from multibot_rewrite.base.record import NamedTuple
 
 if TYPE_CHECKING:
     from multibot_rewrite.rules.index import Index

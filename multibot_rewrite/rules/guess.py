@@ -12,11 +12,11 @@ from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from functools import cache
 
-from multibot_rewrite.graph.tool_nodes import is_tool
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.base.conventions import USUAL_FRAMES
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.rules.ownership import SEPARATORS, Whose
-from multibot_rewrite.system.conventions import USUAL_FRAMES
 from multibot_rewrite.system.records import TOPIC, System
+from multibot_rewrite.system.tool_nodes import is_tool
 
 # Topics of a robot's body: two of them are enough, or one of tf.
 BODY = (

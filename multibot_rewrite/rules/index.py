@@ -7,11 +7,10 @@ from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Se
 from functools import wraps
 from typing import Any, TypeVar, cast
 
-from multibot_rewrite.graph.tool_nodes import is_tool
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.base.conventions import EVERYBODYS, only_looks
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.rules import words
 from multibot_rewrite.rules.ownership import Whose
-from multibot_rewrite.system.conventions import EVERYBODYS, only_looks
 from multibot_rewrite.system.records import (
     CALLS,
     KINDS,
@@ -24,6 +23,7 @@ from multibot_rewrite.system.records import (
     End,
     System,
 )
+from multibot_rewrite.system.tool_nodes import is_tool
 
 # In the order of the fields of Ends.
 _PLACE = {role: at for at, role in enumerate((PUBLISHES, SUBSCRIBES, SERVES, CALLS))}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cache
 
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.system.records import System
 
 # What may separate a robot's name from the rest of a segment.

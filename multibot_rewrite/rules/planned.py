@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.rules.index import NO_COUNTS, EndKey, Index, Known, index, tree_topic
 from multibot_rewrite.rules.ownership import (
     NameOwnership,

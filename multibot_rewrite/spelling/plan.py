@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence, Set
 from typing import TYPE_CHECKING
 
+from multibot_rewrite.base.conventions import SENT_BY_EVERY_NODE, USUAL_FRAMES
+from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS, Naming, spelled
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.naming import NAMESPACE, TF_TOPICS, Naming, spelled
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.records import EndpointName, Table
-from multibot_rewrite.remap.ways import HOST, PLUGIN, PROCESS, deliveries
-from multibot_rewrite.system.conventions import SENT_BY_EVERY_NODE, USUAL_FRAMES
+from multibot_rewrite.spelling.records import EndpointName, Table
+from multibot_rewrite.spelling.ways import HOST, PLUGIN, PROCESS, deliveries
 from multibot_rewrite.system.records import MAY, RUNS, End, Node, Robot, System, place_of
 
 if TYPE_CHECKING:
-    from multibot_rewrite.steps.collect import Inventory
+    from multibot_rewrite.description.steps.collect import Inventory
 
 NOTHING: Mapping[str, Sequence[str]] = {}
 NOWHERE: Mapping[str, str] = {}

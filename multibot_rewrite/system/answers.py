@@ -1,13 +1,13 @@
 """What nodes answer when they are asked for their state, and a system with that. Pure.
 
-A graph shows names and types alone; these need a service call to each node (``graph/live/ask.py``).
+A graph shows names and types alone; these need a service call to each node (``producers/ros/ask.py``).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.system.records import Controller, Node, Parameter, System
 
 

@@ -13,9 +13,9 @@ from sys import intern
 from types import NoneType
 from typing import Any, cast, get_args, get_origin, get_type_hints
 
-from multibot_rewrite.bounded import load_json
-from multibot_rewrite.gc_pause import gc_paused
-from multibot_rewrite.model import InputError
+from multibot_rewrite.base.bounded import load_json
+from multibot_rewrite.base.gc_pause import gc_paused
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.system.json_values import (
     Reader,
     WrongValue,
@@ -53,7 +53,7 @@ from multibot_rewrite.system.records import (
 from multibot_rewrite.system.schema_1 import OldSnapshot, OldState, system_of
 
 SCHEMA = 2
-# Findings are in the file of a plan alone (``graph/plan_gaps.py``).
+# Findings are in the file of a plan alone (``spelling/plan_gaps.py``).
 LEFT_OUT = ("gaps",)
 _EMPTY: tuple[object, ...] = ("", ())
 

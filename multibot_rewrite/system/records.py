@@ -6,8 +6,8 @@ Texts for people decide nothing.
 
 from __future__ import annotations
 
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.record import NamedTuple
 
 TOPIC, SERVICE, ACTION = "topic", "service", "action"
 KINDS = (TOPIC, SERVICE, ACTION)

@@ -12,9 +12,9 @@ from graph_cases import as_planned, without_node
 from junitparser import JUnitXml
 from paths import FIXTURES
 
+from multibot_rewrite.base.findings.formats import FORMATS
 from multibot_rewrite.cli import multibot, urdf_lint, urdf_postfix
-from multibot_rewrite.findings.formats import FORMATS
-from multibot_rewrite.graph.plan_file import from_yaml
+from multibot_rewrite.spelling.plan_file import from_yaml
 from multibot_rewrite.system.json import to_json
 
 ROVER = str(FIXTURES / "robots" / "rover.urdf")

@@ -15,14 +15,14 @@ import pytest
 from paths import CORPUS, ROBOTS, ROOT
 
 import multibot_rewrite
+from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.cli.declared.commands import COMMANDS
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.cli.tables import Grid, render
-from multibot_rewrite.library import rewrite
-from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.rewriters.builtin import builtin_tree
-from multibot_rewrite.rewriters.lookup import look_up
-from multibot_rewrite.rewriters.vocabulary import TYPES, load_vocabulary
+from multibot_rewrite.description.library import rewrite
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.lookup import look_up
+from multibot_rewrite.description.rewriters.vocabulary import TYPES, load_vocabulary
 from tools import unclaimed
 
 COMMAND = (sys.executable, "-m", "multibot_rewrite.cli.multibot")
@@ -463,7 +463,7 @@ def test_what_is_shown_of_a_plugin(multibot: Multibot) -> None:
 
 def test_every_row_names_the_line_it_stands_in(multibot: Multibot) -> None:
     """The file and line of each row of the whole vocabulary, held against the files."""
-    home = Path(multibot_rewrite.__file__).parent / "rewriters" / "vocabulary"
+    home = Path(multibot_rewrite.__file__).parent / "description" / "rewriters" / "vocabulary"
     rows = [row for section in multibot.json("inspect")["sections"] for row in section["rows"]]
     assert len(rows) > 500
     texts = {path.name: path.read_text().split("\n") for path in home.glob("*.vocab")}

@@ -8,10 +8,10 @@ import pytest
 from closed_robot import FILES
 from graph_cases import as_planned
 
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.graph.plan_file import from_yaml
-from multibot_rewrite.graph.plan_file import to_json as to_json_plan
-from multibot_rewrite.model import InputError
+from multibot_rewrite.spelling.plan_file import from_yaml
+from multibot_rewrite.spelling.plan_file import to_json as to_json_plan
 from multibot_rewrite.system.json import to_json
 
 CLOSED = FILES["ekf.yaml"]

@@ -13,7 +13,9 @@ from pathlib import Path
 import pytest
 from paths import FIXTURES
 
-from multibot_rewrite.catalogue import rules
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.naming import DEFAULT_LAYOUT, LAYOUTS
+from multibot_rewrite.base.plural import plural
 from multibot_rewrite.cli import multibot, urdf_lint, urdf_postfix
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
 from multibot_rewrite.cli.declared.fleet import PLAN_FORMS
@@ -21,11 +23,9 @@ from multibot_rewrite.cli.options import Command
 from multibot_rewrite.cli.parser import make_parser, parsed
 from multibot_rewrite.cli.usage import policy, robots, separators
 from multibot_rewrite.cli.values import MAX_DOMAIN
-from multibot_rewrite.graph import environment
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.naming import DEFAULT_LAYOUT, LAYOUTS
-from multibot_rewrite.plural import plural
-from multibot_rewrite.remap.table_formats import FORMS
+from multibot_rewrite.lint.catalogue import rules
+from multibot_rewrite.spelling.table_formats import FORMS
+from multibot_rewrite.system import environment
 
 ROVER = str(FIXTURES / "robots" / "rover.urdf")
 ALL = {**COMMANDS, **{it.name: it for it in PROGRAMS}}
@@ -180,7 +180,7 @@ def test_a_mistake_is_one_line_with_a_hint(
 
 
 def test_an_unknown_layout_is_refused_by_the_library_too() -> None:
-    from multibot_rewrite.naming import make_naming
+    from multibot_rewrite.base.naming import make_naming
 
     with pytest.raises(UsageError, match="frames-per-robot"):
         make_naming("frames")
@@ -351,8 +351,8 @@ def test_help_imports_nothing_heavy(name: str) -> None:
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     there = set(done.stderr.split())
     assert f"multibot_rewrite.cli.{module}" in there
-    heavy = {"lxml", "yaml", "rich", "json", "xacro", "multibot_rewrite.library"}
-    rooms = {"lint", "graph", "remap", "fleets", "companions", "rewriters", "steps", "checks"}
+    heavy = {"lxml", "yaml", "rich", "json", "xacro", "multibot_rewrite.description.library"}
+    rooms = {"lint", "rules", "spelling", "fleet", "companions", "description", "producers"}
     assert there & (heavy | {f"multibot_rewrite.{room}" for room in rooms}) == set()
 
 

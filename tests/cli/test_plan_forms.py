@@ -10,7 +10,7 @@ import yaml
 from paths import FIXTURES
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.remap.table_formats import FORMS
+from multibot_rewrite.spelling.table_formats import FORMS
 
 ROVER = str(FIXTURES / "robots" / "rover.urdf")
 GZ = str(FIXTURES / "robots" / "rover_gz.urdf")

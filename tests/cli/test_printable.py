@@ -12,12 +12,12 @@ import pytest
 from fleet_folder import SMALL, fleet_folder
 from graph_cases import healthy, read_plan
 
+from multibot_rewrite.base.findings.formats import FORMATS
+from multibot_rewrite.base.printable import for_terminal, one_line
 from multibot_rewrite.cli import multibot, urdf_lint, urdf_postfix
 from multibot_rewrite.cli.declared.commands import COMMANDS
 from multibot_rewrite.cli.output import print_bytes
-from multibot_rewrite.findings.formats import FORMATS
-from multibot_rewrite.graph.plan_file import to_yaml
-from multibot_rewrite.printable import for_terminal, one_line
+from multibot_rewrite.spelling.plan_file import to_yaml
 from multibot_rewrite.system.json import to_json
 
 FAKED = "FAKE: all is well"

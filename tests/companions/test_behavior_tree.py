@@ -8,16 +8,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 from lxml import etree
 
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.companions.behavior_tree.rewrite import rewrite_behavior_tree
 from multibot_rewrite.companions.context import Context, make_context
 from multibot_rewrite.companions.template import fill_template
-from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.knowledge.node_library import stack_of
 from multibot_rewrite.knowledge.stacks import built_in
-from multibot_rewrite.model import InputError
-from multibot_rewrite.naming import make_naming
-from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.remap.table import build_table
+from multibot_rewrite.spelling.table import build_table
 
 LAYOUTS = ("L1", "L2", "L3", "L4")
 DECLARED = {"link": {"base_link": None, "tool": None}, "joint": {"wheel": None}}

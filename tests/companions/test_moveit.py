@@ -8,6 +8,10 @@ from beside import findings_of
 from hypothesis import given
 from hypothesis import strategies as st
 
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.companions.context import Context, make_context
 from multibot_rewrite.companions.moveit.file_kind import file_kind
 from multibot_rewrite.companions.moveit.name_sites import kinds
@@ -15,13 +19,9 @@ from multibot_rewrite.companions.moveit.rewrite import rewrite_moveit
 from multibot_rewrite.companions.names.rename_map import with_srdf
 from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.companions.yaml_text import read_yaml
-from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.knowledge.node_library import stack_of
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.stacks import built_in
-from multibot_rewrite.model import InputError
-from multibot_rewrite.naming import make_naming
-from multibot_rewrite.releases import NEWEST_LTS
 
 LINKS = ("base_link", "tool0", "camera_link")
 JOINTS = ("j1", "j2", "finger.left", "y", "1")

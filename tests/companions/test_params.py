@@ -25,7 +25,9 @@ from made_params import (
 )
 from paths import ROOT
 
-from multibot_rewrite import catalogue
+from multibot_rewrite.base.model import InputError, UsageError
+from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.companions.context import make_context
 from multibot_rewrite.companions.params.rewrite import nodes_without_section, rewrite_params
 from multibot_rewrite.companions.params.sections import raw_sections
@@ -35,9 +37,7 @@ from multibot_rewrite.knowledge.node_library import extend, stack_of
 from multibot_rewrite.knowledge.parameter_entries import KINDS
 from multibot_rewrite.knowledge.parameters import built_in_nodes, load_known_nodes
 from multibot_rewrite.knowledge.stacks import built_in
-from multibot_rewrite.model import InputError, UsageError
-from multibot_rewrite.naming import make_naming
-from multibot_rewrite.releases import NEWEST_LTS
+from multibot_rewrite.lint import catalogue
 
 
 def value(node: str, line: str, policy: tuple[str, str] = L2, distro: str = "jazzy") -> str:

@@ -18,8 +18,8 @@ from params_corpus import (
 from paths import CORPUS
 from real_robots import spread
 
+from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.companions.yaml_text import read_yaml
-from multibot_rewrite.naming import make_naming
 
 LEAST = 500
 

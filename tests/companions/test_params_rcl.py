@@ -25,6 +25,10 @@ from params_corpus import (
 from paths import SUPPORT
 from real_robots import spread
 
+from multibot_rewrite.base.findings.finding import ERROR
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.companions.context import Context, make_context
 from multibot_rewrite.companions.params.rewrite import rewrite_params
 from multibot_rewrite.companions.params.sections import (
@@ -34,11 +38,7 @@ from multibot_rewrite.companions.params.sections import (
 )
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, fill_template
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
-from multibot_rewrite.findings.finding import ERROR
 from multibot_rewrite.knowledge.parameters import built_in_nodes
-from multibot_rewrite.model import InputError
-from multibot_rewrite.naming import make_naming
-from multibot_rewrite.releases import NEWEST_LTS
 
 INSTALL = "pip install ros-jazzy-rclpy ros-jazzy-rmw-fastrtps-cpp ros-jazzy-common-interfaces"
 pytestmark = [

@@ -11,9 +11,9 @@ import pytest
 import yaml
 
 from multibot_rewrite.companions.names.placeholders import filled, is_robot, without_robot
-from multibot_rewrite.fleets.build import Outputs, make_outputs
-from multibot_rewrite.fleets.fleet_file import read_fleet
-from multibot_rewrite.fleets.fleet_plan import plan_fleet
+from multibot_rewrite.fleet.build import Outputs, make_outputs
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
 
 FORMS = (
     *("<robot_namespace>", "<namespace>", "<robot_name>", "$(var ns)", "$(var namespace)"),

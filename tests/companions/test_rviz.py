@@ -11,19 +11,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rviz_robots import robots_of
 
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.model import InputError, UsageError
+from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.companions.names.robot_topics import fleet_topics, robot_topic
 from multibot_rewrite.companions.rviz.colours import palette, read_colour
 from multibot_rewrite.companions.rviz.read import read_for
 from multibot_rewrite.companions.rviz.read_config import rviz_data
 from multibot_rewrite.companions.rviz.rewrite import RvizText, rewrite_rviz, start_command
 from multibot_rewrite.companions.yaml_text import read_yaml
-from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.knowledge.stacks import built_in
-from multibot_rewrite.model import InputError, UsageError
-from multibot_rewrite.naming import make_naming
-from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.remap.table import build_table
 from multibot_rewrite.rules.files.judge import judged_once
+from multibot_rewrite.spelling.table import build_table
 
 ROBOTS = ("robot1", "robot2")
 DECLARED = {"link": dict.fromkeys(("base_link", "base_scan", "wheel")), "joint": {"hip": None}}

@@ -13,10 +13,10 @@ import yaml
 from paths import CORPUS
 from rviz_robots import declared, robots_of
 
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.companions.rviz.read_config import rviz_data
 from multibot_rewrite.companions.rviz.rewrite import rewrite_rviz
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
-from multibot_rewrite.model import InputError
 
 LAYOUTS = ("L1", "L2", "L3", "L4")
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)

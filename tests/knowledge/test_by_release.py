@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.knowledge.by_release import in_release
 from multibot_rewrite.knowledge.node_library import NodeLibrary, extend, stack_of
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.releases import RELEASES
 
 NOTHING = NodeLibrary({}, {}, {})
 DOCK = """

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.knowledge.conditions import (
     holds,
     joined,
@@ -11,7 +12,6 @@ from multibot_rewrite.knowledge.conditions import (
     parse_condition,
     verdict,
 )
-from multibot_rewrite.model import UsageError
 
 VALUES: dict[str, object] = {
     "on": True,

@@ -12,9 +12,9 @@ from typing import NamedTuple
 import pytest
 from paths import FIXTURES
 
+from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.knowledge.stacks import built_in
-from multibot_rewrite.rosnames import expand
 
 LEAST_FACTS = 600
 LEAST_NODES = 94

@@ -10,8 +10,8 @@ import pytest
 import yaml
 from nodl_schema_file import nodl_validator
 
+from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.knowledge.nodl.document import parse
-from multibot_rewrite.model import UsageError
 from multibot_rewrite.system.records import ACTION, SERVES, SERVICE, SUBSCRIBES, TOPIC
 
 # Written by hand after the schema of ros-tooling/nodl: each key of it once.

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import pytest
 
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.knowledge.nodl.facts import NOT_IN_NODL, NodeKnowledge, nodes_of
 from multibot_rewrite.knowledge.nodl.lookup import INDEX, NONE, Identity, find_interfaces, load
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in, user_stack
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
 
 QOS = "qos: {history: KEEP_ALL, reliability: RELIABLE}"

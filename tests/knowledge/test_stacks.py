@@ -9,7 +9,10 @@ from pathlib import Path
 import pytest
 from paths import ROOT
 
-from multibot_rewrite.fleets.fleet import NO_STATE_PUBLISHER
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.base.rosnames import expand
+from multibot_rewrite.fleet.fleet import NO_STATE_PUBLISHER
 from multibot_rewrite.knowledge.node_library import NodeLibrary, extend, stack_of
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import (
@@ -18,9 +21,6 @@ from multibot_rewrite.knowledge.stacks import (
     load_stack,
     user_stack,
 )
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.rosnames import expand
 from multibot_rewrite.system.records import ACTION, SERVICE, TOPIC
 
 WANTED = {

@@ -8,10 +8,10 @@ from collections.abc import Iterator
 
 import pytest
 
+from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.knowledge.parameters import Branch, KnownNode, built_in_nodes
 from multibot_rewrite.knowledge.records import NodeFacts, Param
 from multibot_rewrite.knowledge.stacks import built_in
-from multibot_rewrite.releases import RELEASES
 
 # Without a section in parameter files: a Lua file, a file of its own, no parameters but actions.
 NO_PARAMETERS = {"cartographer_node", "rviz2", "ros_gz_bridge", "trajectory_until_node"}

@@ -23,9 +23,9 @@ from paths import FIXTURES, ROBOTS, ROOT, SUPPORT
 from vendor_sources import VARIABLE, sources_folder
 
 from multibot_rewrite import launch
+from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.cli.rehearse import stage
 from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER, PROGRAMS, SLAM
-from multibot_rewrite.releases import RELEASES
 
 REASON = f"not tried in the real launch, which is not here: {launch.missing()}"
 in_launch = pytest.mark.skipif(bool(launch.missing()), reason=REASON)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite import UsageError
-from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.config.baseline import (
     FORMAT,
@@ -17,7 +17,7 @@ from multibot_rewrite.lint.config.baseline import (
     beyond,
     read_baseline,
 )
-from multibot_rewrite.lint.config.settings import Settings
+from multibot_rewrite.rules.settings import Settings
 
 
 def finding(

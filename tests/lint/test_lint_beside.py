@@ -11,14 +11,14 @@ from pathlib import Path
 import pytest
 from paths import FIXTURES, ROBOTS
 
+from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.companions.kinds import BRIDGE, MOVEIT, PARAMS, RVIZ, kind_of
 from multibot_rewrite.knowledge.declared import FILE, is_known
 from multibot_rewrite.knowledge.nodl.lookup import INDEX
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.run import lint_files
-from multibot_rewrite.releases import RELEASES
 from multibot_rewrite.rules.files.bounds import beyond
+from multibot_rewrite.rules.settings import Settings
 from tools.interfaces.declared_table import ID, plugin_owners, table
 from tools.interfaces.parameter_facts import read_parameters
 

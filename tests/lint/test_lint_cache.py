@@ -16,17 +16,17 @@ from typing import Any
 import pytest
 from no_workers import lint_in_this_process
 
-from multibot_rewrite import outside
+from multibot_rewrite.base import outside
+from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.cli.urdf_lint import main
-from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.sources import packages
 from multibot_rewrite.lint.cache import cache as caches
 from multibot_rewrite.lint.cache import shard
 from multibot_rewrite.lint.cache.cache import Cache, cache_folder
 from multibot_rewrite.lint.cache.identity import identity
-from multibot_rewrite.lint.config.settings import ArgumentSet, Settings
 from multibot_rewrite.lint.run import lint_files
-from multibot_rewrite.rewriters.builtin import builtin_tree
-from multibot_rewrite.sources import packages
+from multibot_rewrite.rules.settings import ArgumentSet, Settings
 
 XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 ARM = f"""<robot name="arm" {XACRO}>
@@ -289,8 +289,8 @@ def _signed(body: bytes) -> bytes:
 def test_only_marked_functions_are_asked() -> None:
     for function in (
         "os:system",
-        "multibot_rewrite.bounded:re.match",
-        "multibot_rewrite.model:Edit",
+        "multibot_rewrite.base.bounded:re.match",
+        "multibot_rewrite.base.model:Edit",
     ):
         with pytest.raises(LookupError):
             outside.answer_now(outside.Question(function, ("x",)))
@@ -400,7 +400,7 @@ def test_a_file_of_the_cache_is_bounded(here: Path, monkeypatch: pytest.MonkeyPa
 
 LOOKS = ("stat", "lstat", "readlink", "listdir", "scandir", "access")
 # Program text, and what Python itself asks.
-OWN = (sys.prefix, sys.base_prefix, str(Path(outside.__file__).parent), "/proc", "/dev", "/sys")
+OWN = (sys.prefix, sys.base_prefix, str(Path(outside.__file__).parent.parent), "/proc", "/dev", "/sys")
 
 
 @pytest.fixture
@@ -447,7 +447,8 @@ ASKING = re.compile(
 ALLOWED = (
     "lint/cache/", "lint/config/", "lint/workers.py", "lint/run.py", "lint/__main__.py",
     "lint/beside/kinds.py", "rules/files/parameter_table.py", "rules/files/plugin_table.py",
-    "sources/child/", "sources/processes.py", "sources/packages.py", "sources/access.py",
+    "description/sources/child/", "description/sources/processes.py",
+    "description/sources/packages.py", "description/sources/access.py",
 )  # fmt: skip
 PACKAGE_DATA = ("files(", "(_FOLDER, file)")
 
@@ -472,8 +473,9 @@ def unmarked(path: Path) -> list[str]:
 
 def test_what_asks_the_disk_is_marked() -> None:
     """A rule that looks at a file by itself would be right once: its result is kept."""
-    package = Path(outside.__file__).parent
-    paths = [it for room in ("lint", "sources") for it in sorted((package / room).rglob("*.py"))]
+    package = Path(outside.__file__).parent.parent
+    rooms = ("lint", "rules", "description/sources")
+    paths = [it for room in rooms for it in sorted((package / room).rglob("*.py"))]
     looked = [it for it in paths if not it.relative_to(package).as_posix().startswith(ALLOWED)]
     assert len(looked) > 100
     assert [line for it in looked for line in unmarked(it)] == []

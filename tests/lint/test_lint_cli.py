@@ -15,10 +15,10 @@ from pathlib import Path
 import pytest
 from paths import FIXTURES
 
+from multibot_rewrite.base.findings.finding import ERROR
+from multibot_rewrite.base.findings.formats import FORMATS
 from multibot_rewrite.cli.declared.description import LINT
 from multibot_rewrite.cli.urdf_lint import main
-from multibot_rewrite.findings.finding import ERROR
-from multibot_rewrite.findings.formats import FORMATS
 from multibot_rewrite.lint.registry import RULES
 
 pytestmark = pytest.mark.slow

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.config.settings import Settings
+from multibot_rewrite.rules.settings import Settings
 
 JOINT = '<joint name="j" type="revolute"><parent link="a"/><child link="b"/></joint>'
 SYSTEM = """
@@ -146,7 +146,7 @@ def test_without_ros2_control_nothing_is_read(tmp_path: Path) -> None:
     assert lint(tmp_path, LOADS.format("controllers.yaml"), JOINT="other") == []
     code = (
         "import sys; from multibot_rewrite.lint.check import lint_file;"
-        "from multibot_rewrite.lint.config.settings import Settings;"
+        "from multibot_rewrite.rules.settings import Settings;"
         "lint_file(sys.argv[1], Settings());"
         "print([it for it in sys.modules if '.evidence' in it or '.closure' in it])"
     )

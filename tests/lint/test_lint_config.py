@@ -11,7 +11,8 @@ import pytest
 from paths import ROOT
 
 from multibot_rewrite import UsageError
-from multibot_rewrite.findings.selection import is_on, level_of
+from multibot_rewrite.base.findings.selection import is_on, level_of
+from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.config.configured import (
     Configured,
@@ -19,10 +20,9 @@ from multibot_rewrite.lint.config.configured import (
     is_excluded,
     with_options,
 )
-from multibot_rewrite.lint.config.settings import ArgumentSet, Settings, is_silent, matches
 from multibot_rewrite.lint.config.values import READERS, check_codes
 from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.naming import make_naming
+from multibot_rewrite.rules.settings import ArgumentSet, Settings, is_silent, matches
 
 PAGE = (ROOT / "docs" / "lint-config.md").read_text()
 TWO_ROOTS = '<robot name="r"><link name="a"/><link name="b"/></robot>'

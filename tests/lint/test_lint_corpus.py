@@ -10,7 +10,7 @@ from lint_triage import LEAST, errors, linted_corpus, linted_wheels
 from paths import CORPUS
 from real_robots import corpus_files, wheel_files
 
-from multibot_rewrite.findings.finding import ERROR, Finding
+from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.lint.registry import RULES
 from tools.pages import upstream
 from tools.pages.lint_triage import Judged, committed, judgements

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite.lint.check import lint_data, lint_file
-from multibot_rewrite.lint.config.settings import ArgumentSet, Settings
 from multibot_rewrite.lint.fix import fix
+from multibot_rewrite.rules.settings import ArgumentSet, Settings
 
 XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 ONE = Settings(select=("MB1",))

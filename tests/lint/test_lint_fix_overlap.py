@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite import rewrite
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.model import Edit
 from multibot_rewrite.cli.urdf_lint import main
-from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint import fix as fixing
-from multibot_rewrite.lint.config.settings import Settings
-from multibot_rewrite.model import Edit
+from multibot_rewrite.rules.settings import Settings
 
 # What is replaced in ``fixing``: how it lints a text.
 LINT = "lint_data"

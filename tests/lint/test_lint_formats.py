@@ -22,15 +22,15 @@ from no_workers import lint_in_this_process
 from pydantic import BaseModel
 from sarif_pydantic import Sarif
 
-from multibot_rewrite.findings import formats
-from multibot_rewrite.findings.finding import ERROR, LEVELS, NOTE, WARNING, Finding
-from multibot_rewrite.findings.formats import FORMATS, Report, text
-from multibot_rewrite.findings.formats.markdown import ROOM
+from multibot_rewrite.base.findings import formats
+from multibot_rewrite.base.findings.finding import ERROR, LEVELS, NOTE, WARNING, Finding
+from multibot_rewrite.base.findings.formats import FORMATS, Report, text
+from multibot_rewrite.base.findings.formats.markdown import ROOM
+from multibot_rewrite.base.model import Edit
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.config.settings import ArgumentSet, Settings
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.run import lint_files
-from multibot_rewrite.model import Edit
+from multibot_rewrite.rules.settings import ArgumentSet, Settings
 
 XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 NASTY = ("<b>", '"', "|", "a\nb", "%0A", "::error::x", "é😀\u2028", "`*_[x](1)_*`", "\\|", "&amp;")
@@ -148,7 +148,7 @@ def test_a_report_is_utf8_and_the_same_each_time(name: str, linted: Linted) -> N
 def test_only_the_module_of_a_format_is_loaded() -> None:
     code = """if True:
         import sys
-        from multibot_rewrite.findings.formats import FORMATS, Report, rendered
+        from multibot_rewrite.base.findings.formats import FORMATS, Report, rendered
         for name in FORMATS:
             rendered(name, [], Report("lint", [], {}))
             loaded = {it for it in sys.modules if ".findings.formats." in it}

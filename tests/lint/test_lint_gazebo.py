@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite.lint.check import lint_data
-from multibot_rewrite.lint.config.settings import Settings
-from multibot_rewrite.lint.schema.described import PLUGINS, SDF, UNITS, chunks, described
-from multibot_rewrite.lint.schema.sdf_values import misread
+from multibot_rewrite.rules.schema.described import PLUGINS, SDF, UNITS, chunks, described
+from multibot_rewrite.rules.schema.sdf_values import misread
+from multibot_rewrite.rules.settings import Settings
 
 NEW = Settings(select=("MB15", "MB16", "MB17"))
 LINK = (

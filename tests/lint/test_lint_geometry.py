@@ -13,8 +13,8 @@ import pytest
 from paths import ROBOTS
 
 from multibot_rewrite.lint.check import lint_data
-from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.registry import RULES
+from multibot_rewrite.rules.settings import Settings
 
 ROVER = (ROBOTS / "rover_gz.urdf").read_text()
 ARM = (ROBOTS / "two_finger_arm.urdf").read_text()

@@ -8,15 +8,15 @@ from importlib import import_module
 from pathlib import Path
 from pkgutil import walk_packages
 
-from multibot_rewrite.findings.rule import URDF, Rule
-from multibot_rewrite.lint import rules
-from multibot_rewrite.lint.config.settings import Settings
+from multibot_rewrite.base.findings.rule import URDF, Rule
 from multibot_rewrite.lint.files.subjects import read_subjects
 from multibot_rewrite.lint.groups import GROUPS, active_rules, rules_of
-from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.lint.rules.meshes.shared import used_files
+from multibot_rewrite.rules import description as rules
 from multibot_rewrite.rules import files
+from multibot_rewrite.rules.description.meshes.shared import used_files
+from multibot_rewrite.rules.settings import Settings
+from multibot_rewrite.rules.subject import Subject
 
 MESHES = b"""<robot name="r"><link name="a"><visual><geometry><mesh filename="a.stl"/></geometry>
 </visual></link></robot>"""
@@ -48,13 +48,22 @@ def test_a_lint_of_a_urdf_loads_nothing_for_other_files(tmp_path: Path) -> None:
     command = [sys.executable, "-c", program, str(file)]
     run = subprocess.run(command, capture_output=True, text=True, check=True, cwd=tmp_path)
     others = (
-        *("cli.declared.fleet", "lint.registry", "lint.rules.srdf", "lint.config.directives"),
-        *("sources.access", "rewriters.patterns", "remap.bridged_topics"),
+        *(
+            "cli.declared.fleet",
+            "lint.registry",
+            "rules.description.srdf",
+            "lint.config.directives",
+        ),
+        *(
+            "description.sources.access",
+            "description.rewriters.patterns",
+            "spelling.bridged_topics",
+        ),
     )
     *_, modules, slow = run.stdout.split("\n")[:-1]
     loaded = set(modules.split())
-    assert "multibot_rewrite.lint.rules.meshes" in loaded
-    # Theirs are of multibot_rewrite.record.
+    assert "multibot_rewrite.rules.description.meshes" in loaded
+    # Theirs are of multibot_rewrite.base.record.
     assert slow == ""
     assert loaded & {"tomllib", *(f"multibot_rewrite.{it}" for it in others)} == set()
 

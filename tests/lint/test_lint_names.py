@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from multibot_rewrite.lint.check import lint_data
-from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.fix import fix
+from multibot_rewrite.rules.settings import Settings
 
 MB3 = ("MB3",)
 

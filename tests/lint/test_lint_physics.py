@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.lint.rules.physics.moments import eigenvalues
+from multibot_rewrite.rules.description.physics.moments import eigenvalues
+from multibot_rewrite.rules.settings import Settings
 
 GROUP = Settings(select=("MB6",), ignore=("MB609", "MB610", "MB611"))
 WHOLE = Settings(select=("MB609", "MB610", "MB611"))

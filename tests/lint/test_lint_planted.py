@@ -9,9 +9,9 @@ from __future__ import annotations
 import pytest
 from paths import FIXTURES
 
-from multibot_rewrite.findings.finding import NOTE
+from multibot_rewrite.base.findings.finding import NOTE
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.config.settings import Settings
+from multibot_rewrite.rules.settings import Settings
 
 PLANTED = FIXTURES / "lint" / "planted"
 # File -> (code, line) of the defect, then of what follows from it.

@@ -14,7 +14,7 @@ from lint_precision import (
 )
 from paths import CORPUS, ROOT
 
-from multibot_rewrite.findings.finding import NOTE
+from multibot_rewrite.base.findings.finding import NOTE
 from multibot_rewrite.lint.registry import RULES
 
 JUDGED, RIGHT = 10, 0.95

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 from counted_steps import growth
 
-from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.config.settings import Settings
+from multibot_rewrite.rules.settings import Settings
 
 LINKS = '<link name="base_link"/><link name="arm_link"/><link name="tip"/>'
 JOINT = '<joint name="{}" type="{}"><parent link="{}"/><child link="{}"/>{}</joint>'

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.config.settings import Settings
+from multibot_rewrite.rules.settings import Settings
 
 
 def linted(folder: Path, text: str) -> list[tuple[str, str, int, int]]:

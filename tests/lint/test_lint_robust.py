@@ -19,16 +19,16 @@ from paths import FIXTURES
 from real_robots import spread
 from waiting import wait_until
 
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.formats import FORMATS, Report, rendered
+from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.cli.urdf_lint import main
 from multibot_rewrite.cli.walk import find_files
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.findings.formats import FORMATS, Report, rendered
 from multibot_rewrite.lint import check
 from multibot_rewrite.lint.check import lint_data, lint_file
-from multibot_rewrite.lint.config.settings import ArgumentSet, Settings
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.run import FEW, lint_files
-from multibot_rewrite.naming import make_naming
+from multibot_rewrite.rules.settings import ArgumentSet, Settings
 
 pytestmark = pytest.mark.slow
 

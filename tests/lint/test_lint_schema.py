@@ -7,11 +7,11 @@ from collections.abc import Callable
 import pytest
 from counted_steps import growth
 
-from multibot_rewrite.lint.schema.faults import Fault, read_faults
-from multibot_rewrite.lint.schema.sections import schema
-from multibot_rewrite.lint.schema.values import FINE
-from multibot_rewrite.lint.schema.versions import NEWEST
-from multibot_rewrite.steps.document import read_document
+from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.rules.schema.faults import Fault, read_faults
+from multibot_rewrite.rules.schema.sections import schema
+from multibot_rewrite.rules.schema.values import FINE
+from multibot_rewrite.rules.schema.versions import NEWEST
 
 LINKS = '<link name="a"/><link name="b"/>'
 ENDS = '<parent link="a"/><child link="b"/>'

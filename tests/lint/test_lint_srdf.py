@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.files.named import robot_name
 from multibot_rewrite.lint.run import lint_files
+from multibot_rewrite.rules.settings import Settings
 
 SHAPE = "<collision><geometry><sphere radius='1'/></geometry></collision>"
 LINK = '<link name="{}">{}</link>'

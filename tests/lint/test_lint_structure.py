@@ -9,12 +9,12 @@ from pathlib import Path
 import pytest
 from lxml import etree
 
-from multibot_rewrite.checks.links_and_joints import loops, read_robot
-from multibot_rewrite.checks.numbers import number, vector
-from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.description.checks.links_and_joints import loops, read_robot
+from multibot_rewrite.description.checks.numbers import number, vector
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.registry import RULES
+from multibot_rewrite.rules.settings import Settings
 
 GROUP = Settings(select=("MB5",))
 LIMIT = '<limit lower="-1" upper="1" effort="1" velocity="1"/>'

@@ -10,17 +10,17 @@ from typing import Any
 import pytest
 from paths import ROOT
 
-from multibot_rewrite.checks.problem import Problem
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.findings.rule import Rule
-from multibot_rewrite.findings.selection import is_on
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.findings.selection import is_on
+from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.config.directives import ALWAYS_REPORTED, read_directives
-from multibot_rewrite.lint.config.settings import ArgumentSet, Settings
 from multibot_rewrite.lint.config.suppress import unsuppressed
 from multibot_rewrite.lint.fix import fix
-from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.registry import RULES
+from multibot_rewrite.rules.settings import ArgumentSet, Settings
+from multibot_rewrite.rules.subject import Subject
 
 PAGE = (ROOT / "docs" / "lint-config.md").read_text()
 XACRO = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="r">'

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.config.settings import Settings
+from multibot_rewrite.rules.settings import Settings
 
 RULES = ("MB204", "MB205", "MB224", "MB226", "MB227", "MB229", "MB23", "MB16")
 LINKS = '<link name="a"/><link name="b"/><link name="c"/>'

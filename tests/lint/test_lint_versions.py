@@ -25,16 +25,16 @@ from urdfdom_cases import (
     visual,
 )
 
-from multibot_rewrite.checks.rotation import (
+from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.releases import RELEASES
+from multibot_rewrite.description.checks.rotation import (
     matrix_of_quaternion,
     quaternion_of_rpy,
     rpy_of,
 )
-from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.lint.check import lint_data
-from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.fix import fix
-from multibot_rewrite.releases import RELEASES
+from multibot_rewrite.rules.settings import Settings
 
 needs_check = pytest.mark.skipif(CHECK is None, reason="check_urdf is missing: pip install pin")
 needs_pin = pytest.mark.skipif(

@@ -9,13 +9,13 @@ from pathlib import Path
 
 import pytest
 
-from multibot_rewrite.naming import DEFAULT_LAYOUT, LAYOUTS, make_naming
+from multibot_rewrite.base.naming import DEFAULT_LAYOUT, LAYOUTS, make_naming
 
 SMALL = '<robot name="rover"><link name="base"/></robot>'
 
 FIFTH = """\
 import sys
-from multibot_rewrite import naming
+from multibot_rewrite.base import naming
 row = naming.Layout("bare", "L9", False, False, False, "nothing is renamed but topics")
 naming.LAYOUTS = (*naming.LAYOUTS, row)
 from importlib import import_module

@@ -10,9 +10,9 @@ import guides
 import pytest
 from paths import ROOT
 
-from multibot_rewrite.rewriters import vocabulary
-from multibot_rewrite.rewriters.vocabulary import FORMS, KINDS, TYPES
-from multibot_rewrite.rewriters.vocabulary.grammar import OPTIONS, ROLES, SETTINGS
+from multibot_rewrite.description.rewriters import vocabulary
+from multibot_rewrite.description.rewriters.vocabulary import FORMS, KINDS, TYPES
+from multibot_rewrite.description.rewriters.vocabulary.grammar import OPTIONS, ROLES, SETTINGS
 
 pytestmark = pytest.mark.slow
 

@@ -16,19 +16,19 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import multibot_rewrite
-from multibot_rewrite import bounded
+from multibot_rewrite.base import bounded
+from multibot_rewrite.base.model import InputError, MultibotError
+from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.companions.yaml_text import read_yaml
-from multibot_rewrite.fleets.manifest import read_manifest
-from multibot_rewrite.graph.plan_file import from_json as from_json_plan
-from multibot_rewrite.graph.plan_file import from_yaml
+from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
+from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.fleet.manifest import read_manifest
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.stacks import user_stack
 from multibot_rewrite.knowledge.yaml_with_lines import read_yaml_with_lines
 from multibot_rewrite.lint.config.baseline import read_baseline
-from multibot_rewrite.model import InputError, MultibotError
-from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.rewriters.vocabulary import load_vocabulary
-from multibot_rewrite.sources.read import read_file
+from multibot_rewrite.spelling.plan_file import from_json as from_json_plan
+from multibot_rewrite.spelling.plan_file import from_yaml
 from multibot_rewrite.system.json import from_json
 
 PACKAGE = Path(multibot_rewrite.__file__).parent
@@ -235,8 +235,8 @@ def test_the_parsers_are_called_in_one_place() -> None:
         if calls(path) & parsers
     }
     # What these read is written by the tool: its schema, and messages between its processes.
-    own = {"fleets/fleet_data.py", "cli/rehearse.py", "graph/live/request.py"}
-    own |= {"producers/launch/records.py", "graph/live/ask.py", "graph/live/child.py"}
+    own = {"fleet/file/fleet_data.py", "cli/rehearse.py", "producers/ros/request.py"}
+    own |= {"producers/launch/records.py", "producers/ros/ask.py", "producers/ros/child.py"}
     own |= {"system/parameters.py"}
-    own |= {"sources/child/asking.py", "sources/child/serve.py"}
-    assert found == {"bounded.py", "graph/live/stub_nodes.py", *own}
+    own |= {"description/sources/child/asking.py", "description/sources/child/serve.py"}
+    assert found == {"base/bounded.py", "live/stub_nodes.py", *own}

@@ -24,7 +24,7 @@ from multibot_rewrite import (
     rewrite,
     rewrite_all,
 )
-from multibot_rewrite.fleets.node_names import NodeNames
+from multibot_rewrite.fleet.robots.node_names import NodeNames
 
 ROVER = FIXTURES / "robots" / "rover.urdf"
 SMALL = '<robot name="rover"><link name="base"/></robot>'

@@ -14,11 +14,11 @@ from real_robots import WHEELS, wheel_files
 from refusal_reasons import Outcome, is_true, reason
 
 from multibot_rewrite import MultibotError, ProofError, rewrite, rewrite_all, strip
-from multibot_rewrite.checks.twice import already_rewritten
-from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.rewriters.builtin import builtin_tree
-from multibot_rewrite.steps.collect import collect
-from multibot_rewrite.steps.document import read_document
+from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.description.checks.twice import already_rewritten
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.steps.collect import collect
+from multibot_rewrite.description.steps.document import read_document
 
 pytestmark = pytest.mark.slow
 

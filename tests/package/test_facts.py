@@ -14,11 +14,11 @@ import pytest
 from lxml import etree
 from paths import FIXTURES
 
-from multibot_rewrite.model import Site
-from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.rewriters.builtin import builtin_tree
-from multibot_rewrite.rewriters.tree import TreeNode, qualified
-from multibot_rewrite.rewriters.vocabulary import (
+from multibot_rewrite.base.model import Site
+from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import TreeNode, qualified
+from multibot_rewrite.description.rewriters.vocabulary import (
     VocabularySection,
     load_vocabulary,
     split_path,

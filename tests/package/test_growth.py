@@ -8,13 +8,14 @@ import pytest
 from counted_steps import growth
 from growing import GROWING, description
 
-from multibot_rewrite import MultibotError, nearest, rewrite
-from multibot_rewrite.checks import audit, references
-from multibot_rewrite.findings.place import locate
+from multibot_rewrite import MultibotError, rewrite
+from multibot_rewrite.base import nearest
+from multibot_rewrite.base.findings.place import locate
+from multibot_rewrite.base.nearest import HINTED, Guesses
+from multibot_rewrite.description.checks import audit, references
+from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.lint.check import lint_data
-from multibot_rewrite.lint.config.settings import Settings
-from multibot_rewrite.nearest import HINTED, Guesses
-from multibot_rewrite.rewriters.tree import Tree
+from multibot_rewrite.rules.settings import Settings
 
 SMALL, LARGE = 100, 400
 REMEMBERED = (nearest._nearest,)
@@ -71,7 +72,7 @@ def test_only_the_first_unknown_names_are_compared(
 ) -> None:
     looked: list[str] = []
     monkeypatch.setattr(
-        "multibot_rewrite.nearest.nearest", lambda name, *_: looked.append(name) or ""
+        "multibot_rewrite.base.nearest.nearest", lambda name, *_: looked.append(name) or ""
     )
     rewritten(description(what, 3 * HINTED))
     assert len(looked) == HINTED
@@ -98,7 +99,7 @@ def test_a_place_is_found_from_the_block_it_is_in(
     ends: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     read: list[int] = []
-    count = "multibot_rewrite.findings.place._characters"
+    count = "multibot_rewrite.base.findings.place._characters"
     monkeypatch.setattr(count, lambda text: read.append(len(text)) or len(text))
     source = (("x" * 40 + ends) * 20_000).encode()
     locate(source, 0)

@@ -9,18 +9,18 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite import rewrite, rewrite_all
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.fleets.build import make_outputs
-from multibot_rewrite.fleets.fleet import make_fleet
-from multibot_rewrite.fleets.fleet_file import read_fleet
-from multibot_rewrite.fleets.fleet_plan import plan_fleet
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.model import MultibotError
+from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.description.readback.reading import read
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet import make_fleet
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.config.settings import Settings
-from multibot_rewrite.model import MultibotError
-from multibot_rewrite.naming import make_naming
-from multibot_rewrite.readback.reading import read
-from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.rewriters.builtin import builtin_tree
+from multibot_rewrite.rules.settings import Settings
 
 pytestmark = pytest.mark.slow
 

@@ -15,31 +15,23 @@ from importlib.resources import files
 from parsed import PACKAGE, sources
 
 import multibot_rewrite
-from multibot_rewrite import model
-from multibot_rewrite.findings import finding
+from multibot_rewrite.base import model
+from multibot_rewrite.base.findings import finding
 
 # The order of the floors: a module imports from floors below its own, or from its own folder.
 FLOORS = (
-    ("record",),
-    ("outside",),
-    ("bounded", "gc_pause", "lazy", "model", "nearest", "plural", "printable", "version"),
-    ("findings", "rosnames", "policy", "config", "arguments", "releases"),
+    ("version",),
+    ("base",),
     ("system",),
-    ("naming",),
-    ("controller_ways",),
     ("knowledge",),
-    ("rewriters",),
-    ("readback", "steps"),
-    ("checks", "sources", "remap"),
+    ("description",),
     ("spelling",),
-    ("pipeline", "reports", "graph", "companions"),
-    ("rules",),
-    ("library", "evidence", "live"),
+    ("companions",),
     ("producers",),
-    ("closure", "pages"),
-    ("fleets", "lint"),
-    ("proposal", "view"),
-    ("__init__", "launch", "catalogue"),
+    ("rules",),
+    ("lint", "live"),
+    ("fleet",),
+    ("__init__", "launch", "pages"),
     ("cli",),
     ("__main__",),
 )
@@ -110,15 +102,19 @@ def test_no_module_imports_itself_by_a_detour() -> None:
 
 
 def test_the_check_sees_the_imports_there_are() -> None:
-    assert inner("library.py") >= {"model.py", "naming.py", "pipeline.py"}
+    assert inner("description/library.py") >= {
+        "base/model.py",
+        "base/naming.py",
+        "description/pipeline.py",
+    }
     assert inner("__init__.py") == {
-        "findings/finding.py",
-        "fleets/loaded_robot.py",
-        "fleets/one_file.py",
-        "fleets/scripts.py",
-        "fleets/system_sources.py",
-        "library.py",
-        "model.py",
+        "base/findings/finding.py",
+        "fleet/robots/loaded_robot.py",
+        "fleet/one_file.py",
+        "fleet/scripts.py",
+        "fleet/file/system_sources.py",
+        "description/library.py",
+        "base/model.py",
         "system/records.py",
         "version.py",
     }
@@ -143,16 +139,16 @@ def loaded(code: str) -> set[str]:
 
 def test_a_start_loads_no_more_than_it_needs() -> None:
     there = loaded("import multibot_rewrite as m; m.rewrite('<robot name=\"r\"/>', 'r1')")
-    assert "multibot_rewrite.library" in there
+    assert "multibot_rewrite.description.library" in there
     assert sorted(there & set(LATE)) == []
 
 
 def test_a_check_pays_for_no_source_that_it_does_not_look_at() -> None:
     there = loaded("import multibot_rewrite.cli.check")
     assert "multibot_rewrite.rules.check" in there
-    sources = ("live.child", "snapshot_file", "zenoh.observe", "zenoh.session")
+    sources = ("ros.child", "snapshot_file", "zenoh.observe", "zenoh.session")
     late = {*LATE, "lxml", "subprocess", "urllib.request"}
-    assert there & {*late, *(f"multibot_rewrite.graph.{it}" for it in sources)} == set()
+    assert there & {*late, *(f"multibot_rewrite.producers.{it}" for it in sources)} == set()
 
 
 def test_the_package_alone_loads_nothing() -> None:
@@ -183,7 +179,9 @@ def test_every_error_is_public_and_one_family() -> None:
 
 def test_the_package_ships_its_types_and_its_data() -> None:
     assert files("multibot_rewrite").joinpath("py.typed").is_file()
-    assert files("multibot_rewrite").joinpath("rewriters/vocabulary/urdf.vocab").is_file()
+    assert (
+        files("multibot_rewrite").joinpath("description/rewriters/vocabulary/urdf.vocab").is_file()
+    )
 
 
 def test_every_module_says_what_it_is_for() -> None:

@@ -17,7 +17,7 @@ from multibot_rewrite import (
     rewrite_all,
     strip,
 )
-from multibot_rewrite.naming import LAYOUTS
+from multibot_rewrite.base.naming import LAYOUTS
 
 SMALL = """\
 <robot name="rover">

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from multibot_rewrite.nearest import (
+from multibot_rewrite.base.nearest import (
     ALIKE,
     MISTYPED,
     did_you_mean,

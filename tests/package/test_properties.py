@@ -25,19 +25,12 @@ from hypothesis import strategies as st
 from lxml import etree
 from random_robots import LAYOUTS, PARAMETERS, SEPARATORS, Robot, random_robots, robot_names
 
-from multibot_rewrite import (
-    Rewrite,
-    RewriteRefused,
-    UsageError,
-    pipeline,
-    rewrite,
-    rewrite_all,
-    strip,
-)
-from multibot_rewrite.naming import make_naming
-from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.rewriters.builtin import builtin_tree
-from multibot_rewrite.rosnames import check_robot_name, propose_token
+from multibot_rewrite import Rewrite, RewriteRefused, UsageError, rewrite, rewrite_all, strip
+from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.base.rosnames import check_robot_name, propose_token
+from multibot_rewrite.description import pipeline
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
 
 pytestmark = pytest.mark.slow
 

@@ -24,10 +24,10 @@ from multibot_rewrite import (
     rewrite_all,
     strip,
 )
-from multibot_rewrite.arguments import checked
-from multibot_rewrite.fleets.node_names import NodeNames
-from multibot_rewrite.naming import make_naming
-from multibot_rewrite.policy import Policy
+from multibot_rewrite.base.arguments import checked
+from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.base.policy import Policy
+from multibot_rewrite.fleet.robots.node_names import NodeNames
 
 ROVER = FIXTURES / "robots" / "rover.urdf"
 SMALL = '<robot name="rover"><link name="base"/></robot>'

@@ -9,7 +9,7 @@ import typing
 import pytest
 from parsed import PACKAGE
 
-from multibot_rewrite import record
+from multibot_rewrite.base import record
 
 BODY = """
 from __future__ import annotations

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.releases import (
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.releases import (
     RELEASES,
     chosen_release,
     has_release,

@@ -10,14 +10,14 @@ from parsed import sources
 WORDS = ("release", "distro", "environment")
 # The public calls, which ask ROS_DISTRO.
 PUBLIC = (
-    "library.py",
-    "fleets/one_file.py",
-    "fleets/system_sources.py",
-    "fleets/scripts.py",
-    "releases.py",
+    "description/library.py",
+    "fleet/one_file.py",
+    "fleet/file/system_sources.py",
+    "fleet/scripts.py",
+    "base/releases.py",
 )
 # A lint without a command has no other.
-NEWEST = {"releases.py", "cli/declared/shared.py", "lint/config/settings.py"}
+NEWEST = {"base/releases.py", "cli/declared/shared.py", "rules/settings.py"}
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 

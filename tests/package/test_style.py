@@ -11,7 +11,7 @@ from paths import ROOT
 
 # Waiting for a process; when to kill one; a clock that a test puts in place of the real one; seconds
 # that a page shows.
-CLOCKS = {"support/waiting.py", "fleets/test_build.py", "graph/test_snapshot.py", "support/walk.py"}
+CLOCKS = {"support/waiting.py", "fleet/test_build.py", "live/test_snapshot.py", "support/walk.py"}
 
 
 def test_no_test_reads_a_clock() -> None:

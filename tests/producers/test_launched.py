@@ -6,7 +6,8 @@ import pytest
 from launched_nodes import AMCL, AT, launched, runs, started
 
 from multibot_rewrite import InputError, UsageError
-from multibot_rewrite.fleets.fleet import facts_of
+from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.fleet.fleet import facts_of
 from multibot_rewrite.producers.launch.child import launch_graph
 from multibot_rewrite.producers.launch.records import (
     LaunchedNode,
@@ -20,7 +21,6 @@ from multibot_rewrite.producers.launch.records import (
     to_json,
 )
 from multibot_rewrite.producers.launch.ros_arguments import ros2_run, ros_arguments
-from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.system.records import Place
 
 PUBLISHER = "robot_state_publisher"

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 from launched_nodes import launched, runs, started
 
-from multibot_rewrite.graph.transforms import Edge, sent_by
 from multibot_rewrite.producers.launch.records import ParameterText
+from multibot_rewrite.spelling.transforms import Edge, sent_by
 
 ZEROS = ("0",) * 6
 FILE = "/**:\n  ros__parameters: {frame_id: map, child_frame_id: odom}\n"

@@ -8,15 +8,15 @@ import pytest
 import yaml
 from rule_examples import BUILT, COMPANIONS
 
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.findings.rule import Rule
-from multibot_rewrite.fleets.build import make_outputs
-from multibot_rewrite.fleets.fleet_file import read_fleet
-from multibot_rewrite.fleets.fleet_plan import plan_fleet
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.rules.files.examples import ROVER
 from multibot_rewrite.rules.files.judge import THEMES
+from multibot_rewrite.rules.settings import Settings
 
 ROBOTS = ("robot1", "robot2")
 EKF = "ekf_filter_node:\n  ros__parameters:\n    {}\n"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fault_changes import Change, Fault, nav, shared_tf, simulation
 from node_answers import told
 
-from multibot_rewrite.findings.finding import WARNING
+from multibot_rewrite.base.findings.finding import WARNING
 from multibot_rewrite.system.answers import Answer, with_answers
 from multibot_rewrite.system.records import Heard
 

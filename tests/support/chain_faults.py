@@ -15,7 +15,7 @@ from healthy_systems import (
     idle_mux,
 )
 
-from multibot_rewrite.findings.finding import ERROR, WARNING
+from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES, Node, System
 
 JOY, BOOL = "sensor_msgs/msg/Joy", "std_msgs/msg/Bool"

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from multibot_rewrite.findings.finding import NOTE, Finding
-from multibot_rewrite.fleets.build import make_outputs
-from multibot_rewrite.fleets.closed_plan import closed_plan
-from multibot_rewrite.fleets.fleet_file import read_fleet
-from multibot_rewrite.fleets.fleet_plan import plan_fleet
+from multibot_rewrite.base.findings.finding import NOTE, Finding
+from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.fleet.checks.closed_plan import closed_plan
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
 
 # What a build tells of the odometry of these robots in some layouts, and is no gap.
 BESIDE = ("MB862", "MF125", "MF7", "MB4", "MR")

@@ -14,7 +14,7 @@ from healthy_systems import (
     with_node,
 )
 
-from multibot_rewrite.findings.finding import ERROR
+from multibot_rewrite.base.findings.finding import ERROR
 from multibot_rewrite.system.records import SUBSCRIBES, Edge, System
 
 CHANGE_STATE = "lifecycle_msgs/srv/ChangeState"

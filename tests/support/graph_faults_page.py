@@ -11,10 +11,10 @@ from fault_changes import Fault, nav, shared_tf, simulation
 from graph_faults import FAULTS, LIVE
 from healthy_systems import SYSTEMS, plan
 
-from multibot_rewrite.findings.finding import ERROR, Finding
-from multibot_rewrite.graph.bags.recording import RECORDER, ROSBAG
+from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.plural import plural
 from multibot_rewrite.live.diagnose import diagnose
-from multibot_rewrite.plural import plural
+from multibot_rewrite.producers.bags.recording import RECORDER, ROSBAG
 from multibot_rewrite.rules.check import check
 from multibot_rewrite.system.records import PUBLISHES, System
 
@@ -27,9 +27,9 @@ finds without a plan, its exit code, whether the finding names who did it and wh
 which codes `multibot check` adds with the plan of the system, and which are found in a recording of it
 without a plan. `-`: nothing more than in the healthy system; no entry: the system has no plan.
 `check-launch` asks the same of the system that a launch file makes. With a plan nothing is hidden
-(`tests/graph/test_inclusion.py`): a name that a node lacks by its plan is MG102 or MG101 there. A
+(`tests/live/test_inclusion.py`): a name that a node lacks by its plan is MG102 or MG101 there. A
 recording has neither nodes nor who reads: faults of these alone are not in it.
-*Live*: played by real nodes as well (`tests/graph/test_live_doctor.py`).
+*Live*: played by real nodes as well (`tests/live/test_live_doctor.py`).
 """
 # The systems that are those of a plan.
 PLANS = {

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from multibot_rewrite.fleets.fleet import facts_of, known_nodes
-from multibot_rewrite.fleets.launched_robot import given_with, nodes_with
+from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.fleet.fleet import facts_of, known_nodes
+from multibot_rewrite.fleet.launch.launched_robot import given_with, nodes_with
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.launch.of_robot import Launched, with_launched
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, LaunchNote
-from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.system.records import Place
 
 AT = Place("/ws/bringup.launch.py", 12)

@@ -20,9 +20,9 @@ from lint_triage import linted_corpus, linted_wheels
 from paths import CORPUS, FIXTURES, ROOT
 from real_robots import corpus_files, wheel_files
 
-from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.run import lint_files
+from multibot_rewrite.rules.settings import Settings
 
 PRECISION = FIXTURES / "lint_precision.tsv"
 # Facts of these releases: the newest ones have nothing to find.

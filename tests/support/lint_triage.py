@@ -13,11 +13,11 @@ from pathlib import Path
 from paths import CORPUS
 from real_robots import corpus_files, wheel_files
 
-from multibot_rewrite.findings.finding import ERROR, Finding
+from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.files.pairing import named_urdfs
 from multibot_rewrite.lint.run import lint_files
+from multibot_rewrite.rules.settings import Settings
 
 # So many findings of a rule are judged, or all where there are fewer.
 LEAST = 5

@@ -11,8 +11,8 @@ from typing import Any
 
 from plans import PlannedRobot, planned
 
-from multibot_rewrite.graph.plan_file import to_yaml
 from multibot_rewrite.spelling.plan import planned_end
+from multibot_rewrite.spelling.plan_file import to_yaml
 from multibot_rewrite.system.records import (
     PUBLISHES,
     SERVES,

@@ -6,13 +6,13 @@ from collections.abc import Iterable
 
 from beside import findings_of
 
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.companions.context import Context, make_context
 from multibot_rewrite.companions.params.rewrite import rewrite_params
 from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.companions.yaml_text import read_yaml
-from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.knowledge.stacks import load_stack
-from multibot_rewrite.naming import make_naming
 
 LINKS = ("base_link", "base_footprint", "laser", "tool0")
 JOINTS = ("left_wheel", "right_wheel", "shoulder", "elbow")

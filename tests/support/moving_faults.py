@@ -32,7 +32,7 @@ from healthy_systems import (
     single,
 )
 
-from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
 
 

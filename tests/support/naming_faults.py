@@ -31,7 +31,7 @@ from healthy_systems import (
     with_node,
 )
 
-from multibot_rewrite.findings.finding import ERROR, WARNING
+from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES, Node
 
 

@@ -25,20 +25,20 @@ from typing import Any, NamedTuple
 from vendor_sources import VARIABLE, install, packages_below, sources_folder
 
 from multibot_rewrite import load_fleet
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.cli.rehearse import stage
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.fleets.built_states import with_built
-from multibot_rewrite.fleets.scripts import LoadedFleet
-from multibot_rewrite.graph.live.child import ask, observe, running
-from multibot_rewrite.graph.live.request import Request
-from multibot_rewrite.graph.plan_file import read_plan
-from multibot_rewrite.graph.questions import questions
-from multibot_rewrite.graph.rehearsal import with_substitutes
+from multibot_rewrite.fleet.outputs.built_states import with_built
+from multibot_rewrite.fleet.scripts import LoadedFleet
 from multibot_rewrite.knowledge.stacks import load_nodes
-from multibot_rewrite.releases import has_release
+from multibot_rewrite.live.rehearsal import with_substitutes
+from multibot_rewrite.producers.ros.child import ask, observe, running
+from multibot_rewrite.producers.ros.request import Request
 from multibot_rewrite.rules.check import check
+from multibot_rewrite.spelling.plan_file import read_plan
 from multibot_rewrite.system.answers import Answer, with_answers
+from multibot_rewrite.system.questions import questions
 from multibot_rewrite.system.records import SIM_TIME, System
 
 HERE = Path(__file__).parent

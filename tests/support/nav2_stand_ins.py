@@ -19,10 +19,10 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
-from multibot_rewrite.graph.live import stub_nodes
-from multibot_rewrite.graph.live.worker import Send, run_worker
-from multibot_rewrite.graph.rehearsal import TF, StubEndpoint, substitute_type
-from multibot_rewrite.graph.transforms import Edge
+from multibot_rewrite.live import stub_nodes
+from multibot_rewrite.live.rehearsal import TF, StubEndpoint, substitute_type
+from multibot_rewrite.producers.ros.worker import Send, run_worker
+from multibot_rewrite.spelling.transforms import Edge
 from multibot_rewrite.system.records import TOPIC
 
 SECONDS = 0.1

@@ -16,15 +16,15 @@ import yaml
 from beside import findings_of
 from paths import CORPUS, FIXTURES
 
+from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.naming import Naming, make_naming
+from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.companions.context import make_context
 from multibot_rewrite.companions.params.rewrite import rewrite_params
 from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
-from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.knowledge.stacks import load_stack
-from multibot_rewrite.model import InputError
-from multibot_rewrite.naming import Naming, make_naming
-from multibot_rewrite.releases import NEWEST_LTS
 
 FOLDERS = ("nav2_params", "localization_params", "controllers")
 REFUSALS = FIXTURES / "params_refusals.json"

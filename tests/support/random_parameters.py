@@ -7,9 +7,9 @@ from pathlib import Path
 
 from rule_examples import DESCRIPTION
 
-from multibot_rewrite.fleets.build import make_outputs
-from multibot_rewrite.fleets.fleet_file import read_fleet
-from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in
 

@@ -6,7 +6,7 @@ import nav2_graphs
 from nav2_graphs import TEXT
 from plans import PlannedRobot, planned
 
-from multibot_rewrite.findings.finding import WARNING, Finding
+from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.live.seen_plan import seen_plan
 from multibot_rewrite.live.watching import Outcome, Verdict

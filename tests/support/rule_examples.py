@@ -11,19 +11,19 @@ import yaml
 from graph_examples import read_example, read_system
 
 from multibot_rewrite import RewriteRefused, rewrite_all, strip
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.findings.grouping import grouped
-from multibot_rewrite.findings.rule import SRDF, URDF, XACRO, Rule
-from multibot_rewrite.fleets.build import make_outputs
-from multibot_rewrite.fleets.fleet import make_fleet
-from multibot_rewrite.fleets.fleet_file import read_fleet
-from multibot_rewrite.fleets.fleet_plan import plan_fleet
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.grouping import grouped
+from multibot_rewrite.base.findings.rule import SRDF, URDF, XACRO, Rule
+from multibot_rewrite.base.policy import Policy
+from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet import make_fleet
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.config.settings import Settings
-from multibot_rewrite.policy import Policy
-from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.rules.check import check, judge
 from multibot_rewrite.rules.declaration import PAIR, SYSTEM
+from multibot_rewrite.rules.settings import Settings
 
 # What every companion file of an example stands beside, unless ``beside`` has another robot.urdf.
 DESCRIPTION = """\

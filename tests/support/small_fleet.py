@@ -7,11 +7,11 @@ from graph_cases import (
     sent,
 )
 
+from multibot_rewrite.base.naming import make_naming, spelled
+from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
-from multibot_rewrite.naming import make_naming, spelled
-from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.remap.table import build_table
 from multibot_rewrite.spelling.plan import expect
+from multibot_rewrite.spelling.table import build_table
 from multibot_rewrite.system.records import (
     PUBLISHES,
     SERVES,

@@ -14,10 +14,10 @@ from typing import Any
 
 import yaml
 
-from multibot_rewrite.fleets.scripts import LoadedFleet
-from multibot_rewrite.graph.rehearsal import StubEndpoint, StubNode, stub_nodes
-from multibot_rewrite.graph.transforms import Edge, with_odometry
-from multibot_rewrite.remap.applied_rules import running_nodes
+from multibot_rewrite.fleet.scripts import LoadedFleet
+from multibot_rewrite.live.rehearsal import StubEndpoint, StubNode, stub_nodes
+from multibot_rewrite.spelling.applied_rules import running_nodes
+from multibot_rewrite.spelling.transforms import Edge, with_odometry
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
 
 Told = Mapping[str, Any]

@@ -17,9 +17,9 @@ from paths import ROOT
 from vendor_live import Told, look, said, told
 from vendor_sources import install, packages_below
 
-from multibot_rewrite.fleets.build import make_outputs
-from multibot_rewrite.fleets.fleet_file import read_fleet
-from multibot_rewrite.fleets.fleet_plan import plan_fleet
+from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
 
 ARMS = {"ur": "UR5e", "franka": "FR3", "xarm": "xArm 6", "kinova": "Gen3"}
 OTHER_LAYOUT = "frames-per-robot"

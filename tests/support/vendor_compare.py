@@ -20,13 +20,13 @@ from vendor_rows import (
 )
 from vendor_systems import Vendors, started_by
 
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.fleets.build import Outputs
-from multibot_rewrite.fleets.fleet import Fleet
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.rosnames import BoundNode, bind, check_topic_name, resolve_bound
+from multibot_rewrite.base.rosnames.rules import RemapRule, parse_remap
+from multibot_rewrite.fleet.build import Outputs
+from multibot_rewrite.fleet.fleet import Fleet
 from multibot_rewrite.knowledge.records import Endpoint
-from multibot_rewrite.remap.table import parsed
-from multibot_rewrite.rosnames import BoundNode, bind, check_topic_name, resolve_bound
-from multibot_rewrite.rosnames.rules import RemapRule, parse_remap
+from multibot_rewrite.spelling.table import parsed
 from multibot_rewrite.system.records import RUNS, System
 
 DESCRIPTION = "robot_description"

@@ -14,10 +14,10 @@ from declared_graph import endpoints, facts
 from nav2_graphs import environment
 from vendor_systems import OTHER, ROBOT, Outcome, Started
 
-from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.remap.records import NodeRule, NodeTable
 from multibot_rewrite.rules.check import check
+from multibot_rewrite.spelling.records import NodeRule, NodeTable
 from multibot_rewrite.system.records import End, Node, System
 
 TF = ("/tf", "/tf_static")

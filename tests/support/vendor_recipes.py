@@ -24,12 +24,12 @@ from vendor_live import Looked, Said, look
 from vendor_sources import install, packages_below
 from vendor_systems import RECORDER, Vendors, filled, prepare
 
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.fleets.build import make_outputs
-from multibot_rewrite.fleets.fleet import expected
-from multibot_rewrite.fleets.fleet_file import read_fleet
-from multibot_rewrite.fleets.fleet_plan import plan_fleet
-from multibot_rewrite.model import InputError, UsageError
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.model import InputError, UsageError
+from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet import expected
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
 
 HERE = Path(__file__).parent
 ROBOTS = ("robot1", "robot2", "robot3")

@@ -13,7 +13,7 @@ from typing import Any
 
 import yaml
 
-from multibot_rewrite.rosnames import BoundNode, resolve_bound
+from multibot_rewrite.base.rosnames import BoundNode, resolve_bound
 
 Rows = dict[str, str]
 # The topic of a display, a tool or a panel.

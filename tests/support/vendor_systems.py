@@ -24,9 +24,9 @@ import yaml
 from vendor_rows import parameter_rows
 from vendor_sources import WITHOUT, install, packages_below, sources_folder
 
-from multibot_rewrite.fleets.fleet import Fleet, expected
-from multibot_rewrite.fleets.fleet_file import read_fleet
-from multibot_rewrite.fleets.fleet_plan import plan_fleet
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet import Fleet, expected
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.system.records import RUNS, System
 
 HERE = Path(__file__).parent

@@ -26,9 +26,9 @@ from told_nodes import nodes_of, words_of
 
 from multibot_rewrite import load_fleet
 from multibot_rewrite.cli.rehearse import stage
-from multibot_rewrite.graph.live.child import RUN_STUBS, observe, running
-from multibot_rewrite.graph.live.request import Request, to_text
-from multibot_rewrite.graph.rehearsal import split_over_processes, to_order
+from multibot_rewrite.live.rehearsal import split_over_processes, to_order
+from multibot_rewrite.producers.ros.child import RUN_STUBS, observe, running
+from multibot_rewrite.producers.ros.request import Request, to_text
 from multibot_rewrite.system.json import to_json
 
 REPOSITORY = "nav2_minimal_turtlebot_simulation"

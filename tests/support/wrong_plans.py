@@ -12,14 +12,14 @@ from typing import Any, NamedTuple
 
 from proof_faults import ROVER, SOURCES
 
-from multibot_rewrite import pipeline
-from multibot_rewrite.model import Edit
-from multibot_rewrite.naming import make_naming
-from multibot_rewrite.rewriters.insert import Insertion
-from multibot_rewrite.rewriters.spelling import ROBOT_SLOT
-from multibot_rewrite.steps import plan as planning
-from multibot_rewrite.steps.plan import LAST, Plan
-from multibot_rewrite.steps.renames import RenameMap, make_renames
+from multibot_rewrite.base.model import Edit
+from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.description import pipeline
+from multibot_rewrite.description.rewriters.insert import Insertion
+from multibot_rewrite.description.rewriters.spelling import ROBOT_SLOT
+from multibot_rewrite.description.steps import plan as planning
+from multibot_rewrite.description.steps.plan import LAST, Plan
+from multibot_rewrite.description.steps.renames import RenameMap, make_renames
 
 Wrong = Callable[[Any], Any]
 

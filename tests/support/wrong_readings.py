@@ -7,10 +7,10 @@ from typing import Any
 from proof_faults import ROVER
 from wrong_plans import NOTE, Fault, Wrong
 
-from multibot_rewrite import pipeline
-from multibot_rewrite.model import Edit
-from multibot_rewrite.steps import verify as proof
-from multibot_rewrite.steps.collect import Inventory
+from multibot_rewrite.base.model import Edit
+from multibot_rewrite.description import pipeline
+from multibot_rewrite.description.steps import verify as proof
+from multibot_rewrite.description.steps.collect import Inventory
 
 # ---------------------------------------------------------------- readings of the source
 

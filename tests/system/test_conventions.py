@@ -9,8 +9,7 @@ from pathlib import Path
 import pytest
 
 import multibot_rewrite
-from multibot_rewrite.naming import affix, make_naming
-from multibot_rewrite.system.conventions import (
+from multibot_rewrite.base.conventions import (
     EVERYBODYS,
     FRAMES,
     TOOLS,
@@ -22,6 +21,7 @@ from multibot_rewrite.system.conventions import (
     team,
     tool_patterns,
 )
+from multibot_rewrite.base.naming import affix, make_naming
 
 PACKAGE = Path(multibot_rewrite.__file__).parent
 FRAME_WORDS = {it.name for it in FRAMES}

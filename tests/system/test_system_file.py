@@ -11,7 +11,7 @@ from graph_cases import CASES
 from jsonschema import Draft202012Validator
 from paths import ROOT
 
-from multibot_rewrite.model import InputError
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.system.json import from_json, to_json
 from multibot_rewrite.system.records import (
     MAY,

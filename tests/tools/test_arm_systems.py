@@ -19,16 +19,16 @@ from lxml import etree
 from nav2_graphs import environment
 from paths import FIXTURES
 
-from multibot_rewrite.fleets.fleet import expected
-from multibot_rewrite.fleets.fleet_file import read_fleet
-from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.base.rosnames import bind, resolve_bound
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet import expected
+from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in
-from multibot_rewrite.remap.records import NodeTable
-from multibot_rewrite.remap.table import parsed
-from multibot_rewrite.rosnames import bind, resolve_bound
 from multibot_rewrite.rules.check import check
+from multibot_rewrite.spelling.records import NodeTable
+from multibot_rewrite.spelling.table import parsed
 from multibot_rewrite.system.records import TOPIC, Edge, End, Node, System
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")

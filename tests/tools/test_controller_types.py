@@ -9,9 +9,9 @@ from __future__ import annotations
 import pytest
 from paths import FIXTURES
 
+from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.stacks import built_in
-from multibot_rewrite.releases import RELEASES
 
 ROWS = [
     line.split("\t")

@@ -12,8 +12,8 @@ from functools import cache
 import pytest
 from paths import FIXTURES
 
+from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.knowledge.stacks import built_in
-from multibot_rewrite.releases import RELEASES
 from tools.interfaces.compare import (
     OURS,
     THEIRS,

@@ -10,15 +10,15 @@ import pytest
 from declared_graph import endpoints, facts
 from nav2_graphs import environment
 
+from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.base.releases import NEWEST_LTS, RELEASES
 from multibot_rewrite.knowledge.node_library import stack_of
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in
-from multibot_rewrite.naming import make_naming
-from multibot_rewrite.releases import NEWEST_LTS, RELEASES
-from multibot_rewrite.remap.records import Table
-from multibot_rewrite.remap.table import build_table
 from multibot_rewrite.rules.check import check
 from multibot_rewrite.spelling.plan import expect
+from multibot_rewrite.spelling.records import Table
+from multibot_rewrite.spelling.table import build_table
 from multibot_rewrite.system.records import Node, System
 
 SYSTEMS = {

@@ -10,8 +10,8 @@ from functools import cache
 import pytest
 from paths import FIXTURES, ROOT
 
+from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.producers.launch.launch_files import LaunchedNode
-from multibot_rewrite.releases import RELEASES
 from tools.interfaces.launch_comparison import (
     NOT_OURS,
     NOT_STARTED,

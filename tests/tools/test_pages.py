@@ -8,10 +8,10 @@ from functools import cache
 import pytest
 from paths import ROOT
 
-from multibot_rewrite import catalogue
+from multibot_rewrite.base.findings.rule_docs import examples
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
-from multibot_rewrite.findings.rule_docs import examples
-from multibot_rewrite.rewriters.vocabulary import check_vocabulary, load_vocabulary
+from multibot_rewrite.description.rewriters.vocabulary import check_vocabulary, load_vocabulary
+from multibot_rewrite.lint import catalogue
 from tools.pages.__main__ import main
 from tools.pages.every import SECTIONS, STANDS_FOR, every_page, meant
 

@@ -12,9 +12,9 @@ from functools import cache
 import pytest
 from paths import FIXTURES
 
+from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.knowledge.declared import DECLARED, YAML
 from multibot_rewrite.knowledge.stacks import every_release
-from multibot_rewrite.releases import RELEASES
 from tools.interfaces.declared_table import plugin_owners
 from tools.interfaces.parameter_comparison import (
     DEFAULT,

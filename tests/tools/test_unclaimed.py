@@ -7,14 +7,14 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite import InputError
-from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.reports.survey import (
+from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.description.reports.survey import (
     Survey,
     survey,
 )
-from multibot_rewrite.rewriters.builtin import builtin_tree
-from multibot_rewrite.steps.collect import Inventory, collect
-from multibot_rewrite.steps.document import read_document
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.steps.collect import Inventory, collect
+from multibot_rewrite.description.steps.document import read_document
 from tools.unclaimed import Explained, Reason, explain, main, read_reasons
 
 

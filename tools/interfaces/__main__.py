@@ -14,9 +14,9 @@ import argparse
 import sys
 from pathlib import Path
 
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.knowledge.stacks import built_in
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.releases import RELEASES
 from tools.interfaces import plugin_files, sdf_elements
 from tools.interfaces.checkouts import read_folder
 from tools.interfaces.compare import difference_of, differences

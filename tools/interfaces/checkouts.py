@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from multibot_rewrite.model import UsageError
+from multibot_rewrite.base.model import UsageError
 from tools.interfaces.cpp import read_cpp
 from tools.interfaces.python import read_python
 from tools.interfaces.records import Place, Source, joined

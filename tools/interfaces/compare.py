@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.knowledge.node_library import NodeLibrary
 from multibot_rewrite.knowledge.records import Endpoint
-from multibot_rewrite.record import NamedTuple
 from tools.interfaces.records import Class, Fact
 
 # Parts of ours that come from rclcpp and rclcpp_lifecycle, which are not read.

@@ -12,8 +12,8 @@ import ast
 import re
 from collections.abc import Iterable, Iterator, Mapping
 
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.knowledge.declared import DECLARED, READ
-from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules.files.parameter_files import NO_DEFAULT, text_of
 from tools.interfaces.expressions import is_node
 from tools.interfaces.parameter_facts import ParameterFact

@@ -14,11 +14,11 @@ from functools import lru_cache
 from importlib.resources import files
 from pathlib import Path
 
-from multibot_rewrite.bounded import load_yaml
+from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.releases import RELEASES as EVERY
 from multibot_rewrite.knowledge.declared import ANY, CHECKS, DECLARED, RELEASES
 from multibot_rewrite.knowledge.stacks import every_release
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.releases import RELEASES as EVERY
 from tools.interfaces.parameter_facts import ParameterFact, read_parameters
 from tools.interfaces.records import Place
 

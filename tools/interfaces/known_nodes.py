@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from functools import cache
 from importlib.resources import files
 
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.base.record import NamedTuple
 from tools.interfaces.nodes import facts_of
 from tools.interfaces.records import Class, Fact, Place
 from tools.interfaces.scope import Index

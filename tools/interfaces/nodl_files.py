@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.knowledge.nodl.writing import UNKNOWN_QOS, NodlFile, document_of
 from multibot_rewrite.knowledge.records import Endpoint
-from multibot_rewrite.model import UsageError
 from multibot_rewrite.system.records import (
     ACTION,
     CALLS,

@@ -11,10 +11,10 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.knowledge.declared import YAML
 from multibot_rewrite.knowledge.records import NodeParameters
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.releases import has_release
 from multibot_rewrite.rules.files.parameter_files import EMPTY, NO_DEFAULT
 from tools.interfaces.parameter_facts import ParameterFact
 

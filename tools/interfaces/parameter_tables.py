@@ -12,11 +12,11 @@ from collections.abc import Iterable, Iterator
 from itertools import groupby
 from pathlib import Path
 
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.knowledge.declared import READ, YAML
-from multibot_rewrite.model import UsageError
 from multibot_rewrite.producers.launch.launch_files import LaunchedNode, launched_nodes
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.releases import RELEASES
 from multibot_rewrite.rules.files.parameter_files import file_parameters
 from tools.interfaces.cpp import read_cpp
 from tools.interfaces.declared_parameters import (

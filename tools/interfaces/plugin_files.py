@@ -1,4 +1,4 @@
-"""Checkouts of simulator plugins and ros2_control hardware -> ``lint/schema/plugins.schema``.
+"""Checkouts of simulator plugins and ros2_control hardware -> ``rules/schema/plugins.schema``.
 
 Which libraries there are and what they are made of is in CMakeLists.txt, which classes in the
 macros that register them; hardware classes are in the files that describe plugins.
@@ -10,9 +10,9 @@ import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.releases import RELEASES
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.releases import RELEASES
 from tools.interfaces.hardware_parameters import read_hardware
 from tools.interfaces.helper_classes import by_prefix
 from tools.interfaces.plugin_parameters import (
@@ -26,7 +26,7 @@ from tools.interfaces.plugin_parameters import (
 HEAD = """\
 # Parameters that plugins of simulators and ros2_control hardware read. Made by
 # python -m tools.interfaces --plugins FOLDER... >
-# multibot_rewrite/lint/schema/plugins.schema
+# multibot_rewrite/rules/schema/plugins.schema
 #
 #   [NAME...] REPOSITORY TAG FOLDER [open] [+SECTION] [releases=WORDS]
 #                                               a plugin by its library and classes,

@@ -13,7 +13,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.base.record import NamedTuple
 from tools.interfaces.expressions import text_of
 from tools.interfaces.plugin_demands import required_in, words_in
 from tools.interfaces.syntax import nodes_of

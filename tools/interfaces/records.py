@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.base.record import NamedTuple
 
 
 class Place(NamedTuple):

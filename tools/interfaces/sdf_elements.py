@@ -1,4 +1,4 @@
-"""The SDF specification's own description files -> ``lint/schema/sdf.schema``.
+"""The SDF specification's own description files -> ``rules/schema/sdf.schema``.
 
 A checkout of sdformat has ``sdf/VERSION/*.sdf``, one folder a version: which elements there are, what
 they hold, from where to where, and what is required. What its C++ adds is read beside them: the words
@@ -13,15 +13,15 @@ from pathlib import Path
 
 from lxml import etree
 
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.record import NamedTuple
 
 # Older ones are not met any more.
 OLDEST = (1, 4)
 ROOTS = ("model", "link", "joint")
 HEAD = """\
 # What SDF has in each element, by version. Made by
-# python -m tools.interfaces --sdf sdformat@TAG > multibot_rewrite/lint/schema/sdf.schema
+# python -m tools.interfaces --sdf sdformat@TAG > multibot_rewrite/rules/schema/sdf.schema
 #
 #   [section] FILE                        an element's children and attributes; FILE is sdf/VERSION/FILE
 #   NAME TYPE LINE [>SECTION] [VERSIONS] [required] [MIN..MAX] [=DEFAULT]

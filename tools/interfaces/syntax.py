@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 from typing import TYPE_CHECKING
 
-from multibot_rewrite.model import UsageError
+from multibot_rewrite.base.model import UsageError
 
 if TYPE_CHECKING:
     from tree_sitter import Node, Parser, QueryCursor

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from importlib.resources import files
 from pathlib import Path
 
+from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.knowledge.stacks import every_release
-from multibot_rewrite.releases import RELEASES
 from tools.interfaces.declared_table import plugin_owners
 from tools.interfaces.launch_comparison import (
     launch_differences,

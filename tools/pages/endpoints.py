@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.knowledge.stacks import built_in
-from multibot_rewrite.releases import RELEASES
 from tools.interfaces.compare import differences, excepted, exceptions_of
 from tools.interfaces.table import from_table
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from multibot_rewrite.fleets.fleet_data import schema
+from multibot_rewrite.fleet.file.fleet_data import schema
 from tools.pages.markdown import ESCAPED
 
 HEAD = """\
 # Keys of the fleet file
 
-Made from the schema that editors read, `multibot_rewrite/fleets/fleet.schema.json`. How they work
+Made from the schema that editors read, `multibot_rewrite/fleet/fleet.schema.json`. How they work
 together: [the fleet file](fleet-file.md).
 """
 TITLES = {

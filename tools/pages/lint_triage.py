@@ -6,9 +6,9 @@ from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
 
-from multibot_rewrite.findings.finding import ERROR
+from multibot_rewrite.base.findings.finding import ERROR
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.record import NamedTuple
 from tools.pages.markdown import plain
 
 FIXTURES = Path(__file__).parents[2] / "fixtures"

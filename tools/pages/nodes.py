@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from multibot_rewrite.controller_ways import CONTROLLER_WAYS, ControllerWay
+from multibot_rewrite.knowledge.controller_ways import CONTROLLER_WAYS, ControllerWay
 from multibot_rewrite.knowledge.node_library import NodeLibrary, Stack
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import every_release

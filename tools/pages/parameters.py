@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.knowledge.parameter_entries import PREFIX_KINDS, has_default
 from multibot_rewrite.knowledge.parameters import KnownNode, KnownNodes, built_in_nodes
 from multibot_rewrite.knowledge.records import Param
-from multibot_rewrite.releases import NEWEST_LTS
 
 HEAD = """\
 # Known parameters

@@ -5,20 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterable
 from itertools import groupby
 
-from multibot_rewrite.model import Site
-from multibot_rewrite.rewriters.vocabulary import (
+from multibot_rewrite.base.model import Site
+from multibot_rewrite.description.rewriters.vocabulary import (
     VocabularySection,
     check_vocabulary,
     load_vocabulary,
 )
-from multibot_rewrite.rewriters.vocabulary.describe import facts
+from multibot_rewrite.description.rewriters.vocabulary.describe import facts
 from tools.pages.markdown import plain
 
 HEAD = """\
 # Plugins, elements and hardware classes
 
-Everything the rewriters know, from `multibot_rewrite/rewriters/vocabulary/*.vocab`; `multibot
-inspect NAME` prints one.
+Everything the rewriters know, from `multibot_rewrite/description/rewriters/vocabulary/*.vocab`;
+`multibot inspect NAME` prints one.
 
 `declares` and `uses` name kinds, tried in order until one resolves; `keep` values are never renamed.
 A default is inserted where the element is absent, or put into an empty one that means the same, if it

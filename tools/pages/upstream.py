@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from itertools import groupby
 from pathlib import Path
 
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.base.record import NamedTuple
 from tools.pages.markdown import plain
 
 DATA = Path(__file__).parents[2] / "fixtures" / "upstream.tsv"

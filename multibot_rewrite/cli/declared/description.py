@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from multibot_rewrite.base.findings.finding import ERROR
 from multibot_rewrite.cli import values
 from multibot_rewrite.cli.declared.shared import (
     DISTRO,
@@ -26,7 +27,6 @@ from multibot_rewrite.cli.options import (
     switch,
     value,
 )
-from multibot_rewrite.findings.finding import ERROR
 
 POSTFIX = Command(
     "urdf-postfix",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from multibot_rewrite.base.findings.finding import ERROR
 from multibot_rewrite.cli import values
 from multibot_rewrite.cli.declared.shared import (
     DISTRO,
@@ -33,11 +34,10 @@ from multibot_rewrite.cli.options import (
     switch,
     value,
 )
-from multibot_rewrite.findings.finding import ERROR
 
 # The plan, and besides those of ``remap.table_formats``, which a help text does not import.
 PLAN_FORMS = ("plan", "table", "ros-args", "launch", "yaml", "json", "gazebo", "bridge", "sros2")
-# Those of ``fleets/shapes.yaml``.
+# Those of ``fleet/shapes.yaml``.
 SHAPES = ("clearpath", "husarion", "nav2", "turtlebot4")
 # Those of ``remap.ways``.
 EVERY_WAY = "all"

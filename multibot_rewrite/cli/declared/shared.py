@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+from multibot_rewrite.base.conventions import SHARED_TOPICS, WORLD_FRAMES
+from multibot_rewrite.base.findings.finding import LEVELS
+from multibot_rewrite.base.findings.formats import FORMATS
+from multibot_rewrite.base.naming import DEFAULT_LAYOUT, LAYOUTS, SEPARATORS
+from multibot_rewrite.base.releases import NEWEST_LTS, RELEASES, VARIABLE
 from multibot_rewrite.cli import values
 from multibot_rewrite.cli.options import (
     Option,
@@ -13,11 +18,6 @@ from multibot_rewrite.cli.options import (
     switch,
     value,
 )
-from multibot_rewrite.findings.finding import LEVELS
-from multibot_rewrite.findings.formats import FORMATS
-from multibot_rewrite.naming import DEFAULT_LAYOUT, LAYOUTS, SEPARATORS
-from multibot_rewrite.releases import NEWEST_LTS, RELEASES, VARIABLE
-from multibot_rewrite.system.conventions import SHARED_TOPICS, WORLD_FRAMES
 
 # argparse's word for an option that leaves what is there alone.
 SUPPRESS = "==SUPPRESS=="

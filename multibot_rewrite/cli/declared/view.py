@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from multibot_rewrite.base.findings.finding import ERROR
 from multibot_rewrite.cli.declared.shared import (
     BAG,
     DISTRO,
@@ -20,7 +21,6 @@ from multibot_rewrite.cli.options import (
     output,
     output_group,
 )
-from multibot_rewrite.findings.finding import ERROR
 
 VIEW = Command(
     "view",

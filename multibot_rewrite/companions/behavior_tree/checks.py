@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.companions.behavior_tree.ports import Port, place_of
-from multibot_rewrite.findings.finding import WARNING, Finding
-from multibot_rewrite.findings.rule import declare
-from multibot_rewrite.steps.document import Document
+from multibot_rewrite.description.steps.document import Document
 
 INCLUDE = declare(
     "MF403",

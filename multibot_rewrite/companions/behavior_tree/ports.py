@@ -7,10 +7,10 @@ from functools import cache
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
-from multibot_rewrite.bounded import load_yaml
-from multibot_rewrite.findings.place import locate
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.steps.document import Document, value_slot
+from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.findings.place import locate
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.steps.document import Document, value_slot
 
 if TYPE_CHECKING:
     from lxml.etree import _Element

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.companions.behavior_tree.ports import (
     GRAPH_KINDS,
     Port,
@@ -15,8 +16,7 @@ from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.kinds import TREE
 from multibot_rewrite.companions.names.placeholders import without_robot
 from multibot_rewrite.companions.sites import NamedFile, Site
-from multibot_rewrite.model import InputError
-from multibot_rewrite.steps.document import Document, read_document
+from multibot_rewrite.description.steps.document import Document, read_document
 
 
 def read_tree(data: bytes, file: str) -> Document:

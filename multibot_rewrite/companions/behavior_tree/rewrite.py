@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from xml.sax.saxutils import escape
 
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.companions.behavior_tree.checks import included_files
 from multibot_rewrite.companions.behavior_tree.ports import (
     GRAPH_KINDS,
@@ -26,9 +28,7 @@ from multibot_rewrite.companions.names.node_topics import FROM_NODE, spell_topic
 from multibot_rewrite.companions.names.placeholders import without_robot
 from multibot_rewrite.companions.template import check_no_slots, make_template
 from multibot_rewrite.companions.yaml_text import Splice
-from multibot_rewrite.model import InputError
-from multibot_rewrite.releases import has_release
-from multibot_rewrite.steps.document import Document, value_slot
+from multibot_rewrite.description.steps.document import Document, value_slot
 
 NAVIGATOR = "bt_navigator"
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.findings.rule import Rule, declare
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.moveit.controller_manager import unreachable_managers
 from multibot_rewrite.companions.moveit.name_sites import MoveitName, MoveitNames
 from multibot_rewrite.companions.names.by_kind import expressible
 from multibot_rewrite.companions.params import name_checks
 from multibot_rewrite.companions.yaml_text import YamlText, found_at
-from multibot_rewrite.findings.finding import WARNING, Finding
-from multibot_rewrite.findings.rule import Rule, declare
 
 GRAPH_WORDS = ("topic", "service")
 # The rule, the message and the hint.

@@ -6,13 +6,13 @@ from collections.abc import Iterable, Iterator
 
 import yaml
 
+from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.moveit.name_sites import MoveitName, entries
 from multibot_rewrite.companions.names.by_kind import SPELLERS
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, found_at
-from multibot_rewrite.findings.finding import WARNING, Finding
-from multibot_rewrite.findings.rule import declare
-from multibot_rewrite.naming import NAMESPACE
 
 # moveit_ros_control_interface looks for the manager below the root unless the namespace is set.
 _MANAGER = "moveit_controller_manager"

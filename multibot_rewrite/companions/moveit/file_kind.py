@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 import yaml
 
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.companions.moveit.name_sites import FileKind, entries, kinds
 from multibot_rewrite.companions.params.sections import PARAMETERS
 from multibot_rewrite.companions.yaml_text import YamlText, line_of
-from multibot_rewrite.model import InputError
 
 EMPTY = "empty"
 _DEPTH = 4

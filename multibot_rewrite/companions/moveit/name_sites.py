@@ -9,10 +9,10 @@ from typing import Any
 
 import yaml
 
-from multibot_rewrite.bounded import load_yaml
+from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.rename_map import KINDS, CompanionNames, is_declared
 from multibot_rewrite.companions.yaml_text import is_text, pairs
-from multibot_rewrite.record import NamedTuple
 
 KEEP = "keep"
 # The kind of name that a value is, or keys with the shape below each.

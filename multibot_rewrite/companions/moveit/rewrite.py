@@ -11,6 +11,9 @@ from collections.abc import Iterable, Iterator
 
 import yaml
 
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.naming import NAMESPACE
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.companion import Companion
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.moveit.checks import GRAPH_WORDS, file_findings
@@ -30,9 +33,6 @@ from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.companions.template import TAG_SLOT, check_no_slots, make_template
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, line_of, quoted
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.model import InputError
-from multibot_rewrite.naming import NAMESPACE
-from multibot_rewrite.record import NamedTuple
 
 # The nodes that read these files, as the stacks call them.
 MOVE_GROUP, SERVO = "move_group", "servo_node"

@@ -5,12 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 
+from multibot_rewrite.base.conventions import PLACEHOLDER
+from multibot_rewrite.base.naming import FRAME_KINDS, NAMESPACE, NOT_PLAIN, PREFIX, spelled
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.names.rename_map import is_declared, spell
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT
 from multibot_rewrite.knowledge.stacks import is_apart
-from multibot_rewrite.naming import FRAME_KINDS, NAMESPACE, NOT_PLAIN, PREFIX, spelled
-from multibot_rewrite.system.conventions import PLACEHOLDER
 
 Speller = Callable[[Context, str], str]
 _WORD = re.compile(r"[\w./-]+")

@@ -9,17 +9,17 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from functools import lru_cache
 
+from multibot_rewrite.base.naming import NAMESPACE
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.rosnames import bind, check_topic_name, expand, resolve_bound
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.names.by_kind import is_plain
 from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.companions.template import NAMESPACE_SLOT
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in, is_apart
-from multibot_rewrite.naming import NAMESPACE
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.table import node_table, parsed
-from multibot_rewrite.remap.targets import placed, target_of
-from multibot_rewrite.rosnames import bind, check_topic_name, expand, resolve_bound
+from multibot_rewrite.spelling.table import node_table, parsed
+from multibot_rewrite.spelling.targets import placed, target_of
 
 Facts = Mapping[str, NodeFacts]
 # Where a relative name is resolved: in the node's namespace, in the one above it (the node joins the

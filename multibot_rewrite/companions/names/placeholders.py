@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import re
 
-from multibot_rewrite.naming import NOT_PLAIN
-from multibot_rewrite.system.conventions import PREFIX_WORDS, ROBOT_WORDS
+from multibot_rewrite.base.conventions import PREFIX_WORDS, ROBOT_WORDS
+from multibot_rewrite.base.naming import NOT_PLAIN
 
 _ROBOT = f"(?:{'|'.join(ROBOT_WORDS)})"
 _STANDS = rf"(?:<{_ROBOT}>|\$\((?:var|arg)\s+{_ROBOT}\)|\$\{{{_ROBOT}\}})"

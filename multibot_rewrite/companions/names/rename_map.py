@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from multibot_rewrite.naming import NOT_PLAIN, Naming, spelled
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.rewriters.forms import Declared
-from multibot_rewrite.rewriters.spelling import resolve
+from multibot_rewrite.base.naming import NOT_PLAIN, Naming, spelled
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.rewriters.forms import Declared
+from multibot_rewrite.description.rewriters.spelling import resolve
 
 # Kinds of names in a description that a kind of value may refer to, tried in order.
 KINDS = {

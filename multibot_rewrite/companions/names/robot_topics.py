@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
+from multibot_rewrite.base.naming import NAMESPACE, NOT_PLAIN
+from multibot_rewrite.base.rosnames import check_topic_name, expand
 from multibot_rewrite.companions.names.rename_map import CompanionNames
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.naming import NAMESPACE, NOT_PLAIN
-from multibot_rewrite.remap.records import Table
-from multibot_rewrite.remap.targets import target_of
-from multibot_rewrite.rosnames import check_topic_name, expand
+from multibot_rewrite.spelling.records import Table
+from multibot_rewrite.spelling.targets import target_of
 from multibot_rewrite.system.records import ACTION, TOPIC
 
 NOTHING: Mapping[str, str] = {}

@@ -11,6 +11,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from multibot_rewrite.base.conventions import PLACEHOLDER
+from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.companions.params.rcl_parameters import parameters_text
 from multibot_rewrite.companions.params.sections import RawSection, raw_sections
 from multibot_rewrite.companions.params.shared_defaults import DefaultLine, inserted
@@ -23,9 +26,6 @@ from multibot_rewrite.companions.yaml_text import (
     replaced,
     spliced,
 )
-from multibot_rewrite.findings.finding import ERROR, Finding
-from multibot_rewrite.findings.rule import declare
-from multibot_rewrite.system.conventions import PLACEHOLDER
 
 _SLAM = "slam_toolbox"
 _WHY = "# nav2_bringup wants this key, and gives slam_toolbox the file without a namespace.\n"

@@ -12,12 +12,12 @@ from collections.abc import Iterator
 
 import yaml
 
+from multibot_rewrite.base.findings.finding import NOTE, Finding
+from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.companions.names.placeholders import filled
 from multibot_rewrite.companions.params.sections import ParamSection
 from multibot_rewrite.companions.params.values import ParamsJob
 from multibot_rewrite.companions.yaml_text import found_at, pairs
-from multibot_rewrite.findings.finding import NOTE, Finding
-from multibot_rewrite.findings.rule import declare
 
 # The second one: camera_aravis, spinnaker_camera_driver.
 _URLS = frozenset({"camera_info_url", "camerainfo_url"})

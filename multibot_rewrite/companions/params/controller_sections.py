@@ -11,6 +11,8 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import yaml
 
+from multibot_rewrite.base.conventions import PLACEHOLDER
+from multibot_rewrite.base.naming import spelled
 from multibot_rewrite.companions.context import Context, full_name
 from multibot_rewrite.companions.params.sections import (
     ANY,
@@ -29,8 +31,6 @@ from multibot_rewrite.companions.params.shared_defaults import (
 from multibot_rewrite.companions.params.values import ParamsJob
 from multibot_rewrite.companions.template import NAMESPACE_SLOT
 from multibot_rewrite.companions.yaml_text import Splice, YamlText
-from multibot_rewrite.naming import spelled
-from multibot_rewrite.system.conventions import PLACEHOLDER
 
 
 def controller_sections(

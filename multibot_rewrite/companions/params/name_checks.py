@@ -6,6 +6,8 @@ from collections.abc import Iterator
 
 import yaml
 
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.names.by_kind import (
     expressible,
@@ -17,8 +19,6 @@ from multibot_rewrite.companions.names.rename_map import is_declared
 from multibot_rewrite.companions.params.name_sites import NameSite
 from multibot_rewrite.companions.params.values import ParamsJob
 from multibot_rewrite.companions.yaml_text import YamlText, found_at
-from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.knowledge.parameter_entries import PREFIX_KINDS, RUN_TIME
 
 # Patterns that match everything or nothing hold no robot's name.

@@ -6,14 +6,14 @@ import re
 
 import yaml
 
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.placeholders import is_robot, without_robot
 from multibot_rewrite.companions.params.sections import ParamSection
 from multibot_rewrite.companions.yaml_text import YamlText, items, line_of
 from multibot_rewrite.knowledge.parameter_entries import PREFIX_KINDS
 from multibot_rewrite.knowledge.parameters import Branch, KnownNode, KnownNodes, guess
 from multibot_rewrite.knowledge.records import Param
-from multibot_rewrite.model import InputError
-from multibot_rewrite.record import NamedTuple
 
 STRING = "tag:yaml.org,2002:str"
 NULL = "tag:yaml.org,2002:null"

@@ -13,9 +13,9 @@ from typing import Any
 
 import yaml
 
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.companions.params.sections import pattern_of, raw_sections
 from multibot_rewrite.companions.yaml_text import YamlText, line_of, pairs
-from multibot_rewrite.model import InputError
 
 Scalar = bool | int | float | str
 Value = Scalar | list[Scalar]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
 
+from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.kinds import PARAMS
 from multibot_rewrite.companions.names.placeholders import without_robot
@@ -23,7 +24,6 @@ from multibot_rewrite.companions.params.sections import (
 from multibot_rewrite.companions.sites import SECTION, NamedFile, Site, site_at
 from multibot_rewrite.companions.yaml_text import YamlText
 from multibot_rewrite.knowledge.parameters import KnownNodes
-from multibot_rewrite.releases import has_release
 
 
 def read_params(

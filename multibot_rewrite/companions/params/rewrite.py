@@ -10,6 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.companions.companion import Companion
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.names.node_topics import facts_by_name
@@ -48,8 +50,6 @@ from multibot_rewrite.companions.template import (
     make_template,
 )
 from multibot_rewrite.companions.yaml_text import Splice, YamlText
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.knowledge.parameters import KnownNodes, built_in_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
 

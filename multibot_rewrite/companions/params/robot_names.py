@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.params.sections import ANY, ParamSection
 from multibot_rewrite.companions.yaml_text import YamlText, found_at
-from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.findings.rule import declare
 
 ONE_ROBOT = declare(
     "MF104",

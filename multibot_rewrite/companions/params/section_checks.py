@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.companions.params.sections import ParamSection
 from multibot_rewrite.companions.yaml_text import YamlText, found_at
-from multibot_rewrite.findings.finding import WARNING, Finding
-from multibot_rewrite.findings.rule import declare
 
 SHARED_NODE = declare(
     "MF103",

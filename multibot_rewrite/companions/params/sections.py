@@ -11,6 +11,12 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 import yaml
 
+from multibot_rewrite.base.conventions import PLACEHOLDER
+from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.naming import spelled
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.context import Context, full_name
 from multibot_rewrite.companions.names.placeholders import without_robot
 from multibot_rewrite.companions.template import NAMESPACE_SLOT
@@ -23,14 +29,8 @@ from multibot_rewrite.companions.yaml_text import (
     pairs,
     replaced,
 )
-from multibot_rewrite.findings.finding import ERROR, Finding
-from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.knowledge.parameters import KnownNode, KnownNodes
 from multibot_rewrite.knowledge.stacks import apart_nodes, is_apart
-from multibot_rewrite.model import InputError
-from multibot_rewrite.naming import spelled
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.system.conventions import PLACEHOLDER
 
 PARAMETERS = "ros__parameters"
 MANAGER = "controller_manager"

@@ -7,6 +7,10 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import yaml
 
+from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.naming import NAMESPACE
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.names.by_kind import SPELLERS, expressible
 from multibot_rewrite.companions.params.name_checks import prefix_only
@@ -20,12 +24,8 @@ from multibot_rewrite.companions.params.sections import (
 from multibot_rewrite.companions.params.values import NO_PREFIX, ParamsJob, frames_stay
 from multibot_rewrite.companions.template import NAMESPACE_SLOT
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, found_at, pairs, quoted
-from multibot_rewrite.findings.finding import WARNING, Finding
-from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.knowledge.parameter_entries import PREFIX_KINDS
 from multibot_rewrite.knowledge.parameters import KnownNode, is_absolute
-from multibot_rewrite.naming import NAMESPACE
-from multibot_rewrite.record import NamedTuple
 
 DEFAULT = "# multibot: the default is every robot's"
 OFF = "# multibot: the default puts the namespace before frames"

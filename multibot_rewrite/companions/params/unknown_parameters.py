@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.companions.params.name_sites import NameSite, SectionNames
 from multibot_rewrite.companions.params.sections import ParamSection
 from multibot_rewrite.companions.params.values import ParamsJob, renamed
 from multibot_rewrite.companions.yaml_text import found_at
-from multibot_rewrite.findings.finding import WARNING, Finding
-from multibot_rewrite.findings.rule import declare
 
 UNKNOWN_NODE = declare(
     "MF114",

@@ -6,6 +6,11 @@ from collections.abc import Iterator
 
 import yaml
 
+from multibot_rewrite.base.conventions import PLACEHOLDER
+from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.releases import RELEASES, has_release
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.names.by_kind import SPELLERS, is_component, is_plain
 from multibot_rewrite.companions.names.node_topics import (
@@ -21,14 +26,9 @@ from multibot_rewrite.companions.params.name_sites import NameSite, SectionNames
 from multibot_rewrite.companions.params.sections import ParamSection
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, found_at, pairs, replaced
-from multibot_rewrite.findings.finding import WARNING, Finding
-from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.knowledge.parameter_entries import GRAPH_NAME_KINDS, RUN_TIME, SWITCH_KINDS
 from multibot_rewrite.knowledge.parameters import KnownNodes, is_absolute
 from multibot_rewrite.knowledge.records import Param
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.releases import RELEASES, has_release
-from multibot_rewrite.system.conventions import PLACEHOLDER
 
 # Controllers make an empty prefix of it; an empty parameter may stand for the namespace.
 NO_PREFIX = "/"

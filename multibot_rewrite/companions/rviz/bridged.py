@@ -9,14 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.naming import PREFIX, make_naming
 from multibot_rewrite.companions.rviz.display_groups import leaves
 from multibot_rewrite.companions.rviz.read_config import RvizItem, read_config
 from multibot_rewrite.companions.rviz.rewrite import RvizText, rewrite_rviz
 from multibot_rewrite.companions.rviz.values import TF_PREFIX, TOPIC, RvizRobot
 from multibot_rewrite.companions.yaml_text import YamlText, found_at
-from multibot_rewrite.findings.finding import WARNING, Finding
-from multibot_rewrite.findings.rule import declare
-from multibot_rewrite.naming import PREFIX, make_naming
 
 AT_RUN_TIME = "frame-prefix"
 

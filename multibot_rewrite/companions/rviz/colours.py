@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from colorsys import hls_to_rgb
 
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.companions.rviz.read_config import rviz_data
-from multibot_rewrite.model import InputError
-from multibot_rewrite.nearest import did_you_mean_one_of
 
 Colour = tuple[int, int, int]
 # Steps of the golden angle never repeat a hue.

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.companions.rviz.display_groups import Robots
 from multibot_rewrite.companions.rviz.read_config import (
     DOCK,
@@ -14,9 +17,6 @@ from multibot_rewrite.companions.rviz.read_config import (
 )
 from multibot_rewrite.companions.rviz.values import GRAPH_NAMESPACE, LINK, TF_PREFIX, RvizRobot
 from multibot_rewrite.companions.yaml_text import found_at, pairs
-from multibot_rewrite.findings.finding import WARNING, Finding
-from multibot_rewrite.findings.rule import declare
-from multibot_rewrite.naming import NAMESPACE
 
 
 def display_findings(

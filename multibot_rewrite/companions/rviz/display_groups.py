@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 
 import yaml
 
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.robot_topics import robot_topic
 from multibot_rewrite.companions.rviz.colours import Colour
 from multibot_rewrite.companions.rviz.read_config import (
@@ -38,7 +39,6 @@ from multibot_rewrite.companions.yaml_blocks import (
     newline,
 )
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, pairs, quoted, replaced
-from multibot_rewrite.record import NamedTuple
 
 Robots = Sequence[RvizRobot]
 Wanted = Callable[[RvizItem], bool]

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.companions.rviz.display_checks import display_findings
 from multibot_rewrite.companions.rviz.display_groups import Robots, leaves
 from multibot_rewrite.companions.rviz.read_config import RvizConfig
 from multibot_rewrite.companions.rviz.window_checks import window_findings
-from multibot_rewrite.findings.finding import Finding
 
 
 def config_findings(

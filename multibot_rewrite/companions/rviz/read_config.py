@@ -9,11 +9,11 @@ from typing import Any
 
 import yaml
 
-from multibot_rewrite.bounded import load_yaml
+from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.yaml_blocks import Block, blocks, is_block
 from multibot_rewrite.companions.yaml_text import YamlText, line_of, pairs, refuse_anchors
-from multibot_rewrite.model import InputError
-from multibot_rewrite.record import NamedTuple
 
 MANAGER = "Visualization Manager"
 GROUP = "rviz_common/Group"

@@ -6,7 +6,12 @@ from collections.abc import Iterator, Sequence
 
 import yaml
 
-from multibot_rewrite.bounded import compose_yaml
+from multibot_rewrite.base.bounded import compose_yaml
+from multibot_rewrite.base.conventions import WORLD_FRAMES
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.model import ProofError, UsageError
+from multibot_rewrite.base.naming import TF_TOPICS, Naming
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.rviz.colours import Colour, palette, read_colour
 from multibot_rewrite.companions.rviz.display_groups import (
     has_own_windows,
@@ -34,12 +39,7 @@ from multibot_rewrite.companions.rviz.read_config import (
 from multibot_rewrite.companions.rviz.values import RvizRobot, frame_of, item_splices
 from multibot_rewrite.companions.yaml_blocks import as_item, blocks, cut_out, is_block, newline
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, replaced, spliced
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.model import ProofError, UsageError
-from multibot_rewrite.naming import TF_TOPICS, Naming
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.targets import target_of
-from multibot_rewrite.system.conventions import WORLD_FRAMES
+from multibot_rewrite.spelling.targets import target_of
 from multibot_rewrite.system.records import TOPIC
 
 __all__ = ["RvizRobot", "RvizText", "rewrite_rviz", "start_command", "world_frame"]

@@ -6,14 +6,14 @@ from collections.abc import Iterator, Mapping
 
 import yaml
 
+from multibot_rewrite.base.naming import NAMESPACE
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.placeholders import is_robot, without_robot
 from multibot_rewrite.companions.names.rename_map import CompanionNames, spell
 from multibot_rewrite.companions.names.robot_topics import NOTHING, robot_topic
 from multibot_rewrite.companions.rviz.colours import Colour
 from multibot_rewrite.companions.rviz.read_config import RvizItem, ValuePlace, text_of
 from multibot_rewrite.companions.yaml_text import Splice, replaced
-from multibot_rewrite.naming import NAMESPACE
-from multibot_rewrite.record import NamedTuple
 
 TOPIC, GRAPH_NAMESPACE, FRAME = "topic", "namespace", "frame"
 LINK, JOINT, GROUP = "link", "joint", "group"

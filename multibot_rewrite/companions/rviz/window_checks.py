@@ -6,12 +6,12 @@ from collections.abc import Iterator
 
 import yaml
 
+from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.companions.rviz.display_groups import Robots, for_one_process, leaves
 from multibot_rewrite.companions.rviz.read_config import ABSOLUTE, PROCESS, RvizConfig, value
 from multibot_rewrite.companions.rviz.values import frame_of
 from multibot_rewrite.companions.yaml_text import found_at
-from multibot_rewrite.findings.finding import WARNING, Finding
-from multibot_rewrite.findings.rule import declare
 
 
 def window_findings(

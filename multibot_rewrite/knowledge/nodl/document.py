@@ -10,6 +10,8 @@ import re
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.rosnames import check_full_name, check_topic_name, expand
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.knowledge.yaml_with_lines import (
     YamlItem,
@@ -21,8 +23,6 @@ from multibot_rewrite.knowledge.yaml_with_lines import (
     word_of,
     wrong,
 )
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.rosnames import check_full_name, check_topic_name, expand
 from multibot_rewrite.system.records import (
     ACTION,
     CALLS,

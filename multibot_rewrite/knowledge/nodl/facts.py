@@ -9,6 +9,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.knowledge.node_library import NodeLibrary, stack_of
 from multibot_rewrite.knowledge.nodl.document import Document, Parameter
 from multibot_rewrite.knowledge.nodl.lookup import (
@@ -20,9 +23,6 @@ from multibot_rewrite.knowledge.nodl.lookup import (
     shown,
 )
 from multibot_rewrite.knowledge.records import TRANSPORTS, Endpoint, FrameParameter, NodeFacts
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.rosnames import expand
 from multibot_rewrite.system.records import SERVES, SERVICE, SUBSCRIBES, TOPIC
 
 EVERY_NODE = "every_node"

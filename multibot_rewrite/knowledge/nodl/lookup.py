@@ -10,10 +10,10 @@ import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
 
-from multibot_rewrite.bounded import read_text
+from multibot_rewrite.base.bounded import read_text
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.knowledge.nodl.document import Document, Include, parse
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.record import NamedTuple
 
 INDEX = os.path.join("share", "ament_index", "resource_index", "nodl")
 SUFFIXES = (".nodl.yaml", ".nodl.yml", ".nodl.json")

@@ -9,11 +9,11 @@ import re
 from collections.abc import Callable, Iterable, Sequence
 from typing import TypeAlias
 
+from multibot_rewrite.base.model import ProofError, UsageError
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.knowledge.nodl.document import GROUP, SECTIONS, parse
 from multibot_rewrite.knowledge.nodl.lookup import SUFFIXES
 from multibot_rewrite.knowledge.records import Endpoint
-from multibot_rewrite.model import ProofError, UsageError
-from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.system.records import TOPIC
 
 DEFAULT = "SYSTEM_DEFAULT"

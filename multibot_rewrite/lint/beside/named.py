@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.formats import read_named
 from multibot_rewrite.companions.kinds import MOVEIT
 from multibot_rewrite.companions.names.rename_map import KINDS, CompanionNames
 from multibot_rewrite.companions.sites import NamedFile
 from multibot_rewrite.companions.yaml_text import YamlText
-from multibot_rewrite.lint.beside.robots import Robots, robots_of
-from multibot_rewrite.lint.config.settings import Settings
-from multibot_rewrite.model import InputError
-from multibot_rewrite.naming import make_naming
-from multibot_rewrite.rewriters.forms import Declared
+from multibot_rewrite.description.rewriters.forms import Declared
+from multibot_rewrite.lint.beside.robots import robots_of
+from multibot_rewrite.rules.settings import Settings
+from multibot_rewrite.rules.subject import Robots
 
 _AS_WRITTEN = make_naming("tf-per-robot")
 # Kinds of names for which a file's robots have to be known.

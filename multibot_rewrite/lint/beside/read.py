@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.selection import level_of
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.companions.kinds import kind_of
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.findings.selection import level_of
-from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.groups import active_rules
-from multibot_rewrite.model import InputError
+from multibot_rewrite.rules.settings import Settings
 
 
 def beside_findings(path: str, data: bytes, settings: Settings) -> Iterator[Finding]:

@@ -5,16 +5,14 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Sequence
 
-from multibot_rewrite.lint.config.settings import Settings
+from multibot_rewrite.base.model import Claim, InputError
+from multibot_rewrite.description.sources.packages import entries, package_of
+from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.lint.files.named import robot_name
 from multibot_rewrite.lint.files.pairing import described
 from multibot_rewrite.lint.files.subjects import make_subject
-from multibot_rewrite.lint.records import Subject
-from multibot_rewrite.model import Claim, InputError
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.rewriters.forms import Declared
-from multibot_rewrite.sources.packages import entries, package_of
-from multibot_rewrite.steps.document import read_document
+from multibot_rewrite.rules.settings import Settings
+from multibot_rewrite.rules.subject import NO_ROBOTS, Robots, Subject
 
 _ENDINGS = (".urdf", ".xacro")
 # A package's folders, how deep, and how many descriptions are read.
@@ -22,17 +20,6 @@ _SKIPPED = frozenset(("meshes", "mesh", "test", "tests", "build", "install", "lo
 _DEEP, _MOST, _TRIED = 3, 60, 6
 _DESCRIPTION = "_description"
 _KINDS = ("link", "frame", "joint", "sensor", "gpio", "hardware")
-
-
-class Robots(NamedTuple):
-    """The names of all descriptions by kind, and each description; ``is_whole``: all could be read."""
-
-    declared: Declared
-    subjects: tuple[Subject, ...]
-    is_whole: bool
-
-
-NO_ROBOTS = Robots({}, (), False)
 
 
 def robots_of(file: str, settings: Settings) -> Robots:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from typing import Any
 
+from multibot_rewrite.base.outside import Asked, Question, answer_now, digest
 from multibot_rewrite.lint.cache.shard import (
     MOST_BYTES,
     Entry,
@@ -13,7 +14,6 @@ from multibot_rewrite.lint.cache.shard import (
     shard_bytes,
     write_shard,
 )
-from multibot_rewrite.outside import Asked, Question, answer_now, digest
 
 FOLDER = os.path.join("multibot_rewrite", "lint")
 

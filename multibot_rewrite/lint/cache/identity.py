@@ -7,10 +7,10 @@ import sys
 from collections.abc import Iterator, Mapping
 from importlib.util import find_spec
 
-from multibot_rewrite.bounded import read_bytes
-from multibot_rewrite.lint.config.settings import Settings
-from multibot_rewrite.outside import digest
-from multibot_rewrite.rewriters.vocabulary.installed import installed
+from multibot_rewrite.base.bounded import read_bytes
+from multibot_rewrite.base.outside import digest
+from multibot_rewrite.description.rewriters.vocabulary.installed import installed
+from multibot_rewrite.rules.settings import Settings
 from multibot_rewrite.version import __version__
 
 # What reads descriptions; xacro may be that of a sourced ROS.

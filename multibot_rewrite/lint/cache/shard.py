@@ -8,9 +8,9 @@ from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from typing import Any
 
-from multibot_rewrite.bounded import load_json
-from multibot_rewrite.outside import Asked, Question, digest
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.base.bounded import load_json
+from multibot_rewrite.base.outside import Asked, Question, digest
+from multibot_rewrite.base.record import NamedTuple
 
 # Of one file, and of all files of the cache; the oldest ones go.
 MOST_BYTES, MOST_IN_ALL, MOST_FILES = 16 * 2**20, 256 * 2**20, 4096

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.lint.config.settings import Settings
-from multibot_rewrite.model import Edit
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.model import Edit
+from multibot_rewrite.rules.settings import Settings
 
 _EDITS = Finding._fields.index("edits")
 _ENCODING = "latin-1"
@@ -52,7 +52,7 @@ def among_written(settings: Settings, path: str = "") -> list[Any]:
 
 def among_from(value: Any, settings: Settings) -> Settings | None:
     """The settings with what was kept; None where nothing is."""
-    from multibot_rewrite.sources.known_arguments import KnownArguments
+    from multibot_rewrite.description.sources.known_arguments import KnownArguments
 
     try:
         part, urdfs, known = value

@@ -11,11 +11,11 @@ import re
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
 
-from multibot_rewrite.bounded import load_json
-from multibot_rewrite.config import read
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.base.bounded import load_json
+from multibot_rewrite.base.config import read
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.record import NamedTuple
 
 FORMAT = "urdf-lint-baseline"
 VERSION = 1

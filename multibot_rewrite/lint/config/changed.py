@@ -8,9 +8,9 @@ import subprocess
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 
-from multibot_rewrite.bounded import read_bytes
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.base.bounded import read_bytes
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.record import NamedTuple
 
 _INCLUDE = re.compile(
     rb"<xacro:include\s(?:[^<>\"']|\"[^<\"]*\"|'[^<']*')*?filename\s*=\s*(\"[^<\"]*\"|'[^<']*')"

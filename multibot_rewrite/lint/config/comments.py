@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.findings.place import locate
-from multibot_rewrite.findings.selection import is_on, level_of
-from multibot_rewrite.lazy import lazy_compile
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.place import locate
+from multibot_rewrite.base.findings.selection import is_on, level_of
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.model import Edit
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.lint.config.directives import (
     ALWAYS_REPORTED,
     IGNORE_FILE,
@@ -15,10 +17,8 @@ from multibot_rewrite.lint.config.directives import (
     Directive,
     read_directives,
 )
-from multibot_rewrite.lint.config.settings import MARK, Settings, file_of, is_silent
 from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.model import Edit
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.rules.settings import MARK, Settings, file_of, is_silent
 
 UNUSED, BROKEN = "MB002", "MB003"
 _CALL = lazy_compile(r"(.*):(\d+): ")

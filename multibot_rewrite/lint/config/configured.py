@@ -6,16 +6,19 @@ import os
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from multibot_rewrite.config import (
+from multibot_rewrite.base.config import (
     configured_vocabulary,
     folders_above,
     parse,
     read,
     type_name,
 )
-from multibot_rewrite.findings.finding import WARNING
-from multibot_rewrite.findings.selection import OFF
-from multibot_rewrite.lint.config.settings import EVERY_FILE, ArgumentSet, Settings, matches
+from multibot_rewrite.base.findings.finding import WARNING
+from multibot_rewrite.base.findings.selection import OFF
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.base.nearest import nearest
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.lint.config.values import (
     FIELDS,
     READERS,
@@ -24,10 +27,7 @@ from multibot_rewrite.lint.config.values import (
     checked_robots,
     targets,
 )
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.naming import make_naming
-from multibot_rewrite.nearest import nearest
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.rules.settings import EVERY_FILE, ArgumentSet, Settings, matches
 
 __all__ = ["Configured", "check_codes", "configured", "is_excluded", "with_options"]
 OWN, PROJECT, TABLE = "urdf-lint.toml", "pyproject.toml", "urdf-lint"

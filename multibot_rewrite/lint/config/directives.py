@@ -10,11 +10,11 @@ import re
 from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Sequence
 
-from multibot_rewrite.lazy import lazy_compile
-from multibot_rewrite.lint.config.settings import MARK
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.nearest import nearest
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.nearest import nearest
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.rules.settings import MARK
 
 IGNORE, IGNORE_FILE = "ignore", "ignore-file"
 # No comment can suppress these: a file was not checked, or a comment is wrong.

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.lint.config.settings import MARK, Settings, file_of, is_silent
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.rules.settings import MARK, Settings, file_of, is_silent
 
 
 def unsuppressed(

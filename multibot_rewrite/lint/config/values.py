@@ -5,16 +5,16 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.config import listed_files, type_name
-from multibot_rewrite.findings.codes import known_beginnings, no_rule
-from multibot_rewrite.findings.finding import LEVELS
-from multibot_rewrite.findings.selection import OFF
-from multibot_rewrite.lint.config.patterns import anchored, with_folders
-from multibot_rewrite.lint.config.settings import EVERY_FILE, TARGETS, ArgumentSet
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.releases import RELEASES
-from multibot_rewrite.rosnames.names import check_robot_name
+from multibot_rewrite.base.config import listed_files, type_name
+from multibot_rewrite.base.findings.codes import known_beginnings, no_rule
+from multibot_rewrite.base.findings.finding import LEVELS
+from multibot_rewrite.base.findings.selection import OFF
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.releases import RELEASES
+from multibot_rewrite.base.rosnames.names import check_robot_name
+from multibot_rewrite.rules.patterns import anchored, with_folders
+from multibot_rewrite.rules.settings import EVERY_FILE, TARGETS, ArgumentSet
 
 
 class Given(NamedTuple):

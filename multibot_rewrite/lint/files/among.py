@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.files.included import included, known_elsewhere
 from multibot_rewrite.lint.files.pairing import named_urdfs
+from multibot_rewrite.rules.settings import Settings
 
 
 def set_among(paths: Sequence[str], settings: Settings) -> Settings:

@@ -6,11 +6,11 @@ import os
 from collections.abc import Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 
-from multibot_rewrite.lazy import lazy_compile
-from multibot_rewrite.model import InputError
-from multibot_rewrite.outside import is_file, real_path
-from multibot_rewrite.sources.known_arguments import KnownArguments, known_arguments
-from multibot_rewrite.sources.read import read_file
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.outside import is_file, real_path
+from multibot_rewrite.description.sources.known_arguments import KnownArguments, known_arguments
+from multibot_rewrite.description.sources.read import read_file
 
 # No tag goes on behind a "<": every letter is looked at once.
 _INCLUDE = lazy_compile(rb"<xacro:include\s[^<>]*?filename\s*=\s*[\"']([^<\"']+)[\"']")

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from multibot_rewrite.lazy import lazy_compile
-from multibot_rewrite.outside import outside
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.outside import outside
 
 _NAME = lazy_compile(rb"<robot\b[^>]*?\sname\s*=\s*[\"']([^\"'$]+)[\"']")
 # What the name of an SRDF has in it.

@@ -9,20 +9,20 @@ from functools import partial
 from glob import escape
 from io import StringIO
 
-from multibot_rewrite.checks.links_and_joints import Robot, read_robot
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.outside import is_file
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.kinds import is_beside
-from multibot_rewrite.lint.config.settings import Settings, matches
+from multibot_rewrite.description.checks.links_and_joints import Robot, read_robot
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.forms import Declared
+from multibot_rewrite.description.sources.access import Reach
+from multibot_rewrite.description.sources.packages import package_folder
+from multibot_rewrite.description.sources.read import XACRO, is_xacro, read_file
+from multibot_rewrite.description.steps.collect import NOTHING, Inventory, collect
+from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.lint.files.named import SRDF_MARK, files_like, robot_name
-from multibot_rewrite.model import InputError
-from multibot_rewrite.outside import is_file
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.rewriters.builtin import builtin_tree
-from multibot_rewrite.rewriters.forms import Declared
-from multibot_rewrite.sources.access import Reach
-from multibot_rewrite.sources.packages import package_folder
-from multibot_rewrite.sources.read import XACRO, is_xacro, read_file
-from multibot_rewrite.steps.collect import NOTHING, Inventory, collect
-from multibot_rewrite.steps.document import read_document
+from multibot_rewrite.rules.settings import Settings, matches
 
 # Where a package of MoveIt has its URDF, from the folder of its SRDF.
 NEAR = (".", "../urdf", "../config", "../robots", "../../*_description/urdf")
@@ -123,7 +123,7 @@ def described(path: str, settings: Settings) -> tuple[bytes, str]:
     """With the default arguments, else with the first that the settings have for the file."""
     if not is_xacro(path):
         return read_file(path), path
-    from multibot_rewrite.sources.expand import expand
+    from multibot_rewrite.description.sources.expand import expand
 
     sets = [dict(it.arguments) for it in settings.arguments if matches(path, it.pattern)]
     find = partial(package_folder, file=path, roots=settings.readable)

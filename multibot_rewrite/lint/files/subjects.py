@@ -10,27 +10,26 @@ from io import StringIO
 
 from lxml.etree import _Element
 
-from multibot_rewrite.checks.links_and_joints import read_robot
-from multibot_rewrite.findings.rule import SRDF, URDF, XACRO
-from multibot_rewrite.lint.config.settings import ArgumentSet, Settings, matches
-from multibot_rewrite.lint.facts.elements import Elements
+from multibot_rewrite.base.findings.rule import SRDF, URDF, XACRO
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.checks.links_and_joints import read_robot
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.forms import Declared
+from multibot_rewrite.description.sources.packages import package_folder
+from multibot_rewrite.description.sources.read import XACRO as ENDING
+from multibot_rewrite.description.sources.read import has_xacro
+from multibot_rewrite.description.steps.collect import NOTHING, collect
+from multibot_rewrite.description.steps.collect import SRDF as SRDF_SECTION
+from multibot_rewrite.description.steps.document import Document, read_document
 from multibot_rewrite.lint.files.named import SRDF_MARK
-from multibot_rewrite.lint.records import Subject
-from multibot_rewrite.lint.schema.faults import read_faults
-from multibot_rewrite.model import InputError
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.rewriters.builtin import builtin_tree
-from multibot_rewrite.rewriters.forms import Declared
-from multibot_rewrite.sources.packages import package_folder
-from multibot_rewrite.sources.read import XACRO as ENDING
-from multibot_rewrite.sources.read import has_xacro
-from multibot_rewrite.steps.collect import NOTHING, collect
-from multibot_rewrite.steps.collect import SRDF as SRDF_SECTION
-from multibot_rewrite.steps.document import Document, read_document
+from multibot_rewrite.rules.facts.elements import Elements
+from multibot_rewrite.rules.schema.faults import read_faults
+from multibot_rewrite.rules.settings import ArgumentSet, Settings, matches
+from multibot_rewrite.rules.subject import EXPANDED, Subject
 
 # Makes the reader treat the root as that of an SRDF, whatever it contains.
 NO_URDF: Declared = {"link": {}}
-EXPANDED = " (expanded)"
 DEFAULT = ArgumentSet("*", ())
 MISSING = "Undefined substitution argument"
 ROOTS = ("robot", "sdf")
@@ -74,8 +73,8 @@ def _expansions(path: str, data: bytes, settings: Settings) -> Iterator[Subject 
 
 def _expanded(path: str, data: bytes, given: ArgumentSet, settings: Settings) -> Subject:
     # A URDF needs none of it.
+    from multibot_rewrite.description.sources.expand import expand_traced
     from multibot_rewrite.lint.files.pairing import reach_of
-    from multibot_rewrite.sources.expand import expand_traced
 
     find = partial(package_folder, file=path, roots=settings.readable)
     # Warnings of xacro are not findings, and would be printed between them.

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 
 import yaml
 
-from multibot_rewrite.bounded import load_yaml
-from multibot_rewrite.sources.read import read_file
+from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
 
 if TYPE_CHECKING:

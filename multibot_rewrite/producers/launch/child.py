@@ -7,7 +7,7 @@ import subprocess
 import sys
 from functools import lru_cache
 
-from multibot_rewrite.model import InputError
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder, graph_of, to_json
 from multibot_rewrite.producers.launch.system_model import is_system_model, read_system_model
 

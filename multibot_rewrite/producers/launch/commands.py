@@ -16,13 +16,13 @@ from functools import lru_cache
 from types import MappingProxyType
 from typing import Any
 
-from multibot_rewrite.model import MultibotError
+from multibot_rewrite.base.model import MultibotError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.sources.access import SECONDS
+from multibot_rewrite.description.sources.expand import expand
+from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.producers.launch.describe import text
 from multibot_rewrite.producers.launch.door import of_launch
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.sources.access import SECONDS
-from multibot_rewrite.sources.expand import expand
-from multibot_rewrite.sources.read import read_file
 
 _POSTFIX = (sys.executable, "-m", "multibot_rewrite.cli.urdf_postfix")
 _FAULTS = "multibot_command_faults"

@@ -15,13 +15,13 @@ from typing import Any
 
 import yaml
 
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 from multibot_rewrite.producers.launch.made_files import source_of
 from multibot_rewrite.producers.launch.places import place_of
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchNote, ParameterText
 from multibot_rewrite.producers.launch.ros_arguments import params_text, ros2_run, ros_arguments
 from multibot_rewrite.producers.launch.spawners import controller_files
-from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.system.records import Place
 
 _LIMIT = 1 << 24

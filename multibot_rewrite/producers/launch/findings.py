@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from multibot_rewrite.findings.finding import NOTE, WARNING, Finding
-from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
+from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph
 from multibot_rewrite.system.records import Place

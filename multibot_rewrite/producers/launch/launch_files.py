@@ -12,8 +12,8 @@ from collections.abc import Iterable, Iterator, Mapping
 import yaml
 from lxml import etree
 
-from multibot_rewrite.bounded import compose_yaml
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.base.bounded import compose_yaml
+from multibot_rewrite.base.record import NamedTuple
 
 NODE, LIFECYCLE, CONTAINER, COMPONENT = "node", "lifecycle_node", "container", "component"
 # Actions of Python files, and elements of XML and YAML files.

@@ -11,18 +11,18 @@ import os
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import pairwise
 
-from multibot_rewrite.graph.transforms import Edge
-from multibot_rewrite.model import InputError
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.rosnames import expand
+from multibot_rewrite.description.readback.nodes import ReadNode
+from multibot_rewrite.description.readback.own_defaults import MODEL
+from multibot_rewrite.description.readback.reading import FRAME, Reading, read
+from multibot_rewrite.description.readback.xml import read_xml, values_at
+from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
+from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import LaunchedNode, ParameterText
-from multibot_rewrite.readback.nodes import ReadNode
-from multibot_rewrite.readback.own_defaults import MODEL
-from multibot_rewrite.readback.reading import FRAME, Reading, read
-from multibot_rewrite.readback.xml import read_xml, values_at
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.rewriters.vocabulary import load_vocabulary
-from multibot_rewrite.rosnames import expand
-from multibot_rewrite.sources.read import read_file
+from multibot_rewrite.spelling.transforms import Edge
 from multibot_rewrite.system.records import TOPIC, Place
 
 _NAMED = "controller_manager_name"

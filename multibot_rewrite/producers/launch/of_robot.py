@@ -12,17 +12,19 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.companions.params.sections import raw_sections
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
-from multibot_rewrite.controller_ways import controller_way
-from multibot_rewrite.evidence.nodes import MANAGER
-from multibot_rewrite.evidence.parameter_files import given_nodes
-from multibot_rewrite.evidence.records import GivenNode
-from multibot_rewrite.evidence.remapped import remapped
-from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
-from multibot_rewrite.model import InputError
+from multibot_rewrite.producers.evidence.nodes import MANAGER
+from multibot_rewrite.producers.evidence.parameter_files import given_nodes
+from multibot_rewrite.producers.evidence.records import GivenNode
+from multibot_rewrite.producers.evidence.remapped import remapped
 from multibot_rewrite.producers.launch.bridge_rows import bridge_rows
 from multibot_rewrite.producers.launch.findings import launch_findings
 from multibot_rewrite.producers.launch.programs import programs
@@ -30,8 +32,6 @@ from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph,
 from multibot_rewrite.producers.launch.spawner_managers import under_managers
 from multibot_rewrite.producers.launch.spawners import Spawned, is_spawner, spawned_in, texts_of
 from multibot_rewrite.producers.launch.static_transforms import with_static_transform
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.rosnames import expand
 from multibot_rewrite.system.records import Place
 
 _CAMEL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")

@@ -9,8 +9,8 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.sources.packages import package_folders
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.description.sources.packages import package_folders
 
 _ROOTS = "source its workspace, or give the folder of its sources with --roots (launch_roots:)"
 

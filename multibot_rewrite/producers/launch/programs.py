@@ -6,8 +6,8 @@ from collections.abc import Collection, Mapping
 from functools import cache
 from importlib.resources import files
 
-from multibot_rewrite.bounded import load_yaml
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.record import NamedTuple
 
 
 class Programs(NamedTuple):

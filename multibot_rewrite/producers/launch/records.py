@@ -9,9 +9,9 @@ from collections.abc import Mapping, Sequence
 from itertools import takewhile
 from typing import Any
 
-from multibot_rewrite.model import UsageError
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.launch.package_files import file_of_package
-from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.system.records import Place
 
 

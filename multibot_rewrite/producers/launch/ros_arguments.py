@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
 
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.base.record import NamedTuple
 
 _RULE, _VALUE, _FILE = ("-r", "--remap"), ("-p", "--param"), "--params-file"
 

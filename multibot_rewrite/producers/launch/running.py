@@ -10,13 +10,24 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 
-from multibot_rewrite.controller_ways import controller_way
-from multibot_rewrite.evidence.filling import filled
-from multibot_rewrite.evidence.parameter_files import given_nodes
-from multibot_rewrite.evidence.records import Given, GivenNode
+from multibot_rewrite.base.conventions import CLOCK
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.rosnames import (
+    BoundNode,
+    NameFault,
+    RemapRule,
+    bind,
+    expand,
+    read_remap,
+    resolve_bound,
+)
+from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
-from multibot_rewrite.model import UsageError
+from multibot_rewrite.producers.evidence.filling import filled
+from multibot_rewrite.producers.evidence.parameter_files import given_nodes
+from multibot_rewrite.producers.evidence.records import Given, GivenNode
 from multibot_rewrite.producers.launch.models import (
     Model,
     Models,
@@ -31,18 +42,7 @@ from multibot_rewrite.producers.launch.programs import programs as known_program
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, LaunchNote
 from multibot_rewrite.producers.launch.spawners import Spawned, spawned_in, texts_of
 from multibot_rewrite.producers.launch.static_transforms import with_static_transform
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.remap.plugin_nodes import plugin_nodes
-from multibot_rewrite.rosnames import (
-    BoundNode,
-    NameFault,
-    RemapRule,
-    bind,
-    expand,
-    read_remap,
-    resolve_bound,
-)
-from multibot_rewrite.system.conventions import CLOCK
+from multibot_rewrite.spelling.plugin_nodes import plugin_nodes
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, Place
 
 Rules = tuple[tuple[str, str], ...]

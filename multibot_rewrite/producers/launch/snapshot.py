@@ -12,13 +12,18 @@ from functools import partial
 
 from lxml import etree
 
-from multibot_rewrite.graph.transforms import STATE_PUBLISHER, edges_in, sent_by
-from multibot_rewrite.graph.transforms import Edge as SentEdge
-from multibot_rewrite.graph.wording import SEVERAL, shorten
+from multibot_rewrite.base.conventions import CLOCK
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.plural import plural
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.rosnames import (
+    BoundNode,
+    expand,
+    resolve_bound,
+)
+from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.knowledge.conditions import holds
 from multibot_rewrite.knowledge.records import Endpoint
-from multibot_rewrite.model import UsageError
-from multibot_rewrite.plural import plural
 from multibot_rewrite.producers.launch.bridges import bridged_by, is_bridge
 from multibot_rewrite.producers.launch.findings import STOOD_IN
 from multibot_rewrite.producers.launch.models import Models, sent_in_simulator
@@ -32,13 +37,8 @@ from multibot_rewrite.producers.launch.running import (
     running_nodes,
 )
 from multibot_rewrite.producers.launch.static_transforms import STATIC
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.rosnames import (
-    BoundNode,
-    expand,
-    resolve_bound,
-)
-from multibot_rewrite.system.conventions import CLOCK
+from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, edges_in, sent_by
+from multibot_rewrite.spelling.transforms import Edge as SentEdge
 from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import (
     ACTION,

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
 
-from multibot_rewrite.findings.finding import WARNING, Finding
-from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.launch.spawners import Spawned
-from multibot_rewrite.record import NamedTuple
 
 _ROBOTS = """\
 companions: {params: controllers.yaml}

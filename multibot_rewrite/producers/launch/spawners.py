@@ -10,10 +10,10 @@ import argparse
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NoReturn
 
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchNote, ParameterText
 from multibot_rewrite.producers.launch.ros_arguments import ros_arguments
-from multibot_rewrite.record import NamedTuple
-from multibot_rewrite.rosnames import expand
 from multibot_rewrite.system.records import Place
 
 SPAWNER = "controller_manager/spawner"

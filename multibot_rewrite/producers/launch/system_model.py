@@ -14,9 +14,10 @@ from typing import Any
 
 import yaml
 
-from multibot_rewrite.bounded import load_yaml
+from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.companions.yaml_text import line_of, pairs, read_yaml
-from multibot_rewrite.model import InputError
+from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.producers.launch.records import (
     LaunchedNode,
     LaunchGraph,
@@ -24,7 +25,6 @@ from multibot_rewrite.producers.launch.records import (
     ParameterText,
 )
 from multibot_rewrite.producers.launch.spawners import controller_files
-from multibot_rewrite.sources.read import read_file
 from multibot_rewrite.system.records import Place
 
 _ENDS = (".yaml", ".yml")

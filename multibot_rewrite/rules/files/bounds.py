@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from multibot_rewrite.bounded import load_yaml
+from multibot_rewrite.base.bounded import load_yaml
 
 _Number = Callable[[float, float], bool]
 # Check -> whether a number holds it, and its words.

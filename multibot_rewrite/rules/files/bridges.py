@@ -9,16 +9,16 @@ from collections.abc import Iterator, Mapping
 
 import yaml
 
+from multibot_rewrite.base.findings.finding import WARNING
+from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.nearest import did_you_mean
 from multibot_rewrite.companions.bridge_entry import KEYS, TYPES, faults, row_of, text_in
 from multibot_rewrite.companions.kinds import BRIDGE
 from multibot_rewrite.companions.sites import NamedFile
 from multibot_rewrite.companions.yaml_text import items
-from multibot_rewrite.findings.finding import WARNING
-from multibot_rewrite.findings.rule import rule
-from multibot_rewrite.nearest import did_you_mean
-from multibot_rewrite.remap.bridged_topics import bridge_data
 from multibot_rewrite.rules.files.examples import a_row
 from multibot_rewrite.rules.files.records import Remark, remark_at
+from multibot_rewrite.spelling.bridged_topics import bridge_data
 
 
 @rule(

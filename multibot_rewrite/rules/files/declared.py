@@ -7,6 +7,10 @@ from collections.abc import Iterator, Sequence
 
 import yaml
 
+from multibot_rewrite.base.conventions import PLACEHOLDER
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.nearest import MISTYPED, Guesses, meant_name
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.params.name_sites import params_at
 from multibot_rewrite.companions.params.rcl_parameters import Value, value_of
 from multibot_rewrite.companions.params.sections import (
@@ -18,14 +22,10 @@ from multibot_rewrite.companions.sites import NamedFile
 from multibot_rewrite.companions.yaml_text import YamlText, pairs
 from multibot_rewrite.knowledge.declared import READ, YAML, Declared
 from multibot_rewrite.knowledge.parameters import KnownNode
-from multibot_rewrite.model import InputError
-from multibot_rewrite.nearest import MISTYPED, Guesses, meant_name
-from multibot_rewrite.record import NamedTuple
 from multibot_rewrite.rules.files.bounds import beyond
 from multibot_rewrite.rules.files.parameter_facts import facts_of_node, of_release
 from multibot_rewrite.rules.files.plugins import RENAMED, plugins_in
 from multibot_rewrite.rules.files.records import Remark, remark_at
-from multibot_rewrite.system.conventions import PLACEHOLDER
 
 # What every node has, or every controller and plugin; prefixes end in a dot.
 _EVERYWHERE = re.compile(

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from functools import cache
 
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.companions.sites import NamedFile
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.findings.rule import Rule
-from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.rules.files import (
     bridges,
     frames,

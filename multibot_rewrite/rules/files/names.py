@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from multibot_rewrite.checks.mentions import mentioned
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.nearest import HINTED, MISTYPED, did_you_mean, meant_name
+from multibot_rewrite.base.rosnames import check_topic_name
 from multibot_rewrite.companions.kinds import BRIDGE, EVERY, LUA, MOVEIT, PARAMS, RVIZ, TREE
 from multibot_rewrite.companions.names.by_kind import is_component, is_plain, is_shared_frame
 from multibot_rewrite.companions.names.rename_map import KINDS, is_declared, spell
 from multibot_rewrite.companions.sites import NamedFile, Site
-from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
-from multibot_rewrite.findings.rule import rule
+from multibot_rewrite.description.checks.mentions import mentioned
 from multibot_rewrite.knowledge.parameters import built_in_nodes
-from multibot_rewrite.nearest import HINTED, MISTYPED, did_you_mean, meant_name
-from multibot_rewrite.rosnames import check_topic_name
 from multibot_rewrite.rules.files.declared import unknown_parameters
 from multibot_rewrite.rules.files.examples import ROVER, a_section
 from multibot_rewrite.rules.files.records import Remark, remark

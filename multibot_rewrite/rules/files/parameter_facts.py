@@ -7,15 +7,15 @@ import os
 import re
 from collections.abc import Iterator, Sequence
 
+from multibot_rewrite.base.model import InputError, UsageError
+from multibot_rewrite.base.outside import outside
+from multibot_rewrite.base.releases import has_release
+from multibot_rewrite.description.sources.packages import entries, package_folder
+from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.knowledge.declared import YAML, Declared, declared_by, says_something
 from multibot_rewrite.knowledge.nodl.lookup import Identity, file_of, find_interfaces, load
 from multibot_rewrite.knowledge.parameters import KnownNode
-from multibot_rewrite.model import InputError, UsageError
-from multibot_rewrite.outside import outside
-from multibot_rewrite.releases import has_release
 from multibot_rewrite.rules.files.parameter_files import file_parameters
-from multibot_rewrite.sources.packages import entries, package_folder
-from multibot_rewrite.sources.read import read_file
 
 NODL = "nodl"
 # Folders of a package that have files of generate_parameter_library, and what those are called.

@@ -9,8 +9,8 @@ from collections.abc import Iterator
 
 import yaml
 
-from multibot_rewrite.bounded import compose_yaml
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.base.bounded import compose_yaml
+from multibot_rewrite.base.record import NamedTuple
 
 # The types of parameters; an array may have a length behind it: double_array_fixed_6.
 _TYPES = ("bool", "double", "int", "string", "none")

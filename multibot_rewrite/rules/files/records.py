@@ -6,7 +6,7 @@ from typing import Protocol
 
 import yaml
 
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.base.record import NamedTuple
 
 
 class Placed(Protocol):

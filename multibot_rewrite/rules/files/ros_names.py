@@ -5,13 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.rosnames import check_node_name, check_topic_name
 from multibot_rewrite.companions.kinds import EVERY, RVIZ
 from multibot_rewrite.companions.names.by_kind import is_filled, is_plain
 from multibot_rewrite.companions.names.placeholders import is_robot
 from multibot_rewrite.companions.sites import GZ_TOPIC, SECTION, NamedFile, Site
-from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
-from multibot_rewrite.findings.rule import rule
-from multibot_rewrite.rosnames import check_node_name, check_topic_name
 from multibot_rewrite.rules.files.examples import a_section
 from multibot_rewrite.rules.files.records import Remark, remark
 

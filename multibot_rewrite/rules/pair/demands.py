@@ -6,14 +6,14 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 
-from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.graph.wording import SEVERAL, shorten
+from multibot_rewrite.base.conventions import ANY
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import found_by_plan, pair_rule
 from multibot_rewrite.rules.index import Index, ends_of
 from multibot_rewrite.rules.pair.causes import DOES
 from multibot_rewrite.rules.planned import Planned
 from multibot_rewrite.rules.system.matching import not_latched
-from multibot_rewrite.system.conventions import ANY
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, End, Topic, alternatives
 
 # How the nodes of ros_gz_bridge are called.

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 
-from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.graph.wording import shorten
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import found_by_plan, pair_rule
 from multibot_rewrite.rules.index import Index
 from multibot_rewrite.rules.ownership import SEPARATORS, without_tag_once

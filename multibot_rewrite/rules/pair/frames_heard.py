@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence, Set
 
-from multibot_rewrite.findings.finding import ERROR, Finding
-from multibot_rewrite.graph.transforms import STATE_PUBLISHER
-from multibot_rewrite.graph.wording import shorten
+from multibot_rewrite.base.conventions import USUAL_FRAMES
+from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import pair_rule
 from multibot_rewrite.rules.index import Index
 from multibot_rewrite.rules.pair.frame_prefixes import added_prefixes, robot_behind_prefix
@@ -17,7 +17,7 @@ from multibot_rewrite.rules.pair.tf_causes import JOINT_STATES
 from multibot_rewrite.rules.pair.tf_senders import described_robots, sent_by_robot, state_publisher
 from multibot_rewrite.rules.pair.tf_trees import frames_in, tf_trees
 from multibot_rewrite.rules.planned import Planned
-from multibot_rewrite.system.conventions import USUAL_FRAMES
+from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, Robot
 
 

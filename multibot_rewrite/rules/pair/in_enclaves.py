@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.graph.enclaves import enclave_of
-from multibot_rewrite.graph.wording import shorten
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import pair_rule
 from multibot_rewrite.rules.index import Index
 from multibot_rewrite.rules.planned import Planned
+from multibot_rewrite.spelling.enclaves import enclave_of
 from multibot_rewrite.system.records import Node
 
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.findings.rule import Rule
-from multibot_rewrite.graph.wording import SEVERAL, shorten
+from multibot_rewrite.base.conventions import EVERYBODYS
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import found_by_plan
 from multibot_rewrite.rules.index import TF, Index, ends_of, types
 from multibot_rewrite.rules.pair.causes import (
@@ -29,7 +30,6 @@ from multibot_rewrite.rules.system.commands import (
 from multibot_rewrite.rules.system.names import service_of_two_nodes
 from multibot_rewrite.rules.system.sharing import data_of_another_robot, topic_of_several_robots
 from multibot_rewrite.rules.words import is_order
-from multibot_rewrite.system.conventions import EVERYBODYS
 from multibot_rewrite.system.records import SUBSCRIBES, TOPIC, End
 
 

@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.graph.reach import machines
-from multibot_rewrite.graph.wording import FEW, SEVERAL, shorten
+from multibot_rewrite.base.conventions import CLOCK
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.wording import FEW, SEVERAL, shorten
 from multibot_rewrite.rules.declaration import found_by_plan, pair_rule
 from multibot_rewrite.rules.index import Index, ends_of
 from multibot_rewrite.rules.planned import Planned
 from multibot_rewrite.rules.system.clocks import clocks_mixed
 from multibot_rewrite.rules.system.states import not_active
-from multibot_rewrite.system.conventions import CLOCK
 from multibot_rewrite.system.parameters import parameter_text, parameter_value
+from multibot_rewrite.system.reach import machines
 from multibot_rewrite.system.records import SIM_TIME, SUBSCRIBES, Parameter, System, clocks
 
 # A planned parameter, and its value there.

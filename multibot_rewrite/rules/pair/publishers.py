@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.rules.declaration import found_by_plan
 from multibot_rewrite.rules.index import Index, by_node, in_namespaces_above, published
 from multibot_rewrite.rules.pair.causes import use_absolute

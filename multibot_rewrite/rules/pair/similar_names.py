@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Mapping, Sequence
 
-from multibot_rewrite.nearest import MISTYPED, nearest
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.base.nearest import MISTYPED, nearest
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.rules.ownership import NameOwnership
 
 # With more names than these, some name is always similar.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence, Set
 
-from multibot_rewrite.graph.wording import shorten
+from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.index import Index, ends_of, tree_topic
 from multibot_rewrite.rules.pair.causes import Cause, caused
 from multibot_rewrite.rules.pair.name_variants import name_variants

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 
-from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.graph.wording import shorten
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import found_by_plan
 from multibot_rewrite.rules.index import Index, tree_topic
 from multibot_rewrite.rules.pair.causes import Cause, caused, plugin_of, tf_rule

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Set
 
-from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.rules.declaration import found_by_plan
 from multibot_rewrite.rules.index import Index
 from multibot_rewrite.rules.pair.causes import caused, plugin_of

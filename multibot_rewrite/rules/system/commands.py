@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
 
-from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING, Finding
-from multibot_rewrite.graph.tool_nodes import is_tool
-from multibot_rewrite.graph.wording import shorten
+from multibot_rewrite.base.conventions import EVERYBODYS, OF_EVERY_NODE, chooses, team
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
+from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules import words
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.index import (
@@ -24,8 +24,8 @@ from multibot_rewrite.rules.index import (
 )
 from multibot_rewrite.rules.system.names import ABSENT, alike, nobody_in
 from multibot_rewrite.rules.system.sharing import own_namespace
-from multibot_rewrite.system.conventions import EVERYBODYS, OF_EVERY_NODE, chooses, team
 from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SUBSCRIBES, TOPIC, End
+from multibot_rewrite.system.tool_nodes import is_tool
 
 
 @system_rule(

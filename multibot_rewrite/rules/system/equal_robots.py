@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
 
-from multibot_rewrite.findings.finding import WARNING, Finding
+from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.index import Index
 

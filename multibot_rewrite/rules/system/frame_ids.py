@@ -6,10 +6,10 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from functools import cache
 
-from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.graph.wording import SEVERAL, shorten
-from multibot_rewrite.nearest import MISTYPED, nearest
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.nearest import MISTYPED, nearest
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.index import (
     Index,

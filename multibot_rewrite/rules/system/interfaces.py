@@ -10,13 +10,13 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 
-from multibot_rewrite.findings.finding import WARNING, Finding
-from multibot_rewrite.nearest import Guesses
-from multibot_rewrite.record import NamedTuple
+from multibot_rewrite.base.conventions import PLACEHOLDER
+from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.nearest import Guesses
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.index import Index, last_word
 from multibot_rewrite.rules.places import see, where
-from multibot_rewrite.system.conventions import PLACEHOLDER
 from multibot_rewrite.system.records import CLAIMS, COMMAND, EXPORTS, Interface, Place
 
 

@@ -7,8 +7,9 @@ from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import islice, zip_longest
 
-from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING, Finding
-from multibot_rewrite.nearest import CHOICE, COMPARED, MISTYPED, nearest
+from multibot_rewrite.base.conventions import EVERYBODYS, chooses
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
+from multibot_rewrite.base.nearest import CHOICE, COMPARED, MISTYPED, nearest
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.index import (
     TF,
@@ -25,7 +26,6 @@ from multibot_rewrite.rules.index import (
 )
 from multibot_rewrite.rules.places import see, where
 from multibot_rewrite.rules.system.unsent import meant
-from multibot_rewrite.system.conventions import EVERYBODYS, chooses
 from multibot_rewrite.system.records import ACTION, SERVES, SERVICE, TOPIC, End
 
 ABSENT = "is that robot started, and is its name right?"

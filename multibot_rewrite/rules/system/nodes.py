@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 
-from multibot_rewrite.findings.finding import ERROR, Finding
-from multibot_rewrite.graph.tool_nodes import is_tool
-from multibot_rewrite.graph.wording import SEVERAL, shorten
+from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.index import Index, and_then, is_viewer, nodes_of
 from multibot_rewrite.system.records import SERVICE
+from multibot_rewrite.system.tool_nodes import is_tool
 
 # So many doubled nodes are two robots rather than two nodes.
 MANY = 3

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from multibot_rewrite.findings.finding import ERROR, Finding
+from multibot_rewrite.base.conventions import chooses
+from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.rules import words
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.index import Ends, Index, at_work, last_word, nodes_of
-from multibot_rewrite.system.conventions import chooses
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
 
 # Of Nav2, between its controller and the robot: they limit velocities, and stop before obstacles.

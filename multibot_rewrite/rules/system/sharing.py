@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.graph.wording import shorten
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules import words
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.index import (

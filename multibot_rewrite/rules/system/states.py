@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
 
-from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.graph.tool_nodes import is_tool
-from multibot_rewrite.graph.wording import SEVERAL, shorten
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.index import Index, is_viewer, last_word
 from multibot_rewrite.rules.places import see, where
@@ -20,6 +19,7 @@ from multibot_rewrite.system.records import (
     Interface,
     clocks,
 )
+from multibot_rewrite.system.tool_nodes import is_tool
 
 ACTIVE = "active"
 

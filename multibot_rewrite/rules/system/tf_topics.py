@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.graph.wording import shorten
+from multibot_rewrite.base.conventions import BODY_FRAMES
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.index import (
     Index,
@@ -20,7 +21,6 @@ from multibot_rewrite.rules.index import (
 )
 from multibot_rewrite.rules.places import see, where
 from multibot_rewrite.rules.system.transforms import collide
-from multibot_rewrite.system.conventions import BODY_FRAMES
 from multibot_rewrite.system.records import (
     NOWHERE,
     OFF,

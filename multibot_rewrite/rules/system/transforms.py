@@ -6,8 +6,9 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 
-from multibot_rewrite.findings.finding import ERROR, Finding
-from multibot_rewrite.graph.wording import SEVERAL, shorten
+from multibot_rewrite.base.conventions import WORLD_FRAMES
+from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.index import (
     Index,
@@ -19,7 +20,6 @@ from multibot_rewrite.rules.index import (
     unique,
 )
 from multibot_rewrite.rules.places import see, where
-from multibot_rewrite.system.conventions import WORLD_FRAMES
 from multibot_rewrite.system.records import Edge
 
 _STATIC = "static_transform_publisher"

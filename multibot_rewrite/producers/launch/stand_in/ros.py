@@ -14,7 +14,7 @@ from typing import Any
 
 import yaml
 
-from multibot_rewrite.bounded import load_yaml
+from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.producers.launch.stand_in.actions import (
     Action,
     EventHandler,

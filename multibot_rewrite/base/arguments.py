@@ -1,0 +1,166 @@
+"""The arguments of the public calls: a wrong name or type becomes one line, before anything runs.
+
+An argument is checked by its annotation: a new option needs no line here unless its type is new.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Mapping
+from functools import wraps
+from inspect import Parameter, Signature, signature
+from typing import Any, ParamSpec, TypeVar
+
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.nearest import did_you_mean_one_of
+
+P = ParamSpec("P")
+R = TypeVar("R")
+Reader = Callable[[str, Any], Any]
+
+
+def checked(call: Callable[P, R]) -> Callable[P, R]:
+    """``call`` with its arguments checked first; names in any iterable reach it as a tuple.
+
+    The result raises UsageError for a wrong argument: it names the call, the argument and what to
+    write. An annotation that is not in ``READERS`` is a KeyError where ``checked`` is used.
+    """
+    takes, title = signature(call), f"{call.__qualname__}()"
+    readers = {it.name: _reader(it) for it in takes.parameters.values()}
+    named = [it for it in takes.parameters.values() if it.kind is not Parameter.VAR_POSITIONAL]
+    names = {it.name for it in named}
+    needed = {it.name for it in named if it.default is Parameter.empty}
+    in_order = [it.name for it in named if it.kind is not Parameter.KEYWORD_ONLY]
+
+    @wraps(call)
+    def run(*args: P.args, **kwargs: P.kwargs) -> R:
+        values: dict[str, Any] = dict(zip(in_order, args, strict=False)) | kwargs
+        # inspect takes longer to bind arguments than all readers do: most calls do not need it.
+        if len(values) == len(args) + len(kwargs) and needed <= values.keys() <= names:
+            read = {name: readers[name](f"{title}: {name}", it) for name, it in values.items()}
+            return _call(call, read)
+        given = _bound(takes, title, args, kwargs)
+        for name, value in given.arguments.items():
+            given.arguments[name] = readers[name](f"{title}: {name}", value)
+        return call(*given.args, **given.kwargs)
+
+    return run
+
+
+def _call(call: Callable[..., R], values: Mapping[str, Any]) -> R:
+    return call(**values)
+
+
+def _bound(takes: Signature, title: str, args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
+    known = [name for name in takes.parameters if name != "self"]
+    for name in kwargs:
+        if name not in known:
+            raise UsageError(f"{title} has no argument {name!r}; {_meant(name, known)}")
+    try:
+        return takes.bind(*args, **kwargs)
+    except TypeError as error:
+        raise UsageError(f"{title}: {error}; it takes {', '.join(known)}") from None
+
+
+def _meant(name: str, known: list[str]) -> str:
+    return did_you_mean_one_of(name, known) or f"it takes {', '.join(known)}"
+
+
+def _reader(parameter: Parameter) -> Reader:
+    if parameter.name == "self":
+        return _any
+    read = READERS[parameter.annotation]
+    return _every(read) if parameter.kind is Parameter.VAR_POSITIONAL else read
+
+
+def _any(what: str, value: object) -> object:
+    return value
+
+
+def _every(read: Reader) -> Reader:
+    return lambda what, values: tuple(read(f"{what}[{at}]", it) for at, it in enumerate(values))
+
+
+def _or_none(read: Reader) -> Reader:
+    return lambda what, value: None if value is None else read(what, value)
+
+
+def _wrong(what: str, value: object, write: str) -> UsageError:
+    type_ = type(value).__name__
+    article = "an" if type_[:1] in "aeiouAEIOU" else "a"
+    return UsageError(f"{what} is {value if value is None else f'{article} {type_}'}; {write}")
+
+
+def _text(what: str, value: object) -> object:
+    if isinstance(value, str):
+        return value
+    plain = isinstance(value, bool | int | float)
+    raise _wrong(what, value, f"write {str(value).lower()!r}" if plain else "write a str")
+
+
+def _names(what: str, value: object) -> object:
+    if isinstance(value, str):
+        words = value.replace(",", " ").split()
+        raise _wrong(what, value, f"write {words or [value]!r}")
+    if not isinstance(value, Iterable) or isinstance(value, bytes | bytearray):
+        raise _wrong(what, value, "write a list of str")
+    return tuple(_text(f"{what}[{at}]", it) for at, it in enumerate(value))
+
+
+def _texts_by_name(what: str, value: object) -> object:
+    if not isinstance(value, Mapping):
+        raise _wrong(what, value, "write a dict of str")
+    for key in value:
+        _text(f"a key of {what}", key)
+    return {key: _text(f"{what}[{key!r}]", it) for key, it in value.items()}
+
+
+def _switch(what: str, value: object) -> object:
+    if isinstance(value, bool):
+        return value
+    raise _wrong(what, value, "write True or False")
+
+
+def _number(what: str, value: object) -> object:
+    if isinstance(value, int) and not isinstance(value, bool):
+        return value
+    raise _wrong(what, value, "write an int")
+
+
+def _path(what: str, value: object) -> object:
+    # A path of bytes would fail where it is put into a message.
+    if isinstance(value, str | os.PathLike) and isinstance(os.fspath(value), str):
+        return value
+    raise _wrong(what, value, "write a path")
+
+
+def _source(what: str, value: object) -> object:
+    if isinstance(value, bytes):
+        return value
+    try:
+        return _path(what, value)
+    except UsageError:
+        raise _wrong(what, value, "write a path, XML text or bytes") from None
+
+
+def _fleet(what: str, value: object) -> object:
+    if isinstance(value, Mapping):
+        return value
+    try:
+        return _path(what, value)
+    except UsageError:
+        raise _wrong(what, value, "write a path, or a dict") from None
+
+
+READERS: Mapping[str, Reader] = {
+    "str | os.PathLike[str] | Mapping[str, Any]": _fleet,
+    "str": _text,
+    "str | None": _or_none(_text),
+    "bool": _switch,
+    "int": _number,
+    "Iterable[str]": _names,
+    "Mapping[str, str] | None": _or_none(_texts_by_name),
+    "str | os.PathLike[str]": _path,
+    "Source": _source,
+    "Source | None": _or_none(_source),
+}

@@ -1,0 +1,205 @@
+"""Files, YAML and JSON of anybody, read within bounds: the only calls of the two parsers.
+
+The parsers themselves have none: PyYAML's in C ends the process where lists are nested deeply, an alias
+of aliases stands for more nodes than memory holds, Python refuses to convert very long numbers.
+Faults are the parsers' own exceptions, so that a reader reports them like any other.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import re
+from collections.abc import Callable, Iterable
+from functools import cache
+from itertools import accumulate
+from typing import TYPE_CHECKING, Any, NoReturn
+
+from multibot_rewrite.base.outside import outside
+
+if TYPE_CHECKING:
+    import yaml
+
+MAX_BYTES = 16 * 1024 * 1024
+# A plan or snapshot has some ten kB a robot.
+MAX_FLEET_BYTES = 256 * 1024 * 1024
+# No file of a robot comes near: parameters have 10 levels, RViz's groups 20.
+MAX_DEPTH = 100
+# What aliases may stand for, together: MoveIt's files repeat some hundred values.
+MAX_REPEATED = 100_000
+MAX_DIGITS = 100
+_TAG = "tag:yaml.org,2002:"
+# What PyYAML converts without a look at what Python cannot.
+_CONVERTED = ("int", "float", "bool", "timestamp")
+# A block list or mapping is indented more than the one around it, or the one around that.
+_INDENTED = rf"[ \t\-?:]{{{MAX_DEPTH // 2}}}"
+_STEPS = {ord("["): 1, ord("{"): 1, ord("]"): -1, ord("}"): -1}
+_NO_BRACKETS = bytes(set(range(256)) - _STEPS.keys() - {ord('"')})
+
+
+@outside
+def read_bytes(path: str, limit: int = MAX_BYTES) -> bytes:
+    """The bytes of a file, which may be a device without an end; raises OSError, also for a file that
+    is too large, and ValueError for a path that no system takes."""
+    with open(path, "rb") as file:
+        # Not the limit at once: the memory for it takes longer to get than most files to read.
+        size = min(os.fstat(file.fileno()).st_size, limit)
+        data = file.read(size + 1)
+        if size < len(data) <= limit:  # it grows, or has no size, as a device
+            data += file.read(limit + 1 - len(data))
+    if len(data) > limit:
+        raise OSError(errno.EFBIG, f"it is over the limit of {limit:,} bytes", path)
+    return data
+
+
+def read_text(path: str) -> str:
+    """The text of a file, lines ended by a newline; raises what ``read_bytes`` raises, and
+    UnicodeDecodeError."""
+    text = read_bytes(path).decode().removeprefix("\ufeff")  # utf-8-sig is a module to be loaded
+    return text.replace("\r\n", "\n").replace("\r", "\n") if "\r" in text else text
+
+
+def compose_yaml(text: str) -> yaml.Node | None:
+    """PyYAML's node of the one document; raises yaml.YAMLError."""
+    import yaml
+
+    _check_bounds(text)
+    return yaml.compose(text, Loader=_loader())
+
+
+def compose_own_yaml(text: str) -> yaml.Node | None:
+    """The same of a text of this package, whose bounds nobody has to ask for; all but booleans and
+    nothing at all is text."""
+    import yaml
+
+    return yaml.compose(text, Loader=_plain_loader())
+
+
+def load_yaml(text: str) -> Any:
+    """The value of the one document; raises yaml.YAMLError, for values that are none as well."""
+    import yaml
+
+    _check_bounds(text)
+    return yaml.load(text, Loader=_loader())
+
+
+def load_json(data: bytes | str, made: Callable[[dict[str, Any]], object] | None = None) -> Any:
+    """The value of a JSON text; raises json.JSONDecodeError, UnicodeDecodeError.
+
+    ``made`` makes something else of each object, the innermost first.
+    """
+    import json
+
+    raw = data if isinstance(data, bytes) else data.encode("utf-8", "surrogatepass")
+    text = data if isinstance(data, str) else data.decode("utf-8-sig")
+    if _json_depth(raw) > MAX_DEPTH:
+        raise json.JSONDecodeError(f"it is nested deeper than {MAX_DEPTH} levels", text, 0)
+
+    def whole(digits: str) -> int:
+        if len(digits) > MAX_DIGITS:
+            # Where it is does not matter to whoever made it.
+            raise json.JSONDecodeError(_digits(digits), text, text.index(digits))
+        return int(digits)
+
+    return json.loads(text, parse_int=whole, object_hook=made)
+
+
+def _digits(number: str) -> str:
+    return f"a number of {len(number):,} characters, over the limit of {MAX_DIGITS}"
+
+
+def _json_depth(data: bytes) -> int:
+    """How deeply brackets are nested, those in strings aside."""
+    plain = re.sub(rb"\\.", b"", data, flags=re.DOTALL) if b"\\" in data else data
+    # Without what is between two quotes, whether they are of one string or of two: what is left of
+    # many megabytes is little, and a bracket is inside a string or outside as before.
+    left = plain.translate(None, _NO_BRACKETS).replace(b'""', b"")
+    outside = b"".join(left.split(b'"')[::2])
+    return max(accumulate(map(_STEPS.__getitem__, outside)), default=0)
+
+
+@cache
+def _loader() -> type[yaml.SafeLoader]:
+    """The safe loader, in C where PyYAML has it, which says where a value is that is none."""
+    import yaml
+
+    base: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    loader: Any = type("BoundedLoader", (base,), {})
+    for kind in _CONVERTED:
+        construct = base.yaml_constructors[_TAG + kind]
+        loader.add_constructor(_TAG + kind, _checked(construct, kind))
+    return loader  # type: ignore[no-any-return]
+
+
+@cache
+def _plain_loader() -> type[yaml.SafeLoader]:
+    """A loader that asks of no value whether it is a number or a date."""
+    wanted = (f"{_TAG}bool", f"{_TAG}null")
+    every: Any = _loader().yaml_implicit_resolvers
+    few = {first: [it for it in its if it[0] in wanted] for first, its in every.items()}
+    own: Any = type("PlainLoader", (_loader(),), {"yaml_implicit_resolvers": few})
+    return own  # type: ignore[no-any-return]
+
+
+def _checked(construct: Any, kind: str) -> Any:
+    from yaml.constructor import ConstructorError
+
+    def checked(loader: Any, node: yaml.Node) -> Any:
+        if len(node.value) > MAX_DIGITS:
+            raise ConstructorError(None, None, _digits(node.value), node.start_mark)
+        try:
+            return construct(loader, node)
+        except (ArithmeticError, AttributeError, LookupError, ValueError):
+            # `2024-13-01`, `!!int x`
+            message = f"{node.value!r} is not a value of the kind {kind}"
+            raise ConstructorError(None, None, message, node.start_mark) from None
+
+    return checked
+
+
+def _check_bounds(text: str) -> None:
+    """Raise yaml's ComposerError for what nests or repeats too much."""
+    if _is_harmless(text):
+        return
+    import yaml
+
+    _check_events(yaml.parse(text, Loader=_loader()))
+
+
+def _is_harmless(text: str) -> bool:
+    """A quick look, which suffices for nearly all files."""
+    flow = text.count("[") + text.count("{")
+    aliases = "*" in text and "&" in text
+    return flow < MAX_DEPTH and not aliases and not re.search(_INDENTED, text)
+
+
+def _check_events(events: Iterable[yaml.Event]) -> None:
+    import yaml
+
+    above: list[tuple[str | None, int]] = []
+    # Nodes so far, and those that each anchor stands for.
+    count, repeated = 0, 0
+    anchored: dict[str | None, int] = {}
+    for event in events:
+        if isinstance(event, yaml.CollectionStartEvent):
+            above.append((event.anchor, count))
+            if len(above) > MAX_DEPTH:
+                _refuse(event, f"it is nested deeper than {MAX_DEPTH} levels")
+        elif isinstance(event, yaml.CollectionEndEvent):
+            anchor, before = above.pop()
+            if anchor is not None:
+                anchored[anchor] = count - before
+        elif isinstance(event, yaml.AliasEvent):
+            if any(event.anchor == anchor for anchor, _ in above):
+                _refuse(event, "the alias is inside the value that it repeats")
+            repeated += anchored.get(event.anchor, 1)
+            count += anchored.get(event.anchor, 1)
+            if repeated > MAX_REPEATED:
+                _refuse(event, f"the aliases stand for more than {MAX_REPEATED:,} values")
+        count += isinstance(event, yaml.NodeEvent)
+
+
+def _refuse(event: yaml.Event, problem: str) -> NoReturn:
+    from yaml.composer import ComposerError
+
+    raise ComposerError(None, None, problem, event.start_mark)  # type: ignore[arg-type]

@@ -1,0 +1,36 @@
+"""Codes and names of rules as a person gives them: whole, as they begin, or nearly right."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.nearest import nearest
+
+
+def known_beginnings(rules: Mapping[str, Rule]) -> set[str]:
+    """All that ``--select`` takes: codes, and at least two letters that codes begin with."""
+    return {code[:size] for code in rules for size in range(2, len(code) + 1)}
+
+
+def find_rules(word: str, rules: Mapping[str, Rule]) -> list[Rule]:
+    """The rules with that code or name, or whose codes begin with the word."""
+    by_name = [it for it in rules.values() if it.name == word]
+    return by_name or [it for it in rules.values() if it.code.startswith(word.upper())]
+
+
+def no_rule(word: str, rules: Mapping[str, Rule], listing: str) -> str:
+    """The message that no rule has that code; ``listing`` is the command that lists all."""
+    near = _near(word, rules)
+    hint = f"did you mean {near!r}?" if near else f"see {listing}"
+    return f"no rule has the code {word!r}, and none begins with it; {hint}"
+
+
+def _near(word: str, rules: Mapping[str, Rule]) -> str:
+    """The code of a rule's name, the longest code that the word begins with, or what is like it."""
+    named = next((code for code, it in rules.items() if it.name == word), "")
+    known = known_beginnings(rules)
+    begun = (word[:size].upper() for size in range(len(word), 2, -1))
+    found = named or next((it for it in begun if it in known), "")
+    names = [it.name for it in rules.values()]
+    return found or nearest(word.upper(), sorted(known)) or nearest(word, names)

@@ -1,0 +1,82 @@
+"""The one record of a finding: of a description, a parameter file, a remap table, the live graph."""
+
+from __future__ import annotations
+
+from multibot_rewrite.base.model import Edit, MultibotError
+from multibot_rewrite.base.printable import one_line
+from multibot_rewrite.base.record import NamedTuple
+
+ERROR, WARNING, NOTE, INCONCLUSIVE = "error", "warning", "note", "inconclusive"
+# From the worst on. Inconclusive is no level to ask for: the view of the graph was incomplete.
+LEVELS = (ERROR, WARNING, NOTE)
+
+
+class Finding(NamedTuple):
+    """Something that a person should know, and where.
+
+    ``code`` is permanent; ``level`` is one of ``LEVELS``, or ``INCONCLUSIVE``. ``hint`` says what to
+    do, in the live graph the likely cause too. ``file``, ``line`` and ``column`` (from 1) are the
+    place in a source file; an empty ``file`` means that there is none. ``calls`` are the xacro macro
+    calls that made the element, the innermost first, as ``file:line: name``; ``arguments`` are the
+    xacro arguments under which it is found, empty for the default ones. ``edits`` fix it in ``file``.
+
+    In a fleet or graph, ``robot`` and ``node`` say who it is about (either may be empty) and
+    ``names`` which topics, services, actions or frames. ``others`` are the further robots of which
+    the same is true.
+    """
+
+    code: str
+    level: str
+    message: str
+    hint: str = ""
+    file: str = ""
+    line: int = 0
+    column: int = 0
+    calls: tuple[str, ...] = ()
+    arguments: str = ""
+    edits: tuple[Edit, ...] = ()
+    robot: str = ""
+    node: str = ""
+    names: tuple[str, ...] = ()
+    others: tuple[str, ...] = ()
+
+    @property
+    def place(self) -> str:
+        """Where it is: a node, a robot, or ``file:line:column``; raises nothing."""
+        if self.node.startswith("/"):
+            return self.node
+        if self.robot or self.node:
+            return ": ".join(filter(None, (self.robot, self.node)))
+        return f"{self.file}:{self.line}:{self.column}" if self.file else "graph"
+
+    def __str__(self) -> str:
+        hint = f" ({self.hint})" if self.hint else ""
+        text = f"{self.place}: {self.level}: {self.code} {self.message}{same_for(self)}{hint}"
+        return one_line(text)
+
+
+def by_place(finding: Finding) -> tuple[str, int, int, str, str, str]:
+    """What findings are sorted by: file, line, column, code and text."""
+    it = finding
+    return it.file, it.line, it.column, it.code, it.message, it.arguments
+
+
+def same_for(finding: Finding) -> str:
+    """``; the same for robot2 and 18 more``, empty where it is about one robot."""
+    if not finding.others:
+        return ""
+    first, *more = finding.others
+    rest = f" and {len(more)} more" if more else ""
+    return f"; the same for {first}{rest}"
+
+
+class RewriteRefused(MultibotError):
+    """The content does not allow a rewrite; ``findings`` says why."""
+
+    def __init__(self, findings: tuple[Finding, ...]) -> None:
+        # The base class keeps its arguments, and a pickle is made of them.
+        super().__init__(findings)
+        self.findings = findings
+
+    def __str__(self) -> str:
+        return "\n".join(str(finding) for finding in self.findings)

@@ -1,0 +1,45 @@
+"""Findings as a report. One file a format; only the one that is asked for is imported.
+
+Each has ``render(findings, report)``. The text can always be encoded as UTF-8 and ends with a line
+feed, or is empty.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from importlib import import_module
+
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.record import NamedTuple
+
+# What --format takes, and the module beside this one that renders it.
+FORMATS = {
+    "text": "text",
+    "json": "json_object",
+    "sarif": "sarif",
+    "github": "github",
+    "gitlab": "gitlab",
+    "junit": "junit",
+    "markdown": "markdown",
+}
+
+
+class Report(NamedTuple):
+    """What a report says beside its findings: the command that made it, the files that were read,
+    all rules by code, and the ROS 2 release whose facts it rests on."""
+
+    tool: str
+    files: Sequence[str]
+    rules: Mapping[str, Rule]
+    release: str = ""
+
+
+def rendered(
+    name: str, findings: Sequence[Finding], report: Report, *, colour: bool = False
+) -> str:
+    """The report in the format ``name``; ``colour`` is for the text on a terminal."""
+    render = import_module(f"{__name__}.{FORMATS[name]}").render
+    options = {"colour": colour} if name == "text" else {}
+    text: str = render(findings, report, **options)
+    return text

@@ -1,0 +1,73 @@
+"""JUnit XML for Jenkins and others: a suite for each file, a case for each finding."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+
+from lxml import etree
+
+from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, NOTE, WARNING, Finding
+from multibot_rewrite.base.findings.formats import Report
+from multibot_rewrite.base.findings.formats.shared import by_file, file_of, path_below, said
+from multibot_rewrite.base.findings.formats.text import lines
+from multibot_rewrite.base.printable import one_line
+
+_PASSED = "no findings"
+
+
+def render(findings: Sequence[Finding], report: Report) -> str:
+    """Errors and warnings are failures, what is inconclusive is skipped; a note passes, and so does a
+    file without findings."""
+    suites = etree.Element("testsuites", {"name": report.tool, **_totals(findings, report)})
+    for file, found in by_file(findings, report).items():
+        _add_suite(suites, report._replace(files=(file,)), found)
+    data: bytes = etree.tostring(suites, xml_declaration=True, encoding="utf-8", pretty_print=True)
+    return data.decode()
+
+
+def _add_suite(suites: etree._Element, report: Report, found: Sequence[Finding]) -> None:
+    """The suite of the one file that the report is left with."""
+    (file,) = report.files
+    path = one_line(path_below(file)) or "graph"
+    suite = etree.SubElement(suites, "testsuite", {"name": path, **_totals(found, report)})
+    # Jenkins takes what stands before the last dot for a package.
+    home = {"classname": f"{report.tool}.{path.replace('.', '_')}", "time": "0"}
+    if not found:
+        etree.SubElement(suite, "testcase", {"name": _PASSED, **home})
+    for finding, name in zip(found, _names(found), strict=True):
+        _tell(etree.SubElement(suite, "testcase", {"name": name, **home}), finding)
+
+
+def _totals(findings: Sequence[Finding], report: Report) -> dict[str, str]:
+    clean = set(report.files) - {file_of(it, report) for it in findings}
+    failures = sum(it.level in (ERROR, WARNING) for it in findings)
+    skipped = sum(it.level == INCONCLUSIVE for it in findings)
+    tests = len(findings) + len(clean)
+    numbers = {"tests": tests, "failures": failures, "errors": 0, "skipped": skipped, "time": 0}
+    return {name: str(number) for name, number in numbers.items()}
+
+
+def _names(findings: Sequence[Finding]) -> list[str]:
+    """Jenkins follows a case from build to build by its name: no lines, and no two are equal."""
+    seen: Counter[str] = Counter()
+    names = []
+    for it in findings:
+        name = one_line(
+            f"{it.code} {it.place}: {it.message}" if it.node else f"{it.code} {it.message}"
+        )
+        seen[name] += 1
+        names.append(name if seen[name] == 1 else f"{name} #{seen[name]}")
+    return names
+
+
+def _tell(case: etree._Element, finding: Finding) -> None:
+    whole = "\n".join(lines(finding))
+    if finding.level == NOTE:
+        etree.SubElement(case, "system-out").text = whole
+        return
+    if finding.level == INCONCLUSIVE:
+        etree.SubElement(case, "skipped", {"message": said(finding)})
+        return
+    failure = {"message": said(finding), "type": finding.level}
+    etree.SubElement(case, "failure", failure).text = whole

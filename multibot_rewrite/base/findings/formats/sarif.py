@@ -1,0 +1,153 @@
+"""SARIF 2.1.0, as GitHub's code scanning and other collectors of findings read it."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+from urllib.parse import quote
+
+from multibot_rewrite.base.bounded import read_bytes
+from multibot_rewrite.base.findings.finding import INCONCLUSIVE, WARNING, Finding
+from multibot_rewrite.base.findings.formats import Report
+from multibot_rewrite.base.findings.formats.shared import (
+    calls,
+    circumstances,
+    file_of,
+    fingerprints,
+    inside,
+    json_text,
+    said_of,
+)
+from multibot_rewrite.base.findings.place import locate
+from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.model import Edit
+from multibot_rewrite.base.printable import one_line
+from multibot_rewrite.version import __version__
+
+Json = dict[str, Any]
+SCHEMA = (
+    "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
+)
+_ROOT = "%SRCROOT%"
+_ROOT_SAID = "The folder in which the command was started: the root of the repository."
+
+
+def render(findings: Sequence[Finding], report: Report) -> str:
+    """One run with every rule, the files that were linted, and a result for each finding."""
+    numbers = {code: number for number, code in enumerate(report.rules)}
+    driver = {
+        "name": report.tool,
+        "version": __version__,
+        "semanticVersion": __version__,
+        "rules": [_rule(it) for it in report.rules.values()],
+    }
+    run = {
+        "tool": {"driver": driver},
+        "originalUriBaseIds": {_ROOT: {"description": {"text": _ROOT_SAID}}},
+        "artifacts": [{"location": _file(path)} for path in dict.fromkeys(report.files)],
+        "columnKind": "unicodeCodePoints",
+        **({"properties": {"distro": report.release}} if report.release else {}),
+        "results": [
+            _result(it, report, numbers, fingerprint)
+            for it, fingerprint in zip(findings, fingerprints(findings), strict=True)
+        ],
+    }
+    return json_text({"$schema": SCHEMA, "version": "2.1.0", "runs": [run]})
+
+
+def _rule(rule: Rule) -> Json:
+    examples = [(title, it) for title, it in (("Bad", rule.bad), ("Good", rule.good)) if it]
+    prose = [rule.what, f"Why: {rule.why}", f"Fix: {rule.fix}"]
+    text = [*prose, *(f"{title}:\n{example}" for title, example in examples)]
+    marked = [rule.what, f"**Why.** {rule.why}", f"**Fix.** {rule.fix}"]
+    marked += [f"{title}:\n\n```xml\n{example}\n```" for title, example in examples]
+    return {
+        "id": rule.code,
+        "name": rule.name,
+        "shortDescription": {"text": rule.what.partition(". ")[0].rstrip(".")},
+        "fullDescription": {"text": rule.what},
+        "help": {"text": "\n\n".join(text), "markdown": "\n\n".join(marked)},
+        "defaultConfiguration": {"level": rule.level},
+    }
+
+
+def _result(finding: Finding, report: Report, numbers: Mapping[str, int], fingerprint: str) -> Json:
+    it = finding
+    via = ", ".join(f"[{_escaped(call.macro)}]({at})" for at, call in enumerate(calls(it), 1))
+    message = f"{said_of(it)}{circumstances(it)}"
+    fixes = _fixes(it)
+    return {
+        "ruleId": it.code,
+        **({"ruleIndex": numbers[it.code]} if it.code in numbers else {}),
+        "level": WARNING if it.level == INCONCLUSIVE else it.level,
+        "message": {"text": f"{message} via {via}" if via else message},
+        "locations": _locations(it, report),
+        # GitHub's upload adds its own, made from the line's text, and complains of another one
+        # that has its name.
+        "partialFingerprints": {"urdfLint/v1": fingerprint},
+        **({"relatedLocations": list(_related(it))} if via else {}),
+        **({"fixes": fixes} if fixes else {}),
+    }
+
+
+def _locations(finding: Finding, report: Report) -> list[Json]:
+    """Where it is: in a file, and the robot's node by its name; none where neither is known."""
+    it = finding
+    node = {"fullyQualifiedName": it.place, "kind": "resource"} if it.robot or it.node else {}
+    file = file_of(it, report)
+    if not file:
+        return [{"logicalLocations": [node]}] if node else []
+    region = {"startLine": it.line or 1, "startColumn": it.column or 1}
+    return [{**_location(file, region), **({"logicalLocations": [node]} if node else {})}]
+
+
+def _related(finding: Finding) -> Iterator[Json]:
+    for at, call in enumerate(calls(finding), 1):
+        place = _location(call.file, {"startLine": call.line})
+        yield {"id": at, **place, "message": {"text": f"call of {one_line(call.macro)}"}}
+
+
+def _location(path: str, region: Json) -> Json:
+    return {"physicalLocation": {"artifactLocation": _file(path), "region": region}}
+
+
+def _file(path: str) -> Json:
+    below = inside(path)
+    if below is not None:
+        return {"uri": quote(os.fsencode(below)), "uriBaseId": _ROOT}
+    return {"uri": f"file://{quote(os.fsencode(os.path.abspath(path)))}"}
+
+
+def _escaped(text: str) -> str:
+    """Text inside a link of a message."""
+    return re.sub(r"([\\\[\]])", r"\\\1", one_line(text))
+
+
+def _fixes(finding: Finding) -> list[Json]:
+    """The fix, unless the file is not the one that was linted any more."""
+    source = _source(finding.file) if finding.edits else b""
+    if not source or any(edit.end > len(source) for edit in finding.edits):
+        return []
+    replacements = [_replacement(source, edit) for edit in finding.edits]
+    change = {"artifactLocation": _file(finding.file), "replacements": replacements}
+    description = one_line(finding.hint or finding.message)
+    return [{"description": {"text": description}, "artifactChanges": [change]}]
+
+
+def _replacement(source: bytes, edit: Edit) -> Json:
+    start, end = locate(source, edit.start), locate(source, edit.end)
+    names = ("startLine", "startColumn", "endLine", "endColumn")
+    text = (edit.before + (edit.after or b"")).decode("utf-8", "replace")
+    return {
+        "deletedRegion": dict(zip(names, (*start, *end), strict=True)),
+        "insertedContent": {"text": text},
+    }
+
+
+def _source(path: str) -> bytes:
+    try:
+        return read_bytes(path)
+    except OSError:
+        return b""

@@ -1,0 +1,334 @@
+"""What a name becomes for a robot: kinds, layouts, separators, shared names.
+
+A renamed value is always the old value with one insertion, so a name's spelling is an ``Affix``:
+where to insert, and what is put before and after the robot's name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+
+from multibot_rewrite.base.conventions import SHARED_TOPICS, WORLD_FRAMES
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.nearest import did_you_mean_one_of
+from multibot_rewrite.base.record import NamedTuple
+
+PREFIX, POSTFIX, NAMESPACE = "prefix", "postfix", "namespace"
+TF_TOPICS = ("tf", "tf_static")
+# Order and grouping as shown in reports; the value is the default separator.
+SEPARATORS = {
+    "link": "/",
+    "joint": "_",
+    "frame": "/",
+    "sensor": "_",
+    "light": "_",
+    "transmission": "_",
+    "actuator": "_",
+    "hardware": "_",
+    "gpio": "_",
+    "model": "_",
+    "group": "_",
+    "node": "_",
+    "stem": "_",
+    "topic": "/",
+    "subtopic": "/",
+    "service": "/",
+    "namespace": "/",
+}
+# What a ROS 2 name can hold: a node name is one token, a topic a path of tokens; no remap rule can
+# hold two underscores in a row (rcl lexer.c).
+ROS_SEPARATORS = {
+    "node": ("_",),
+    **dict.fromkeys(("stem", "topic", "subtopic", "service"), ("/", "_")),
+    "namespace": ("/",),
+}
+FRAME_KINDS = frozenset({"link", "frame"})
+# A stem is a word topics are made of (camera_name); a subtopic is below a stem or namespace.
+TOPIC_KINDS = frozenset({"topic", "subtopic", "service"})
+# What a ROS namespace reaches, or is.
+ROS_KINDS = frozenset({*TOPIC_KINDS, "stem", "namespace"})
+# A use of one of these must be declared in the same file.
+CLOSED_KINDS = frozenset({"link", "joint", "model", "group"})
+# Declarations of these are looked up by name.
+DECLARED_KINDS = (*sorted(CLOSED_KINDS), "frame", "sensor", "light")
+# Stands for a robot in a text that is made to see what is the same for all. Letters alone are taken by
+# every file that takes a name.
+TWIN = "qzrobotzq"
+# Characters that are not part of a plain topic: a substitution or a placeholder is left alone.
+NOT_PLAIN = frozenset("{}$ ")
+
+
+class Layout(NamedTuple):
+    """What differs per robot: the frames, the tf topic, the namespace.
+
+    Where frames are named ``at_run_time`` a description keeps its links and joints: nodes put the
+    robot's name in front of frames, as robot_state_publisher does with its ``frame_prefix``.
+    """
+
+    name: str
+    short: str
+    frames: bool
+    tf_per_robot: bool
+    namespaced: bool
+    about: str
+    at_run_time: bool = False
+
+
+LAYOUTS = (
+    Layout("tf-per-robot", "L1", False, True, True, "tf topic per robot, bare frames"),
+    Layout("frames-per-robot", "L2", True, False, True, "one /tf, frames per robot"),
+    Layout("both", "L3", True, True, True, "tf topic and frames per robot"),
+    Layout("postfix", "L4", True, True, False, "everything renamed per robot, no namespaces"),
+    Layout(
+        *("frame-prefix", "L5", True, False, True),
+        "one /tf, frames per robot by frame_prefix, the description keeps its links",
+        at_run_time=True,
+    ),
+)
+DEFAULT_LAYOUT = "postfix"
+
+
+class Affix(NamedTuple):
+    """Insert ``before + robot + after`` at character ``at`` of the old value."""
+
+    at: int
+    before: str
+    after: str
+
+    def spell(self, text: str, robot: str) -> str:
+        """``text`` with the name of ``robot`` in it."""
+        return f"{text[: self.at]}{self.before}{robot}{self.after}{text[self.at :]}"
+
+
+# Kind and text of a name -> where the robot's name goes; None: it is there already.
+OwnNames = Mapping[tuple[str, str], Affix | None]
+NO_OWN_NAMES: OwnNames = {}
+
+
+class Naming(NamedTuple):
+    """The whole naming policy of one job; ``separators`` holds only the kinds that are renamed.
+
+    ``own`` are names that the description spells for the robot itself, by an argument of its xacro.
+    """
+
+    layout: Layout
+    affix: str
+    topics: str
+    separators: Mapping[str, str]
+    shared_frames: frozenset[str]
+    shared_topics: frozenset[str]
+    own: OwnNames = NO_OWN_NAMES
+
+
+def make_naming(
+    layout: str = DEFAULT_LAYOUT,
+    affix: str | None = None,
+    topics: str | None = None,
+    separators: Mapping[str, str] | None = None,
+    shared_frames: Iterable[str] = WORLD_FRAMES,
+    shared_topics: Iterable[str] = SHARED_TOPICS,
+    groups: str = "keep",
+) -> Naming:
+    """Build the policy from plain words; raises UsageError for a word that is not known.
+
+    ``layout`` is a name or short name of ``LAYOUTS``; ``affix`` is ``prefix`` or ``postfix``
+    (default: postfix, where the layout has no other); ``topics`` is ``postfix``, ``prefix`` or
+    ``namespace`` (default: what the layout implies).
+    ``groups`` is ``keep`` or ``rename``: MoveIt's YAML names an SRDF's groups, and each robot's
+    move_group has its own.
+    """
+    chosen = find_layout(layout)
+    usual = PREFIX if chosen.at_run_time else POSTFIX
+    side = usual if affix is None else affix
+    _one_of("affix", side, (POSTFIX, PREFIX))
+    strategy = topics or (NAMESPACE if chosen.namespaced else side)
+    _one_of("topics", strategy, (POSTFIX, PREFIX, NAMESPACE))
+    _one_of("groups", groups, ("keep", "rename"))
+    active = _active(chosen, strategy, _separators(separators or {}))
+    if groups == "keep":
+        active.pop("group", None)
+    _check_run_time(chosen, side, active)
+    return Naming(
+        chosen,
+        side,
+        strategy,
+        active,
+        frozenset(name.strip("/") for name in shared_frames),
+        frozenset(name.strip("/") for name in shared_topics)
+        | (frozenset() if chosen.tf_per_robot else frozenset(TF_TOPICS)),
+    )
+
+
+def _check_run_time(layout: Layout, side: str, separators: Mapping[str, str]) -> None:
+    """What nodes do at run time is one way: RViz puts a slash behind its TF Prefix
+    (tf_link_updater.cpp)."""
+    if layout.at_run_time and (side != PREFIX or separators["frame"] != "/"):
+        what = "affix: prefix" if side != PREFIX else "frame=/"
+        raise UsageError(f"in layout {layout.name} nodes put robot1/ before frames: use {what}")
+
+
+def find_layout(word: str) -> Layout:
+    """The layout called ``word``; raises UsageError naming all of them."""
+    for layout in LAYOUTS:
+        if word in (layout.name, layout.short):
+            return layout
+    _one_of("layout", word, tuple(layout.name for layout in LAYOUTS))
+    raise AssertionError(word)
+
+
+def _one_of(what: str, word: str, allowed: tuple[str, ...]) -> None:
+    if word in allowed:
+        return
+    near = did_you_mean_one_of(word, allowed)
+    hint = f"; {near}" if near else ""
+    raise UsageError(f"{what} {word!r} is not known, use one of {', '.join(allowed)}{hint}")
+
+
+def _separators(given: Mapping[str, str]) -> dict[str, str]:
+    for kind, separator in given.items():
+        _one_of("separator kind", kind, tuple(SEPARATORS))
+        allowed = ROS_SEPARATORS.get(kind, ("/", "_", "__", "-", "."))
+        if separator not in allowed:
+            raise UsageError(f"separator {kind}={separator!r}: use one of {' '.join(allowed)}")
+    result = {**SEPARATORS, **given}
+    # A frame names a link more often than not: they only differ where both were asked for.
+    if "link" in given and "frame" not in given:
+        result["frame"] = given["link"]
+    return result
+
+
+def _active(layout: Layout, topics: str, separators: dict[str, str]) -> dict[str, str]:
+    """The kinds that this layout and topic strategy rename at all."""
+    # A light is no frame and in no other file, so it has no reason to be the same in any layout.
+    kinds = {"light", "stem", *TOPIC_KINDS, "namespace" if topics == NAMESPACE else "node"}
+    if layout.at_run_time:
+        kinds.add("frame")
+    elif layout.frames:
+        kinds |= set(SEPARATORS) - TOPIC_KINDS - {"stem", "namespace", "node"}
+    return {kind: separators[kind] for kind in SEPARATORS if kind in kinds}
+
+
+def affix(naming: Naming, kind: str, text: str, namespaced: bool = False) -> Affix | None:
+    """Where the robot's name goes in ``text``, a name of ``kind``; None where it is not renamed.
+
+    ``namespaced`` is true where a ROS namespace reaches the value.
+    """
+    if naming.own and (kind, text) in naming.own:
+        return naming.own[kind, text]
+    separator = naming.separators.get(kind)
+    if separator is None:
+        return None
+    if kind in ROS_KINDS:
+        in_namespace = namespaced and naming.topics == NAMESPACE
+        return _ros_affix(naming, separator, kind, text, in_namespace)
+    if _is_shared_frame(naming, kind, text):
+        return None
+    return _name_affix(naming.affix, separator, text)
+
+
+def _ros_affix(
+    naming: Naming, separator: str, kind: str, text: str, in_namespace: bool
+) -> Affix | None:
+    if kind == "namespace":
+        return _namespace_affix(separator, text)
+    if kind == "stem" and in_namespace:
+        return _namespace_affix("/", text) if text.startswith("/") else None
+    if kind == "stem":
+        return _name_affix(naming.affix, separator, text)
+    return _topic_affix(naming, separator, text, kind == "subtopic" or in_namespace)
+
+
+def _is_shared_frame(naming: Naming, kind: str, text: str) -> bool:
+    return kind in FRAME_KINDS and text.strip("/") in naming.shared_frames
+
+
+def spelled(naming: Naming, robot: str, kind: str, text: str, namespaced: bool = False) -> str:
+    """What ``text``, a name of ``kind``, becomes for ``robot``; unchanged where it is not renamed."""
+    there = affix(naming, kind, text, namespaced)
+    return there.spell(text, robot) if there else text
+
+
+def is_keyword(text: str) -> bool:
+    """SDF reserves ``__model__`` and the like (sdformat Utils.cc isReservedName)."""
+    return len(text) >= 4 and text.startswith("__") and text.endswith("__")
+
+
+def _name_affix(side: str, separator: str, text: str) -> Affix:
+    if side == POSTFIX:
+        return Affix(len(text), separator, "")
+    return Affix(1 if text.startswith("/") else 0, "", separator)
+
+
+def _topic_affix(naming: Naming, separator: str, text: str, below: bool) -> Affix | None:
+    """``below`` tells that a relative name is put under something that is the robot's already."""
+    bare = text.strip("/")
+    if not bare or bare in naming.shared_topics or text.startswith(("~", "__")):
+        return None
+    if text.endswith("/") or not NOT_PLAIN.isdisjoint(text):
+        return None
+    if below and not text.startswith("/"):
+        return None
+    side = POSTFIX if naming.topics == POSTFIX else PREFIX
+    return _name_affix(side, separator, text)
+
+
+def _namespace_affix(separator: str, text: str) -> Affix | None:
+    if not NOT_PLAIN.isdisjoint(text):
+        return None
+    at = 1 if text.startswith("/") else 0
+    return Affix(at, "", separator if text[at:] else "")
+
+
+def removal(
+    naming: Naming, robot: str, kind: str, text: str, namespaced: bool = False
+) -> tuple[int, int] | None:
+    """The part of ``text`` that ``affix`` put there for ``robot``; None where there is none."""
+    if robot not in text:
+        return None
+    if naming.own:
+        if (kind, text) in naming.own:
+            return None
+        for (of, stem), own in naming.own.items():
+            if of == kind and own is not None and own.spell(stem, robot) == text:
+                return own.at, own.at + len(text) - len(stem)
+    separator = naming.separators.get(kind)
+    if separator is None or _is_shared_frame(naming, kind, text):
+        return None
+    side = naming.topics if kind in TOPIC_KINDS else naming.affix
+    for start, end in _affix_places(side, separator, robot, text):
+        stem = text[:start] + text[end:]
+        there = affix(naming, kind, stem, namespaced)
+        if there is not None and there.spell(stem, robot) == text:
+            return start, end
+    return None
+
+
+def _affix_places(side: str, separator: str, robot: str, text: str) -> Iterator[tuple[int, int]]:
+    """Where in ``text`` an affix may be, the likely place first."""
+    end = separator + robot
+    if side == POSTFIX and text.endswith(end):
+        yield len(text) - len(end), len(text)
+    lead = 1 if text.startswith("/") else 0
+    for inserted in (robot + separator, f"{robot}/", robot):
+        if text.startswith(inserted, lead):
+            yield lead, lead + len(inserted)
+
+
+def overlap(naming: Naming, robots: Iterable[str]) -> list[tuple[str, str, str]]:
+    """Pairs of robots one of whose names ends (begins) like the other's affix, with that separator.
+
+    Only for such pairs can two different old names become one: with a postfix, ``arm`` of
+    ``left_b`` and ``arm_left`` of ``b`` are both ``arm_left_b``.
+    """
+    names = set(robots)
+    pairs = set()
+    sides = {naming.affix, POSTFIX if naming.topics == POSTFIX else PREFIX}
+    for separator in set(naming.separators.values()):
+        for robot in names:
+            for at in range(len(robot)):
+                if not robot.startswith(separator, at):
+                    continue
+                tail, front = robot[at + len(separator) :], robot[:at]
+                met = {POSTFIX: tail, PREFIX: front}
+                pairs |= {(robot, met[side], separator) for side in sides if met[side] in names}
+    return sorted(pairs)

@@ -1,0 +1,175 @@
+"""What a result rests on beside its arguments: answers of the disk and of the environment.
+
+A function that asks them is marked ``outside``. While ``recorded`` runs a job, each call of such a
+function is noted with a digest of its answer. ``answer_now`` asks again, so a result that was kept
+still holds where all answers are the same.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from functools import wraps
+from importlib import import_module
+from typing import Any, ParamSpec, TypeVar
+
+from multibot_rewrite.base.record import NamedTuple
+
+try:
+    from _blake2 import blake2b  # hashlib loads OpenSSL, which takes longer than a short lint
+except ImportError:  # an interpreter that was built without it
+    from hashlib import blake2b
+
+_P = ParamSpec("_P")
+_T = TypeVar("_T")
+PACKAGE = __name__.partition(".")[0] + "."
+# A longer answer is noted by its digest alone.
+SHORT = 40
+
+
+class Question(NamedTuple):
+    """A call of a function that is marked ``outside``: its name, and its arguments."""
+
+    function: str
+    arguments: tuple[Any, ...]
+    named: tuple[tuple[str, Any], ...] = ()
+
+
+Asked = dict[Question, str]
+# Stands among the questions where the same job may have another result.
+UNREPEATABLE = Question("", ())
+_NOTES: ContextVar[Asked | None] = ContextVar("asked", default=None)
+
+
+def outside(function: Callable[_P, _T]) -> Callable[_P, _T]:
+    """Mark a function whose answer is that of the disk or the environment.
+
+    Arguments are texts, numbers and tuples of them; an answer is that, bytes or a set of texts.
+    """
+    name = f"{function.__module__}:{function.__qualname__}"
+
+    @wraps(function)
+    def asking(*arguments: _P.args, **named: _P.kwargs) -> _T:
+        notes = _NOTES.get()
+        if notes is None:
+            return function(*arguments, **named)
+        question = Question(name, arguments, tuple(sorted(named.items())))
+        try:
+            with _noting(None):  # what it asks in turn is in its answer
+                answer = function(*arguments, **named)
+        except Exception as error:
+            _note(notes, question, _failed(error))
+            raise
+        _note(notes, question, digest(answer))
+        return answer
+
+    asking.is_outside = True  # type: ignore[attr-defined]
+    return asking
+
+
+def recorded(job: Callable[[], _T]) -> tuple[_T, Asked | None]:
+    """The result of a job, and what it asked; None where it may have another result another time."""
+    notes: Asked = {}
+    with _noting(notes):
+        result = job()
+    return result, None if UNREPEATABLE in notes else notes
+
+
+def unrepeatable() -> None:
+    """Say that the result of what runs may be another one next time: it rests on time or memory."""
+    notes = _NOTES.get()
+    if notes is not None:
+        notes[UNREPEATABLE] = ""
+
+
+def answer_now(question: Question) -> str:
+    """The digest of today's answer; raises LookupError for what is no function marked ``outside``."""
+    module, _, name = question.function.partition(":")
+    function = getattr(import_module(module), name, None) if module.startswith(PACKAGE) else None
+    if not getattr(function, "is_outside", False):
+        raise LookupError(question.function)
+    try:
+        with _noting(None):
+            return digest(function(*question.arguments, **dict(question.named)))  # type: ignore[misc]
+    except Exception as error:  # the same error is the same answer
+        return _failed(error)
+
+
+def digest(answer: object) -> str:
+    """A short text that differs where two answers do."""
+    if isinstance(answer, bytes):
+        return blake2b(answer, digest_size=16).hexdigest()
+    if isinstance(answer, (set, frozenset)):
+        answer = sorted(answer)
+    if isinstance(answer, tuple):
+        answer = [digest(it) for it in answer]
+    text = repr(answer)
+    return text if len(text) <= SHORT else digest(text.encode("utf-8", "backslashreplace"))
+
+
+def _failed(error: Exception) -> str:
+    return f"{type(error).__name__} {digest(str(error))}"
+
+
+def _note(notes: Asked, question: Question, answer: str) -> None:
+    if notes.setdefault(question, answer) != answer:
+        notes[UNREPEATABLE] = ""  # it changed while the job ran
+
+
+@contextmanager
+def _noting(notes: Asked | None) -> Iterator[None]:
+    before = _NOTES.set(notes)
+    try:
+        yield
+    finally:
+        _NOTES.reset(before)
+
+
+@outside
+def is_file(path: str) -> bool:
+    """Is it a file, or a link to one?"""
+    return os.path.isfile(path)
+
+
+@outside
+def is_folder(path: str) -> bool:
+    """Is it a folder, or a link to one?"""
+    return os.path.isdir(path)
+
+
+@outside
+def is_there(path: str) -> bool:
+    """Is anything there, behind a link as well?"""
+    return os.path.exists(path)
+
+
+@outside
+def real_path(path: str) -> str:
+    """The path without links."""
+    return os.path.realpath(path)
+
+
+@outside
+def variable(name: str) -> str | None:
+    """A variable of the environment; None where it is not set."""
+    return os.environ.get(name)
+
+
+@outside
+def file_state(path: str) -> tuple[int, ...]:
+    """What differs where a file was written anew; empty where it is not there."""
+    try:
+        it = os.stat(path)
+    except (OSError, ValueError):
+        return ()
+    return it.st_mtime_ns, it.st_size
+
+
+def kept_bytes(path: str, most: int) -> bytes:
+    """The first bytes of a large file; raises OSError. What rests on them holds as long as the file
+    has its state: to read it again would cost more than the answer."""
+    file_state(path)
+    with _noting(None), open(path, "rb") as file:
+        return file.read(most)

@@ -1,0 +1,99 @@
+"""ROS 2 releases: which are known, which one is meant, and which of them have a fact.
+
+Release words are terms with commas between: ``jazzy``, ``kilted+`` (it and all later), ``<=jazzy``
+(it and all earlier), ``jazzy 1.3.9+`` (jazzy since that version of the fact's package).
+Sources: REP 2000; https://docs.ros.org/en/rolling/Releases.html.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator, Mapping
+
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.nearest import did_you_mean_one_of
+
+RELEASES = ("humble", "jazzy", "kilted", "lyrical", "rolling")
+NEWEST_LTS = "lyrical"
+VARIABLE = "ROS_DISTRO"
+_TERM = lazy_compile(r"(?P<until><=)?(?P<release>[a-z]+)(?: (?P<version>[0-9][0-9.]*))?(?P<on>\+)?")
+
+
+def chosen_release(given: str, environment: Mapping[str, str]) -> str:
+    """The release that is asked for, else that of ROS_DISTRO, else the newest LTS.
+
+    Raises UsageError for a release that is not known.
+    """
+    found = given or environment.get(VARIABLE, "") or NEWEST_LTS
+    if found in RELEASES:
+        return found
+    known = f"known are {', '.join(RELEASES)}"
+    if given:
+        hint = did_you_mean_one_of(found, RELEASES)
+        raise UsageError(f"release {found!r} is not known; {hint or known}")
+    hint = f"name the release whose facts count with --distro: {', '.join(RELEASES)}"
+    raise UsageError(f"{VARIABLE} is {found!r}, which is not known; {hint}")
+
+
+def release_here(given: str | None = None) -> str:
+    """``chosen_release`` with this process's environment: for commands and public calls alone."""
+    return chosen_release(given or "", os.environ)
+
+
+def facts_of_release(release: str) -> str:
+    """The end of a summary: whose facts it rests on; nothing where that is not known."""
+    return f" (facts of {release})" if release else ""
+
+
+def has_release(words: str, release: str) -> bool:
+    """Does a fact with these release words hold in ``release``? No words stand for all releases."""
+    return not words or any(_holds(it, release) for it in _terms(words))
+
+
+def releases_with(words: str) -> tuple[str, ...]:
+    """The releases in which a fact with these release words holds."""
+    return tuple(it for it in RELEASES if has_release(words, it))
+
+
+def share_release(words: str, others: str) -> bool:
+    """Is there a release in which both facts hold?"""
+    return any(has_release(words, it) and has_release(others, it) for it in RELEASES)
+
+
+def since_version(words: str, release: str) -> str:
+    """The version of its package with which a fact came into ``release``; "" if it always had it."""
+    found = [it["version"] or "" for it in _terms(words) if _holds(it, release)]
+    return min(found, default="")
+
+
+def is_release_words(words: str) -> bool:
+    """Are these release words? See above."""
+    try:
+        found = list(_terms(words))
+    except UsageError:
+        return False
+    return bool(found) and all(_is_term(it) for it in found)
+
+
+def _is_term(term: re.Match[str]) -> bool:
+    """``<=`` and ``+`` exclude each other; a version is always ``VERSION+``."""
+    if term["release"] not in RELEASES or (term["until"] and term["on"]):
+        return False
+    return not term["version"] or bool(term["on"])
+
+
+def _terms(words: str) -> Iterator[re.Match[str]]:
+    for term in words.split(","):
+        found = _TERM.fullmatch(term.strip())
+        if found is None:
+            raise UsageError(f"{words!r} names no releases; write jazzy, kilted+ or <=jazzy")
+        yield found
+
+
+def _holds(term: re.Match[str], release: str) -> bool:
+    at, bound = RELEASES.index(release), RELEASES.index(term["release"])
+    if term["until"]:
+        return at <= bound
+    return at >= bound if term["on"] and not term["version"] else at == bound

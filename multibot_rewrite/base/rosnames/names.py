@@ -1,0 +1,215 @@
+"""What a ROS 2 name may look like, and how it becomes a fully qualified one.
+
+Every check gives the fault that rcl 9.2 (Jazzy) would give first, at the same character. Sources:
+rcl ``validate_topic_name.c`` and ``expand_topic_name.c``; rmw ``validate_full_topic_name.c``,
+``validate_namespace.c``, ``validate_node_name.c`` and their headers (the limits).
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.record import NamedTuple
+
+# rmw: 255 less 8 for the rt/, rq/ and rr/ ... Reply of the wire; a namespace leaves room for "/x".
+MAX_TOPIC = 247
+MAX_NAMESPACE = MAX_TOKEN = 245
+MAX_NODE = 255
+_DIGITS = frozenset("0123456789")
+_LETTERS = frozenset("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_")
+_TOKEN = _LETTERS | _DIGITS
+# Nearly every name there is; what does not match is looked at letter by letter.
+_PLAIN = lazy_compile(r"(?:~?/)?[A-Za-z_][A-Za-z0-9_]*(?:/[A-Za-z_][A-Za-z0-9_]*)*")
+_FULL = lazy_compile(r"(?:/[A-Za-z_][A-Za-z0-9_]*)+")
+_SUBSTITUTION = lazy_compile(r"\{(node|ns|namespace)\}")
+
+
+class NameFault(NamedTuple):
+    """Why a name or rule is not valid, and the index of the wrong character."""
+
+    reason: str
+    at: int
+
+
+def check_topic_name(name: str) -> NameFault | None:
+    """What is wrong with a topic or service name as code gives it, before expansion.
+
+    ``~`` and ``{node}`` are allowed here. Doubled slashes and any length pass too, as in rcl: those
+    are faults of the expanded name (``check_full_name``).
+    """
+    if _PLAIN.fullmatch(name):
+        return None
+    return _ends(name) or _braces_and_letters(name) or _first_letters(name)
+
+
+def check_full_name(name: str) -> NameFault | None:
+    """What is wrong with a fully qualified topic or service name."""
+    return _full_form(name) or _too_long(name, MAX_TOPIC)
+
+
+def check_namespace(namespace: str) -> NameFault | None:
+    """What is wrong with a node's namespace: absolute, ``/`` alone or without a slash at its end."""
+    if namespace == "/":
+        return None
+    return _full_form(namespace) or _too_long(namespace, MAX_NAMESPACE)
+
+
+def check_node_name(name: str) -> NameFault | None:
+    """What is wrong with a node's name: one token of at most 255 characters."""
+    if name.isascii() and name.isidentifier():
+        return _too_long(name, MAX_NODE)
+    if not name:
+        return NameFault("it is empty", 0)
+    fault = _letters(name, _TOKEN, "a letter, a digit or an underscore")
+    return fault or _digit_first(name, 0)
+
+
+def _ends(name: str) -> NameFault | None:
+    if not name:
+        return NameFault("it is empty", 0)
+    if name[0] in _DIGITS:
+        return _digit_first(name, 0)
+    return _slash_last(name) if name.endswith("/") else None
+
+
+def _braces_and_letters(name: str) -> NameFault | None:
+    """Braces are neither nested nor left open, and hold one token; ``~`` only leads."""
+    opened = -1
+    for at, letter in enumerate(name):
+        if opened >= 0:
+            if letter == "}":
+                opened = -1
+            elif letter not in _TOKEN:
+                reason = "does not belong in a {substitution}: letters, digits and underscores do"
+                return _at(name, at, reason)
+            elif letter in _DIGITS and at == opened + 1:
+                return _at(name, at, "is a digit, with which no substitution starts")
+        elif letter == "{":
+            opened = at
+        elif letter == "}":
+            return _at(name, at, "closes what was not opened")
+        elif letter == "~" and at:
+            return _at(name, at, "may only be the first character")
+        elif letter not in _TOKEN and letter not in "/~":
+            return _at(name, at, "is not a letter, a digit, or one of _ / ~ { }")
+    return _at(name, opened, "is not closed") if opened >= 0 else None
+
+
+def _first_letters(name: str) -> NameFault | None:
+    # Two characters, as "~a", pass: rcl never looks at the last one here.
+    if name[0] == "~" and len(name) > 2 and name[1] != "/":
+        return _at(name, 1, "follows '~', after which only a slash may stand")
+    return _digits_after_slashes(name)
+
+
+def _digits_after_slashes(name: str) -> NameFault | None:
+    for at, (letter, following) in enumerate(pairwise(name), 1):
+        if letter == "/" and following in _DIGITS:
+            return _digit_first(name, at)
+    return None
+
+
+def _full_form(name: str) -> NameFault | None:
+    """All that is asked of a fully qualified name but its length."""
+    if _FULL.fullmatch(name):
+        return None
+    if not name:
+        return NameFault("it is empty", 0)
+    if name[0] != "/":
+        return _at(name, 0, "is not the slash that a fully qualified name starts with")
+    if name.endswith("/"):
+        return _slash_last(name)
+    return _letters(name, _TOKEN | {"/"}, "a letter, a digit, an underscore or a slash") or (
+        _pairs(name)
+    )
+
+
+def _pairs(name: str) -> NameFault | None:
+    for at, (letter, following) in enumerate(pairwise(name), 1):
+        if letter == following == "/":
+            return _at(name, at, "is a slash right after a slash")
+        if letter == "/" and following in _DIGITS:
+            return _digit_first(name, at)
+    return None
+
+
+def _letters(name: str, allowed: frozenset[str], words: str) -> NameFault | None:
+    for at, letter in enumerate(name):
+        if letter not in allowed:
+            return _at(name, at, f"is not {words}")
+    return None
+
+
+def _at(name: str, at: int, reason: str) -> NameFault:
+    return NameFault(f"character {at + 1}, {name[at]!r}, {reason}", at)
+
+
+def _digit_first(name: str, at: int) -> NameFault:
+    return _at(name, at, "is a digit, with which no part of a name starts")
+
+
+def _slash_last(name: str) -> NameFault:
+    return _at(name, len(name) - 1, "is a slash at the end")
+
+
+def _too_long(name: str, limit: int) -> NameFault | None:
+    if len(name) <= limit:
+        return None
+    # rcl points at the last character that is allowed.
+    return NameFault(f"it has {len(name)} characters, ROS 2 allows {limit}", limit - 1)
+
+
+def expand(name: str, namespace: str, node: str) -> str:
+    """The fully qualified name of ``name`` used by ``node`` in ``namespace``, before any rule.
+
+    ``{node}``, ``{ns}`` and ``{namespace}`` are filled in, other substitutions stay: rcl knows no
+    other. The namespace may lack its leading slash. Nothing is checked here.
+    """
+    bare = namespace.strip("/")
+    root = f"/{bare}" if bare else ""
+    if name.startswith("~"):
+        name = f"{root}/{node}{name[1:]}"
+    if "{" in name:
+        words = {"node": node, "ns": root or "/", "namespace": root or "/"}
+        name = _SUBSTITUTION.sub(lambda found: words[found[1]], name)
+    return name if name.startswith("/") else f"{root}/{name}"
+
+
+def check_robot_name(name: str) -> str:
+    """Return ``name`` if it is one ROS 2 name token, else raise UsageError with a proposal.
+
+    A token is a letter or underscore followed by letters, digits and underscores: the name has to
+    serve as node name, namespace and topic segment alike.
+    """
+    problem = _token_problem(name)
+    if not problem:
+        return name
+    raise UsageError(f"robot name {name!r}: {problem}; use for example {propose_token(name)!r}")
+
+
+def _token_problem(name: str) -> str:
+    if not name:
+        return "it is empty"
+    if len(name) > MAX_TOKEN:
+        return f"it has {len(name)} characters, ROS 2 allows {MAX_TOKEN}"
+    if name[0] not in _LETTERS and name[0] in _TOKEN:
+        return f"it starts with the digit {name[0]!r}, which no ROS 2 name may"
+    for place, letter in enumerate(name, 1):
+        if letter not in _TOKEN:
+            return f"character {place}, {letter!r}, is not a letter, a digit or an underscore"
+    if "__" in name:
+        return "it has two underscores in a row, which no remap rule can hold"
+    return ""
+
+
+def propose_token(name: str) -> str:
+    """A valid token as near to ``name`` as can be."""
+    kept = "".join(c if c in _TOKEN else "_" for c in name)
+    while "__" in kept:
+        kept = kept.replace("__", "_")
+    kept = kept.strip("_")
+    if not kept:
+        return "robot1"
+    return (kept if kept[0] in _LETTERS else f"robot_{kept}")[:MAX_TOKEN]

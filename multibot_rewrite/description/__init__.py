@@ -1,0 +1,1 @@
+"""A description: its text read, checked, rewritten and proved."""

@@ -1,0 +1,96 @@
+"""A xacro's arguments: those that no file knows, those that reach one of a frame and its link."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.findings.finding import WARNING
+from multibot_rewrite.base.findings.rule import XACRO, declare
+from multibot_rewrite.base.model import Claim
+from multibot_rewrite.base.naming import FRAME_KINDS
+from multibot_rewrite.base.nearest import did_you_mean_one_of
+from multibot_rewrite.description.checks.problem import Problem, about
+from multibot_rewrite.description.steps.collect import Inventory
+
+if TYPE_CHECKING:
+    from multibot_rewrite.description.steps.renames import RenameMap
+
+SEPARATORS = "/_-."
+UNREAD = "MB144"
+# More names are not listed where none is like the one that is given.
+_LISTED = 10
+
+_HEAD = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
+_BODY = """\
+  <xacro:arg name="prefix" default=""/>
+  <link name="$(arg prefix)base_link"/>
+  <gazebo>
+    <plugin name="drive" filename="libgazebo_ros_diff_drive.so">
+      <robot_base_frame>{}base_link</robot_base_frame>
+    </plugin>
+  </gazebo>
+</robot>
+"""
+ARGUMENT_MISSES_REFERENCE = declare(
+    "MB143",
+    "argument-misses-reference",
+    WARNING,
+    what="A frame is the name of a link, and an argument of the xacro puts the robot's name into one "
+    "of the two only.",
+    why="One has the robot's name by the argument, the other one by the rewrite: they differ, and "
+    "every look-up of the frame fails.",
+    fix="Write the argument at both, or do not give it: the rewrite names all links and frames. Where "
+    "the argument is on the frame, the options of the rewrite may give the link the same name.",
+    bad=_HEAD + _BODY.format(""),
+    good=_HEAD + _BODY.format("$(arg prefix)"),
+    # In the expansion, below the comment that xacro writes.
+    line=10,
+    formats=("rewrite", XACRO),
+    options={"xacro_args": {"prefix": "{robot}_"}},
+)
+
+
+def missed_by_arguments(
+    inventory: Inventory, renames: RenameMap, plain: Mapping[tuple[str, str], str], robot: str
+) -> Iterator[Problem]:
+    """``plain`` maps names without the arguments (kind and text) to those that ``robot`` has with
+    them."""
+    links = inventory.declared["link"]
+    pairs = zip(inventory.claims, inventory.names, strict=True) if robot else ()
+    for claim, names in pairs:
+        for name in names:
+            text = name.text.removeprefix("/")
+            if name.kind not in FRAME_KINDS or text in links:
+                continue
+            if plain.get(("link", text)) in links:
+                yield _missed(claim, text, plain["link", text])
+            # A frame with the argument, named after a link without it.
+            bare = text.replace(robot, "").strip(SEPARATORS)
+            if (name.kind, name.text) in renames.naming.own and bare in links:
+                link = renames.spelled(robot, "link", bare)
+                if link != text:
+                    yield _missed(claim, text, link)
+
+
+def _missed(claim: Claim, frame: str, link: str) -> Problem:
+    message = f"frame {frame!r} is the link {link!r}: the xacro's argument reaches only one of them"
+    hint = "write the argument at both, or do not give it"
+    return about(claim, ARGUMENT_MISSES_REFERENCE.code, message, hint)
+
+
+def unread_arguments(
+    root: _Element, unread: Iterable[str], known: Sequence[str]
+) -> Iterator[Problem]:
+    """Arguments that are given and that no file of a xacro knows; ``known`` are those that it knows."""
+    for name in unread:
+        message = f"argument {name!r} is given, and no file of this xacro declares or reads it"
+        yield Problem(root, message, None, _meant(name, known), (), UNREAD)
+
+
+def _meant(name: str, known: Sequence[str]) -> str:
+    more = ", ..." if len(known) > _LISTED else ""
+    listed = f"its arguments are {', '.join(known[:_LISTED])}{more}" if known else "it has none"
+    return did_you_mean_one_of(name, known) or listed

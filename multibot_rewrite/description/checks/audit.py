@@ -1,0 +1,227 @@
+"""All checks of a description before it is rewritten."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from itertools import chain, islice
+from typing import TYPE_CHECKING
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.naming import Naming
+from multibot_rewrite.base.nearest import Guesses
+from multibot_rewrite.base.releases import releases_with
+from multibot_rewrite.description.checks.hazards import hazards
+from multibot_rewrite.description.checks.model_namespaces import ignored_namespaces, used_namespaces
+from multibot_rewrite.description.checks.problem import Problem, to_findings
+from multibot_rewrite.description.checks.references import (
+    ambiguous,
+    doubtful,
+    duplicates,
+    loose_ends,
+    undeclared_names,
+)
+from multibot_rewrite.description.rewriters.text import text_at
+from multibot_rewrite.description.rewriters.tree import ANY_WITH_ROS, Tree, library_key
+from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
+from multibot_rewrite.description.rewriters.vocabulary.grammar import split_path
+from multibot_rewrite.description.steps.collect import Inventory
+from multibot_rewrite.description.steps.document import Document, without_comments
+
+if TYPE_CHECKING:
+    from multibot_rewrite.description.steps.renames import RenameMap
+
+__all__ = [
+    "audit",
+    "included_models",
+    "is_unknown",
+    "other_releases",
+    "other_ros",
+    "unknown_hardware",
+    "unknown_plugins",
+]
+ANOTHER_RELEASE = (
+    "name the release that the description is for with --distro, or distro: in a fleet file"
+)
+# A step of a path that asks for an attribute.
+_STEP = lazy_compile(r"\[@(\w+)=(.*)\]")
+
+
+def audit(inventory: Inventory, renames: RenameMap, tree: Tree) -> list[Finding]:
+    """All findings that do not depend on the robot's name, in source order."""
+    document = inventory.document
+    errors = chain(leftover_xacro(inventory), worlds(inventory), duplicates(inventory))
+    warnings = chain(
+        undeclared(inventory, renames.naming),
+        ambiguous(inventory),
+        unknown_plugins(inventory, tree),
+        unknown_hardware(inventory, tree),
+        included_models(inventory),
+        ignored_namespaces(inventory, tree),
+        used_namespaces(inventory, tree),
+        hazards(inventory, renames),
+    )
+    found = [
+        *to_findings(document, errors, ERROR),
+        *to_findings(document, warnings, WARNING),
+        *to_findings(document, other_ros(inventory, tree), NOTE),
+        *to_findings(document, other_releases(inventory, tree), NOTE),
+    ]
+    return sorted(found, key=lambda item: (item.line, item.column, item.code))
+
+
+def leftover_xacro(inventory: Inventory) -> Iterator[Problem]:
+    """The first element or substitution that only xacro understands."""
+    document = inventory.document
+    source = document.source
+    hint = "expand it first: name the file ….xacro, or run xacro"
+    elements = document.elements if uses_xacro(document) else ()
+    element = next((it for it in elements if "/xacro}" in str(it.tag)), None)
+    if element is not None:
+        message = f"xacro element <{str(element.tag).rpartition('}')[2]}>"
+        yield Problem(element, message, None, hint, (), "MB105")
+    elif _may_substitute(source):
+        for element, value in islice(_substitutions(document), 1):
+            yield Problem(element, f"xacro substitution {value!r}", None, hint, (), "MB105")
+
+
+def _may_substitute(source: bytes) -> bool:
+    """A cheap look before the search: in many files comments alone hold a substitution."""
+    if b"$" not in source or (b"${" not in source and b"$(arg" not in source):
+        return False
+    rest = without_comments(source)
+    return b"${" in rest or b"$(arg" in rest
+
+
+def _substitutions(document: Document) -> Iterator[tuple[_Element, str]]:
+    """Elements and values that hold one, claimed or not; comments do not count."""
+    for element in document.elements:
+        values = (*element.values(), element.text or "", *(c.tail or "" for c in element))
+        for value in values:
+            if "${" in value or "$(arg" in value:
+                yield element, " ".join(str(value).split())
+
+
+def uses_xacro(document: Document) -> bool:
+    """A cheap look before the search: is a prefix bound to xacro, and is it used?"""
+    spaces = document.root.nsmap.items()
+    prefixes = {f"<{prefix}:" for prefix, uri in spaces if prefix and "/xacro" in uri}
+    return any(prefix.encode() in document.source for prefix in prefixes | {"<xacro:"})
+
+
+def worlds(inventory: Inventory) -> Iterator[Problem]:
+    """A world holds several models: it is not known which one is the robot."""
+    root = inventory.document.root
+    for element in root.iter("world") if root.tag == "sdf" else ():
+        message = f"world {element.get('name', '')!r} cannot be rewritten for one robot"
+        hint = "give the model.sdf of the robot, and <include> the results in the world"
+        yield Problem(element, message, None, hint, (), "MB109")
+
+
+def undeclared(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
+    """Uses of a link or joint that nothing declares: they are not renamed."""
+    loose = loose_ends(doubtful(inventory), inventory.declared, naming.shared_frames)
+    for it in undeclared_names(loose, inventory.declared):
+        yield it._replace(message=f"{it.message}: it is not renamed")
+
+
+def is_unknown(section: VocabularySection) -> bool:
+    """Is the plugin in no section? Then the element's own is used, or the one for any ROS node."""
+    return section.select == "plugin" or section.names[0] == ANY_WITH_ROS
+
+
+def included_models(inventory: Inventory, tree: Tree | None = None) -> Iterator[Problem]:
+    """Models of an SDF that are in other files: nobody reads what these start."""
+    # A world has models of its own, too: only what a robot is made of counts.
+    for model in inventory.document.root.iter("model"):
+        for include in model.iterchildren("include"):
+            uri = text_at(include, "uri")
+            if uri:
+                message = (
+                    f"the included {uri!r} is not read: its topics and frames stay as they are"
+                )
+                hint = "rewrite its model.sdf for each robot, and write the result here"
+                yield Problem(include, message, None, hint, (), "MB906")
+
+
+def unknown_plugins(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
+    """Plugins no section knows: what their parameters name can only be guessed."""
+    guesses = Guesses()
+    for host in inventory.hosts:
+        section = host.node.section
+        if section is None or not is_unknown(section):
+            continue
+        name = host.element.get("filename") or host.element.get("name") or ""
+        others = tree.vocabulary.releases_elsewhere("plugin", library_key(name))
+        where = _not_here(tree, others) if others else "is not in the vocabulary"
+        message = f"plugin {name!r} {where}: its own parameters are not renamed"
+        known = tree.vocabulary.names("plugin")
+        hint = ANOTHER_RELEASE if others else guesses.hint(library_key(name), known)
+        yield Problem(host.element, message, None, hint, (), "MB902")
+
+
+def _not_here(tree: Tree, releases: Iterable[str]) -> str:
+    return f"is not in {tree.vocabulary.release}, only in {', '.join(releases)}"
+
+
+def other_releases(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
+    """Values that hold names in other releases only: nothing in them is renamed."""
+    for host in inventory.hosts:
+        section = host.node.section
+        if section is None:
+            continue
+        for site in tree.vocabulary.rows_elsewhere(section.type, section.names[0]):
+            if site.path in {it.path for it in section.sites} or site.role == "keep":
+                continue
+            where = _not_here(tree, releases_with(site.releases))
+            for element in _elements_at(host.element, site.path):
+                message = f"{site.path} of {section.name} {where}: nothing in it is renamed"
+                yield Problem(element, message, None, ANOTHER_RELEASE, (), "MB905")
+
+
+def _elements_at(element: _Element, path: str) -> Iterator[_Element]:
+    """The elements of a path of the vocabulary that hold its value."""
+    steps, attribute = split_path(path)
+    below = "/".join(_STEP.sub(r"[@\1='\2']", it) for it in steps)
+    for found in element.iterfind(below) if below else [element]:
+        if not attribute or found.get(attribute) is not None:
+            yield found
+
+
+def other_ros(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
+    """Parameters of the ROS 1 plugin of that name, which the ROS 2 plugin does not read."""
+    for host in inventory.hosts:
+        section = host.node.section
+        if section is None or section.type != "plugin" or section.ros != "2":
+            continue
+        flavours = tree.vocabulary.find("plugin", section.names[0])
+        theirs = {tag for other in flavours if other.ros == "1" for tag in other.tags}
+        if not theirs:
+            continue
+        known = section.tags | host.node.children.keys()
+        left = sorted({str(child.tag) for child in host.element} & (theirs - known))
+        if left:
+            tags = ", ".join(f"<{tag}>" for tag in left)
+            message = f"{section.names[0]} does not read {tags} in ROS 2: nothing in it is renamed"
+            hint = "delete what ROS 1 needed, or say it with <ros> and the names of ROS 2"
+            yield Problem(host.element, message, None, hint, (), "MB904")
+
+
+def unknown_hardware(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
+    """Hardware classes no section knows that have parameters: one may be a name, or a prefix."""
+    guesses = Guesses()
+    for host in inventory.hosts:
+        section = host.node.section
+        if section is None or section.select != "hardware":
+            continue
+        name = text_at(host.element, "hardware/plugin")
+        if not name or host.element.find("hardware/param") is None:
+            continue
+        others = tree.vocabulary.releases_elsewhere("hardware", name)
+        where = _not_here(tree, others) if others else "is not in the vocabulary"
+        message = f"hardware class {name!r} {where}: its own parameters are not renamed"
+        known = tree.vocabulary.names("hardware")
+        hint = ANOTHER_RELEASE if others else guesses.hint(name, known)
+        yield Problem(host.element, message, None, hint, (), "MB903")

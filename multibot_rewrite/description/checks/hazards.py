@@ -1,0 +1,218 @@
+"""What breaks when several robots are made from one description: one function per problem."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator
+from functools import partial
+from typing import TYPE_CHECKING
+
+from multibot_rewrite.base.naming import (
+    FRAME_KINDS,
+    NAMESPACE,
+    POSTFIX,
+    PREFIX,
+    TF_TOPICS,
+    Naming,
+)
+from multibot_rewrite.base.rosnames import split_remap
+from multibot_rewrite.description.checks.problem import Problem, about
+from multibot_rewrite.description.rewriters.forms import IN_FRONT
+from multibot_rewrite.description.rewriters.text import text_of
+from multibot_rewrite.description.rewriters.tree import library_key
+from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
+from multibot_rewrite.description.steps.collect import SRDF, Host, Inventory
+
+if TYPE_CHECKING:
+    from multibot_rewrite.description.steps.renames import RenameMap
+
+# gz systems that serve every entity of the world, whoever loads them (gz-sim src/systems).
+WORLD_SYSTEMS = {
+    "gz-sim-sensors-system": "Gazebo crashes when rendering is set up twice",
+    "gz-sim-imu-system": "every IMU of the world is published again for each copy",
+    "gz-sim-physics-system": "two physics engines move the same links",
+    "gz-sim-contact-system": "every contact sensor is published again for each copy",
+    "gz-sim-forcetorque-system": "every force sensor is published again for each copy",
+    "gz-sim-navsat-system": "every GPS of the world is published again for each copy",
+    "gz-sim-magnetometer-system": "every magnetometer is published again for each copy",
+    "gz-sim-altimeter-system": "every altimeter is published again for each copy",
+    "gz-sim-air-pressure-system": "every barometer is published again for each copy",
+    "gz-sim-scene-broadcaster-system": "every state of the world is sent again for each copy",
+}
+# What a plugin reads the description from: names that no other robot's plugin may read.
+DESCRIPTION_NODE = "robot_param_node"
+DESCRIPTIONS = ("robot_param", "robotParam", DESCRIPTION_NODE)
+
+
+def hazards(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
+    """All of them; they do not depend on the robots' names."""
+    for of_naming in (prefix_only, leading_slashes, moved_tf, process_wide, one_description):
+        yield from of_naming(inventory, renames.naming)
+    yield from world_systems(inventory)
+    for of_names in (hardwired, outside_frames, reordered):
+        yield from of_names(inventory, renames)
+
+
+def prefix_only(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
+    """Parameters that the consumer puts in front of names: they cannot hold a postfix."""
+    if naming.affix == PREFIX or "sensor" not in naming.separators:
+        return
+    for claim in inventory.claims:
+        if claim.site.form in IN_FRONT:
+            message = (
+                f"{claim.site.path} {claim.value!r} is put in front of names by the plugin, so a "
+                "postfix cannot be added"
+            )
+            yield about(claim, "MB422", message, "use --affix prefix")
+
+
+def leading_slashes(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
+    """Frames written with a leading slash: kept, but tf2 look-ups reject them (buffer_core.cpp)."""
+    for claim in inventory.claims:
+        kinds = claim.site.kinds
+        if claim.site.form != "whole" or kinds[0] not in FRAME_KINDS:
+            continue
+        if claim.value[:1] == "/" and claim.value[1:] not in naming.shared_frames:
+            message = f"frame {claim.value!r} starts with a slash, tf2 look-ups reject it"
+            yield about(claim, "MB301", message, "drop the slash")
+
+
+def moved_tf(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
+    """A rule of the file that takes a plugin off the one /tf which the layout wants."""
+    for claim in inventory.claims if not naming.layout.tf_per_robot else ():
+        rule = split_remap(claim.value) if claim.site.form == "remap" else None
+        if rule and rule.source.strip("/") in TF_TOPICS and rule.target != rule.source:
+            message = f"{claim.value!r} moves this plugin away from the shared {rule.source}"
+            hint = "drop the rule, or use --layout both"
+            yield about(claim, "MB423", message, hint)
+
+
+def bare_lookups(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
+    """Consumers that find things by bare name in the whole world, where those names stay bare."""
+    declared = {claim.site.kinds[0] for claim in inventory.claims if claim.site.role == "declares"}
+    for section, host in _known_hosts(inventory):
+        kind = section.unique
+        # Hardware looks for the sensors that it is given, not for all that the robot has.
+        element = host.element
+        without = kind != "" and element.tag == "ros2_control" and element.find(kind) is None
+        if kind in declared and kind not in naming.separators and not without:
+            message = (
+                f"{section.names[0]} looks {kind}s up by bare name in the whole world: "
+                "it may find that of another robot"
+            )
+            hint = f"use --layout both, which renames {kind}s for each robot"
+            yield _host(host, "MB425", message, hint)
+
+
+def process_wide(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
+    """Remap rules that hold for every node of the process keep robots apart only by namespaces
+    (gazebo_ros2_control_plugin.cpp and gz_ros2_control_plugin.cpp set the global arguments)."""
+    if naming.topics != NAMESPACE:
+        for section, host in _known_hosts(inventory):
+            if not section.process_wide:
+                continue
+            plugin = section.names[0]
+            message = f"remap rules of {plugin} apply to the whole process, also to other robots"
+            hint = "with several robots in one Gazebo use --topics namespace"
+            yield _host(host, "MB426", message, hint)
+        return
+    inside = {host.element for host in inventory.hosts if _holds_for_all(host.node.section)}
+    for claim in inventory.claims if inside else ():
+        rule = split_remap(claim.value) if claim.site.form in ("remap", "argument") else None
+        if rule is None or inside.isdisjoint(claim.element.iterancestors()):
+            continue
+        if rule.target.startswith("/"):
+            message = f"{claim.value!r} applies to the whole process, also to nodes of other robots"
+            hint = "use a relative target, which ends up in each robot's own namespace"
+            yield about(claim, "MB426", message, hint)
+
+
+def one_description(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
+    """Absolute names of descriptions and of the nodes that hold them, where these keep their names."""
+    plugins = (it.element for it in inventory.hosts if it.element.tag == "plugin")
+    for it in (child for plugin in plugins for child in plugin.iterchildren(*DESCRIPTIONS)):
+        name = text_of(it)
+        renamed = it.tag == DESCRIPTION_NODE and naming.topics != NAMESPACE
+        if name.startswith("/") and not renamed:
+            message = f"<{it.tag}> {name!r} is the same for all robots"
+            yield Problem(it, message, "", "use the part after the last slash", (), "MB410")
+
+
+def world_systems(inventory: Inventory) -> Iterator[Problem]:
+    """Systems of the whole world that each robot loads again; in a world they are where they belong."""
+    for host in inventory.hosts:
+        above = host.element.getparent()
+        key = library_key(host.element.get("filename", ""))
+        if host.element.tag != "plugin" or key not in WORLD_SYSTEMS:
+            continue
+        if above is None or above.tag != "world":
+            message = f"{key} is loaded again with every robot: {WORLD_SYSTEMS[key]}"
+            yield Problem(host.element, message, "filename", "load it in the world", (), "MB416")
+
+
+def hardwired(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
+    """Plugins whose code looks for a literal name: under another one they find nothing."""
+    for section, host in _known_hosts(inventory):
+        for entry in section.hardwired:
+            kind, _, name = entry.partition(":")
+            if name in inventory.declared[kind] and renames.changes(kind, name):
+                message = f"{section.names[0]} looks for a {kind} called {name!r}, which is renamed"
+                hint = "the name is fixed in its code: use --layout tf-per-robot"
+                yield _host(host, "MB428", message, hint)
+
+
+def _host(host: Host, code: str, message: str, hint: str) -> Problem:
+    return Problem(host.element, message, None, hint, (), code)
+
+
+def _holds_for_all(section: VocabularySection | None) -> bool:
+    return section is not None and section.process_wide
+
+
+def _known_hosts(inventory: Inventory) -> Iterator[tuple[VocabularySection, Host]]:
+    for host in inventory.hosts:
+        if host.node.section is not None:
+            yield host.node.section, host
+
+
+def outside_frames(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
+    """A frame that an SRDF fixes its robot to, and that is renamed for each robot."""
+    for claim, spelling in zip(inventory.claims, renames.values, strict=True):
+        if claim.site.path != "virtual_joint@parent_frame" or claim.element.get("type") != "fixed":
+            continue
+        for name in spelling:
+            if name.kind == "frame":
+                new = name.affix.spell(claim.value, "ROBOT")
+                message = (
+                    f"the robot is fixed to {claim.value!r}, which becomes {new!r} for each ROBOT"
+                )
+                hint = f"--shared-frames world,map,{claim.value} keeps it"
+                yield about(claim, "MB427", message, hint)
+
+
+def reordered(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
+    """urdfdom sorts sibling joints by name; a postfix can change that order, and with it the order
+    of pinocchio's configuration vector."""
+    if renames.naming.affix != POSTFIX or "joint" not in renames.naming.separators:
+        return
+    siblings: dict[str, list[str]] = defaultdict(list)
+    declared = inventory.declared["joint"]
+    # Those of an SRDF are in its URDF.
+    for name, claim in declared.items() if inventory.format != SRDF else ():
+        parent = next(claim.element.iterchildren("parent"), None)
+        if parent is not None:
+            siblings[parent.get("link", "")].append(name)
+    for link, names in siblings.items():
+        old = sorted(names)
+        if not any(map(str.startswith, old[1:], old)) and not renames.naming.own:
+            continue  # what is behind both names does not matter
+        # The order may depend on the robot's name: try one that sorts first and one that sorts last.
+        orders = [sorted(names, key=partial(renames.spelled, robot, "joint")) for robot in "\0~"]
+        new = next((order for order in orders if order != old), None)
+        if new is not None:
+            yield about(
+                inventory.declared["joint"][new[0]],
+                "MB405",
+                f"the postfix changes the order of the joints below link {link!r} to {', '.join(new)}",
+                "urdfdom sorts joints by name; use --affix prefix to keep the order",
+            )

@@ -1,0 +1,211 @@
+"""The links and joints of a URDF as records, for rules about the kinematic tree."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TypeVar
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.checks.numbers import number, value_of
+
+MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+WORLD = "world"
+
+
+class Inertial(NamedTuple):
+    """A link's ``<inertial>``. ``moments`` are in the order of ``MOMENTS``; like ``mass`` they are
+    None where they are missing or not numbers."""
+
+    element: _Element
+    mass: float | None
+    moments: tuple[float, ...] | None
+
+
+class Link(NamedTuple):
+    """A ``<link>`` below the root."""
+
+    name: str
+    element: _Element
+    inertial: Inertial | None = None
+
+
+class Joint(NamedTuple):
+    """A ``<joint>`` below the root; ``parent`` and ``child`` are empty where they are missing.
+
+    ``parts`` are the first of its elements by tag.
+    """
+
+    name: str
+    type: str
+    parent: str
+    child: str
+    element: _Element
+    parts: Mapping[str, _Element]
+
+
+_Named = TypeVar("_Named", Link, Joint)
+
+
+class Robot(NamedTuple):
+    """A URDF's own links and joints, in document order.
+
+    ``link`` and ``joint`` hold the first of each name. ``above`` and ``below`` map a link's name to
+    the joints whose child (parent) it is, declared or not. ``body`` maps each link below a
+    root to the link that a simulator merges it into, or to itself: links on fixed joints become a
+    part of their parent, except where that is ``world``, as in sdformat.
+    """
+
+    links: tuple[Link, ...]
+    joints: tuple[Joint, ...]
+    link: Mapping[str, Link]
+    joint: Mapping[str, Joint]
+    above: Mapping[str, tuple[Joint, ...]]
+    below: Mapping[str, tuple[Joint, ...]]
+    body: Mapping[str, str]
+
+
+def read_robot(root: _Element) -> Robot:
+    """The robot of a document; what is not a ``<robot>`` has no links."""
+    tops = list(root) if root.tag == "robot" else []
+    links = tuple(_link(it) for it in tops if it.tag == "link")
+    joints = tuple(_joint(it) for it in tops if it.tag == "joint")
+    above = _by_name((it.child, it) for it in joints)
+    below = _by_name((it.parent, it) for it in joints)
+    return Robot(
+        links,
+        joints,
+        _firsts(links),
+        _firsts(joints),
+        above,
+        below,
+        _bodies(links, above, below),
+    )
+
+
+def _link(element: _Element) -> Link:
+    inertial = next(element.iterchildren("inertial"), None)
+    name = element.get("name", "")
+    return Link(name, element, None if inertial is None else _inertial(inertial))
+
+
+def _inertial(element: _Element) -> Inertial:
+    parts = {it.tag: it for it in reversed(element)}
+    mass, inertia = parts.get("mass"), parts.get("inertia")
+    values = [] if inertia is None else [number(inertia.get(it)) for it in MOMENTS]
+    moments = tuple([it for it in values if it is not None])
+    return Inertial(
+        element,
+        None if mass is None else value_of(mass, "value"),
+        moments if len(moments) == len(MOMENTS) else None,
+    )
+
+
+def _firsts(things: Sequence[_Named]) -> dict[str, _Named]:
+    """The first thing of each name, in document order."""
+    first: dict[str, _Named] = {}
+    for it in things:
+        first.setdefault(it.name, it)
+    return first
+
+
+def _joint(element: _Element) -> Joint:
+    parts = {it.tag: it for it in reversed(element)}
+    parent, child = parts.get("parent"), parts.get("child")
+    return Joint(
+        element.get("name", ""),
+        element.get("type", ""),
+        "" if parent is None else parent.get("link", ""),
+        "" if child is None else child.get("link", ""),
+        element,
+        parts,
+    )
+
+
+def _by_name(pairs: Iterable[tuple[str, Joint]]) -> dict[str, tuple[Joint, ...]]:
+    found: dict[str, list[Joint]] = {}
+    for name, joint in pairs:
+        if name:
+            found.setdefault(name, []).append(joint)
+    return {name: tuple(joints) for name, joints in found.items()}
+
+
+def _bodies(
+    links: Iterable[Link],
+    above: Mapping[str, tuple[Joint, ...]],
+    below: Mapping[str, tuple[Joint, ...]],
+) -> dict[str, str]:
+    body = {it.name: it.name for it in links if it.name not in above}
+    todo = list(body)
+    while todo:
+        name = todo.pop()
+        for joint in below.get(name, ()):
+            if joint.child and joint.child not in body:
+                merged = joint.type == "fixed" and name != WORLD
+                body[joint.child] = body[name] if merged else joint.child
+                todo.append(joint.child)
+    return body
+
+
+def roots(robot: Robot) -> list[Link]:
+    """The links that are no joint's child; of two with one name the first."""
+    return [it for name, it in robot.link.items() if name and name not in robot.above]
+
+
+def reached(robot: Robot, starts: Iterable[str], seen: set[str]) -> list[str]:
+    """``starts`` and the names below them; those in ``seen`` are left out, and new ones added."""
+    found = [it for it in starts if it not in seen]
+    seen.update(found)
+    for name in found:  # grows
+        below = [it.child for it in robot.below.get(name, ()) if it.child not in seen and it.child]
+        seen.update(below)
+        found += dict.fromkeys(below)
+    return found
+
+
+def is_tree(robot: Robot) -> bool:
+    """Is everything below a root, and below one joint? Then there is no loop."""
+    single = all(len(joints) == 1 for joints in robot.above.values())
+    return single and robot.above.keys() <= robot.body.keys()
+
+
+def loops(robot: Robot) -> list[list[Joint]]:
+    """Loops of joints; a joint from a link to itself is not one.
+
+    Of loops that share links one is found.
+    """
+    rest = _not_of_a_tree(robot)
+    done: set[str] = set()
+    found = []
+    for start in rest:
+        path: dict[str, Joint] = {}
+        name = start
+        while name not in done:
+            done.add(name)
+            path[name] = next(it for it in robot.above[name] if _ties(it) and it.parent in rest)
+            name = path[name].parent
+        if name in path:
+            found.append(_from(path, name)[::-1])
+    return found
+
+
+def _from(path: Mapping[str, Joint], name: str) -> list[Joint]:
+    """The joints of a path, from the one above ``name`` on."""
+    return list(path.values())[list(path).index(name) :]
+
+
+def _not_of_a_tree(robot: Robot) -> dict[str, None]:
+    """The links in loops and below them, in document order."""
+    open_ = {name: sum(map(_ties, joints)) for name, joints in robot.above.items()}
+    ready = [it for it in robot.below if not open_.get(it)]
+    for name in ready:  # grows
+        for joint in filter(_ties, robot.below.get(name, ())):
+            open_[joint.child] -= 1
+            if not open_[joint.child]:
+                ready.append(joint.child)
+    return {name: None for name, count in open_.items() if count}
+
+
+def _ties(joint: Joint) -> bool:
+    return bool(joint.parent) and bool(joint.child) and joint.parent != joint.child

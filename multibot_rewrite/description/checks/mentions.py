@@ -1,0 +1,220 @@
+"""Names of links, joints and lights in values that no site claims: a rewrite leaves them so."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Collection, Iterator
+from functools import lru_cache
+
+from lxml import etree
+
+from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.model import Site
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.description.rewriters.text import text_of
+from multibot_rewrite.description.rewriters.tree import Tree, TreeNode
+from multibot_rewrite.description.steps.collect import Inventory
+from multibot_rewrite.description.steps.document import finding, value_slot
+
+# Kinds whose names are looked for in values without a site.
+MENTIONED = ("link", "joint", "light")
+# What is between names: of lists and paths, of structures, and of what has parts. A name may hold
+# what is between others, so that each is a look of its own.
+_BETWEEN = (
+    lazy_compile(r":=|::|[\s,;/]+"),
+    lazy_compile(r"[\s,;\[\](){}\"']+"),
+    lazy_compile(r":=|::|[\s,;/\[\](){}\"'=|]+"),
+    lazy_compile(r"[\s,;/\[\](){}\"'=|:.]+"),
+)
+_PARTED = lazy_compile(r"[\s,;/\[\](){}\"'=|:.]")
+_SPACED = lazy_compile(r"[\s,;\[\](){}\"'=|]+")
+# A file is found by its name, whatever the links are called.
+_FILES = (
+    *(
+        ".dae",
+        ".stl",
+        ".obj",
+        ".ply",
+        ".glb",
+        ".gltf",
+        ".usd",
+        ".usda",
+        ".usdc",
+        ".mtl",
+        ".material",
+    ),
+    *(".png", ".jpg", ".jpeg", ".tga", ".dds", ".pgm", ".bmp", ".svg", ".urdf", ".xacro", ".srdf"),
+    *(".sdf", ".world", ".rviz", ".yaml", ".yml", ".xml", ".json", ".toml", ".ini", ".csv", ".txt"),
+    *(
+        ".lua",
+        ".py",
+        ".sh",
+        ".so",
+        ".bin",
+        ".pt",
+        ".onnx",
+        ".engine",
+        ".pcd",
+        ".bag",
+        ".db3",
+        ".mcap",
+    ),
+)
+_NUMERIC = "-+0123456789.eE \t\n\r\v\f"
+
+
+# What was found out for elements: a root may have thousands of children.
+Nodes = dict[etree._Element, TreeNode | None]
+
+
+class Mention(NamedTuple):
+    """An unclaimed value that is ``name`` or holds it; ``attribute`` is empty for text."""
+
+    element: etree._Element
+    start: int
+    attribute: str
+    value: str
+    name: str
+
+
+def find_mentions(
+    inventory: Inventory, values: list[str], names: Collection[str], tree: Tree
+) -> list[Finding]:
+    """A warning for each of ``unclaimed_mentions``, at the value itself."""
+    document = inventory.document
+    found = []
+    for it in unclaimed_mentions(inventory, values, names, tree):
+        slot = value_slot(document.source, it.start, it.attribute, it.value)
+        problem = as_problem(it)
+        at = slot[0] if slot else it.start
+        found.append(finding(document, at, problem.code, WARNING, problem.message, problem.hint))
+    return found
+
+
+def unclaimed_mentions(
+    inventory: Inventory, values: list[str], names: Collection[str], tree: Tree
+) -> list[Mention]:
+    """Each unclaimed value that is one of ``names`` or holds one as a list item, path segment,
+    scope or side of a remap rule; ``values`` are all of ``slot_values``. Values with a ``keep``
+    site are no mention."""
+    if not names:
+        return []
+    telling = _telling(values, frozenset(names))
+    count = Counter(filter(telling.__contains__, values))
+    claimed = Counter([claim.value for claim in inventory.claims])
+    suspects = {value for value in telling if count[value] > claimed[value]}
+    if not suspects:
+        return []
+    nodes: Nodes = {}
+    return [
+        Mention(*slot, telling[slot[3]])
+        for slot in _unclaimed(inventory, suspects)
+        if not kept(slot[0], slot[2], tree, nodes)
+    ]
+
+
+def _telling(values: list[str], names: frozenset[str]) -> dict[str, str]:
+    """The values that are names or hold one, and the name."""
+    different = set(values)
+    telling = {value: value for value in names & different}
+    others = [value for value in different - names if value.strip(_NUMERIC)]
+    # One look at all of them, then one without files: mostly none holds a name.
+    if _held(" ".join(others), names) and _held(" ".join(map(_without_files, others)), names):
+        telling |= {value: name for value in others if (name := mentioned(value, names))}
+    return telling
+
+
+def mentioned(value: str, names: frozenset[str]) -> str:
+    """The name that a value is or holds; empty if it has none."""
+    if value in names:
+        return value
+    return _held(_without_files(value), names) if value.strip(_NUMERIC) else ""
+
+
+def _held(text: str, names: frozenset[str]) -> str:
+    """A name that a text holds; empty if it has none."""
+    for it in _looks(names):
+        words = it.split(text)
+        if not names.isdisjoint(words):
+            return next(word for word in words if word in names)
+    return ""
+
+
+@lru_cache(maxsize=4)
+def _looks(names: frozenset[str]) -> tuple[re.Pattern[str], ...]:
+    """The finest look finds every name but those that it would cut itself."""
+    return _BETWEEN if any(map(_PARTED.search, names)) else _BETWEEN[-1:]
+
+
+def _without_files(value: str) -> str:
+    """A value without the words that are names of files or addresses."""
+    if "." not in value and "://" not in value:
+        return value
+    words = _SPACED.split(value)
+    files = {it for it in words if "://" in it or it.lower().endswith(_FILES)}
+    return " ".join(it for it in words if it not in files) if files else value
+
+
+def _unclaimed(
+    inventory: Inventory, suspects: set[str]
+) -> Iterator[tuple[etree._Element, int, str, str]]:
+    """(element, start, attribute or "", value) of the suspect slots without a site, in order."""
+    claimed = {(claim.start, claim.attribute) for claim in inventory.claims}
+    document = inventory.document
+    for element, start in zip(document.elements, document.starts, strict=True):
+        if not _has_one(element, suspects):
+            continue
+        slots = [(str(key), str(value)) for key, value in element.items()]
+        slots.append(("", text := text_of(element)))
+        slots = [slot for slot in slots if (start, slot[0]) not in claimed]
+        # Text behind a child, or more of it behind a comment, is never what a site claims.
+        tails = [(child.tail or "").strip() for child in element]
+        if text and not (element.text or "").strip():
+            tails.remove(text)
+        slots += [("", tail) for tail in tails]
+        for attribute, value in slots:
+            if value in suspects:
+                yield element, start, attribute, value
+
+
+def _has_one(element: etree._Element, suspects: set[str]) -> bool:
+    """A quick look at an element: is one of its values or texts suspect?"""
+    if not suspects.isdisjoint(element.values()):
+        return True
+    texts = [element.text, *[it.tail for it in element]] if len(element) else [element.text]
+    return any(it.strip() in suspects for it in texts if it)
+
+
+def kept(element: etree._Element, attribute: str, tree: Tree, known: Nodes) -> Site | None:
+    """The ``keep`` site for a value, if the vocabulary has one; ``known`` serves the next call."""
+    node = node_of(element, tree, known)
+    return node.keeps.get(attribute) if node else None
+
+
+def node_of(element: etree._Element, tree: Tree, known: Nodes) -> TreeNode | None:
+    """The node of the tree that serves an element."""
+    if element not in known:
+        known[element] = _node_of(element, tree, known)
+    return known[element]
+
+
+def _node_of(element: etree._Element, tree: Tree, known: Nodes) -> TreeNode | None:
+    parent = element.getparent()
+    if parent is None:
+        return tree.formats.get(tree.format_of(element))
+    above = node_of(parent, tree, known)
+    node = above.children.get(str(element.tag)) if above else None
+    return node.select(element) if node is not None and node.select is not None else node
+
+
+def as_problem(mention: Mention) -> Problem:
+    """The problem of a mention."""
+    element, _, attribute, value, name = mention
+    where = f"{element.tag}@{attribute}" if attribute else f"<{element.tag}>"
+    text = f"{where} holds {value!r}" if value == name else f"{where} holds {name!r} in {value!r}"
+    message = f"unclaimed mention: {text}, which the vocabulary does not know: it is not renamed"
+    hint = "add a line to a vocabulary file: a uses/declares site, or keep"
+    return Problem(element, message, attribute, hint, (), "MB901")

@@ -1,0 +1,104 @@
+"""The planning groups of an SRDF on its URDF, as srdfdom and MoveIt make them."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping
+
+from lxml.etree import _Element
+
+from multibot_rewrite.description.checks.links_and_joints import Joint, Robot
+
+Groups = Mapping[str, _Element]
+
+
+def text_of(element: _Element, attribute: str = "name") -> str:
+    """The value of an attribute as srdfdom takes it: without white space around it."""
+    return element.get(attribute, "").strip()
+
+
+def groups_of(root: _Element) -> Groups:
+    """The groups by name; of two with one name MoveIt takes the first."""
+    found: dict[str, _Element] = {}
+    for group in root.iterchildren("group"):
+        found.setdefault(text_of(group), group)
+    return found
+
+
+def way_up(robot: Robot, link: str) -> Iterator[Joint]:
+    """The joints from a link to the root; a circle ends where it began."""
+    seen = {link}
+    while robot.above.get(link):
+        joint = robot.above[link][0]
+        yield joint
+        link = joint.parent
+        if link in seen:
+            return
+        seen.add(link)
+
+
+def chain(robot: Robot, base: str, tip: str) -> list[str] | None:
+    """The joints between two links; None where they are not connected."""
+    down = list(way_up(robot, tip))
+    links = [tip, *(joint.parent for joint in down)]
+    # How many joints each link is above the tip.
+    at = {link: number for number, link in reversed(list(enumerate(links)))}
+    up: list[str] = []
+    if base not in at:
+        for joint in way_up(robot, base):
+            up.append(joint.name)
+            base = joint.parent
+            if base in at:
+                break
+    if base not in at:
+        return None
+    return [*(joint.name for joint in down[: at[base]]), *up]
+
+
+def joints_of(name: str, groups: Groups, robot: Robot) -> Collection[str]:
+    """The joints of a group, those of its subgroups included; a group may hold itself."""
+    members = (it for group in _within(name, groups) for it in _members(groups, group))
+    return {joint for member in members for joint in _joints(member, robot)}
+
+
+def is_whole(name: str, groups: Groups) -> bool:
+    """Are a group and all of its subgroups declared?"""
+    return all(it in groups for it in _within(name, groups))
+
+
+def _within(name: str, groups: Groups) -> list[str]:
+    """The names of a group and its subgroups, declared or not."""
+    found = [name]
+    for group in found:  # grows
+        inner = (text_of(it) for it in _members(groups, group) if it.tag == "group")
+        found += (it for it in dict.fromkeys(inner) if it not in found)
+    return found
+
+
+def _members(groups: Groups, name: str) -> Iterator[_Element]:
+    group = groups.get(name)
+    return iter(()) if group is None else group.iterchildren("*")
+
+
+def _joints(member: _Element, robot: Robot) -> Collection[str]:
+    if member.tag == "joint":
+        return (text_of(member),)
+    if member.tag == "link":
+        return [joint.name for joint in robot.above.get(text_of(member), ())] or _virtual(member)
+    if member.tag == "chain":
+        return chain(robot, text_of(member, "base_link"), text_of(member, "tip_link")) or ()
+    return ()
+
+
+def _virtual(link: _Element) -> Collection[str]:
+    """The joint above the root link."""
+    joints = link.getroottree().getroot().iterchildren("virtual_joint")
+    return [text_of(it) for it in joints if text_of(it, "child_link") == text_of(link)]
+
+
+def links_of(name: str, groups: Groups, robot: Robot) -> Collection[str]:
+    """The links of a group: those that its joints move, and those it names itself."""
+    joints = joints_of(name, groups, robot)
+    moved = {robot.joint[it].child for it in joints if it in robot.joint}
+    group = groups.get(name)
+    named = group.iterchildren("link") if group is not None else ()
+    return moved.union(text_of(it) for it in named)

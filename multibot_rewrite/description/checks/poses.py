@@ -1,0 +1,133 @@
+"""Where the links of a URDF are, with every joint at 0.
+
+Source: urdfdom and sdformat: the origin of a joint is the child's frame in the parent's, and its
+axis is in the child's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import lru_cache
+from math import sqrt
+
+from lxml.etree import _Element
+
+from multibot_rewrite.description.checks.links_and_joints import Joint, Robot, roots
+from multibot_rewrite.description.checks.numbers import Vector, numbers, vector
+from multibot_rewrite.description.checks.pose import Pose, pose_of
+from multibot_rewrite.description.checks.rotation import (
+    Matrix,
+    matrix_of_quaternion,
+    product,
+    quaternion_of_rpy,
+    turned,
+)
+
+STRAIGHT: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+HERE = Pose((0.0, 0.0, 0.0), STRAIGHT)
+X: Vector = (1.0, 0.0, 0.0)
+
+
+def link_poses(robot: Robot) -> Mapping[str, Pose]:
+    """Each link's pose in the root of its tree; those below an origin that is no number are left
+    out."""
+    found = {it.name: HERE for it in roots(robot)}
+    todo = list(found)
+    for name in todo:  # grows
+        for joint in robot.below.get(name, ()):
+            is_new = joint.child and joint.child not in found
+            own = pose_in(joint.parts.get("origin")) if is_new else None
+            if own is not None:
+                found[joint.child] = placed(found[name], own)
+                todo.append(joint.child)
+    return found
+
+
+def origin_of(element: _Element) -> Pose | None:
+    """The pose that the first ``<origin>`` in an element says."""
+    return pose_in(next(element.iterchildren("origin"), None))
+
+
+def pose_in(origin: _Element | None) -> Pose | None:
+    """The pose that an ``<origin>`` says."""
+    if origin is None:
+        return HERE
+    if origin.get("quat_xyzw") is not None:
+        return pose_of(origin)
+    return _pose(origin.get("xyz", "0 0 0"), origin.get("rpy", "0 0 0"))
+
+
+@lru_cache(maxsize=1024)  # several rules ask for the same ones
+def _pose(xyz: str, rpy: str) -> Pose | None:
+    at, turn = vector(xyz), _matrix(rpy)
+    return None if at is None or turn is None else Pose(at, turn)
+
+
+@lru_cache(maxsize=1024)
+def _matrix(rpy: str) -> Matrix | None:
+    angles = vector(rpy)
+    if angles is None:
+        return None
+    return matrix_of_quaternion(quaternion_of_rpy(angles)) if any(angles) else STRAIGHT
+
+
+def sdf_pose(text: str) -> Pose | None:
+    """The pose in a ``<pose>`` of six numbers; an empty one is none."""
+    values = numbers(text)
+    if values == ():
+        return HERE
+    if values is None or len(values) != 6:
+        return None
+    x, y, z, roll, pitch, yaw = values
+    return Pose((x, y, z), matrix_of_quaternion(quaternion_of_rpy((roll, pitch, yaw))))
+
+
+def placed(outer: Pose, inner: Pose) -> Pose:
+    """A pose that is given in another one."""
+    if outer.matrix is STRAIGHT:
+        return Pose(plus(outer.at, inner.at), inner.matrix)
+    turn = outer.matrix if inner.matrix is STRAIGHT else product(outer.matrix, inner.matrix)
+    return Pose(plus(outer.at, turned(outer.matrix, inner.at)), turn)
+
+
+def point_in(pose: Pose, point: Vector) -> Vector:
+    """A point of a frame, in the frame that its pose is given in."""
+    return plus(pose.at, turned(pose.matrix, point))
+
+
+def axis_of(joint: Joint) -> Vector | None:
+    """A joint's axis in its child's frame, of length 1; None where it has no direction."""
+    written = joint.parts.get("axis")
+    axis = X if written is None else vector(written.get("xyz"))
+    return None if axis is None or not any(axis) else scaled(axis, 1 / length(axis))
+
+
+def plus(one: Vector, other: Vector) -> Vector:
+    """The sum."""
+    return one[0] + other[0], one[1] + other[1], one[2] + other[2]
+
+
+def minus(one: Vector, other: Vector) -> Vector:
+    """The difference."""
+    return one[0] - other[0], one[1] - other[1], one[2] - other[2]
+
+
+def scaled(vector_: Vector, factor: float) -> Vector:
+    """A vector of another length."""
+    return vector_[0] * factor, vector_[1] * factor, vector_[2] * factor
+
+
+def dot(one: Vector, other: Vector) -> float:
+    """The scalar product."""
+    return one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
+
+
+def cross(one: Vector, other: Vector) -> Vector:
+    """The vector product."""
+    (a, b, c), (x, y, z) = one, other
+    return b * z - c * y, c * x - a * z, a * y - b * x
+
+
+def length(vector_: Vector) -> float:
+    """How long a vector is."""
+    return sqrt(dot(vector_, vector_))

@@ -1,0 +1,45 @@
+"""A problem at an element of a document: what checks and lint rules find, before it has a line."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.model import Claim, Edit
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.steps.document import Document, finding
+
+
+class Problem(NamedTuple):
+    """What is wrong at an element.
+
+    ``attribute`` is the name of the attribute at fault, empty for the element's text, None for the
+    element itself. ``edits`` fix it without a change of meaning; empty where that is not safe.
+    ``code`` is the rule's; it may be empty in a lint rule, which has the code itself.
+    """
+
+    element: _Element
+    message: str
+    attribute: str | None = None
+    hint: str = ""
+    edits: tuple[Edit, ...] = ()
+    code: str = ""
+
+
+def about(claim: Claim, code: str, message: str, hint: str = "") -> Problem:
+    """A problem of a claimed value."""
+    return Problem(claim.element, message, claim.attribute, hint, (), code)
+
+
+def to_findings(
+    document: Document, problems: Iterable[Problem], level: str, *, of_file: bool = False
+) -> Iterator[Finding]:
+    """The problems as findings at their elements, or at the start of the file with ``of_file``."""
+    found = list(problems)
+    pairs = zip(document.elements, document.starts, strict=True)
+    starts = dict(pairs) if found and not of_file else {}
+    for it in found:
+        start = starts.get(it.element, 0)
+        yield finding(document, start, it.code, level, it.message, it.hint)

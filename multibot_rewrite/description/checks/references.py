@@ -1,0 +1,157 @@
+"""Names that nothing declares, that are ambiguous, or that are declared twice."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.findings.place import locate
+from multibot_rewrite.base.model import Claim, Site
+from multibot_rewrite.base.naming import CLOSED_KINDS, is_keyword
+from multibot_rewrite.base.nearest import Guesses
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.checks.problem import Problem, about
+from multibot_rewrite.description.rewriters.forms import Declared, NamePart
+from multibot_rewrite.description.rewriters.spelling import kind_of, must_be_declared, names_in
+from multibot_rewrite.description.steps.collect import Inventory
+
+SRDF_ROBOT = "element srdf.robot"
+# How the section and the path of a site begin -> its code; the first that fits.
+_THEMES = (
+    ("element joint", "parent@", "MB202"),
+    ("element joint", "child@", "MB202"),
+    ("element joint", "", "MB211"),
+    ("element gazebo", "@reference", "MB212"),
+    ("element transmission", "", "MB213"),
+    ("element ros2_control", "hardware/", "MB215"),
+    ("element ros2_control", "", "MB214"),
+    (SRDF_ROBOT, "@name", "MB802"),
+    (SRDF_ROBOT, "disable_", "MB807"),
+    (SRDF_ROBOT, "enable_", "MB807"),
+)
+# Of what is not there by its kind: in parameters of a plugin or hardware class, and in an SRDF.
+_PARAMETERS = {"joint": "MB215", "link": "MB216"}
+_SRDF = {"link": "MB803", "joint": "MB804", "group": "MB805"}
+_OTHER = "MB220"
+# Only SDF has scopes.
+_SCOPE = "MB219"
+
+
+class Loose(NamedTuple):
+    """A name in a claimed value that nothing declares."""
+
+    claim: Claim
+    part: NamePart
+
+
+def doubtful(inventory: Inventory) -> list[Claim]:
+    """The uses that are more than one look: not a link or joint which is there as it is written."""
+    declared = inventory.declared
+    return [
+        claim
+        for claim in inventory.claims
+        if claim.site.role == "uses"
+        and not (
+            claim.site.whole_value_kind and claim.value in declared[claim.site.whole_value_kind]
+        )
+    ]
+
+
+def loose_ends(
+    claims: Iterable[Claim], declared: Declared, shared: Collection[str]
+) -> Iterator[Loose]:
+    """Uses of a link, joint, model or group that nothing declares."""
+    for claim in claims:
+        site = claim.site
+        if not must_be_declared(site):
+            continue
+        if any(claim.value in declared.get(kind, ()) for kind in site.kinds):
+            continue
+        for part in names_in(claim, declared):
+            if part.text in shared or is_keyword(part.text):
+                continue
+            if not kind_of(part, site.role, declared):
+                yield Loose(claim, part)
+
+
+def undeclared_names(loose: Iterable[Loose], declared: Declared) -> Iterator[Problem]:
+    """A problem for each, with the code for where it is."""
+    guesses = Guesses()
+    for it in loose:
+        claim, part = it
+        known = (known for kind in part.kinds for known in declared.get(kind, ()))
+        message = f"{where(claim)} names the {' or '.join(part.kinds)} {part.text!r}, "
+        message += _fault(part, declared)
+        yield about(claim, _code(claim.site, part), message, guesses.hint(part.text, known))
+
+
+def _fault(part: NamePart, declared: Declared) -> str:
+    found = (kind for kind in sorted(CLOSED_KINDS) if part.text in declared.get(kind, ()))
+    other = next(found, "")
+    return f"which is a {other}" if other else "which is not declared"
+
+
+def _code(site: Site, part: NamePart) -> str:
+    if site.form in ("scoped", "member"):
+        return _SCOPE
+    for section, path, code in _THEMES:
+        if site.section == section and site.path.startswith(path):
+            return code
+    if site.section == SRDF_ROBOT:
+        return _SRDF.get(part.kinds[0], _OTHER)
+    is_parameter = site.section.partition(" ")[0] != "element" or site.section == "element plugin"
+    return _PARAMETERS.get(part.kinds[0], _OTHER) if is_parameter else _OTHER
+
+
+def where(claim: Claim) -> str:
+    """``<tag>`` or ``tag@attribute``; all parameters have one tag, so theirs has the name in it."""
+    tag = str(claim.element.tag)
+    if claim.attribute:
+        return f"{tag}@{claim.attribute}"
+    name = claim.element.get("name") if tag == "param" else None
+    return f'<{tag} name="{name}">' if name else f"<{tag}>"
+
+
+def repeated(inventory: Inventory) -> Iterator[tuple[Claim, Claim]]:
+    """Declarations of a name that is there already in their model, and the first one.
+
+    A <gazebo> block may repeat a URDF joint (PR2).
+    """
+    seen: dict[tuple[int, _Element | None, str], Claim] = {}
+    for claim in inventory.claims:
+        if claim.site.role != "declares" or claim.site.kinds[0] not in CLOSED_KINDS:
+            continue
+        key = id(claim.site), _scope(claim.element), claim.value.strip()
+        first = seen.setdefault(key, claim)
+        if first is not claim:
+            yield claim, first
+
+
+def duplicates(inventory: Inventory) -> Iterator[Problem]:
+    """The same as problems."""
+    source = inventory.document.source
+    for claim, first in repeated(inventory):
+        code = "MB806" if claim.site.section == SRDF_ROBOT else "MB201"
+        line, _ = locate(source, first.start)
+        message = f"{claim.site.kinds[0]} {claim.value!r} is declared twice, first at line {line}"
+        yield about(claim, code, message, "rename one")
+
+
+def _scope(element: _Element) -> _Element | None:
+    """The model that a declaration is in: names of nested SDF models are their own."""
+    parent = element.getparent()
+    if parent is not None and parent.tag == "robot":
+        return parent
+    return next(element.iterancestors("model", "robot"), None)
+
+
+def ambiguous(inventory: Inventory) -> Iterator[Problem]:
+    """A ``<gazebo reference>`` that is the name of a link and of a joint: the link is taken."""
+    links, joints = inventory.declared["link"], inventory.declared["joint"]
+    # Few robots have such a pair, so few look at every claim.
+    both = links.keys() & joints.keys()
+    for claim in inventory.claims if both else ():
+        if claim.site.kinds == ("link", "joint") and claim.value in both:
+            message = f"{claim.value!r} is both a link and a joint; it is taken for the link"
+            yield about(claim, "MB203", message, "SDF refuses such a pair")

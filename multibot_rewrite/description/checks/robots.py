@@ -1,0 +1,188 @@
+"""Checks that depend on the robots' names: names that become one, strip."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator
+
+from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.model import Claim
+from multibot_rewrite.base.naming import FRAME_KINDS, NO_OWN_NAMES, TOPIC_KINDS, Naming, removal
+from multibot_rewrite.description.checks.problem import Problem, about
+from multibot_rewrite.description.rewriters.forms import Declared
+from multibot_rewrite.description.rewriters.spelling import is_reached, must_be_declared
+from multibot_rewrite.description.steps.collect import Inventory
+from multibot_rewrite.description.steps.document import finding
+from multibot_rewrite.description.steps.renames import NameKey, RenameMap
+
+strip_other_robot = declare(
+    "MB107",
+    "strip-other-robot",
+    ERROR,
+    what="`--strip` is to remove a robot's name from the file, but a name in it, or in the URDF of an "
+    "SRDF, does not have that robot's name.",
+    why="The file was made for another robot or with other options. Removing the name from some "
+    "names only would leave a description that is neither the source nor the robot's.",
+    fix="Use the robot and the options with which the file was made; for names that an argument of a "
+    "xacro made, name that file with `--xacro`, and give the argument.",
+    bad='<robot name="r_robot1">\n  <link name="base_link/robot2"/>\n</robot>\n',
+    good='<robot name="r_robot1">\n  <link name="base_link/robot1"/>\n</robot>\n',
+    line=2,
+    options={"strip": "robot1"},
+    formats=("rewrite",),
+)
+
+strip_other_options = declare(
+    "MB108",
+    "strip-other-options",
+    ERROR,
+    what="`--strip` removed the robot's name, but rewriting the result does not give the file again.",
+    why="The file was made with other options, or was edited after it: the result would not be its "
+    "source.",
+    fix="Use the options with which the file was made, and undo edits that were made after it.",
+    bad='<robot name="r_robot1">\n'
+    '  <link name="base_link/robot1"/>\n'
+    '  <gazebo reference="base_link"/>\n'
+    "</robot>\n",
+    good='<robot name="r_robot1">\n'
+    '  <link name="base_link/robot1"/>\n'
+    '  <gazebo reference="base_link/robot1"/>\n'
+    "</robot>\n",
+    options={"strip": "robot1"},
+    formats=("rewrite",),
+)
+
+
+def _changing(renames: RenameMap) -> Iterator[NameKey]:
+    """The names in values that change, each as often as it is there."""
+    return ((it.kind, it.text, it.namespaced) for value in renames.values for it in value)
+
+
+def taken_names(
+    inventory: Inventory, renames: RenameMap, robots: Iterable[str]
+) -> Iterator[Problem]:
+    """Names that stay as they are, or are shared, and are what another name becomes for some robot."""
+    yield from _shared_names(inventory, renames, robots)
+    kept = list(_kept(inventory, renames))
+    # Names that an argument of the xacro made are kept, and another name may become one of them.
+    naming = renames.naming._replace(own=NO_OWN_NAMES)
+    for robot in robots if kept else ():
+        for kind, name, claim in kept:
+            stem = _stem(naming, robot, kind, name)
+            is_own = (kind, stem) in renames.naming.own
+            if stem in inventory.declared.get(kind, ()) and not is_own:
+                message = (
+                    f"another {kind} would become {name!r} for {robot}, which the file already uses"
+                )
+                yield about(claim, "MB420", message, "choose another separator")
+
+
+def _shared_names(
+    inventory: Inventory, renames: RenameMap, robots: Iterable[str]
+) -> Iterator[Problem]:
+    """Names that become a shared one: ``base`` where ``robot1/base`` is shared by all robots."""
+    naming = renames.naming
+    shared = dict.fromkeys(FRAME_KINDS, naming.shared_frames)
+    shared |= dict.fromkeys(TOPIC_KINDS, naming.shared_topics)
+    for robot in robots:
+        if not any(robot in name for names in shared.values() for name in names):
+            continue
+        for key in sorted(renames.affixes):
+            new = renames.spelled(robot, *key)
+            if new.strip("/") in shared.get(key[0], ()):
+                message = f"{key[0]} {key[1]!r} would become {new!r} for {robot}, which is shared"
+                hint = "rename the robot or choose another separator"
+                yield Problem(inventory.document.root, message, None, hint, (), "MB420")
+
+
+def _kept(inventory: Inventory, renames: RenameMap) -> Iterator[tuple[str, str, Claim]]:
+    """Declared names that stay as they are, those of the URDF beside an SRDF included, and names
+    that are used and declared nowhere."""
+    for kind, declared in inventory.declared.items():
+        same = (pair for pair in declared.items() if not renames.changes(kind, pair[0]))
+        yield from ((kind, name, claim) for name, claim in same)
+    for claim, names in zip(inventory.claims, inventory.names, strict=True):
+        lost = [it for it in names if not it.kind]
+        if lost and claim.site.role == "uses" and must_be_declared(claim.site):
+            yield from ((kind, it.text, claim) for it in lost for kind in it.kinds)
+
+
+def _declarations(
+    inventory: Inventory, renames: RenameMap
+) -> Iterator[tuple[str, str, Claim, bool]]:
+    """Kind, name and claim of what this document itself declares, and whether it changes."""
+    for claim, spelling in zip(inventory.claims, renames.values, strict=True):
+        kind, name = claim.site.kinds[0], claim.value.strip()
+        if claim.site.role == "declares" and name and kind in inventory.declared:
+            yield kind, name, claim, bool(spelling)
+
+
+def _stem(naming: Naming, robot: str, kind: str, name: str) -> str:
+    span = removal(naming, robot, kind, name)
+    return name[: span[0]] + name[span[1] :] if span else ""
+
+
+def meeting(
+    inventory: Inventory, renames: RenameMap, pairs: Collection[tuple[str, str, str]]
+) -> Iterator[Problem]:
+    """Names of two robots that become the same; ``pairs`` are from ``naming.overlap``."""
+    names = set(_changing(renames)) if pairs else set()
+    for robot, other, _ in pairs:
+        ours = {(name[0], renames.spelled(robot, *name)) for name in names}
+        for kind, both in sorted(ours & {(n[0], renames.spelled(other, *n)) for n in names}):
+            message = f"{robot} and {other} would both have a {kind} {both!r}"
+            hint = "rename a robot or choose another separator"
+            yield Problem(inventory.document.root, message, None, hint, (), "MB421")
+
+
+def meeting_descriptions(
+    made: Iterable[tuple[str, Inventory, RenameMap]],
+) -> Iterator[Problem]:
+    """Names that two robots both have, each in a description of its own."""
+    first: dict[tuple[str, str], str] = {}
+    for robot, inventory, renames in made:
+        names = {(name[0], renames.spelled(robot, *name)) for name in _changing(renames)}
+        for kind, name in sorted(names | set(renames.naming.own)):
+            other = first.setdefault((kind, name), robot)
+            if other != robot:
+                message = f"{other} and {robot} would both have a {kind} {name!r}"
+                hint = "rename a robot, or give its xacro another argument"
+                yield Problem(inventory.document.root, message, None, hint, (), "MB421")
+
+
+def not_rewritten(inventory: Inventory, renames: RenameMap, robot: str) -> list[Finding]:
+    """Links and joints without the affix that ``--strip`` is to take off."""
+    for kind, name, claim, changes in _declarations(inventory, renames):
+        if changes and removal(renames.naming, robot, kind, name) is None:
+            message = f"{kind} {name!r} does not have the name of {robot}"
+            hint = "give --strip the robot and the options that the file was made with"
+            if robot in name:
+                hint += ", and --xacro if an argument of it made the name"
+            return [_other_robot(inventory, claim.start, message, hint)]
+    return []
+
+
+def other_urdf(
+    inventory: Inventory, renames: RenameMap, robot: str, urdf: Declared
+) -> list[Finding]:
+    """A name of the URDF without that affix: it is not the one the SRDF was rewritten with."""
+    naming = renames.naming
+    for kind, names in urdf.items():
+        for name, claim in names.items():
+            changes = renames.changes(kind, name) and is_reached(claim, naming)
+            if changes and removal(naming, robot, kind, name) is None:
+                message = f"{kind} {name!r} of the URDF does not have the name of {robot}"
+                hint = "give --urdf the URDF as it was rewritten with the same options"
+                return [_other_robot(inventory, 0, message, hint)]
+    return []
+
+
+def _other_robot(inventory: Inventory, offset: int, message: str, hint: str) -> Finding:
+    return finding(inventory.document, offset, strip_other_robot.code, ERROR, message, hint)
+
+
+def other_options(inventory: Inventory, robot: str) -> Finding:
+    """The stripped text, rewritten again, is not the file."""
+    message = f"a rewrite for {robot} with these options does not give this file"
+    hint = "give --strip the options the file was made with"
+    return finding(inventory.document, 0, strip_other_options.code, ERROR, message, hint)

@@ -1,0 +1,111 @@
+"""How large the simple shapes of links are: boxes, cylinders and spheres. A mesh is a file:
+``mesh_box`` reads it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from math import inf, sqrt
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.checks.numbers import Vector, numbers, vector
+from multibot_rewrite.description.checks.pose import Pose
+from multibot_rewrite.description.checks.poses import STRAIGHT, dot, minus, plus, point_in, scaled
+
+
+class Extent(NamedTuple):
+    """A box along the axes of a frame, from ``low`` to ``high``."""
+
+    low: Vector
+    high: Vector
+
+    @property
+    def middle(self) -> Vector:
+        """Its centre."""
+        return scaled(plus(self.low, self.high), 0.5)
+
+
+def extent_of(shape: _Element, pose: Pose) -> Extent | None:
+    """The box around a box, cylinder or sphere at a pose; None for other shapes and odd sizes."""
+    half = _half(shape)
+    if half is None:
+        return None
+    if shape.tag == "sphere" or pose.matrix is STRAIGHT:
+        reach = half
+    else:
+        x, y, z = half
+        reach = _three(abs(a) * x + abs(b) * y + abs(c) * z for a, b, c in pose.matrix)
+    return Extent(minus(pose.at, reach), plus(pose.at, reach))
+
+
+def placed_box(box: Extent, pose: Pose) -> Extent:
+    """The box around a box at a pose."""
+    centre, half = point_in(pose, box.middle), minus(box.high, box.middle)
+    x, y, z = half
+    reach = _three(abs(a) * x + abs(b) * y + abs(c) * z for a, b, c in pose.matrix)
+    return Extent(minus(centre, reach), plus(centre, reach))
+
+
+def _half(shape: _Element) -> Vector | None:
+    """Half of a shape's size along its own axes."""
+    if shape.tag == "box":
+        size = vector(shape.get("size"))
+        return None if size is None or min(size) <= 0 else scaled(size, 0.5)
+    if shape.tag not in ("cylinder", "sphere"):
+        return None
+    sizes = numbers(f"{shape.get('radius', '?')} {shape.get('length', '0')}")
+    if not sizes or sizes[1:2] == () or sizes[0] <= 0:
+        return None
+    return sizes[0], sizes[0], (sizes[0] if shape.tag == "sphere" else sizes[1] / 2)
+
+
+def shapes_of(link: _Element, tag: str) -> Iterator[tuple[_Element, _Element]]:
+    """The ``<visual>`` or ``<collision>`` elements of a link, each with its shape."""
+    for element in link.iterchildren(tag):
+        geometry = next(element.iterchildren("geometry"), None)
+        shape = None if geometry is None else next(geometry.iterchildren("*"), None)
+        if shape is not None:
+            yield element, shape
+
+
+def around(extents: Iterable[Extent]) -> Extent | None:
+    """The box around some boxes; None around nothing."""
+    every = list(extents)
+    if not every:
+        return None
+    low, high = (list(zip(*its, strict=True)) for its in zip(*every, strict=True))
+    return Extent(_three(map(min, low)), _three(map(max, high)))
+
+
+def _three(values: Iterable[float]) -> Vector:
+    x, y, z = values
+    return x, y, z
+
+
+def way_out(shape: _Element, start: Vector, along: Vector) -> float:
+    """How far it is from a point inside a shape to its face; 0 from a point outside. All in its
+    frame."""
+    half = _half(shape)
+    if half is None:
+        return 0.0
+    if shape.tag == "sphere":
+        return _round_way(start, along, half[0])
+    if shape.tag == "cylinder":
+        flat = _round_way((start[0], start[1], 0.0), (along[0], along[1], 0.0), half[0])
+        return min(flat, _flat_way(start[2], along[2], half[2]))
+    return min(map(_flat_way, start, along, half))
+
+
+def _flat_way(start: float, along: float, half: float) -> float:
+    if abs(start) > half:
+        return 0.0
+    return inf if along == 0 else (half - start * (1 if along > 0 else -1)) / abs(along)
+
+
+def _round_way(start: Vector, along: Vector, radius: float) -> float:
+    rest = radius * radius - dot(start, start)
+    square, middle = dot(along, along), dot(start, along)
+    if rest < 0:
+        return 0.0
+    return inf if square == 0 else (sqrt(middle * middle + square * rest) - middle) / square

@@ -1,0 +1,149 @@
+"""Does a description carry a robot's name already? A rewrite for that robot would add it once more."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Collection, Iterable, Iterator
+
+from multibot_rewrite.base.findings.place import locate
+from multibot_rewrite.base.model import Claim
+from multibot_rewrite.base.naming import (
+    FRAME_KINDS,
+    NO_OWN_NAMES,
+    SEPARATORS,
+    TOPIC_KINDS,
+    OwnNames,
+)
+from multibot_rewrite.base.plural import plural
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.checks.problem import Problem, about
+from multibot_rewrite.description.steps.collect import Inventory
+from multibot_rewrite.description.steps.inserted import markers
+
+# What a rewrite may put between a name and the robot's; "__" begins and ends like "_".
+BETWEEN = ("/", "_", "-", ".")
+# A model may well be called like its robot without any rewrite.
+CARRYING = frozenset(SEPARATORS) - {"model"}
+# What parts of robots are called: names of most descriptions hold such a word by chance.
+_PARTS = """
+ankle arm arms back base body bottom cam camera caster center centre chassis chest elbow finger flange
+foot frame front gazebo gps gripper hand head hip imu inner joint knee laser left leg lidar lift link
+lower main mast middle mobile mount neck odom outer pan plate platform rear right robot scan scanner
+sensor shoulder sonar thumb tilt tool top torso trunk upper wheel wrist
+"""
+PART_WORDS = frozenset(_PARTS.split())
+# Names of these kinds are counted together where a robot is called like a part.
+GROUPS = {**dict.fromkeys(FRAME_KINDS, "link"), **dict.fromkeys(TOPIC_KINDS, "topic")}
+COUNTED = ("link", "joint", "namespace", "topic")
+SHOWN = 3
+
+
+class UsedName(NamedTuple):
+    """A name of a description, and the first value that holds it."""
+
+    kind: str
+    text: str
+    claim: Claim
+
+
+def already_rewritten(
+    inventory: Inventory,
+    robots: Iterable[str],
+    again: bool,
+    own: OwnNames = NO_OWN_NAMES,
+    kinds: Collection[str] = CARRYING,
+) -> Iterator[Problem]:
+    """Robots whose name is in names of the document, or in a marker of inserted elements.
+
+    ``again`` rewrites it once more, but not where it has inserted elements of the same robot. Names
+    of ``own`` are the robot's by an argument of its xacro: they stay as they are. ``kinds`` are
+    those that get this word of the robot.
+    """
+    marked = {mark.robot for mark in markers(inventory.document)}
+    asked = list(robots)
+    text = "\n".join({name.text for names in inventory.names for name in names}) if asked else ""
+    for robot in asked:
+        # Most robots are in no name at all. With ``again`` names alone do not matter.
+        looked = robot in text and (not again or robot in marked)
+        found = carrying(_names(inventory, kinds), robot, own) if looked else []
+        if found or robot in marked:
+            yield _problem(inventory, robot, found, robot in marked)
+
+
+def _names(inventory: Inventory, kinds: Collection[str]) -> list[UsedName]:
+    """Every name of these kinds that some rewrite changes, once."""
+    found: dict[tuple[str, str], UsedName] = {}
+    for claim, names in zip(inventory.claims, inventory.names, strict=True):
+        for name in names if claim.site.role != "keep" else ():
+            kind = name.kind or name.kinds[0]
+            if kind in kinds and (kind, name.text) not in found:
+                found[kind, name.text] = UsedName(kind, name.text, claim)
+    return list(found.values())
+
+
+def carrying(known: list[UsedName], robot: str, own: OwnNames = NO_OWN_NAMES) -> list[UsedName]:
+    """The names that carry a robot's name in any layout, with any separator, ``own`` aside.
+
+    Where it is called like a part, such as ``left`` or ``arm``, only if more than half of the links,
+    joints, namespaces or topics do: a few have the word without any rewrite.
+    """
+    kept = {text for _, text in own}
+    found = [name for name in known if name.text not in kept and _carries_name(name, robot)]
+    return found if not is_part(robot) or _most(found, known, robot) else []
+
+
+def is_part(robot: str) -> bool:
+    """Is a robot called as parts of robots are: ``left``, ``base``, ``left_arm``, ``lf``?"""
+    words = robot.split("_")
+    return all(word in PART_WORDS or (len(word) < 3 and word.isalpha()) for word in words)
+
+
+def _carries_name(name: UsedName, robot: str) -> bool:
+    text = name.text.lstrip("/")
+    if text == robot:
+        return name.kind == "namespace"
+    return text.startswith(tuple(robot + it for it in BETWEEN)) or text.endswith(
+        tuple(it + robot for it in BETWEEN)
+    )
+
+
+def _most(found: Iterable[UsedName], known: Iterable[UsedName], robot: str) -> bool:
+    """Are these more than half of the links, joints, namespaces or topics?
+
+    In a topic the robot is a word between slashes: ``left_scan`` is the scan of a part.
+    """
+    counted = (it for it in found if it.kind not in TOPIC_KINDS or robot in it.text.split("/"))
+    carried, all_ = (
+        Counter(GROUPS.get(it.kind, it.kind) for it in names) for names in (counted, known)
+    )
+    return any(2 * carried[kind] > all_[kind] for kind in COUNTED)
+
+
+def _problem(inventory: Inventory, robot: str, found: list[UsedName], marked: bool) -> Problem:
+    carried = f"its name is in {_shown(inventory, found)}" if found else ""
+    added = "elements were added for it" if marked else ""
+    why = " and ".join(filter(None, (carried, added)))
+    message = f"the description is already rewritten for {robot}: {why}"
+    # Two layers of added elements could not be told apart.
+    again = "" if marked else ", or add its name once more with urdf-postfix --again"
+    way = "undo the rewrite with urdf-postfix --strip and the options it was made with"
+    hint = f"{way}, or name the robot otherwise{again}"
+    if found:
+        return about(found[0].claim, "MB106", message, hint)
+    return Problem(inventory.document.root, message, None, hint, (), "MB106")
+
+
+def _shown(inventory: Inventory, found: list[UsedName]) -> str:
+    # One of each kind tells more than three links.
+    by_kind: dict[str, UsedName] = {}
+    for name in found:
+        by_kind.setdefault(name.kind, name)
+    first = [_with_line(inventory, name) for name in list(by_kind.values())[:SHOWN]]
+    rest = len(found) - len(first)
+    *parts, last = [*first, *([plural(rest, "more name")] if rest else [])]
+    return f"{', '.join(parts)} and {last}" if parts else last
+
+
+def _with_line(inventory: Inventory, name: UsedName) -> str:
+    line, _ = locate(inventory.document.source, name.claim.start)
+    return f"{name.kind} {name.text!r} (line {line})"

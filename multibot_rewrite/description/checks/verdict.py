@@ -1,0 +1,39 @@
+"""What a rewrite may be called: proved, or rewritten and not proved, and why."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.plural import plural
+
+SHARED = "shared by all robots"
+# Code -> what is counted and what is said of it. A rewrite with one of these findings is not proved.
+REASONS = {
+    "MB901": ("name", "not understood"),
+    "MB219": ("model", "not known"),
+    "MB902": ("plugin", "not known"),
+    "MB903": ("hardware class", "not known"),
+    "MB906": ("included model", "not read"),
+    "MB430": ("topic", SHARED),
+    "MB431": ("node", SHARED),
+    "MB435": ("plugin", "whose controllers take rules of their spawner alone"),
+    "MB432": ("frame", SHARED),
+    "MB425": ("name", "looked up in the whole world"),
+    "MB410": ("description name", SHARED),
+    "MB416": ("world system", "in every robot"),
+    "MB436": ("remap rule", "that matches no name any more"),
+    "MB426": ("remap rule", "of the whole process"),
+    "MB143": ("frame", "that an argument of the xacro misses"),
+    "MB422": ("prefix parameter", "that no postfix reaches"),
+    "MB428": ("name", "fixed in a plugin's code"),
+    "MB429": ("model namespace", "that not every Gazebo reads"),
+}
+
+
+def not_proved(findings: Iterable[Finding]) -> tuple[str, ...]:
+    """Why a rewrite with these findings is not proved, with counts; empty where it is."""
+    counts = Counter(it.code for it in findings)
+    found = ((counts[code], *words) for code, words in REASONS.items() if counts[code])
+    return tuple(f"{plural(count, what)} {why}" for count, what, why in found)

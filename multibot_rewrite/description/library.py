@@ -1,0 +1,305 @@
+"""The calls that launch files and scripts use; the commands use them too."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from multibot_rewrite.base.arguments import checked
+from multibot_rewrite.base.conventions import SHARED_TOPICS, WORLD_FRAMES
+from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.model import Change, UsageError
+from multibot_rewrite.base.naming import DEFAULT_LAYOUT, make_naming
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.releases import release_here
+from multibot_rewrite.base.rosnames import check_robot_name
+from multibot_rewrite.description import pipeline
+from multibot_rewrite.description.checks.arguments import unread_arguments
+from multibot_rewrite.description.checks.problem import to_findings
+from multibot_rewrite.description.checks.verdict import not_proved
+from multibot_rewrite.description.reports.changes import list_changes
+from multibot_rewrite.description.sources.job import Job, read_job, read_jobs
+from multibot_rewrite.description.sources.read import Source
+from multibot_rewrite.description.steps.collect import NOTHING, collect
+from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.description.steps.template import Template
+
+if TYPE_CHECKING:
+    from multibot_rewrite.description.reports.explain import Explanation
+
+
+class Prepared:
+    """A job and its template. A copy and a pickle hold the job alone: lxml's elements cannot be
+    copied to another process, and the template is made again when something asks for it."""
+
+    def __init__(self, job: Job) -> None:
+        self.job = job
+
+    @cached_property
+    def template(self) -> Template:
+        """The description ready for any number of robots; raises as ``pipeline.prepare``."""
+        data, file, naming, _, urdf, _, own, _ = self.job
+        tree = self.job.tree
+        beside = pipeline.prepare(*urdf, naming, tree).inventory.declared if urdf else NOTHING
+        return pipeline.prepare(data, file, naming, tree, beside, own)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Prepared) and self.job == other.job
+
+    def __hash__(self) -> int:
+        return hash((self.job.file, self.job.data))
+
+    def __repr__(self) -> str:
+        return f"Prepared({self.job.file!r})"
+
+    def __reduce__(self) -> tuple[type[Prepared], tuple[Job]]:
+        return Prepared, (self.job,)
+
+
+class Rewrite(NamedTuple):
+    """A description as one robot needs it.
+
+    ``data`` are the output bytes, ``text`` the same as str (for ``robot_description``).
+    ``findings`` are warnings about the input. ``changes`` lists every renamed and inserted value.
+    It can be compared, copied and pickled.
+    """
+
+    robot: str
+    data: bytes
+    findings: tuple[Finding, ...]
+    prepared: Prepared
+
+    @property
+    def template(self) -> Template:
+        """What the text was made from. A copy makes it again: it raises as ``rewrite`` does where
+        a vocabulary file is gone."""
+        return self.prepared.template
+
+    @property
+    def text(self) -> str:
+        """The output as str; raises nothing."""
+        return self.data.decode()
+
+    @property
+    def not_proved(self) -> tuple[str, ...]:
+        """Why the robots may meet, with counts, as ``1 topic shared by all robots``; empty where the
+        rewrite is proved. Raises nothing."""
+        return not_proved(self.findings)
+
+    @property
+    def distro(self) -> str:
+        """The ROS 2 release whose facts it was made with; raises nothing."""
+        return self.prepared.job.release
+
+    @property
+    def changes(self) -> list[Change]:
+        """Every renamed or inserted value, in source order; raises as ``template`` does."""
+        return list_changes(self.template, self.robot)
+
+
+@checked
+def rewrite(
+    source: Source,
+    robot: str,
+    *,
+    layout: str = DEFAULT_LAYOUT,
+    affix: str | None = None,
+    topics: str | None = None,
+    separators: Mapping[str, str] | None = None,
+    shared_frames: Iterable[str] = WORLD_FRAMES,
+    shared_topics: Iterable[str] = SHARED_TOPICS,
+    groups: str = "keep",
+    urdf: Source | None = None,
+    xacro_args: Mapping[str, str] | None = None,
+    vocabulary: Iterable[str] = (),
+    again: bool = False,
+    file: str = "",
+    trust: bool = False,
+    distro: str = "",
+) -> Rewrite:
+    """Rewrite a robot description for ``robot`` and prove it; ``.not_proved`` says what is open.
+
+    ``source`` is a path (str or PathLike), XML text (a str that starts with ``<``) or bytes; a path
+    ending in ``.xacro`` is expanded. The options are those of ``rewrite_all``. In a launch file:
+
+        parameters=[{"robot_description": rewrite("rover.urdf", "robot1").text}]
+
+    Raises InputError (cannot be read), UsageError (a wrong argument or robot name), RewriteRefused
+    (the content does not allow it; ``.findings``), VocabularyError, ProofError.
+    """
+    naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
+    check_robot_name(robot)
+    release = release_here(distro)
+    job = read_job(
+        source, naming, urdf, xacro_args, vocabulary, file, [robot], trust, release=release
+    )
+    return next(rewrite_job(job, [robot], again))
+
+
+@checked
+def rewrite_all(
+    source: Source,
+    robots: Iterable[str],
+    *,
+    layout: str = DEFAULT_LAYOUT,
+    affix: str | None = None,
+    topics: str | None = None,
+    separators: Mapping[str, str] | None = None,
+    shared_frames: Iterable[str] = WORLD_FRAMES,
+    shared_topics: Iterable[str] = SHARED_TOPICS,
+    groups: str = "keep",
+    urdf: Source | None = None,
+    xacro_args: Mapping[str, str] | None = None,
+    vocabulary: Iterable[str] = (),
+    again: bool = False,
+    file: str = "",
+    trust: bool = False,
+    distro: str = "",
+) -> Iterator[Rewrite]:
+    """Rewrite one description for several robots: one parse, then about a copy of the text each.
+
+    ``layout`` is a name of ``multibot_rewrite.base.naming.LAYOUTS``, such as tf-per-robot or postfix;
+    ``affix`` is postfix or prefix, ``topics`` is postfix, prefix or namespace (default: what the
+    layout implies); ``separators`` maps kinds to separators; ``groups`` is keep or rename: what
+    becomes of an SRDF's groups and end effectors; ``urdf`` is the description an SRDF belongs to;
+    ``xacro_args`` are the arguments of a xacro, ``{robot}`` in them is the robot's name: what they
+    name after the robot stays as it is, and each robot is an expansion of its own; ``vocabulary``
+    are vocabulary files beside the built-in one; ``again`` allows a second rewrite; ``file`` is the
+    name used in messages; ``trust`` lets xacro files do anything: without it they only compute, and
+    read what is near them (SECURITY.md); ``distro`` is the ROS 2 release whose facts count (default:
+    ROS_DISTRO, else the newest LTS). Raises as ``rewrite`` does, before the first result.
+    """
+    naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
+    names = tuple(robots)
+    _check_robots(names)
+    given = (urdf, xacro_args, vocabulary, file, trust, release_here(distro))
+    jobs = read_jobs(names, source, naming, *given)
+    return rewrite_jobs(jobs, again)
+
+
+def rewrite_job(job: Job, robots: Sequence[str], again: bool = False) -> Iterator[Rewrite]:
+    """Rewrite what was read, raises as ``rewrite_all``."""
+    _check_robots(robots)
+    prepared = Prepared(job)
+    findings = (*_unread(prepared), *prepared.template.findings)
+    texts = pipeline.render(prepared.template, robots, again)
+    # Nothing here holds a text while the next one is made: it may take the same memory.
+    return (Rewrite(robot, next(texts), findings, prepared) for robot in robots)
+
+
+def _unread(prepared: Prepared) -> Iterator[Finding]:
+    """Warnings about arguments that no file of the xacro knows."""
+    document, read = prepared.template.inventory.document, prepared.job.read
+    found = unread_arguments(document.root, read.unread, read.arguments)
+    return to_findings(document, found, WARNING, of_file=True)
+
+
+def rewrite_jobs(jobs: Mapping[str, Job], again: bool = False) -> Iterator[Rewrite]:
+    """Rewrite the job of each robot, in their order; raises as ``rewrite_all``."""
+    groups: dict[int, list[str]] = {}
+    if not jobs:
+        return iter(())
+    for robot, job in jobs.items():
+        groups.setdefault(id(job), []).append(robot)
+    if len(groups) == 1:
+        return rewrite_job(next(iter(jobs.values())), tuple(jobs), again)
+    made = {
+        it.robot: it
+        for robots in groups.values()
+        for it in rewrite_job(jobs[robots[0]], robots, again)
+    }
+    pipeline.check_apart({robot: it.template for robot, it in made.items()})
+    return iter([made[robot] for robot in jobs])
+
+
+@checked
+def explain(
+    source: Source,
+    line: int,
+    robot: str = "robot1",
+    *,
+    layout: str = DEFAULT_LAYOUT,
+    affix: str | None = None,
+    topics: str | None = None,
+    separators: Mapping[str, str] | None = None,
+    shared_frames: Iterable[str] = WORLD_FRAMES,
+    shared_topics: Iterable[str] = SHARED_TOPICS,
+    groups: str = "keep",
+    urdf: Source | None = None,
+    xacro_args: Mapping[str, str] | None = None,
+    vocabulary: Iterable[str] = (),
+    file: str = "",
+    trust: bool = False,
+    distro: str = "",
+) -> list[Explanation]:
+    """What is known about the values that start on ``line``, and what they become for ``robot``.
+
+    The options are those of ``rewrite_all``. A description that a rewrite refuses is explained all
+    the same. Raises InputError, UsageError and VocabularyError as ``rewrite`` does.
+    """
+    naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
+    check_robot_name(robot)
+    release = release_here(distro)
+    job = read_job(
+        source, naming, urdf, xacro_args, vocabulary, file, [robot], trust, release=release
+    )
+    from multibot_rewrite.description.reports.explain import (
+        explain_line,  # a rewrite does not need it
+    )
+
+    urdf_declarations = job.urdf_declarations
+    apart = naming.layout.at_run_time
+    inventory = collect(read_document(job.data, job.file), job.tree, urdf_declarations, apart)
+    pipeline.check_urdf(inventory, urdf_declarations)
+    return explain_line(inventory, job.naming, job.tree, robot, line)
+
+
+@checked
+def strip(
+    source: Source,
+    robot: str,
+    *,
+    layout: str = DEFAULT_LAYOUT,
+    affix: str | None = None,
+    topics: str | None = None,
+    separators: Mapping[str, str] | None = None,
+    shared_frames: Iterable[str] = WORLD_FRAMES,
+    shared_topics: Iterable[str] = SHARED_TOPICS,
+    groups: str = "keep",
+    urdf: Source | None = None,
+    xacro: Source | None = None,
+    xacro_args: Mapping[str, str] | None = None,
+    vocabulary: Iterable[str] = (),
+    file: str = "",
+    trust: bool = False,
+    distro: str = "",
+) -> bytes:
+    """Undo ``rewrite`` from the rewritten text alone, and prove it by rewriting again.
+
+    The options are those that the text was rewritten with; ``urdf`` is the rewritten description
+    that a rewritten SRDF belongs to. Where arguments named the robot, ``xacro`` is the file and
+    ``xacro_args`` are the arguments: what they named stays, so the result is that xacro's
+    expansion. Raises as ``rewrite`` does.
+    """
+    naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
+    check_robot_name(robot)
+    before, release = b"", release_here(distro)
+    if xacro is not None:
+        made, beside = (xacro, None) if urdf is None else (source, xacro)
+        of = read_job(
+            made, naming, beside, xacro_args, vocabulary, "", [robot], trust, release=release
+        )
+        naming, before = of.naming, b"" if beside else of.data
+    job = read_job(source, naming, urdf, None, vocabulary, file, (), trust, release=release)
+    beside_urdf = job.urdf_declarations
+    return pipeline.strip(job.data, job.file, robot, naming, job.tree, beside_urdf, before)
+
+
+def _check_robots(robots: Iterable[str]) -> None:
+    seen: set[str] = set()
+    for robot in robots:
+        check_robot_name(robot)
+        if robot in seen:
+            raise UsageError(f"robot name {robot!r} is given twice; every robot needs its own")
+        seen.add(robot)

@@ -1,0 +1,181 @@
+"""The order of the steps, and nothing else: this file is the program in short."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from itertools import chain
+
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, RewriteRefused
+from multibot_rewrite.base.gc_pause import gc_paused
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.naming import TWIN, Naming, overlap
+from multibot_rewrite.description.checks import audit
+from multibot_rewrite.description.checks import robots as checks
+from multibot_rewrite.description.checks.arguments import missed_by_arguments
+from multibot_rewrite.description.checks.meeting import shared_by_all, shared_by_both, shared_with
+from multibot_rewrite.description.checks.mentions import MENTIONED, find_mentions
+from multibot_rewrite.description.checks.problem import Problem, to_findings
+from multibot_rewrite.description.checks.twice import already_rewritten
+from multibot_rewrite.description.rewriters.forms import Declared
+from multibot_rewrite.description.rewriters.spelling import stripped_names
+from multibot_rewrite.description.rewriters.tree import Tree
+from multibot_rewrite.description.sources.own_names import OF_ALL, OwnSource
+from multibot_rewrite.description.steps.apply import cut, fill
+from multibot_rewrite.description.steps.collect import NOTHING, SRDF, Inventory, collect
+from multibot_rewrite.description.steps.document import read_document, slot_values
+from multibot_rewrite.description.steps.plan import make_plan
+from multibot_rewrite.description.steps.renames import RenameMap, make_renames
+from multibot_rewrite.description.steps.strip import NOWHERE, own_places, strip_edits
+from multibot_rewrite.description.steps.template import Template
+from multibot_rewrite.description.steps.verify import verify
+
+
+@gc_paused()
+def prepare(
+    source: bytes,
+    file: str,
+    naming: Naming,
+    tree: Tree,
+    urdf_declarations: Declared = NOTHING,
+    own: OwnSource = OF_ALL,
+) -> Template:
+    """Everything that does not depend on a robot's name; raises InputError and RewriteRefused.
+
+    ``urdf_declarations`` is what the URDF beside an SRDF declares. ``own`` says more of a source that
+    is one robot's own.
+    """
+    apart = naming.layout.at_run_time
+    inventory = collect(read_document(source, file), tree, urdf_declarations, apart)
+    check_urdf(inventory, urdf_declarations)
+    plan = make_plan(inventory, naming)
+    findings = [*audit.audit(inventory, plan.renames, tree), *plan.findings]
+    missed = missed_by_arguments(inventory, plan.renames, own.plain, own.robot)
+    findings += to_findings(inventory.document, missed, WARNING)
+    _stop_on_errors(findings)
+    names = _mentionable(inventory, plan.renames)
+    values = slot_values(inventory.document.root) if names else []
+    findings += find_mentions(inventory, values, names, tree)
+    pieces = cut(source, plan.edits)
+    if inventory.format != SRDF:  # it starts nothing
+        found = (
+            _shared_with_twin(inventory, own.twin, naming, tree)
+            if own.twin
+            else shared_by_all(inventory.document, pieces, naming, tree.vocabulary)
+        )
+        findings += to_findings(inventory.document, found, WARNING)
+    return Template(inventory, plan, pieces, findings, naming, tree, urdf_declarations)
+
+
+def _shared_with_twin(
+    inventory: Inventory, twin: bytes, naming: Naming, tree: Tree
+) -> Iterator[Problem]:
+    """What a robot whose xacro has arguments of its own would share with all others."""
+    document = inventory.document
+    # What the arguments name gets the twin's name once more: only whether it has it matters.
+    read = collect(read_document(twin, document.file), tree, apart=naming.layout.at_run_time)
+    edits = make_plan(read, naming).edits
+    text = fill(cut(twin, edits), TWIN)
+    return shared_with(document, text, TWIN, naming, tree.vocabulary)
+
+
+def check_urdf(inventory: Inventory, urdf_declarations: Declared) -> None:
+    """An SRDF names what its URDF declares: neither makes sense without the other."""
+    file = inventory.document.file
+    if inventory.format == SRDF and not urdf_declarations:
+        raise InputError(f"{file}: an SRDF is rewritten beside its URDF: add --urdf robot.urdf")
+    if inventory.format != SRDF and urdf_declarations:
+        raise InputError(f"{file}: only an SRDF has a URDF beside it: leave out --urdf")
+
+
+def render(prepared: Template, robots: Sequence[str], again: bool = False) -> Iterator[bytes]:
+    """The text for each robot in turn, the first one proved.
+
+    The others differ from it in nothing but the robot's name at the same places; that no two names
+    become one is checked for all of them before the first is returned.
+    """
+    inventory, plan, *_ = prepared
+    renames = plan.renames
+    document = inventory.document
+    at_values = chain(
+        checks.taken_names(inventory, renames, robots),
+        already_rewritten(inventory, robots, again, renames.naming.own),
+    )
+    pairs = overlap(prepared.naming, robots)
+    whole = list(checks.meeting(inventory, renames, pairs)) or _meeting(prepared, pairs)
+    at_start = to_findings(document, whole, ERROR, of_file=True)
+    _stop_on_errors([*to_findings(document, at_values, ERROR), *at_start])
+    for robot in robots[:1]:
+        yield _proved(prepared, robot)
+    for robot in robots[1:]:
+        yield fill(prepared.pieces, robot)
+
+
+def _proved(prepared: Template, robot: str) -> bytes:
+    inventory, plan, pieces, _, naming, tree, urdf_declarations = prepared
+    output = fill(pieces, robot)
+    verify(inventory, plan, len(pieces) - 1, output, robot, naming, tree, urdf_declarations)
+    return output
+
+
+def check_new(prepared: Template, robots: Sequence[str], kinds: Collection[str]) -> None:
+    """Raise RewriteRefused where names of these kinds carry a robot's name already."""
+    inventory, own = prepared.inventory, prepared.naming.own
+    found = already_rewritten(inventory, robots, False, own, kinds)
+    _stop_on_errors([*to_findings(inventory.document, found, ERROR)])
+
+
+def _meeting(prepared: Template, pairs: Iterable[tuple[str, str, str]]) -> Iterator[Problem]:
+    """What robots whose names overlap would share in the running system."""
+    inventory, _, pieces, _, naming, tree, _ = prepared
+    for robot, other, _ in pairs if inventory.format != SRDF else ():
+        pair = robot, other
+        yield from shared_by_both(inventory.document, pieces, pair, naming, tree.vocabulary)
+
+
+def check_apart(made: Mapping[str, Template]) -> None:
+    """Raise RewriteRefused for names that robots with descriptions of their own both have."""
+    first = next(iter(made.values())).inventory.document
+    parts = ((robot, it.inventory, it.plan.renames) for robot, it in made.items())
+    both = checks.meeting_descriptions(parts)
+    _stop_on_errors([*to_findings(first, both, ERROR, of_file=True)])
+
+
+def strip(
+    source: bytes,
+    file: str,
+    robot: str,
+    naming: Naming,
+    tree: Tree,
+    urdf_declarations: Declared = NOTHING,
+    before: bytes = b"",
+) -> bytes:
+    """Undo a rewrite for ``robot``; the result is proved by rewriting it again.
+
+    ``urdf_declarations`` is what the rewritten URDF beside a rewritten SRDF declares. ``before`` is
+    what the robot's own xacro arguments make, where the naming has names of these.
+    """
+    apart = naming.layout.at_run_time
+    inventory = collect(read_document(source, file), tree, urdf_declarations, apart)
+    check_urdf(inventory, urdf_declarations)
+    renames = make_renames(inventory, naming)
+    found = checks.not_rewritten(inventory, renames, robot)
+    found += checks.other_urdf(inventory, renames, robot, urdf_declarations)
+    _stop_on_errors(found)
+    places = NOWHERE
+    if before:
+        places = own_places(collect(read_document(before, file), tree, apart=apart), naming)
+    stripped = b"".join(cut(source, strip_edits(inventory, naming, robot, places)))
+    again = prepare(stripped, file, naming, tree, stripped_names(urdf_declarations, naming, robot))
+    if fill(again.pieces, robot) != source:
+        _stop_on_errors([checks.other_options(inventory, robot)])
+    return stripped
+
+
+def _mentionable(inventory: Inventory, renames: RenameMap) -> set[str]:
+    names = ((kind, name) for kind in MENTIONED for name in inventory.declared[kind])
+    return {name for kind, name in names if renames.changes(kind, name)}
+
+
+def _stop_on_errors(findings: Sequence[Finding]) -> None:
+    if any(finding.level == ERROR for finding in findings):
+        raise RewriteRefused(tuple(findings))

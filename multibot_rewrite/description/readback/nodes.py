@@ -1,0 +1,298 @@
+"""A plugin -> the ROS node it starts, with its endpoints, rules, frames; topics of other plugins.
+
+Sources: gazebo_ros_pkgs ros2 gazebo_ros/src/node.cpp (a <ros> hides the plugin's own settings, the
+plugin's name is the node's, an empty namespace is the root), gz_ros2_control_plugin.cpp.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterable, Iterator
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.model import Site, UsageError
+from multibot_rewrite.base.naming import TOPIC_KINDS
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.rosnames import (
+    BoundNode,
+    RemapRule,
+    bind,
+    expand,
+    parse_remap,
+    resolve_bound,
+)
+from multibot_rewrite.description.readback.model_namespaces import reads_it, scoped_namespace
+from multibot_rewrite.description.readback.parameters import sends_odometry, switched_off, values_of
+from multibot_rewrite.description.readback.wired import wired_of
+from multibot_rewrite.description.readback.xml import child_text, text_of
+from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
+from multibot_rewrite.knowledge.controller_ways import controller_way
+
+TOPIC, SERVICE = "topic", "service"
+REMAP_FLAGS = ("-r", "--remap")
+PUBLISHES, SERVES = "publishes", "serves"
+
+
+class ReadEndpoint(NamedTuple):
+    """A topic or service of a node: its name in the code or in a parameter, and in the graph.
+
+    ``off`` are parameters that would turn it on. ``type`` is empty where it is not known.
+    ``of_controllers`` is true for what the controllers
+    have that it loads, where they take no rules of it.
+    """
+
+    kind: str
+    role: str
+    name: str
+    full: str
+    parameter: str = ""
+    off: str = ""
+    of_controllers: bool = False
+    type: str = ""
+
+
+class ReadRule(NamedTuple):
+    """A remap rule of a plugin, its line in the description that was read, and the tag it is in."""
+
+    rule: RemapRule
+    line: int
+    tag: str
+
+
+class ReadNode(NamedTuple):
+    """The node of a plugin, which is the ``number``-th of the file.
+
+    ``name`` and ``namespace`` are those before its ``rules``; ``stems`` are parameters with what
+    further topics are below; ``frames`` are parameters with the frames they hold, ``sends`` the
+    parameters of parent and child of a transform it publishes.
+    """
+
+    section: VocabularySection
+    number: int
+    name: str
+    namespace: str
+    rules: tuple[ReadRule, ...]
+    endpoints: tuple[ReadEndpoint, ...]
+    stems: tuple[tuple[str, str], ...]
+    frames: tuple[tuple[str, str], ...]
+    sends: tuple[tuple[str, str], ...]
+
+    @property
+    def full_name(self) -> str:
+        """Namespace and name."""
+        return f"{self.namespace.rstrip('/')}/{self.name}"
+
+
+def node_of(
+    plugin: _Element,
+    number: int,
+    section: VocabularySection,
+    links: Container[str],
+    release: str,
+) -> ReadNode | None:
+    """The ROS 2 node that a plugin starts; None where it starts none.
+
+    ``links`` are those of the description.
+    """
+    paths = {site.path for site in section.sites}
+    if "ros/namespace" not in paths:
+        return None
+    home = plugin.find("ros")
+    if home is None and "namespace" in paths:
+        home = plugin
+    name = _node_name(plugin, section)
+    namespace = "/" + ("" if home is None else child_text(home, "namespace") or "").strip("/")
+    rules = tuple(() if home is None else _rules(home))
+    bound = _bound(name, namespace, [it.rule for it in rules])
+    frames = tuple(frames_of(plugin, section))
+    endpoints = _endpoints(plugin, section, bound, rules)
+    return ReadNode(
+        section,
+        number,
+        name,
+        namespace,
+        rules,
+        tuple(_by_themselves(endpoints, section, _bound(name, namespace, ()), release)),
+        tuple(_stems(plugin, section, bound)),
+        frames,
+        tuple(_sends(plugin, section, frames, links)),
+    )
+
+
+def itself(node: ReadNode) -> BoundNode:
+    """The node under those of its rules that are for its name and namespace."""
+    rules = (it.rule for it in node.rules if it.rule.source.startswith("__"))
+    return _bound(node.name, node.namespace, rules)
+
+
+def _node_name(plugin: _Element, section: VocabularySection) -> str:
+    """A Gazebo Classic plugin's own name, or that of the controller manager it loads."""
+    if any(site.path == "@name" for site in section.sites if site.role == "declares"):
+        return plugin.get("name", "").strip()
+    sites = (site for site in section.sites if site.kinds[:1] == ("node",) and site.default)
+    named = (value for site in sites for value in values_of(plugin, site))
+    return next(named, "") or section.names[0].replace("-", "_")
+
+
+def rules_of(plugin: _Element) -> Iterator[RemapRule]:
+    """The remap rules in the ``<ros>`` of a plugin."""
+    yield from (it.rule for home in plugin.iterchildren("ros") for it in _rules(home))
+
+
+def _rules(home: _Element) -> Iterator[ReadRule]:
+    """The rules in <argument>, which come first, and those in <remapping>."""
+    texts = [*_remap_arguments(home), *home.iterfind("remapping")]
+    for element in texts:
+        rule = parse_remap(text_of(element))
+        if rule is not None:
+            line: int = element.sourceline or 0  # type: ignore[assignment]
+            yield ReadRule(rule, line, str(element.tag))
+
+
+def _remap_arguments(home: _Element) -> Iterator[_Element]:
+    """What follows -r or --remap between --ros-args and --, and rules outside, which rcl takes as well
+    (rcl arguments.c: "This syntax is deprecated")."""
+    ros, flag = False, ""
+    for element in home.iterfind("argument"):
+        text = text_of(element)
+        if not ros or flag in REMAP_FLAGS:
+            yield element
+        if ros and flag in REMAP_FLAGS:
+            text = ""
+        ros = text == "--ros-args" or (ros and text != "--")
+        flag = text
+
+
+def _bound(name: str, namespace: str, rules: Iterable[RemapRule]) -> BoundNode:
+    """The node under its rules; without them where rcl refuses to start it."""
+    try:
+        return bind(name, namespace, rules)
+    except UsageError:
+        return BoundNode(name, namespace, {}, {})
+
+
+def full_name(name: str, kind: str, bound: BoundNode) -> str:
+    """The full name, as text where rcl refuses it: a placeholder may be filled before it runs."""
+    try:
+        return resolve_bound(name, kind, bound)
+    except UsageError:
+        return expand(name, bound.namespace, bound.node)
+
+
+def _endpoints(
+    plugin: _Element,
+    section: VocabularySection,
+    bound: BoundNode,
+    rules: tuple[ReadRule, ...],
+) -> Iterator[ReadEndpoint]:
+    off = switched_off(plugin, section)
+    for_all = [it.rule for it in rules if not it.rule.node]
+    of_others = _bound(bound.node, bound.namespace, for_all) if section.process_wide else bound
+    wired = list(wired_of(plugin, section))
+    named = {it.name for it, _ in wired}
+    for it, path in wired:
+        kind = SERVICE if it.role == SERVES else TOPIC
+        # Controllers publish, by names of their own: a rule for the manager's node is none for them.
+        under = of_others if it.role == PUBLISHES else bound
+        own = (kind, it.role, it.name, full_name(it.name, kind, under))
+        yield ReadEndpoint(*own, path, off.get(it.name, ""), type=it.type)
+    for site in filter(_holds_topic, section.sites):
+        kind = SERVICE if site.kinds[0] == SERVICE else TOPIC
+        for name in (it for it in values_of(plugin, site) if site.does or it not in named):
+            own = (kind, site.does, name, full_name(name, kind, bound))
+            yield ReadEndpoint(*own, site.path, type=site.type)
+    # Other topics below the plugin's own name are not in the vocabulary, but in its remap rules.
+    for source in (it.rule.source for it in rules):
+        if source.startswith("~") and source not in named:
+            yield ReadEndpoint(TOPIC, "", source, full_name(source, TOPIC, bound))
+
+
+def _by_themselves(
+    endpoints: Iterable[ReadEndpoint], section: VocabularySection, bare: BoundNode, release: str
+) -> Iterator[ReadEndpoint]:
+    """The endpoints with what controllers publish under the names they have without any rule, in a
+    release in which they take none of the plugin that loads them."""
+    apart = section.process_wide and not controller_way(release).of_manager
+    for it in endpoints:
+        if apart and it.role == PUBLISHES:
+            yield it._replace(full=full_name(it.name, it.kind, bare), of_controllers=True)
+        else:
+            yield it
+
+
+def _holds_topic(site: Site) -> bool:
+    """Is its value a topic or service? Where a word topics are made of is set, they are below it."""
+    whole = site.form == "whole" and site.role != "keep"
+    return whole and site.kinds[0] in TOPIC_KINDS and "qos" not in site.path
+
+
+def frames_of(plugin: _Element, section: VocabularySection) -> Iterator[tuple[str, str]]:
+    """The frames in its parameters, each with the parameter."""
+    for site in section.sites:
+        if site.form == "whole" and site.kinds[:1] == ("frame",):
+            for value in values_of(plugin, site):
+                yield site.path, value
+
+
+def _stems(
+    plugin: _Element, section: VocabularySection, bound: BoundNode
+) -> Iterator[tuple[str, str]]:
+    for site in section.sites:
+        if site.form == "whole" and site.kinds[:1] == ("stem",):
+            for value in values_of(plugin, site):
+                yield site.path, full_name(value, TOPIC, bound)
+
+
+def _sends(
+    plugin: _Element,
+    section: VocabularySection,
+    frames: tuple[tuple[str, str], ...],
+    links: Container[str],
+) -> Iterator[tuple[str, str]]:
+    """Of a plugin that publishes tf: from its odometry frame to a link."""
+    own = [path for path, frame in frames if frame not in links]
+    base = [path for path, frame in frames if frame in links]
+    if "/tf" in section.publishes and own and base and sends_odometry(plugin, section):
+        yield own[0], base[0]
+
+
+def resolved(
+    host: _Element, section: VocabularySection, release: str
+) -> Iterator[tuple[str, str, str]]:
+    """Kind, name and parameter of the topics of something that is no ROS 2 node.
+
+    Names are below the namespace that it puts in front, and below the word that topics are made of;
+    none where those come from the model, whose name each robot has for itself.
+    """
+    above = _namespace(host, section)
+    if reads_it(section, release) and scoped_namespace(host) != "":
+        above = scoped_namespace(host)
+        # Its default topics are below it, too.
+        yield from [(TOPIC, above, "model@namespace")] if above else []
+    stems = [site for site in section.sites if site.kinds[:1] == ("stem",) and site.form == "whole"]
+    words = [(site.path, value) for site in stems for value in values_of(host, site)]
+    if above is not None:
+        yield from ((TOPIC, _joined(above, word), path) for path, word in words)
+    for site in filter(_holds_topic, section.sites):
+        kind = SERVICE if site.kinds[0] == SERVICE else TOPIC
+        below = above
+        if site.kinds[0] == "subtopic" and stems and above is not None:
+            below = _joined(above, words[0][1]) if words else None
+        for name in values_of(host, site):
+            if name.startswith("/"):
+                yield kind, name, site.path
+            elif name.startswith("~"):
+                continue  # below a node that the simulator names
+            elif below is not None:
+                yield kind, _joined(below, name), site.path
+
+
+def _namespace(host: _Element, section: VocabularySection) -> str | None:
+    """What the plugin puts in front of relative names; None where that is the model's name."""
+    sites = [it for it in section.sites if it.kinds[:1] == ("namespace",) and it.form == "whole"]
+    values = [value for site in sites for value in values_of(host, site)]
+    return values[0] if values else None if sites else "/"
+
+
+def _joined(above: str, name: str) -> str:
+    return f"/{above.strip('/')}/{name.strip('/')}".replace("//", "/")

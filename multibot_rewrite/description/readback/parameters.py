@@ -1,0 +1,86 @@
+"""The value of a parameter as its consumer has it: what the file says, else the default."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.model import Site
+from multibot_rewrite.description.readback.own_defaults import completed
+from multibot_rewrite.description.readback.xml import child_text, is_on, values_at
+from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
+
+
+def values_of(host: _Element, site: Site) -> list[str]:
+    """Its values, in order, or the default; none where an empty element means something else."""
+    if site.when and not _applies(host, site):
+        return []
+    given = list(values_at(host, site.path))
+    if not any(given) and (not given or site.empty == "default"):
+        given = [default_of(host, site.default)]
+    return [value for value in given if value]
+
+
+def _applies(host: _Element, site: Site) -> bool:
+    """Has the sibling that decides this text? It stands beside the last step of the path."""
+    sibling, _, text = site.when.partition("=")
+    above = site.path.rpartition("/")[0]
+    return text in values_at(host, f"{above}/{sibling}" if above else sibling)
+
+
+def default_of(host: _Element, default: str) -> str:
+    """``x``; ``a=true,b=?x``: x where these siblings have these texts; ``topic/../x``: the value of
+    a sibling with its last segment replaced; ``{model}/x``: x below what the model is spawned as."""
+    conditions, asked, default = default.rpartition("?")
+    if asked and not holds(host, conditions):
+        return ""
+    sibling, derived, last = default.partition("/../")
+    if not derived:
+        return completed(host, default)
+    topic = child_text(host, sibling) or ""
+    return f"{topic.rpartition('/')[0]}/{last}" if "/" in topic else last if topic else ""
+
+
+def holds(host: _Element, conditions: str) -> bool:
+    """``a=true,../@b=x|y``: is each of them so? A flag that is not there is off."""
+    return all(_holds(host, it) for it in conditions.split(","))
+
+
+def _holds(host: _Element, condition: str) -> bool:
+    path, _, wanted = condition.partition("=")
+    text = next(iter(given_at(host, path)), "")
+    if wanted not in ("true", "false"):
+        return text in wanted.split("|")
+    return is_on(text, usual=False) == (wanted == "true")
+
+
+def given_at(host: _Element, path: str) -> list[str]:
+    """The values at a path below an element, or, after ``../``, below the one around it."""
+    below = path.removeprefix("../")
+    start = host if below == path else host.getparent()
+    return [] if start is None else list(values_at(start, below))
+
+
+def switched_off(host: _Element, section: VocabularySection) -> dict[str, str]:
+    """The wired topics that no parameter of theirs turns on, and which would."""
+    on: set[str] = set()
+    off: dict[str, list[str]] = {}
+    for parameter, topic, is_set in _switches(host, section):
+        if is_set:
+            on.add(topic)
+        else:
+            off.setdefault(topic, []).append(parameter)
+    return {topic: " or ".join(names) for topic, names in off.items() if topic not in on}
+
+
+def sends_odometry(host: _Element, section: VocabularySection) -> bool:
+    """Is the transform of odometry on? Its switch is the first one of /tf."""
+    found = [is_set for _, topic, is_set in _switches(host, section) if topic == "/tf"]
+    return not found or found[0]
+
+
+def _switches(host: _Element, section: VocabularySection) -> Iterator[tuple[str, str, bool]]:
+    for switch in section.switches:
+        parameter, topic, *usual = switch.split("=")
+        yield parameter, topic, is_on(child_text(host, parameter), usual=bool(usual))

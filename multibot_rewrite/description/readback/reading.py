@@ -1,0 +1,208 @@
+"""Description bytes -> everything that runs because of it, by the names it has then."""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterator
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.model import Site
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.readback.nodes import (
+    TOPIC,
+    ReadNode,
+    frames_of,
+    node_of,
+    resolved,
+)
+from multibot_rewrite.description.readback.own_defaults import MODEL, around, is_nested
+from multibot_rewrite.description.readback.parameters import default_of, values_of
+from multibot_rewrite.description.readback.sections import (
+    hardware_section,
+    plugin_section,
+    sensor_sections,
+)
+from multibot_rewrite.description.readback.xml import read_xml, values_at
+from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, VocabularySection
+
+NODE, FRAME = "node", "frame"
+# Elements besides plugins and sensors that have a topic, by what holds it.
+WITH_TOPICS = (
+    ("gazebo", "particle_emitter"),
+    ("sdf.link", "particle_emitter"),
+    ("webots", "webots"),
+)
+
+
+class RuntimeName(NamedTuple):
+    """A name in the running system: its kind (topic, service, node, frame, or what a plugin looks up
+    in the whole world), its text, and where it comes from: the ``number``-th element with this
+    ``tag``, and ``path``, the parameter; ``of_controllers`` as in ``ReadEndpoint``."""
+
+    kind: str
+    name: str
+    tag: str
+    number: int
+    path: str
+    of_controllers: bool = False
+
+
+class Reading(NamedTuple):
+    """What a description starts. ``unknown`` are the plugins that the vocabulary does not have, each
+    as its number among the plugins and its library; ``missed`` the frames below a model's name, which
+    are in the tree of no robot, though nothing else of the model sends their transform."""
+
+    nodes: tuple[ReadNode, ...]
+    names: tuple[RuntimeName, ...]
+    unknown: tuple[tuple[int, str], ...]
+    missed: tuple[RuntimeName, ...] = ()
+
+
+class _Host(NamedTuple):
+    """An element that something runs for, and what is known about it."""
+
+    element: _Element
+    number: int
+    section: VocabularySection
+
+
+def read(data: bytes, file: str, vocabulary: Vocabulary) -> Reading:
+    """Read a description as the programs do that load it; raises InputError."""
+    root = read_xml(data, file)
+    hosts: list[_Host] = []
+    unknown: list[tuple[int, str]] = []
+    for number, plugin in enumerate(root.iter("plugin")):
+        # The class of a ros2_control system, or a plugin of Webots: none of Gazebo's.
+        if "filename" not in plugin.attrib and "name" not in plugin.attrib:
+            continue
+        section, known = plugin_section(plugin, vocabulary)
+        if not known:
+            unknown.append((number, plugin.get("filename", "") or plugin.get("name", "")))
+        if section is not None:
+            hosts.append(_Host(plugin, number, section))
+    links = [*_links(root)]
+    known_links = frozenset(it.name for it in links)
+    made = (node_of(*it, known_links, vocabulary.release) for it in hosts)
+    nodes = tuple(node for node in made if node is not None)
+    with_node = {it.number for it in nodes}
+    names = [*links, *_of_nodes(nodes), *_of_plugins(root, hosts, with_node, vocabulary)]
+    names += [*_of_hardware(root, vocabulary), *_of_sensors(root, vocabulary)]
+    names += _of_elements(root, vocabulary)
+    missed = tuple(it for it in names if it.kind == FRAME and it.name.startswith(MODEL))
+    heard = tuple(it for it in names if it not in missed) if missed else tuple(names)
+    return Reading(nodes, heard, tuple(unknown), _of_first_senders(missed, hosts))
+
+
+def _of_first_senders(
+    missed: tuple[RuntimeName, ...], hosts: list[_Host]
+) -> tuple[RuntimeName, ...]:
+    """Without those of systems whose transform another one of the model sends, or sends first."""
+    numbers = {it.number for it in missed}
+    models = {it.number: around(it.element) for it in hosts}
+    sent = {models[it.number] for it in hosts if it.number not in numbers and _sends_frames(it)}
+    partly = {it.number for it in hosts if it.number in numbers and _gives_frames(it)}
+    sent |= {models[it] for it in partly}
+    first: dict[_Element, int] = {}
+    for number in sorted(numbers - partly):
+        if models[number] not in sent:
+            first.setdefault(models[number], number)
+    first = {model: it for model, it in first.items() if not is_nested(model)}
+    return tuple(it for it in missed if it.number in partly or it.number in first.values())
+
+
+def _sends_frames(host: _Host) -> bool:
+    return any(default_of(host.element, it.default) for it in _frame_sites(host))
+
+
+def _frame_sites(host: _Host) -> list[Site]:
+    sites = host.section.sites
+    return [it for it in sites if MODEL in it.default and it.kinds[0] == FRAME]
+
+
+def _gives_frames(host: _Host) -> bool:
+    return any(any(values_at(host.element, it.path)) for it in _frame_sites(host))
+
+
+def _of_nodes(nodes: tuple[ReadNode, ...]) -> Iterator[RuntimeName]:
+    for node in nodes:
+        if node.name:
+            yield RuntimeName(NODE, node.full_name, "plugin", node.number, "@name")
+        above = {path for path, _ in node.stems}
+        for it in node.endpoints:
+            # What is below a stem is named by it.
+            if not it.off and it.parameter not in above:
+                path, of = it.parameter or it.name, it.of_controllers
+                yield RuntimeName(it.kind, it.full, "plugin", node.number, path, of)
+        for path, full in node.stems:
+            yield RuntimeName(TOPIC, full, "plugin", node.number, path)
+
+
+def _of_plugins(
+    root: _Element, hosts: list[_Host], nodes: Container[int], vocabulary: Vocabulary
+) -> Iterator[RuntimeName]:
+    for host in hosts:
+        if host.number not in nodes:
+            yield from _topics(*host, "plugin", vocabulary.release)
+        yield from _frames(host, "plugin")
+        yield from _lookups(root, host, vocabulary)
+
+
+def _of_hardware(root: _Element, vocabulary: Vocabulary) -> Iterator[RuntimeName]:
+    for number, system in enumerate(root.iter("ros2_control")):
+        section = hardware_section(system, vocabulary)
+        if section is not None:
+            yield from _topics(system, number, section, "ros2_control", vocabulary.release)
+            yield from _frames(_Host(system, number, section), "ros2_control")
+            yield from _lookups(root, _Host(system, number, section), vocabulary)
+
+
+def _of_sensors(root: _Element, vocabulary: Vocabulary) -> Iterator[RuntimeName]:
+    for number, sensor in enumerate(root.iter("sensor")):
+        for section in sensor_sections(sensor, vocabulary):
+            yield from _topics(sensor, number, section, "sensor", vocabulary.release)
+
+
+def _of_elements(root: _Element, vocabulary: Vocabulary) -> Iterator[RuntimeName]:
+    for tag, held in WITH_TOPICS:
+        if next(root.iter(held), None) is None:
+            continue
+        (section,) = vocabulary.find("element", tag)
+        for number, element in enumerate(root.iter(tag.rpartition(".")[2])):
+            yield from _topics(element, number, section, element.tag, vocabulary.release)
+
+
+def _links(root: _Element) -> Iterator[RuntimeName]:
+    """The links of the robot and of its models: frames that robot_state_publisher sends."""
+    for number, link in enumerate(root.iter("link")):
+        parent = link.getparent()
+        if parent is not None and parent.tag in ("robot", "model") and link.get("name"):
+            yield RuntimeName(FRAME, link.get("name", "").strip(), "link", number, "@name")
+
+
+def _topics(
+    host: _Element, number: int, section: VocabularySection, tag: str, release: str
+) -> Iterator[RuntimeName]:
+    """Topics that are no ROS 2 node's: below the namespace that the plugin puts in front."""
+    for kind, name, path in resolved(host, section, release):
+        yield RuntimeName(kind, name, tag, number, path)
+
+
+def _frames(host: _Host, tag: str) -> Iterator[RuntimeName]:
+    for path, value in frames_of(host.element, host.section):
+        yield RuntimeName(FRAME, value, tag, host.number, path)
+
+
+def _lookups(root: _Element, host: _Host, vocabulary: Vocabulary) -> Iterator[RuntimeName]:
+    """Names that a plugin or system looks up in the whole world, of things that this file has."""
+    kind, tag = host.section.unique, str(host.element.tag)
+    if not kind:
+        return
+    # A URDF is one model, by the name of its root.
+    own = root.iter("robot", "model") if kind == "model" else root.iter(kind)
+    there = {element.get("name") for element in own}
+    (every,) = vocabulary.find("element", tag)
+    for site in (*every.sites, *host.section.sites):
+        if site.role != "keep" and kind in site.kinds:
+            for value in dict.fromkeys(values_of(host.element, site)):
+                if value in there:
+                    yield RuntimeName(kind, value, tag, host.number, site.path)

@@ -1,0 +1,67 @@
+"""XML as TinyXML-2 and sdformat read it.
+
+Sources: leethomason/tinyxml2 tinyxml2.cpp (XMLElement::GetText: comments in front are skipped, then
+the first text counts; text of white space alone is none), gazebosim/sdformat Param.cc (booleans).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from lxml import etree
+from lxml.etree import _Element
+
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.description.rewriters.vocabulary import split_path, split_step
+
+# Blanks between elements are most of a tree, and no text that a consumer reads.
+_PARSER = etree.XMLParser(resolve_entities=False, huge_tree=True, remove_blank_text=True)
+
+
+def read_xml(data: bytes, file: str) -> _Element:
+    """The root element; raises InputError."""
+    try:
+        return etree.fromstring(data, _PARSER)
+    except etree.XMLSyntaxError as error:
+        raise InputError(f"{file}: cannot be read again: {error}") from None
+
+
+def text_of(element: _Element) -> str:
+    """The text of an element, white space around it aside."""
+    text = (element.text or "").strip()
+    for child in element:
+        if text or not isinstance(child, etree._Comment):
+            break
+        text = (child.tail or "").strip()
+    return text
+
+
+def child_text(element: _Element, tag: str) -> str | None:
+    """The text of the first child with this tag; None where there is none."""
+    child = element.find(tag)
+    return None if child is None else text_of(child)
+
+
+def values_at(element: _Element, path: str) -> Iterator[str]:
+    """The values at a path of the vocabulary, empty ones too: each attribute or text that is there."""
+    steps, attribute = split_path(path)
+    for found in _below(element, steps):
+        value = found.get(attribute) if attribute else text_of(found)
+        if value is not None:
+            yield value.strip()
+
+
+def _below(element: _Element, steps: tuple[str, ...]) -> Iterator[_Element]:
+    if not steps:
+        yield element
+        return
+    tag, attribute, wanted = split_step(steps[0])
+    for child in element.iterchildren(tag):
+        if not attribute or child.get(attribute, "") == wanted:
+            yield from _below(child, steps[1:])
+
+
+def is_on(text: str | None, usual: bool) -> bool:
+    """A boolean parameter: case does not count; any other text leaves the default."""
+    known = {"true": True, "1": True, "false": False, "0": False}
+    return known.get((text or "").strip().lower(), usual)

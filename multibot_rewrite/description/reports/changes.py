@@ -1,0 +1,42 @@
+"""Plan -> the list of what changed, as ``--changes`` writes it."""
+
+from __future__ import annotations
+
+from multibot_rewrite.base.findings.place import locate
+from multibot_rewrite.base.model import Change, Claim
+from multibot_rewrite.description.rewriters.spelling import ROBOT_SLOT, respelled
+from multibot_rewrite.description.steps.template import Template
+
+
+def list_changes(template: Template, robot: str) -> list[Change]:
+    """Every renamed value at its place in the source, then every inserted one at its parent's."""
+    inventory, plan = template.inventory, template.plan
+    source = inventory.document.source
+    changes = []
+    for claim, spelling in zip(inventory.claims, plan.renames.values, strict=True):
+        if spelling:
+            new = respelled(claim.value, spelling, robot)
+            changes.append(_change(source, claim, spelling[0].kind, new))
+    for claim, text in plan.collisions:
+        changes.append(_change(source, claim, "collision", text.replace(ROBOT_SLOT, robot)))
+    starts = dict(zip(inventory.document.root.iter("*"), inventory.document.starts, strict=True))
+    for item in plan.insertions:
+        place = locate(source, starts[item.parent])
+        new = item.new.replace(ROBOT_SLOT, robot)
+        changes.append(Change(*place, item.kind, _path(item.parent), item.old, new, "inserted"))
+    return sorted(changes)
+
+
+def _change(source: bytes, claim: Claim, kind: str, new: str) -> Change:
+    attribute = f"@{claim.attribute}" if claim.attribute else ""
+    path = _path(claim.element) + attribute
+    place = locate(source, claim.start)
+    return Change(*place, kind, path, claim.value, new, claim.site.section)
+
+
+def _path(element: object) -> str:
+    steps = []
+    while element is not None:
+        steps.append(str(element.tag))  # type: ignore[attr-defined]
+        element = element.getparent()  # type: ignore[attr-defined]
+    return "/".join(reversed(steps))

@@ -1,0 +1,289 @@
+"""A first vocabulary for what a description loads and nothing knows: guessed, each with its why."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from multibot_rewrite.base.model import VocabularyError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.rosnames import split_remap
+from multibot_rewrite.description.checks.mentions import MENTIONED
+from multibot_rewrite.description.reports.paths import short_name
+from multibot_rewrite.description.reports.survey import loaded_by
+from multibot_rewrite.description.rewriters.forms import Declared
+from multibot_rewrite.description.rewriters.tree import (
+    ANY_WITH_ROS,
+    TreeNode,
+    hardware_keys,
+    plugin_keys,
+)
+from multibot_rewrite.description.rewriters.vocabulary.grammar import (
+    read_header,
+    read_section,
+    split_path,
+    split_step,
+)
+from multibot_rewrite.description.steps.collect import Host, Inventory
+
+if TYPE_CHECKING:
+    from lxml.etree import _Element
+
+# The last word of a tag -> what its value names.
+WORDS = {
+    "joint": "joint",
+    "link": "link",
+    "body": "link",
+    "frame": "frame",
+    "topic": "topic",
+    "namespace": "namespace",
+    "service": "service",
+}
+# Names in the graph: what the tag says holds even where a link happens to be called the same.
+_GRAPH = ("topic", "namespace", "service")
+_LISTED = ("joint", "link", "frame")
+# Words at the end of a tag that do not say what it names.
+_EMPTY = frozenset({"name", "names", "id", "ids", "list", "value", "text"})
+_PIECES = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+")
+_NO_NAME = re.compile(r"[-+0-9.eE\s,]*$|(?:true|false|yes|no|on|off|none)$", re.IGNORECASE)
+_LONGEST = 60
+
+
+class Guess(NamedTuple):
+    """What a value may name, where in it the names are, and why that is thought.
+
+    ``by_tag`` tells that the value itself says nothing.
+    """
+
+    kinds: tuple[str, ...]
+    form: str
+    why: str
+    by_tag: bool = False
+
+
+class SuggestedRow(NamedTuple):
+    """One path of a section: the first value seen there, and a guess if there is one."""
+
+    path: str
+    value: str
+    guess: Guess | None
+
+
+class SuggestedSection(NamedTuple):
+    """What can be said of one plugin or hardware class; ``blocks`` are those it shares.
+
+    ``name`` is empty where no section can be called like it; ``label`` is what it is called then.
+    """
+
+    type: str
+    name: str
+    label: str
+    blocks: tuple[str, ...]
+    rows: tuple[SuggestedRow, ...]
+
+
+def suggest(inventory: Inventory) -> list[SuggestedSection]:
+    """A section for each plugin that is unknown, and each unknown hardware class with parameters,
+    in the order of the file."""
+    hosts: dict[tuple[str, str, str], list[Host]] = {}
+    for host in inventory.hosts:
+        thing = loaded_by(host)
+        if thing is not None and not thing.known:
+            name = _section_name(thing.type, host.element)
+            hosts.setdefault((thing.type, name, "" if name else thing.name), []).append(host)
+    sections = [_section(key, group, inventory.declared) for key, group in hosts.items()]
+    return [it for it in sections if it.type == "plugin" or _has_params(it)]
+
+
+def _section_name(type_: str, element: _Element) -> str:
+    """The first name by which the element would be looked up and a section can be called."""
+    keys = plugin_keys(element) if type_ == "plugin" else hardware_keys(element)
+    return next((key for key in keys if key != ANY_WITH_ROS and _can_head(type_, key)), "")
+
+
+def _can_head(type_: str, name: str) -> bool:
+    try:
+        return read_header("", f"{type_} {name}]") == (type_, name)
+    except VocabularyError:
+        return False
+
+
+def _section(
+    key: tuple[str, str, str], hosts: Sequence[Host], declared: Declared
+) -> SuggestedSection:
+    type_, name, label = key
+    seen: dict[str, list[str]] = {}
+    for host in hosts:
+        for path, value in _values(host.element, host.node, ""):
+            seen.setdefault(path, []).append(value)
+    known = [host.node.section for host in hosts if host.node.section is not None]
+    blocks = [b for it in known if it.type == "plugin" for b in it.blocks]
+    rows = tuple(_row(path, values, declared) for path, values in seen.items())
+    return SuggestedSection(type_, name, label, tuple(dict.fromkeys(blocks)), rows)
+
+
+def _has_params(section: SuggestedSection) -> bool:
+    return any("param" in split_path(row.path)[0][-1] for row in section.rows if row.path[0] != "@")
+
+
+def _values(element: _Element, node: TreeNode | None, path: str) -> Iterator[tuple[str, str]]:
+    """Path and value of every attribute and text below an element that no row speaks of."""
+    known = {""} if node is not None and node.text is not None else set()
+    if node is not None:
+        known |= {attribute for attribute, _ in node.attributes} | node.keeps.keys()
+    chosen = path.endswith("]")
+    for attribute, value in element.items():
+        if attribute not in known and value.strip() and not (chosen and attribute == "name"):
+            yield f"{path}@{short_name(str(attribute))}", str(value).strip()
+    if "" not in known and element.text and element.text.strip() and path:
+        yield path, element.text.strip()
+    for child in element.iterchildren("*"):
+        yield from _values(child, _below(node, child), f"{path}/{_step(child)}".lstrip("/"))
+
+
+def _below(node: TreeNode | None, child: _Element) -> TreeNode | None:
+    below = node.children.get(str(child.tag)) if node is not None else None
+    return below.select(child) if below is not None and below.select is not None else below
+
+
+def _step(element: _Element) -> str:
+    """A step of a vocabulary's path; of parameters the name tells which one is meant."""
+    tag, name = short_name(str(element.tag)), element.get("name", "")
+    step = f"{tag}[@name={name}]"
+    return step if tag in ("param", "parameter") and _is_path(step) else tag
+
+
+def _is_path(path: str) -> bool:
+    """A path that a row can start with: XML allows more in a name than the vocabulary does."""
+    try:
+        _, sites = read_section("", 0, ["plugin x]", f"{path} keep it"])
+    except VocabularyError:
+        return False
+    return path in sites
+
+
+def _row(path: str, values: Sequence[str], declared: Declared) -> SuggestedRow:
+    """The best guess of all values seen at one path, with the kinds that others of them add."""
+    word = tag_kind(path)
+    guesses = [_guess(value, word, declared) for value in values]
+    made = [it for it in guesses if it is not None]
+    best = max(made, key=_weight, default=None)
+    if best is None or not _is_path(path):
+        return SuggestedRow(path, values[0], None)
+    value = values[guesses.index(best)]
+    if best.by_tag or best.form == "remap":
+        return SuggestedRow(path, value, best)
+    others = [kind for it in made if not it.by_tag and it.form != "remap" for kind in it.kinds]
+    return SuggestedRow(
+        path, value, best._replace(kinds=tuple(dict.fromkeys((*best.kinds, *others))))
+    )
+
+
+def _weight(guess: Guess) -> tuple[bool, bool]:
+    return not guess.by_tag, guess.form != "whole"
+
+
+def tag_kind(path: str) -> str:
+    """What the words of a path say its value names: ``left/jointName`` a joint; empty if nothing."""
+    steps, attribute = split_path(path)
+    names = [split_step(step)[2] or split_step(step)[0] for step in steps]
+    for name in reversed([*names, attribute]):
+        words = [word.lower() for word in _PIECES.findall(name)]
+        while words and words[-1] in _EMPTY:
+            words.pop()
+        if words:
+            last = words[-1].removesuffix("name").removesuffix("s")
+            return next((kind for word, kind in WORDS.items() if last.endswith(word)), "")
+    return ""
+
+
+def _guess(value: str, word: str, declared: Declared) -> Guess | None:
+    by_value = _by_value(value, declared)
+    if by_value is None or (word in _GRAPH and by_value.form != "remap"):
+        return _by_tag(value, word)
+    if word == "frame" and by_value.kinds[0] in MENTIONED:
+        kinds = ("frame",) if by_value.form in ("whole", "list") else (*by_value.kinds, "frame")
+        return by_value._replace(kinds=kinds)
+    first = [word] if word in by_value.kinds else []
+    return by_value._replace(kinds=tuple(dict.fromkeys((*first, *by_value.kinds))))
+
+
+def _by_value(value: str, declared: Declared) -> Guess | None:
+    """What a value says by holding a declared name, or by being a remap rule."""
+    if split_remap(value) is not None:
+        return Guess(("topic",), "remap", f"{shown(value)} is a remap rule")
+    for form, names in _readings(value):
+        found = {kind: next((n for n in names if n in declared[kind]), "") for kind in MENTIONED}
+        named = [(kind, name) for kind, name in found.items() if name]
+        if named:
+            return Guess(tuple(kind for kind, _ in named), form, _why(value, named))
+    if value.startswith("/") and value[1:] in declared["link"]:
+        return Guess(("frame",), "whole", f"{shown(value)} is a link here, but for the slash")
+    return None
+
+
+def _why(value: str, named: Sequence[tuple[str, str]]) -> str:
+    if all(name == value for _, name in named):
+        return f"{shown(value)} is a {' and a '.join(kind for kind, _ in named)} here"
+    return f"{shown(value)} holds {' and '.join(f'the {k} {shown(name)}' for k, name in named)}"
+
+
+def _readings(value: str) -> Iterator[tuple[str, Sequence[str]]]:
+    """Forms that the value may have, and the names in it then."""
+    yield "whole", [value]
+    if _NO_NAME.match(value):
+        return
+    if "::" in value and not any(mark in value for mark in ", \t\n"):
+        yield "scoped", [value.rpartition("::")[2]]
+    items = value.replace(",", " ").split()
+    if len(items) > 1:
+        yield "list", items
+    elif "/" in value:
+        ends = [at for at, letter in enumerate(value) if letter == "/"]
+        yield "suffixed", [value[:at] for at in reversed(ends)]
+
+
+def _by_tag(value: str, word: str) -> Guess | None:
+    """What the tag says, where the value can be a name at all."""
+    if not word or _NO_NAME.match(value):
+        return None
+    several = len(value.replace(",", " ").split()) > 1
+    if several and word not in _LISTED:
+        return None
+    form = "list" if several else "scoped" if "::" in value and word in _LISTED else "whole"
+    return Guess((word,), form, f"the tag, as in {shown(value)}", by_tag=True)
+
+
+def shown(value: str) -> str:
+    """A value in quotes, on one line and not too long."""
+    line = " ".join(value.split())
+    return repr(line if len(line) <= _LONGEST else f"{line[: _LONGEST - 1]}…")
+
+
+def vocabulary_text(sections: Iterable[SuggestedSection], file: str) -> str:
+    """A vocabulary file that can be used as it is; only comments where there is no section."""
+    name = " ".join(file.split())
+    parts = [_text(section, name.rpartition("/")[2]) for section in sections]
+    if not parts:
+        return f"# Nothing to suggest: no plugin and no hardware class of {name} is unknown.\n"
+    head = (
+        f"# Guessed from {name}: check each line against the source of the plugin.\n"
+        "# Of a line behind # nothing could be guessed; its value stays as it is.\n"
+    )
+    return "\n".join([head, *parts])
+
+
+def _text(section: SuggestedSection, file: str) -> str:
+    if not section.name:
+        return f"# no section can be called {shown(section.label)}\n"
+    head = [f"[{section.type} {section.name}]", f"about: guessed from {file}, not checked"]
+    shared = [f"with: {' '.join(section.blocks)}"] if section.blocks else []
+    return "\n".join([*head, *shared, *map(_line, section.rows)]) + "\n"
+
+
+def _line(row: SuggestedRow) -> str:
+    if row.guess is None:
+        return f"# {' '.join(row.path.split())}: {shown(row.value)}"
+    form = f" form={row.guess.form}" if row.guess.form != "whole" else ""
+    return f"{row.path} uses {' '.join(row.guess.kinds)}{form}   # guessed: {row.guess.why}"

@@ -1,0 +1,201 @@
+"""Which argument of a xacro goes into which names: found by expanding it with another word for each."""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping
+
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.rewriters.tree import Tree
+from multibot_rewrite.description.sources.access import BOUNDED, Reach
+from multibot_rewrite.description.sources.expand import expand, expand_traced
+from multibot_rewrite.description.sources.own_names import MARKS, ROBOT
+from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.description.steps.collect import Inventory, collect
+from multibot_rewrite.description.steps.document import read_document, slot_values
+
+# More arguments, or longer, and the rest is not tried.
+MOST, SECONDS = 100, 60.0
+PREFIX, POSTFIX, WHOLE, INSIDE = "prefix", "postfix", "whole", "inside"
+# Values of an argument that names nobody yet; Husarion's ROSbot has the second one.
+_NOTHING = ("", "None")
+# What arguments for a robot's own names are called.
+_NAMING = lazy_compile(r"prefix|namespace|^ns$|(robot|arm|model)_?(name|id|ns)$")
+_MARK = MARKS[0]
+PARTS = ("link", "joint")
+_SEPARATORS = "/_-."
+_ARGUMENT = "{*}arg"
+
+
+class Use(NamedTuple):
+    """What an argument is in names of one kind: ``how`` is prefix, postfix, whole or inside.
+
+    ``separator`` is what the file itself puts between the argument and the rest; ``names`` of the
+    ``total`` names of the kind have the argument, ``example`` is one, with ``{robot}`` in its place.
+    """
+
+    kind: str
+    how: str
+    separator: str
+    names: int
+    total: int
+    example: str
+
+
+class Argument(NamedTuple):
+    """An argument, its value where none is given, and its uses in names.
+
+    ``others`` are values with it that are no known name. ``fault`` is why a word is not taken: the
+    argument is a number, a switch, a file or one of some words. ``missed`` is a link or joint that is
+    named as before though the argument gives it another name; empty if it misses none.
+    """
+
+    name: str
+    default: str
+    uses: tuple[Use, ...]
+    others: int
+    fault: str
+    missed: str = ""
+
+    @property
+    def value(self) -> str:
+        """What gives every robot its own names by this argument; empty where it is not for that.
+
+        It is for that if it is empty by default, and goes before or behind names or is a namespace.
+        """
+        ends = {use.how: use.separator for use in self.uses if use.how in (PREFIX, POSTFIX)}
+        spaces = any((use.kind, use.how) == ("namespace", WHOLE) for use in self.uses)
+        if self.default.strip(_SEPARATORS) not in _NOTHING or not (ends or spaces):
+            return ""
+        before = "_" if ends.get(POSTFIX) == "" else ""
+        after = "_" if ends.get(PREFIX) == "" else ""
+        return f"{before}{ROBOT}{after}"
+
+
+class XacroArguments(NamedTuple):
+    """The arguments of a file, in the order in which they are declared; ``untried`` were too many or
+    not wanted, ``read`` are the files that were read."""
+
+    file: str
+    arguments: tuple[Argument, ...]
+    untried: tuple[str, ...]
+    read: tuple[str, ...] = ()
+
+    @property
+    def words(self) -> tuple[str, ...]:
+        """``NAME:=VALUE`` for every argument that names robots."""
+        return tuple(f"{it.name}:={it.value}" for it in self.arguments if it.value)
+
+
+def names_robots(name: str) -> bool:
+    """Is an argument of this name for a robot's own names, as vendors have it?"""
+    return _NAMING.search(name) is not None
+
+
+def find_arguments(
+    path: str,
+    given: Mapping[str, str],
+    tree: Tree,
+    clock: Callable[[], float] = time.monotonic,
+    reach: Reach = BOUNDED,
+    wanted: Callable[[str], bool] = bool,
+) -> XacroArguments:
+    """The arguments of a xacro file; ``given`` are values for some, and only those of ``wanted`` names
+    are tried. Raises InputError where the file does not expand with these."""
+    end = clock() + SECONDS
+    read = expand_traced(path, read_file(path), given, None, reach)
+    declared = {**_declared(read.sources), **given}
+    plain = _parts(collect(read_document(read.data, path), tree))
+    found: dict[str, Argument] = {}
+    for name, default in [it for it in declared.items() if wanted(it[0])][:MOST]:
+        if clock() > end:
+            break
+        found[name] = _argument(path, given, name, default, tree, reach, plain)
+    untried = tuple(it for it in declared if it not in found)
+    return XacroArguments(path, tuple(found.values()), untried, read.read)
+
+
+def _declared(sources: Mapping[str, bytes]) -> dict[str, str]:
+    """The ``<xacro:arg>`` of all files with their defaults: the first one counts, as for xacro."""
+    found: dict[str, str] = {}
+    for file, data in sources.items():
+        for element in read_document(data, file).root.iter(_ARGUMENT):
+            if "xacro}" in str(element.tag):
+                found.setdefault(element.get("name", ""), element.get("default", ""))
+    return found
+
+
+def _argument(
+    path: str,
+    given: Mapping[str, str],
+    name: str,
+    default: str,
+    tree: Tree,
+    reach: Reach,
+    plain: frozenset[str],
+) -> Argument:
+    try:
+        data = expand(path, {**given, name: _MARK}, reach=reach)
+        inventory = collect(read_document(data, path), tree)
+    except InputError as error:
+        return Argument(name, default, (), 0, _reason(error))
+    values = [it for it in slot_values(inventory.document.root) if _MARK in it]
+    claimed = sum(_MARK in claim.value for claim in inventory.claims)
+    renamed = plain - _parts(inventory)
+    missed = (it.text for found in inventory.names for it in found if it.text in renamed)
+    others = max(len(values) - claimed, 0)
+    return Argument(name, default, tuple(_uses(inventory)), others, "", next(missed, ""))
+
+
+def _parts(inventory: Inventory) -> frozenset[str]:
+    """The links and joints that are declared."""
+    return frozenset(it for kind in PARTS for it in inventory.declared.get(kind, ()))
+
+
+def _reason(error: InputError) -> str:
+    """What xacro said, without place and advice."""
+    text = str(error)
+    return text.rpartition("xacro failed")[2].partition(": ")[2].partition("; ")[0] or text
+
+
+def _uses(inventory: Inventory) -> Iterator[Use]:
+    names = dict.fromkeys(
+        (it.kind or it.kinds[0], it.text) for found in inventory.names for it in found
+    )
+    totals = Counter(kind for kind, _ in names)
+    groups: dict[tuple[str, str, str], list[str]] = {}
+    for kind, text in names:
+        if _MARK in text:
+            groups.setdefault((kind, *_how(text)), []).append(text)
+    for (kind, how, separator), texts in groups.items():
+        example = texts[0].replace(_MARK, ROBOT)
+        yield Use(kind, how, separator, len(texts), totals[kind], example)
+
+
+def _how(text: str) -> tuple[str, str]:
+    """Where in a name the argument is, and the separator beside it."""
+    before, _, after = text.strip("/").partition(_MARK)
+    if not before and not after:
+        return WHOLE, ""
+    if before and after:
+        return INSIDE, ""
+    beside = after[:1] or before[-1:]
+    return (PREFIX if after else POSTFIX), beside if beside in _SEPARATORS else ""
+
+
+def as_json(found: XacroArguments) -> dict[str, object]:
+    """The report as ``--form json`` writes it."""
+    return {
+        "file": found.file,
+        "arguments": [_argument_json(it) for it in found.arguments],
+        "untried": found.untried,
+        "for_robots": found.words,
+    }
+
+
+def _argument_json(it: Argument) -> dict[str, object]:
+    told = {key: value for key, value in it._asdict().items() if key != "missed"}
+    return {**told, "uses": [use._asdict() for use in it.uses], "for_robots": it.value}

@@ -1,0 +1,117 @@
+"""Contact sensors name collisions that the URDF -> SDF conversion makes up from link names.
+
+A lumped name depends on the tree (which fixed joints are merged, in which order) and on how the
+names begin, so it is computed anew from the structure and never edited as text. Measured with
+libsdformat 12.3: ``{collision or link}_collision[_N]``, N counting over all collisions of the link
+that is left, and ``{left}_fixed_joint_lump__`` in front unless the text begins with that link.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator
+
+from lxml import etree
+
+from multibot_rewrite.base.model import Claim
+from multibot_rewrite.description.rewriters.forms import Declared, is_included
+from multibot_rewrite.description.rewriters.text import text_at
+
+Respell = Callable[[str, str], str]
+Links = dict[str, etree._Element]
+Lumped = dict[str, list[tuple[str, str]]]
+LUMP = "_fixed_joint_lump__"
+
+
+def respell_collisions(
+    root: etree._Element, claims: Iterable[Claim], declared: Declared, respell: Respell
+) -> list[tuple[Claim, str]]:
+    """Each contact collision whose name changes, with its new text.
+
+    ``respell(kind, name)`` is the new spelling of a link or joint.
+    """
+    contacts = [claim for claim in claims if claim.site.form == "collision"]
+    if not contacts:
+        return []
+    names = collision_map(root, respell)
+    result = []
+    for claim in contacts:
+        *scopes, old = claim.value.split("::")
+        new = "::".join([*_scopes(scopes, declared, respell), names.get(old, old)])
+        if new != claim.value:
+            result.append((claim, new))
+    return result
+
+
+def _scopes(names: list[str], declared: Declared, respell: Respell) -> Iterator[str]:
+    """``model::link`` before a collision, spelled; as it is where the model is not of this file."""
+    elsewhere = len(names) > 1 and names[0] not in declared["model"]
+    for name in names:
+        kinds = [kind for kind in ("model", "link") if name in declared[kind]]
+        yield respell(kinds[0], name) if kinds and not elsewhere else name
+        elsewhere = elsewhere or is_included(name, declared)
+
+
+def collision_map(root: etree._Element, respell: Respell) -> dict[str, str]:
+    """Old made-up collision name -> new one, for every collision of the description."""
+    links = {link.get("name", ""): link for link in root.iterchildren("link")}
+    lumped = _lumped(root)
+    merged_away = {child for children in lumped.values() for _, child in children}
+    result = {}
+    for left in links:
+        if left not in merged_away:
+            old = _names(left, links, lumped, lambda kind, name: name)
+            new = _names(left, links, lumped, respell)
+            result.update({old[key]: new[key] for key in old})
+    return result
+
+
+def _names(left: str, links: Links, lumped: Lumped, spell: Respell) -> dict[tuple[str, int], str]:
+    """Name of each collision that ends in link ``left``, by link and index."""
+    return dict(_named(spell("link", left), _merged(left, links, lumped, spell), spell))
+
+
+def _named(
+    left: str, collisions: list[tuple[str, int, str]], spell: Respell
+) -> Iterator[tuple[tuple[str, int], str]]:
+    for number, (link, place, own) in enumerate(collisions):
+        name = f"{own or spell('link', link)}_collision" + (f"_{number}" if number else "")
+        yield (link, place), name if name.startswith(left) else f"{left}{LUMP}{name}"
+
+
+def _lumped(root: etree._Element) -> Lumped:
+    """Parent link -> (joint, child link) of the fixed joints that are merged."""
+    kept = {
+        block.get("reference")
+        for block in root.iterchildren("gazebo")
+        for tag in ("preserveFixedJoint", "disableFixedJointLumping")
+        if text_at(block, tag).lower() in ("true", "yes", "1")
+    }
+    lumped = defaultdict(list)
+    for joint in root.iterchildren("joint"):
+        if joint.get("type") != "fixed" or joint.get("name") in kept:
+            continue
+        parent, child = joint.find("parent"), joint.find("child")
+        if parent is not None and child is not None and parent.get("link") != "world":
+            lumped[parent.get("link", "")].append((joint.get("name", ""), child.get("link", "")))
+    return lumped
+
+
+def _merged(link: str, links: Links, lumped: Lumped, spell: Respell) -> list[tuple[str, int, str]]:
+    """(link, index, own name) of all collisions ``link`` holds at the end.
+
+    urdfdom sorts sibling joints by name, so the children come in the order of their new spelling.
+    """
+    result = []
+    waiting = [link]
+    seen = set()
+    while waiting:
+        name = waiting.pop()
+        if name in seen or name not in links:
+            continue
+        seen.add(name)
+        found = links[name].iterchildren("collision")
+        result += [(name, place, item.get("name", "")) for place, item in enumerate(found)]
+        below = sorted((spell("joint", joint), child) for joint, child in lumped.get(name, ()))
+        waiting += [child for _, child in reversed(below)]
+    return result

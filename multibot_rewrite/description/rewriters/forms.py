@@ -1,0 +1,257 @@
+"""Where inside a value the names are: one function per ``form=`` word of the vocabulary.
+
+A form maps a value to its parts. Because a part is a position and not a new text, lists, scopes
+and remap rules need no writer of their own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.model import Claim
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.rosnames import split_remap
+
+Declared = Mapping[str, Mapping[str, Claim]]
+Kinds = tuple[str, ...]
+_WORD = lazy_compile(r"[^\s(),;\"]+")
+# Of a path through nested models, or a pattern; looking for names in it costs its length squared.
+LONGEST = 4096
+_OWNED = lazy_compile(r"::|/")
+# Not a letter of it means more than itself.
+_LITERAL = lazy_compile(r"[\w /:-]*")
+
+
+class NamePart(NamedTuple):
+    """One name inside a value: its text, where it starts, and the kinds it may be.
+
+    ``closed`` tells that the file itself must declare it, whatever the kind; ``matched`` is the
+    kind of the declared names that it matches, being a pattern.
+    """
+
+    at: int
+    text: str
+    kinds: Kinds
+    closed: bool = False
+    matched: Kinds = ()
+
+
+# The consumer puts what they find in front of names: a postfix cannot be there.
+IN_FRONT = ("prefix", "lettered")
+Form = Callable[[str, Kinds, Declared], tuple[NamePart, ...]]
+
+
+def whole(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
+    """The value is one name, white space around it aside."""
+    name = value.strip()
+    if name == value:
+        return (NamePart(0, name, kinds),) if name else ()
+    return (NamePart(value.index(name), name, kinds),) if name else ()
+
+
+def prefixed(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
+    """What the consumer puts in front of names, nothing at all included."""
+    name = value.strip()
+    return (NamePart(value.index(name), name, kinds, False, kinds[:1]),)
+
+
+def lettered(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
+    """A prefix behind a letter that the consumer drops."""
+    name = value.strip()
+    at = value.index(name) + 1
+    return (NamePart(at, name[1:], kinds, False, kinds[:1]),) if name else ()
+
+
+def listed(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
+    """Names separated by commas or white space."""
+    parts = []
+    at = 0
+    for name in value.replace(",", " ").split():
+        at = value.index(name, at)
+        parts.append(NamePart(at, name, kinds))
+        at += len(name)
+    return tuple(parts)
+
+
+def scoped(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
+    """SDF's ``model::link``: the last piece is the name, the ones before it are models.
+
+    No part where the first model is not of this file, and none behind an included model: what
+    they hold is named elsewhere. A link may be called ``a::b`` itself: SDF 1.7 is flattened so.
+    """
+    scopes: list[NamePart] = []
+    for at, name in _pieces(value):
+        rest = value[at:].rstrip()
+        if rest == name or any(rest in declared.get(kind, ()) for kind in kinds):
+            return (*scopes, NamePart(at, rest, kinds, True))
+        if not scopes and name not in declared["model"]:
+            return ()
+        scopes.append(NamePart(at, name, ("model",), True))
+        if is_included(name, declared):
+            break
+    return tuple(scopes)
+
+
+def is_included(model: str, declared: Declared) -> bool:
+    """Does another file describe this model? Its ``<include>`` only names it."""
+    claim = declared["model"].get(model)
+    return claim is not None and not claim.attribute
+
+
+def _pieces(value: str) -> Iterator[tuple[int, str]]:
+    at = len(value) - len(value.lstrip())
+    for name in value.strip().split("::"):
+        if name:
+            yield at, name
+        at += len(name) + 2
+
+
+def words(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
+    """Text of whatever shape, ``(key value ...)``: every word of it that the file declares."""
+    found = ((word.start(), word[0]) for word in _WORD.finditer(value))
+    known = ((at, text, [k for k in kinds if text in declared.get(k, ())]) for at, text in found)
+    return tuple(NamePart(at, text, tuple(of), True) for at, text, of in known if of)
+
+
+def suffixed(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
+    """``link/light`` or ``link::visual``: a name of the first kind, and what is behind it: a name where
+    the file declares it as one of the others."""
+    parts, at = _owner(value, kinds[:1], declared)
+    name = value[at:].rstrip()
+    known = tuple(kind for kind in kinds[1:] if name in declared.get(kind, ()))
+    return (*parts, NamePart(at, name, known, True)) if known else tuple(parts)
+
+
+def member(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
+    """``link::sensor``, ``world::model::link::sensor`` or ``link/sensor``: a name below a link's.
+
+    The first name before the link is a model where none of them is: it should be one of the file.
+    """
+    if not _OWNED.search(value):
+        return whole(value, kinds, declared)
+    scopes, at = _owner(value, ("link",), declared)
+    name = value[at:].rstrip()
+    if name and scopes and scopes[-1].text in declared["link"]:
+        return (*scopes, NamePart(at, name, kinds))
+    (start, model), *below = _pieces(value)
+    inside = member(value[below[0][0] :], kinds, declared) if below[1:] else ()
+    moved = (part._replace(at=part.at + below[0][0]) for part in inside)
+    return (NamePart(start, model, ("model",), True), *moved) if inside else ()
+
+
+def _owner(value: str, kinds: Kinds, declared: Declared) -> tuple[list[NamePart], int]:
+    """The models before ``::`` and the longest declared name behind them; where the rest starts.
+
+    What is before the first declared model is a world.
+    """
+    at = len(value) - len(value.lstrip())
+    parts = []
+    pieces = list(_pieces(value))
+    for start, name in pieces[:-1]:
+        if name in declared["model"] and not any(name in declared.get(k, ()) for k in kinds):
+            parts.append(NamePart(start, name, ("model",), True))
+            at = start + len(name) + 2
+    text = value[at:].rstrip()
+    cuts = [found.start() for found in _OWNED.finditer(text)]
+    ends = [len(text), *reversed(cuts)]
+    known = (end for end in ends if any(text[:end] in declared.get(kind, ()) for kind in kinds))
+    end = next(known, cuts[0] if cuts else len(text))
+    if end:
+        parts.append(NamePart(at, text[:end], kinds))
+    behind = _OWNED.match(text, end)
+    return parts, at + (behind.end() if behind else end)
+
+
+def regex(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
+    """A regular expression for whole names: each alternative is affixed inside its anchors."""
+    found = ((at, text, _matched(text, kinds, declared)) for at, text in _alternatives(value))
+    return tuple(
+        NamePart(at, text, kinds, True, matched[:1]) for at, text, matched in found if text
+    )
+
+
+def _alternatives(value: str) -> Iterator[tuple[int, str]]:
+    """The pieces between top-level bars, anchors and white space aside, and where they start."""
+    depth, begin = 0, 0
+    bars = []
+    from multibot_rewrite.description.rewriters.patterns import pieces_of  # few values are patterns
+
+    for piece in pieces_of(value):
+        depth += piece[0].startswith("(") - (piece[0] == ")")
+        if piece[0] == "|" and depth == 0:
+            bars.append(piece.start())
+    for end in (*bars, len(value)):
+        text = value[begin:end]
+        lead = len(text) - len(text.lstrip().removeprefix("^"))
+        yield begin + lead, text[lead:].rstrip().removesuffix("$")
+        begin = end + 1
+
+
+def _matched(pattern: str, kinds: Kinds, declared: Declared) -> tuple[str, ...]:
+    """The kinds of which the pattern matches a name: none for one that cannot be understood."""
+    if _LITERAL.fullmatch(pattern):
+        return tuple(kind for kind in kinds if pattern in declared.get(kind, ()))
+    from multibot_rewrite.description.rewriters.patterns import Pattern, PatternError
+
+    try:
+        matches = Pattern(pattern).matches
+    except PatternError:
+        return ()
+    return tuple(kind for kind in kinds if any(map(matches, declared.get(kind, ()))))
+
+
+def transport(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
+    """A topic of Gazebo Classic's own: ``~/`` is the world, ``~/model/`` the model that follows."""
+    name = value.strip()
+    at = value.index(name)
+    world = 2 if name.startswith("~/") else 0
+    model = name[world:].partition("/")[0]
+    if world and model in declared["model"]:
+        return (NamePart(at + world, model, ("model",), True),)
+    return (NamePart(at + world, name[world:], kinds),) if name[world:] else ()
+
+
+def remap(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
+    """``[node:]from:=to``: ``to`` is the name in the graph; ``remap_rules`` has what ``from`` is."""
+    lead = len(value) - len(value.lstrip())
+    rule = split_remap(value.strip())
+    if rule is None:
+        return ()
+    parts = [NamePart(lead, rule.node, ("node",))] if rule.node else []
+    special = {"__node": ("node",), "__name": ("node",), "__ns": ("namespace",)}
+    parts.append(NamePart(lead + rule.target_at, rule.target, special.get(rule.source, kinds)))
+    return tuple(parts)
+
+
+def of_names(form: Form) -> Form:
+    """The form for values as long as names are; a longer one is one name, which nothing declares."""
+
+    def bounded(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
+        if len(value) > LONGEST:
+            return tuple(it._replace(closed=True) for it in whole(value, kinds, declared))
+        return form(value, kinds, declared)
+
+    return bounded
+
+
+def nothing(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
+    """Handled by code of its own (contact collisions)."""
+    return ()
+
+
+FORMS: dict[str, Form] = {
+    "whole": whole,
+    "list": listed,
+    "scoped": of_names(scoped),
+    "words": words,
+    "suffixed": of_names(suffixed),
+    "member": of_names(member),
+    "transport": transport,
+    "regex": of_names(regex),
+    "prefix": prefixed,
+    "lettered": lettered,
+    "remap": remap,
+    "argument": remap,
+    "collision": nothing,
+}

@@ -1,0 +1,230 @@
+"""What has to be added: defaults and hard-wired topics that every robot would share otherwise."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from lxml import etree
+
+from multibot_rewrite.base.model import Site
+from multibot_rewrite.base.naming import FRAME_KINDS, NAMESPACE, Naming, spelled
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.rosnames import SERVICE_SCHEME, TOPIC_SCHEME, RemapRule, expand
+from multibot_rewrite.description.rewriters.forms import Declared
+from multibot_rewrite.description.rewriters.own_defaults import (
+    MODEL,
+    SENSOR,
+    Hosts,
+    default_of,
+    filled,
+    second_senders,
+)
+from multibot_rewrite.description.rewriters.remap_rules import named, ros_home, rules_in
+from multibot_rewrite.description.rewriters.spelling import ROBOT_SLOT, respelled, spell_default
+from multibot_rewrite.description.rewriters.text import text_of
+from multibot_rewrite.description.rewriters.vocabulary import (
+    VocabularySection,
+    split_path,
+    split_step,
+)
+from multibot_rewrite.description.rewriters.vocabulary.wired import WiredTopic
+from multibot_rewrite.knowledge.controller_ways import controller_way
+
+ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;"})
+
+
+class Insertion(NamedTuple):
+    """An element to insert into ``parent``, inside a new ``wrap`` element unless that is empty.
+
+    ``xml`` and ``new`` hold ``ROBOT_SLOT`` where the robot's name goes; ``old`` is what the consumer
+    would use without it. ``step`` finds the element in ``parent`` where it is there and empty: then
+    nothing but its text is put into it. ``shared`` tells that all robots would have ``old``, else it is
+    a name that nothing else has. ``of_controllers`` tells that controllers of the plugin have it.
+    """
+
+    parent: etree._Element
+    wrap: str
+    xml: str
+    kind: str
+    old: str
+    new: str
+    step: str = ""
+    shared: bool = True
+    of_controllers: bool = False
+
+    @property
+    def filled(self) -> etree._Element | None:
+        """The element that is there and empty."""
+        return self.parent.find(query(self.step)) if self.step else None
+
+
+def insertions(hosts: Hosts, declared: Declared, naming: Naming) -> list[Insertion]:
+    """Everything that ``hosts`` need beyond what they say themselves."""
+    served = [(host, section) for host, section in hosts if section.inserts]
+    silent = second_senders(served, naming)
+    return [
+        item
+        for host, section in served
+        for item in _insertions(host, section, declared, naming)
+        if item.shared or host not in silent
+    ]
+
+
+def _insertions(
+    host: etree._Element, section: VocabularySection, declared: Declared, naming: Naming
+) -> list[Insertion]:
+    home = ros_home(host, section)
+    found = list(_defaults(host, section, declared, naming, _hidden(host, home)))
+    if any(site.path == "ros/remapping" for site in section.sites):
+        found += _remaps(host, section, naming, home)
+    return found
+
+
+def lacks_namespace(
+    host: etree._Element, section: VocabularySection, declared: Declared, naming: Naming
+) -> bool:
+    """Is a namespace among what a host needs beyond what it says itself?"""
+    sites = tuple([it for it in section.sites if "namespace" in it.kinds])
+    if not sites or not section.inserts:
+        return False
+    hidden, asked = _hidden(host, ros_home(host, section)), section._replace(sites=sites)
+    return any(it.kind == "namespace" for it in _defaults(host, asked, declared, naming, hidden))
+
+
+def _hidden(host: etree._Element, home: etree._Element | None) -> str:
+    """What the paths of a host leave out whose ROS settings stand in itself."""
+    return "ros/" if home is host else ""
+
+
+def without(item: Insertion, release: str) -> str:
+    """What would be wrong without it, before the name."""
+    if item.of_controllers and not controller_way(release).of_manager:
+        return "all but controllers, whose rules are their spawner's, would share"
+    if item.shared:
+        return "all robots would share"
+    return "tf would not have" if item.kind in FRAME_KINDS else "topics would move with the sensor"
+
+
+def _defaults(
+    host: etree._Element,
+    section: VocabularySection,
+    declared: Declared,
+    naming: Naming,
+    hidden: str,
+) -> Iterator[Insertion]:
+    for site in section.sites:
+        default = default_of(host, site.default, naming) if site.default else ""
+        if not default:
+            continue
+        of_model = default.startswith(MODEL)
+        path = site.path.removeprefix(hidden)
+        there = _there(host, path)
+        if there is not None and (site.empty != "default" or "@" in path or text_of(there)):
+            continue
+        wanted = filled(host, site.fill) or default.removeprefix(MODEL)
+        # A naming that renames nothing is for one robot as it is.
+        if of_model and not naming.separators:
+            continue
+        spelling = spell_default(site, wanted, declared, naming)
+        new = respelled(wanted, spelling, ROBOT_SLOT)
+        if not of_model and new == _without(site, default, naming):
+            continue
+        kind = spelling[0].kind if spelling else site.kinds[0]
+        shared = not of_model and _without(site, default, naming) == default
+        made = _insertion(host, path, kind, default, new)._replace(shared=shared)
+        yield made if there is None else _filling(made, there, path)
+
+
+def _without(site: Site, default: str, naming: Naming) -> str:
+    """What the consumer has where nothing is inserted: a sensor may be renamed itself."""
+    if site.default != SENSOR:
+        return default
+    return spelled(naming, ROBOT_SLOT, "sensor", default)
+
+
+def _there(host: etree._Element, path: str) -> etree._Element | None:
+    """The first element at ``path`` that has its attribute."""
+    steps, attribute = split_path(path)
+    found = host.find("/".join(query(step) for step in steps))
+    return found if found is None or not attribute or attribute in found.attrib else None
+
+
+def query(step: str) -> str:
+    """The step as lxml's find takes it."""
+    tag, attribute, value = split_step(step)
+    return f"{tag}[@{attribute}='{value}']" if attribute else tag
+
+
+def _insertion(host: etree._Element, path: str, kind: str, old: str, new: str) -> Insertion:
+    steps, attribute = split_path(path)
+    parent, wrap = host, ""
+    for step in steps[:-1]:
+        child = parent.find(query(step))
+        if child is None:
+            wrap = split_step(step)[0]
+        else:
+            parent = child
+    tag, key, value = split_step(steps[-1])
+    given = f' {key}="{value}"' if key else ""
+    text = new.translate(ESCAPES)
+    xml = f'<{tag}{given} {attribute}="{text}"/>' if attribute else f"<{tag}{given}>{text}</{tag}>"
+    return Insertion(parent, wrap, xml, kind, old, new)
+
+
+def _filling(made: Insertion, there: etree._Element, path: str) -> Insertion:
+    """The same for an element that is ``there`` and empty: its text alone."""
+    parent = there.getparent()
+    assert parent is not None, "a path has a step"
+    step = split_path(path)[0][-1]
+    tag = split_step(step)[0]
+    xml = f"<{tag}>{made.new.translate(ESCAPES)}</{tag}>"
+    return made._replace(parent=parent, wrap="", xml=xml, step=step)
+
+
+def _remaps(
+    host: etree._Element, section: VocabularySection, naming: Naming, home: etree._Element | None
+) -> Iterator[Insertion]:
+    """A rule for each topic that only a remap can move, unless the file has one."""
+    rules = rules_in(home)
+    node, namespace = named(host, section)
+    for wired in (it for it in section.wired if not it.is_moved):
+        topic, target = wired.name, _remap_target(wired.name, naming)
+        full = expand(topic, namespace, node)
+        there = [
+            it
+            for it in rules
+            if expand(it.source, namespace, node) == full and _is_for(it, wired, section, node)
+        ]
+        if not target or any(_stays(it, naming) for it in there):
+            continue
+        if there:
+            target = spelled(naming, ROBOT_SLOT, "topic", there[0].target, True)
+        parent, wrap = (host, "ros") if home is None else (home, "")
+        xml = f"<remapping>{topic}:={target}</remapping>"
+        of_controllers = section.process_wide and topic in section.publishes
+        made = Insertion(parent, wrap, xml, "topic", topic, target)
+        yield made._replace(of_controllers=of_controllers)
+
+
+def _is_for(rule: RemapRule, wired: WiredTopic, section: VocabularySection, node: str) -> bool:
+    """Does rcl ask this rule for the topic or service? One for another node it does not."""
+    other = TOPIC_SCHEME if wired.role == "serves" else SERVICE_SCHEME
+    of_node = "" if section.process_wide else node
+    return rule.scheme != other and rule.node in ("", of_node)
+
+
+def _stays(rule: RemapRule, naming: Naming) -> bool:
+    """Does it match the same name after the rewrite? A relative left side moves with the namespace."""
+    return naming.topics != NAMESPACE or rule.source.startswith("/")
+
+
+def _remap_target(topic: str, naming: Naming) -> str:
+    """Where a topic goes, always relative: gz_ros2_control makes a robot's rules process-wide, and
+    a relative target still ends in each robot's own namespace. Empty where it may stay."""
+    relative = topic.lstrip("/")
+    if topic.startswith("~") or relative in naming.shared_topics:
+        return ""
+    if naming.topics == NAMESPACE:
+        return relative if topic.startswith("/") else ""
+    target = spelled(naming, ROBOT_SLOT, "topic", relative)
+    return target if target != relative else ""

@@ -1,0 +1,46 @@
+"""Find sections of the vocabulary by whatever name a person has at hand."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from multibot_rewrite.base.model import Site
+from multibot_rewrite.base.nearest import nearest_few
+from multibot_rewrite.description.rewriters.tree import library_key
+from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, VocabularySection
+
+
+def look_up(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> list[VocabularySection]:
+    """The sections of these types that ``name`` means: a library file in any spelling, a class, an
+    element (``sensor`` also finds ``robot.sensor``, behind it), a sensor type or a block."""
+    keys = spellings(name)
+    found = [
+        section
+        for type_ in types
+        for known in vocabulary.names(type_)
+        if known in keys or (type_ == "element" and known.rpartition(".")[2] == name)
+        for section in vocabulary.find(type_, known)
+    ]
+    found.sort(key=lambda section: keys.isdisjoint(section.names))
+    return list({(section.file, section.line): section for section in found}.values())
+
+
+def spellings(name: str) -> set[str]:
+    """The keys under which a section for ``name`` may stand, as the loaders read it."""
+    library = library_key(name.strip().rpartition("/")[2])
+    return {name.strip(), library, name.strip().replace("ignition::gazebo::", "gz::sim::")}
+
+
+def near_names(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> list[str]:
+    """Up to three known names most like ``name``, whatever the case of the letters."""
+    known = {known.lower(): known for type_ in types for known in vocabulary.names(type_)}
+    words = sorted(word.lower() for word in spellings(name))
+    near = [word for key in words for word in nearest_few(key, known, 3)]
+    parts = [word for word in known if any(key and key in word for key in words)]
+    return [known[word] for word in list(dict.fromkeys(near + parts))[:3]]
+
+
+def block_of(site: Site) -> str:
+    """The block that a row comes from, shared by several sections; empty for an own row."""
+    type_, _, name = site.section.partition(" ")
+    return name if type_ == "block" else ""

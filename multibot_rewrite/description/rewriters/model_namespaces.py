@@ -1,0 +1,79 @@
+"""Gazebo's own namespaces: what ``<model namespace="...">`` and ``<include><namespace>`` do to claims.
+
+A release whose Gazebo does not read them leaves them out, and so does a rewrite. Where they are read,
+they get the robot's name, and relative topics of the systems that stand below them are left alone:
+they would have the name twice. Which systems do is ``model_namespace:`` in the vocabulary.
+
+Sources: gazebosim/sdformat 43fa4a69 (#1663, in sdformat17_17.0.0-pre1) sdf/1.12/model.sdf, world.sdf;
+gazebosim/gz-sim #3777 (scopedNamespace: those of nested models are joined, one with a leading slash
+stands alone).
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING
+
+from multibot_rewrite.base.model import Claim, Site
+from multibot_rewrite.base.naming import TOPIC_KINDS
+from multibot_rewrite.base.releases import has_release
+from multibot_rewrite.description.rewriters.text import text_at
+
+if TYPE_CHECKING:
+    from lxml.etree import _Element
+
+MODEL, INCLUDE = "model", "include"
+# Sections of these elements, and where their namespace is.
+PLACES = {("element sdf.model", "@namespace"), ("element sdf.include", "namespace")}
+
+
+def is_model_namespace(site: Site) -> bool:
+    """Does this site hold the namespace of a model?"""
+    return (site.section, site.path) in PLACES
+
+
+def below_models(claims: list[Claim], source: bytes, release: str) -> list[Claim]:
+    """The claims of a document as they are in ``release``: without the namespaces of models where these
+    are not read, else with relative topics below them as what they are, subtopics."""
+    if b"namespace" not in source:
+        return claims
+    made = []
+    for claim in claims:
+        site = claim.site
+        if not site.below_model or site.kinds[0] not in TOPIC_KINDS:
+            made.append(claim)
+        elif not has_release(site.below_model, release):
+            made += [] if is_model_namespace(site) else [claim]
+        elif stands_below(claim):
+            made.append(claim._replace(site=_subtopic(site)))
+        else:
+            made.append(claim)
+    return made
+
+
+@cache
+def _subtopic(site: Site) -> Site:
+    """The same one each time: the proof knows sites by identity."""
+    return site._replace(kinds=("subtopic",))
+
+
+def stands_below(claim: Claim) -> bool:
+    """Has a model around this value a namespace? The root is none."""
+    element: _Element | None = claim.element
+    if is_model_namespace(claim.site) and not claim.attribute:
+        element = claim.element.getparent()
+    assert element is not None, "a namespace is in its <include>"
+    for model in element.iterancestors(MODEL, INCLUDE):
+        namespace = namespace_of(model)
+        if namespace.strip("/"):
+            return True
+        if namespace:
+            return False
+    return False
+
+
+def namespace_of(model: _Element) -> str:
+    """The namespace that a ``<model>`` or ``<include>`` is given, empty where it is none."""
+    if model.tag == INCLUDE:
+        return text_at(model, "namespace").strip()
+    return model.get("namespace", "").strip()

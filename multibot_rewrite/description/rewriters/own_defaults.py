@@ -1,0 +1,127 @@
+"""Defaults that are made of the description's own names: ``{model}/{link}``, ``{sensor}``.
+
+Sources: gazebosim/gz-sim src/systems/diff_drive/DiffDrive.cc (gz-sim8 to 10: without frames the
+model's name, ``/`` and ``odom`` or the canonical link), sdformat src/Model.cc (the first link is
+canonical), gazebo_ros_pkgs ros2 gazebo_ros_camera.cpp (``camera_name`` is the sensor's name).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+from lxml import etree
+
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.model import Site
+from multibot_rewrite.base.naming import POSTFIX, Naming
+from multibot_rewrite.description.rewriters.switches import is_true
+from multibot_rewrite.description.rewriters.text import text_at
+from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
+
+# What the spawner calls the model: no frame that robot_state_publisher sends has it in front.
+MODEL, SENSOR = "{model}/", "{sensor}"
+WORLD = "world"
+BOOLEANS = {"true": True, "false": False}
+_SLOT = lazy_compile(r"\{(\w+)\}")
+Hosts = Iterable[tuple[etree._Element, VocabularySection]]
+
+
+def default_of(host: etree._Element, default: str, naming: Naming) -> str:
+    """The value in force where the site is absent: a literal, or made from another topic."""
+    conditions, asked, default = default.rpartition("?")
+    if asked and not all(_holds(host, condition) for condition in conditions.split(",")):
+        return ""
+    sibling, derived, last = default.partition("/../")
+    if not derived:
+        return filled(host, default)
+    # Only a postfix is in the segment that is replaced.
+    topic = text_at(host, sibling) if naming.topics == POSTFIX else ""
+    return topic[: topic.rfind("/") + 1] + last if topic else ""
+
+
+def _holds(host: etree._Element, condition: str) -> bool:
+    child, _, wanted = condition.partition("=")
+    text = text_at(host, child)
+    if wanted in BOOLEANS:
+        return is_true(text) == BOOLEANS[wanted]
+    return text == wanted
+
+
+def filled(host: etree._Element, default: str) -> str:
+    """The default with its names in place, ``{model}`` aside; empty where one is not there."""
+    missing = False
+
+    def put(slot: re.Match[str]) -> str:
+        nonlocal missing
+        text = slot[0] if slot[1] == "model" else _own(host, slot[1])
+        missing = missing or not text
+        return text
+
+    text = _SLOT.sub(put, default)
+    return "" if missing else text
+
+
+def _own(host: etree._Element, word: str) -> str:
+    if word == "link":
+        return _canonical_link(host)
+    if word == "sensor":
+        sensor = next(host.iterancestors("sensor"), None)
+        return "" if sensor is None else sensor.get("name", "")
+    return text_at(host, word)
+
+
+def _canonical_link(host: etree._Element) -> str:
+    """The link that the model's first one is made of; of a URDF its root, or what the world holds."""
+    model = model_of(host)
+    if model.tag == "model":
+        first = next(model.iter("link"), None)
+        return str(model.get("canonical_link") or ("" if first is None else first.get("name", "")))
+    joints = [(_end(it, "parent"), _end(it, "child")) for it in model.iterchildren("joint")]
+    children = {child for parent, child in joints if parent != WORLD}
+    links = (str(link.get("name", "")) for link in model.iterchildren("link"))
+    return next((it for it in links if it not in children and it != WORLD), "")
+
+
+def _end(joint: etree._Element, end: str) -> str:
+    """The link at one end of a URDF's joint."""
+    found = joint.find(end)
+    return "" if found is None else found.get("link", "")
+
+
+def model_of(host: etree._Element) -> etree._Element:
+    """The model that a plugin stands in: the root, of a URDF."""
+    return next(host.iterancestors("model"), host.getroottree().getroot())
+
+
+def second_senders(hosts: Hosts, naming: Naming) -> frozenset[etree._Element]:
+    """The systems that would send a transform which another one of their model sends, and those of
+    nested models, of which robot_state_publisher knows nothing.
+
+    Their frames stay below the model's name, where they are in nobody's way.
+    """
+    sections = dict(hosts)
+    senders = [it for it, section in sections.items() if frame_sites(it, section, naming)]
+    given = {it for it in senders if any(text_at(it, at.path) for at in _of_model(sections[it]))}
+    taken = {model_of(host) for host in given}
+    second = set()
+    for host in senders:
+        model = model_of(host)
+        if host not in given and (model in taken or _is_nested(model)):
+            second.add(host)
+        taken.add(model)
+    return frozenset(second)
+
+
+def _is_nested(model: etree._Element) -> bool:
+    return next(model.iterancestors("model"), None) is not None
+
+
+def frame_sites(host: etree._Element, section: VocabularySection, naming: Naming) -> list[Site]:
+    """Where the frames of a transform are, of a system that sends one with these parameters."""
+    return [it for it in _of_model(section) if default_of(host, it.default, naming)]
+
+
+def _of_model(section: VocabularySection) -> list[Site]:
+    """Where the frames are that are below the model's name by default."""
+    return [it for it in section.sites if MODEL in it.default and it.kinds[:1] == ("frame",)]

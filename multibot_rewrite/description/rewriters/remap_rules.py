@@ -1,0 +1,188 @@
+"""What the names in a plugin's remap rules are: a left side names what its node asks for.
+
+rcl expands a left side by the namespace and the name of the node and compares the texts (rcl remap.c,
+expand_topic_name.c). So an absolute left side for a relative name moves with the namespace of the
+plugin, one below the name of the node or a word of a parameter moves with these, and one for a name
+that is absolute in the code stays.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+
+from lxml import etree
+
+from multibot_rewrite.base.conventions import SHARED_TOPICS
+from multibot_rewrite.base.model import Claim, UsageError
+from multibot_rewrite.base.naming import TF_TOPICS, TOPIC_KINDS
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.rosnames import RemapRule, expand, remapped_node, split_remap
+from multibot_rewrite.description.rewriters.forms import NamePart, remap
+from multibot_rewrite.description.rewriters.own_defaults import filled
+from multibot_rewrite.description.rewriters.spelling import Rules
+from multibot_rewrite.description.rewriters.text import text_at, text_of
+from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
+
+FORMS = ("remap", "argument")
+# Of a parameter whose value is a topic, or what topics are below.
+HELD = frozenset({*TOPIC_KINDS, "stem"})
+# Read from the plugin itself where it has no <ros>; a <ros> would hide them (gazebo_ros node.cpp).
+ROS_CHILDREN = ("namespace", "remapping", "argument", "parameter", "qos")
+# What every node and every broadcaster has, by names that are absolute in their code.
+ABSOLUTE = frozenset({*SHARED_TOPICS, *(f"/{it}" for it in TF_TOPICS)})
+# The flags whose next argument is a remap rule, and those that take none.
+_REMAPS, _ALONE = ("-r", "--remap"), ("--ros-args", "--")
+
+
+class _Asked(NamedTuple):
+    """A name that a node asks for: in its code, or in a parameter, whose ``kind`` it has then."""
+
+    name: str
+    kind: str
+
+
+class _Node(NamedTuple):
+    """The node of a plugin. ``stems`` are words of parameters with topics below them; ``known`` tells
+    that it asks for no other names than these."""
+
+    name: str
+    namespace: str
+    asked: Mapping[str, _Asked]
+    stems: tuple[str, ...]
+    known: bool
+
+    @property
+    def root(self) -> str:
+        """What is in front of its relative names."""
+        bare = self.namespace.strip("/")
+        return f"/{bare}/" if bare else "/"
+
+    def full(self, name: str) -> str:
+        """A name as rcl expands it for this node."""
+        return expand(name, self.namespace, self.name)
+
+
+def names_in_rules(
+    claims: Iterable[Claim], served: Iterable[tuple[etree._Element, VocabularySection]]
+) -> Rules:
+    """The names in each claimed rule, by the number of the claim."""
+    rules = [(at, claim) for at, claim in enumerate(claims) if claim.site.form in FORMS]
+    sections = dict(served) if rules else {}
+    nodes: dict[etree._Element, _Node] = {}
+    found: dict[int, tuple[NamePart, ...]] = {}
+    for at, claim in rules:
+        host = next((it for it in claim.element.iterancestors() if it in sections), None)
+        if host is None:
+            continue
+        if host not in nodes:
+            nodes[host] = _node(host, sections[host])
+        names = _names(claim, nodes[host], sections[host].process_wide)
+        found[at] = tuple(sorted(names, key=lambda it: it.at))
+    return found
+
+
+def ros_home(host: etree._Element, section: VocabularySection) -> etree._Element | None:
+    """Where ROS settings of a plugin go; None where a ``<ros>`` must be made first."""
+    ros = host.find("ros")
+    if ros is not None:
+        return ros
+    bare = any(site.path == "remapping" for site in section.sites)
+    return host if bare and any(host.find(tag) is not None for tag in ROS_CHILDREN) else None
+
+
+def rules_in(home: etree._Element | None) -> list[RemapRule]:
+    """The remap rules in a plugin's ROS settings that rcl applies, in its order."""
+    if home is None:
+        return []
+    arguments = (it for it in home.iterchildren("argument") if _flag(it) in ("", *_REMAPS))
+    rules = (split_remap(text_of(it)) for it in (*arguments, *home.iterchildren("remapping")))
+    return [it for it in rules if it is not None]
+
+
+def named(host: etree._Element, section: VocabularySection) -> tuple[str, str]:
+    """The name and namespace of a plugin's node, under the rules for these."""
+    home = ros_home(host, section)
+    name = host.get("name", "").strip() or section.names[0].replace("-", "_")
+    namespace = "" if home is None else text_at(home, "namespace")
+    try:
+        return remapped_node(name, namespace, rules_in(home))
+    except UsageError:  # a placeholder, or what rcl refuses
+        return name, namespace
+
+
+def _flag(argument: etree._Element) -> str:
+    """The flag that an ``<argument>`` is the value of, as ``-p``; empty where there is none."""
+    before = next(argument.itersiblings("argument", preceding=True), None)
+    text = "" if before is None else text_of(before)
+    return text if text.startswith("-") and text not in _ALONE else ""
+
+
+def _node(host: etree._Element, section: VocabularySection) -> _Node:
+    bare = _Node(*named(host, section), {}, (), False)
+    names = [*_asked(host, section)]
+    stems = tuple(it.name for it in names if it.kind == "stem")
+    asked = {bare.full(it.name): it for it in names if it.kind != "stem"}
+    known = bool(names or section.wired) and not section.process_wide
+    return bare._replace(asked=asked, stems=stems, known=known)
+
+
+def _asked(host: etree._Element, section: VocabularySection) -> Iterator[_Asked]:
+    """The names in its code that hold no parameter, and the parameters that hold names."""
+    yield from (_Asked(name, "") for name in section.topics)
+    for site in section.sites:
+        if site.role == "uses" and site.form == "whole" and site.kinds[0] in HELD:
+            value = text_at(host, site.path) if "@" not in site.path else ""
+            # Other defaults are made of other names, and belong to no plugin with rules.
+            value = value or filled(host, site.default if "?" not in site.default else "")
+            if value and "qos" not in site.path:
+                yield _Asked(value, site.kinds[0])
+
+
+def _names(claim: Claim, node: _Node, process_wide: bool) -> Iterator[NamePart]:
+    flag = _flag(claim.element) if claim.site.form == "argument" else ""
+    parts = remap(claim.value, claim.site.kinds, {})
+    if flag in ("", *_REMAPS):
+        yield from parts
+    rule = split_remap(claim.value.strip())
+    if rule is None or flag not in ("", *_REMAPS) or rule.source.startswith(("__", "~")):
+        return
+    if process_wide or rule.node in ("", node.name):
+        lead = len(claim.value) - len(claim.value.lstrip())
+        yield from _left(rule.source, lead + rule.source_at, node)
+
+
+def _left(source: str, at: int, node: _Node) -> Iterator[NamePart]:
+    """The names in a left side that starts at character ``at``: none in a relative one for an absolute
+    name, since robots' names may be put into these at different places."""
+    full = node.full(source)
+    asked = node.asked.get(full)
+    if asked is not None and asked.name.startswith("/"):
+        if asked.kind and source.startswith("/"):
+            yield NamePart(at, source, (asked.kind,))
+        return
+    stem = next((it for it in node.stems if f"{full}/".startswith(f"{node.full(it)}/")), "")
+    if source.startswith("/") and not stem.startswith("/") and _moves(full, asked, stem, node):
+        yield NamePart(at, source, ("namespace",))
+    # What is behind the namespace is the same in a relative and an absolute left side.
+    rest = full.removeprefix(node.root)
+    behind = at + len(source) - len(rest)
+    if stem.startswith("/"):
+        if source.startswith("/"):
+            yield NamePart(at, stem, ("stem",))
+    elif stem:
+        yield NamePart(behind, stem, ("stem",))
+    elif asked is not None and asked.name.startswith("~"):
+        yield NamePart(behind, node.name, ("node",))
+    elif asked is not None and asked.kind:
+        yield NamePart(behind, rest, (asked.kind,))
+
+
+def _moves(full: str, asked: _Asked | None, stem: str, node: _Node) -> bool:
+    """Does the name go with the namespace of its node? One of an unknown node does, most names being
+    relative."""
+    if not full.startswith(node.root):
+        return False
+    if asked is not None or stem or not node.known:
+        return full not in ABSOLUTE or asked is not None
+    # An image transport has topics below that of the image (image_transport publisher.cpp).
+    return any(full.startswith(f"{it}/") for it, of in node.asked.items() if of.name[0] != "/")

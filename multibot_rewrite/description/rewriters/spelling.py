@@ -1,0 +1,197 @@
+"""The names in each claimed value: where they are, of what kind, and how they are spelled."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from multibot_rewrite.base.model import Claim, Site
+from multibot_rewrite.base.naming import (
+    CLOSED_KINDS,
+    FRAME_KINDS,
+    PREFIX,
+    Affix,
+    Naming,
+    affix,
+    is_keyword,
+    removal,
+    spelled,
+)
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.rewriters.forms import FORMS, IN_FRONT, Declared, Kinds, NamePart
+from multibot_rewrite.description.rewriters.scopes import in_scope, scope_of
+
+ROBOT_SLOT = "\0"
+# Number of a claim -> the names in the remap rule that it holds.
+Rules = Mapping[int, tuple[NamePart, ...]]
+NO_RULES: Rules = {}
+
+
+class ResolvedName(NamedTuple):
+    """A name in a value: where it starts, and what it is; ``kind`` is empty where the file would
+    have to declare it as one of ``kinds`` and does not."""
+
+    at: int
+    text: str
+    kind: str
+    kinds: Kinds
+
+
+class Renamed(NamedTuple):
+    """A name in a value that changes; ``affix.at`` counts from the start of the value."""
+
+    kind: str
+    text: str
+    namespaced: bool
+    affix: Affix
+
+
+# The names that change in one value, in order.
+Spelling = tuple[Renamed, ...]
+
+
+def resolved_names(
+    claims: Iterable[Claim], declared: Declared, apart: bool = False, rules: Rules = NO_RULES
+) -> list[tuple[ResolvedName, ...]]:
+    """The names in each claimed value, resolved; claims of equal values share theirs. ``apart`` as
+    for ``resolve``; ``rules`` are the names in remap rules of plugins."""
+    known: dict[tuple[object, str], tuple[ResolvedName, ...]] = {}
+    result = []
+    for at, claim in enumerate(claims):
+        site = claim.site
+        if at in rules:
+            result.append(_of_parts(rules[at], site.role, declared, apart))
+            continue
+        # A link or joint is the same at every site, others at each site.
+        of: object = site.whole_value_kind or id(site)
+        key = (of, scope_of(claim.element)) if site.form == "scoped" else of, claim.value
+        names = known.get(key)
+        if names is None:
+            names = known[key] = _resolved(claim, declared, apart)
+        result.append(names)
+    return result
+
+
+def _resolved(claim: Claim, declared: Declared, apart: bool) -> tuple[ResolvedName, ...]:
+    site, value = claim.site, claim.value
+    if site.whole_value_kind and value in declared[site.whole_value_kind]:
+        return (ResolvedName(0, value, site.whole_value_kind, site.kinds),)
+    if site.role == "declares" and site.form == "whole" and value and value == value.strip():
+        return (ResolvedName(0, value, site.kinds[0], site.kinds),)
+    return _of_parts(names_in(claim, declared), site.role, declared, apart)
+
+
+def _of_parts(
+    parts: Iterable[NamePart], role: str, declared: Declared, apart: bool
+) -> tuple[ResolvedName, ...]:
+    return tuple(
+        ResolvedName(part.at, part.text, kind_of(part, role, declared, apart), part.kinds)
+        for part in parts
+    )
+
+
+def names_in(claim: Claim, declared: Declared) -> tuple[NamePart, ...]:
+    """The names in a claimed value; none where it is in the scope of another model."""
+    site = claim.site
+    parts = FORMS[site.form](claim.value, site.kinds, declared)
+    return in_scope(claim.element, parts, declared) if site.form == "scoped" else parts
+
+
+def is_reached(claim: Claim, naming: Naming) -> bool:
+    """Can the naming change this value? No postfix can be where the consumer wants a prefix."""
+    site = claim.site
+    if site.form not in IN_FRONT:
+        return True
+    return naming.affix == PREFIX and bool(claim.value or takes_empty(site))
+
+
+def takes_empty(site: Site) -> bool:
+    """An empty text is a value too: the prefix of names that have none yet."""
+    return site.form == "prefix" and site.role == "uses" and "@" not in site.path.rpartition("]")[2]
+
+
+def spell_default(site: Site, value: str, declared: Declared, naming: Naming) -> Spelling:
+    """What changes in a value that would be at a site if the file had it."""
+    if site.form in IN_FRONT and naming.affix != PREFIX:
+        return ()
+    result = []
+    for part in FORMS[site.form](value, site.kinds, declared):
+        kind = kind_of(part, "uses", declared, naming.layout.at_run_time)
+        there = affix(naming, kind, part.text, site.namespaced) if kind else None
+        if there is not None:
+            result.append(renamed_at(part.at, kind, part.text, site.namespaced, there))
+    return tuple(result)
+
+
+def renamed_at(at: int, kind: str, text: str, namespaced: bool, there: Affix) -> Renamed:
+    """A name that starts at character ``at`` of its value and has the affix ``there``."""
+    return Renamed(kind, text, namespaced, there._replace(at=at + there.at) if at else there)
+
+
+def must_be_declared(site: Site) -> bool:
+    """A use of a name that this file must declare."""
+    if site.form in ("scoped", "member"):
+        return True
+    return site.kinds[0 if site.form == "suffixed" else -1] in CLOSED_KINDS
+
+
+def kind_of(part: NamePart, role: str, declared: Declared, apart: bool = False) -> str:
+    """Which of its kinds a name is; empty for a use of something that is not declared."""
+    if part.matched:
+        return part.matched[0]
+    return resolve(part.text, part.kinds, role, declared, part.closed, apart)
+
+
+def resolve(
+    text: str,
+    kinds: Kinds,
+    role: str,
+    declared: Declared,
+    closed: bool = False,
+    apart: bool = False,
+) -> str:
+    """Which of ``kinds`` a name is; empty for a use of something that must be declared and is not.
+
+    A frame that names a link is spelled like the link, one leading slash aside; not if frames are
+    ``apart`` from links, since nodes name them at run time.
+    """
+    if role == "declares":
+        return kinds[0]
+    for kind in kinds:
+        if text in declared.get(kind, ()):
+            return kind
+    bare = text[1:] if text.startswith("/") and not text.startswith("//") else text
+    is_frame = not FRAME_KINDS.isdisjoint(kinds) and not (apart and kinds == ("frame",))
+    if is_frame and not {text, bare}.isdisjoint(declared["link"]):
+        return "link"
+    if closed or is_keyword(text):
+        return ""
+    return next((kind for kind in kinds if kind not in CLOSED_KINDS), "")
+
+
+def respelled(value: str, spelling: Spelling, robot: str) -> str:
+    """The value with every affix in place."""
+    for name in reversed(spelling):
+        value = name.affix.spell(value, robot)
+    return value
+
+
+def spelled_names(declared: Declared, naming: Naming, robot: str) -> Declared:
+    """Declarations by the names they have after a rewrite for ``robot``."""
+    return {
+        kind: {spelled(naming, robot, kind, name): claim for name, claim in names.items()}
+        for kind, names in declared.items()
+    }
+
+
+def stripped_names(declared: Declared, naming: Naming, robot: str) -> Declared:
+    """Declarations by the names they had before a rewrite for ``robot``."""
+    return {
+        kind: {unspelled(naming, kind, name, robot): claim for name, claim in names.items()}
+        for kind, names in declared.items()
+    }
+
+
+def unspelled(naming: Naming, kind: str, name: str, robot: str) -> str:
+    """``name`` without what ``affix`` put there for ``robot``."""
+    span = removal(naming, robot, kind, name)
+    return name[: span[0]] + name[span[1] :] if span else name

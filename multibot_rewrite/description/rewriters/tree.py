@@ -1,0 +1,300 @@
+"""The tree of rewriters: the vocabulary's sections, nested the way documents nest.
+
+A ``Node`` answers, for one element, which of its attributes and text are sites and which node
+serves each child tag. Which plugin or hardware class an element is decides its node; those nodes
+are made when a document first asks for them.
+
+Threads share a tree without a lock: what is made late follows from the vocabulary alone, is made
+whole, and only then put where others find it. Threads that make one thing at once make it alike.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+from multibot_rewrite.base.model import Site, VocabularyError
+from multibot_rewrite.description.rewriters.text import text_at
+from multibot_rewrite.description.rewriters.vocabulary import (
+    Vocabulary,
+    VocabularySection,
+    split_path,
+    split_step,
+)
+
+if TYPE_CHECKING:
+    from lxml.etree import _Element
+
+
+_STAGE = "http://playerstage.sourceforge.net/gazebo/xmlschema/#"
+# Prefixes of the vocabulary; a document may bind others to the same namespaces.
+NAMESPACES = {
+    "gz": "http://gazebosim.org/schema",
+    "ignition": "http://ignitionrobotics.org/schema",
+    "drake": "http://drake.mit.edu",
+    **{prefix: _STAGE + prefix for prefix in ("controller", "sensor", "joint", "slider", "body")},
+}
+
+
+def qualified(name: str) -> str:
+    """A tag or attribute of the vocabulary as lxml writes it."""
+    prefix, colon, local = name.partition(":")
+    return f"{{{NAMESPACES[prefix]}}}{local}" if colon and prefix in NAMESPACES else name
+
+
+# What a node knows once it is made.
+_CONTENT = (
+    "section",
+    "children",
+    "active",
+    "attributes",
+    "text",
+    "keeps",
+    "select",
+    "asked",
+    "values",
+)
+
+# The section for unknown plugins with a <ros> block, which gazebo_ros::Node reads.
+ANY_WITH_ROS = "any_with_ros"
+
+
+class TreeNode:
+    """What is known about the elements at one place of the document.
+
+    ``select`` is set where the element itself decides which node serves it. ``active`` are the
+    children worth a visit: those with more below them than values to keep. ``element_name``
+    is that of an element's section, whose node is made when something first asks for it. ``visit``
+    is what a walk asks of each element, in one look: select, active, attributes and text.
+    """
+
+    __slots__ = ("_make", "element_name", "visit", *_CONTENT)
+
+    def __init__(
+        self, section: VocabularySection | None = None, sites: tuple[Site, ...] = ()
+    ) -> None:
+        self._make: Callable[[str], TreeNode] | None = None
+        self.element_name = ""
+        self.section = section
+        self.children: dict[str, TreeNode] = {}
+        self.active: dict[str, TreeNode] = {}
+        self.attributes: tuple[tuple[str, Site], ...] = ()
+        self.text: Site | None = None
+        self.keeps: dict[str, Site] = {}
+        self.select: Callable[[_Element], TreeNode] | None = None
+        self.asked = ""
+        self.values: dict[str, TreeNode] = {}
+        for site in sites:
+            self._add(site)
+
+    @classmethod
+    def later(cls, element_name: str, make: Callable[[str], TreeNode]) -> TreeNode:
+        """A node that becomes what ``make`` gives for its name when something asks for more."""
+        node = cls.__new__(cls)
+        node.element_name, node._make = element_name, make
+        return node
+
+    def __getattr__(self, name: str) -> Any:
+        # Called for slots without a value only: a node made later that is not made yet.
+        if name == "visit":
+            self.visit = self.select, self.active, self.attributes, self.text
+            return self.visit
+        if self._make is None:
+            raise AttributeError(name)
+        whole = self._make(self.element_name)
+        # A thread that comes in between finds a whole value, or none and makes the same again.
+        for slot in _CONTENT:
+            setattr(self, slot, getattr(whole, slot))
+        return getattr(whole, name)
+
+    def _add(self, site: Site) -> None:
+        steps, attribute = split_path(site.path)
+        attribute = qualified(attribute)
+        node = self
+        for step in steps:
+            node = node._step(step, site.role != "keep")
+        # A plugin's own section has the last word over what holds for every plugin.
+        node.keeps.pop(attribute, None)
+        claim = None if site.role == "keep" else site
+        if claim is None or site.when:
+            node.keeps[attribute] = site
+        if attribute:
+            others = tuple(pair for pair in node.attributes if pair[0] != attribute)
+            node.attributes = (*others, (attribute, claim)) if claim else others
+        else:
+            node.text = claim
+
+    def _step(self, step: str, active: bool) -> TreeNode:
+        tag, attribute, value = split_step(step)
+        tag = qualified(tag)
+        child = self.children.setdefault(tag, TreeNode())
+        if active:
+            self.active[tag] = child
+        if not attribute:
+            return child
+        child.asked, child.select = attribute, child._by_value
+        return child.values.setdefault(value, TreeNode())
+
+    def _by_value(self, element: _Element) -> TreeNode:
+        return self.values.get(element.get(self.asked, ""), self)
+
+
+class Tree:
+    """The whole tree for one vocabulary; sections are read when a document first needs them.
+
+    ``formats`` maps the sections of root elements to their nodes; ``tags`` are all tags worth a
+    visit so far.
+    """
+
+    def __init__(self, vocabulary: Vocabulary) -> None:
+        self.vocabulary = vocabulary
+        self.formats: dict[str, TreeNode] = {}
+        self.tags: set[str] = set()
+        self._chosen: dict[tuple[str, str, int], TreeNode] = {}
+        places = vocabulary.places()
+        self._nodes = {name: TreeNode.later(name, self._make) for name in places}
+        self._below: dict[str, list[str]] = {name: [] for name in places}
+        for name, parents in places.items():
+            for parent in parents:
+                self._place(name, parent)
+
+    def check(self) -> None:
+        """Read every section now; raises VocabularyError for the first mistake."""
+        for node in self._nodes.values():
+            assert node.section is not None
+
+    def format_of(self, root: _Element, likely: str = "") -> str:
+        """The section of a root element, empty where there is none.
+
+        Of those with its tag it is the one that knows most of its children, else the ``likely`` one
+        or the plain one.
+        """
+        found = [name for name in self.formats if _tag(name) == root.tag]
+        found.sort(key=lambda name: (name != likely, len(name)))
+        if len(found) < 2:
+            return found[0] if found else ""
+        tags = {child.tag for child in root}
+        return max(found, key=lambda name: len(self.formats[name].children.keys() & tags))
+
+    def _place(self, name: str, parent: str) -> None:
+        if parent == "/":
+            self.formats[name] = self._nodes[name]
+            self.tags.add(_tag(name))
+        elif parent in self._below:
+            self._below[parent].append(name)
+        elif not self.vocabulary.has("element", parent):
+            (section, *_) = self.vocabulary.find("element", name)
+            raise _wrong(section, f"at: {parent}: there is no [element {parent}]")
+
+    def _make(self, element_name: str) -> TreeNode:
+        (section,) = self.vocabulary.find("element", element_name)
+        node = TreeNode(section, section.sites)
+        if section.select:
+            if section.select not in SELECTORS:
+                raise _wrong(section, f"select: is one of {', '.join(SELECTORS)}")
+            node.select = self._selector(node, section.select)
+        for name in self._below[element_name]:
+            child = self._nodes[name]
+            if node.children.setdefault(_tag(name), child) is not child:
+                place = f"{element_name}/{_tag(name)} has a section or sites already"
+                raise _wrong(self.vocabulary.find("element", name)[0], place)
+            node.active[_tag(name)] = child
+        self._know(node)
+        return node
+
+    def _know(self, node: TreeNode) -> None:
+        """Its tags are known before anybody finds the node: else a thread would pass them by."""
+        waiting = [node]
+        while waiting:
+            for tag, child in waiting.pop().active.items():
+                self.tags.add(tag)
+                if not child.element_name:
+                    waiting += [child, *child.values.values()]
+
+    def _selector(self, base: TreeNode, type_: str) -> Callable[[_Element], TreeNode]:
+        keys = SELECTORS[type_]
+
+        def select(element: _Element) -> TreeNode:
+            for key in keys(element):
+                found = _flavour(self.vocabulary.find(type_, key), element)
+                if found is not None:
+                    return self._node(base, found)
+            return base
+
+        return select
+
+    def _node(self, base: TreeNode, section: VocabularySection) -> TreeNode:
+        assert base.section is not None
+        key = (base.section.names[0], section.file, section.line)
+        found = self._chosen.get(key)
+        if found is None:
+            node = TreeNode(section, base.section.sites + section.sites)
+            node.children = base.children | node.children
+            node.active = base.active | node.active
+            self._know(node)
+            found = self._chosen.setdefault(key, node)
+        return found
+
+
+def _tag(name: str) -> str:
+    """The tag that a section is for: ``srdf.group`` is about ``<group>``."""
+    return qualified(name.rpartition(".")[2])
+
+
+def _wrong(section: VocabularySection, message: str) -> VocabularyError:
+    return VocabularyError(f"{section.file}:{section.line}: [{section.name}] {message}")
+
+
+def plugin_keys(element: _Element) -> list[str]:
+    """The names a ``<plugin>`` may be known by: its library, else its class (gz-sim accepts both).
+
+    gz-sim's loader reads ``ignition-gazebo`` as ``gz-sim`` and takes versioned library names.
+    """
+    library = element.get("filename", "").strip().rpartition("/")[2]
+    class_ = element.get("name", "").strip()
+    known = [library_key(library)]
+    # Without a scope it is a label, in Gazebo Classic a node name: anything at all.
+    if "::" in class_:
+        known.append(class_.replace("ignition::gazebo::", "gz::sim::"))
+    return known if element.find("ros") is None else [*known, ANY_WITH_ROS]
+
+
+def library_key(library: str) -> str:
+    """``libignition-gazebo6-imu-system.so`` -> ``gz-sim-imu-system``."""
+    key = library.removesuffix(".so").removesuffix(".dylib").removeprefix("lib")
+    for family in ("ignition-gazebo", "gz-sim"):
+        if key.startswith(family):
+            return "gz-sim" + key[len(family) :].lstrip("0123456789")
+    return key
+
+
+def hardware_keys(element: _Element) -> list[str]:
+    """The class a ``<ros2_control>`` loads."""
+    class_ = text_at(element, "hardware/plugin")
+    return [class_] if class_ else []
+
+
+def sensor_keys(element: _Element) -> list[str]:
+    """The type of a ``<sensor>``."""
+    return [element.get("type", "").strip()]
+
+
+SELECTORS: dict[str, Callable[[_Element], list[str]]] = {
+    "plugin": plugin_keys,
+    "hardware": hardware_keys,
+    "sensor": sensor_keys,
+}
+
+
+def _flavour(found: Sequence[VocabularySection], element: _Element) -> VocabularySection | None:
+    """ROS 1 and ROS 2 plugins share file names; the children tell them apart, ROS 2 where none do.
+
+    A ``ros`` child is ROS 2, whatever was left from before: nothing in ROS 1 reads one. Source:
+    gazebo_ros_pkgs branches noetic-devel (camelCase, robotNamespace) and ros2 (snake_case).
+    """
+    if element.find("ros") is not None:
+        found = [section for section in found if section.ros != "1"]
+    if len(found) < 2:
+        return found[0] if found else None
+    tags = {child.tag for child in element}
+    return max(found, key=lambda section: (len(section.tags & tags), section.ros))

@@ -1,0 +1,354 @@
+"""One section of a vocabulary file: its rows read, checked and made a ``VocabularySection``.
+
+The grammar is in the docstring of the package.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from functools import lru_cache
+
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.model import Site, VocabularyError
+from multibot_rewrite.base.naming import SEPARATORS
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.releases import RELEASES as KNOWN
+from multibot_rewrite.base.releases import is_release_words, share_release
+from multibot_rewrite.description.rewriters.vocabulary.wired import ROLES as WIRES
+from multibot_rewrite.description.rewriters.vocabulary.wired import (
+    WiredTopic,
+    role_and_type,
+    wired_topics,
+)
+
+TYPES = ("element", "plugin", "hardware", "sensor", "block")
+SETTINGS = (
+    "at",
+    "about",
+    "source",
+    "with",
+    "select",
+    "ros",
+    *WIRES,
+    "switches",
+    "insert",
+    "unique",
+    "process_wide",
+    "hardwired",
+    "releases",
+    "model_namespace",
+)
+# Settings that are one word out of few.
+VALUES = {
+    "ros": ("1", "2"),
+    "insert": ("yes", "no"),
+    "unique": tuple(SEPARATORS),
+    "process_wide": ("yes", "no"),
+}
+ROLES = ("declares", "uses", "keep")
+KINDS = (*SEPARATORS, "collision")
+OPTIONS = ("form", "default", "when", "empty", "fill", *WIRES)
+RELEASES = "releases="
+EMPTY = ("default", "model", "itself")
+FORMS = (
+    "whole",
+    "list",
+    "scoped",
+    "words",
+    "suffixed",
+    "member",
+    "transport",
+    "regex",
+    "prefix",
+    "lettered",
+    "remap",
+    "argument",
+    "collision",
+)
+# A vocabulary has hundreds of paths, which are asked for again with every plugin.
+PATHS = 4096
+_NAME = r"[A-Za-z_][\w.:-]*"
+_STEP = rf"{_NAME}(?:\[@{_NAME}=[^\[\]]+\])?"
+_ONE_STEP = lazy_compile(_STEP)
+_SWITCH = lazy_compile(rf"{_NAME}=[^\s=]+(?:=on)?")
+_PATH = lazy_compile(rf"(?=.)(?:{_STEP}(?:/{_STEP})*)?(?:@{_NAME})?")
+
+
+class VocabularySection(NamedTuple):
+    """One section: what is known about an element, a plugin, a hardware class or a shared block.
+
+    ``wired`` are topics and services that its code names. ``switches`` are parameters that turn one of
+    them off, each as ``parameter=name``.
+    ``inserts`` is false where the consumer throws on children it does not know.
+    ``unique`` is a kind whose bare names the plugin looks up in the whole world. ``process_wide``
+    tells that its remap rules hold for every node of the process. ``hardwired`` are names it looks
+    for whatever the file says, each as ``kind:name``. ``model_namespace`` are the releases in which
+    its relative topics stand below the namespace of the model. ``releases`` are the words for the only
+    releases that have it. ``tags`` are those of the child elements that its rows know.
+    """
+
+    type: str
+    names: tuple[str, ...]
+    sites: tuple[Site, ...]
+    at: tuple[str, ...]
+    blocks: tuple[str, ...]
+    select: str
+    ros: str
+    wired: tuple[WiredTopic, ...]
+    switches: tuple[str, ...]
+    inserts: bool
+    unique: str
+    process_wide: bool
+    hardwired: tuple[str, ...]
+    model_namespace: str
+    about: str
+    source: str
+    file: str
+    line: int
+    releases: str = ""
+    tags: frozenset[str] = frozenset()
+
+    @property
+    def name(self) -> str:
+        """The name reports and case files use: ``plugin gazebo_ros_diff_drive``."""
+        flavour = f" (ROS {self.ros})" if self.ros else ""
+        return f"{self.type} {self.names[0]}{flavour}"
+
+    @property
+    def topics(self) -> tuple[str, ...]:
+        """All names that only a remap rule moves."""
+        return tuple(it.name for it in self.wired if not it.is_moved)
+
+    @property
+    def publishes(self) -> tuple[str, ...]:
+        """Those of ``topics`` that it publishes."""
+        return tuple(it.name for it in self.wired if it.role == WIRES[0] and not it.is_moved)
+
+
+def read_header(place: str, row: str) -> tuple[str, ...]:
+    """Type and names of a section from its first row (its ``[`` taken off)."""
+    head, bracket, rest = row.partition("]")
+    words = head.split()
+    if not bracket or rest.strip() or len(words) < 2 or words[0] not in TYPES:
+        raise VocabularyError(
+            f"{place}: section [{row.strip()} must be [TYPE NAME...], TYPE one of {', '.join(TYPES)}"
+        )
+    if len(set(words)) < len(words):
+        raise VocabularyError(f"{place}: section [{head}] has a name twice")
+    return tuple(words)
+
+
+def read_section(file: str, line: int, rows: list[str]) -> tuple[dict[str, str], dict[str, Site]]:
+    """Settings and sites of a section whose header is at ``line``.
+
+    The sites are by path, and by release where one path has several.
+    """
+    section = " ".join(read_header(f"{file}:{line}", rows[0])[:2])
+    settings: dict[str, str] = {}
+    sites: dict[str, Site] = {}
+    at_path: dict[str, list[Site]] = {}
+    for number, row in enumerate(rows[1:], line + 1):
+        words = row.split()
+        if not words or row.startswith("#"):
+            continue
+        if words[0].endswith(":"):
+            _setting(settings, f"{file}:{number}", words)
+            continue
+        site = _site(f"{file}:{number}", section, number, row)
+        before = at_path.setdefault(site.path, [])
+        for other in before:
+            if share_release(site.releases, other.releases):
+                raise VocabularyError(
+                    f"{file}:{number}: {site.path} is there already, at line {other.line}"
+                )
+        before.append(site)
+        sites[f"{site.path} {site.releases}".strip()] = site
+    return settings, sites
+
+
+def assemble(
+    file: str,
+    line: int,
+    header: tuple[str, ...],
+    settings: dict[str, str],
+    sites: Sequence[Site],
+) -> VocabularySection:
+    """A section from its parts; ``sites`` include those of its blocks."""
+    if header[0] == "element" and "at" not in settings:
+        raise VocabularyError(
+            f"{file}:{line}: [{' '.join(header)}] needs at: the elements it is in"
+        )
+    namespaced = any("namespace" in site.kinds for site in sites)
+    below = settings.get("model_namespace", "")
+
+    def words(key: str) -> tuple[str, ...]:
+        return tuple(settings.get(key, "").split())
+
+    return VocabularySection(
+        header[0],
+        header[1:],
+        tuple(site._replace(namespaced=namespaced, below_model=below) for site in sites),
+        words("at"),
+        words("with"),
+        settings.get("select", ""),
+        settings.get("ros", ""),
+        tuple(wired_topics(f"{file}:{line}", settings)),
+        words("switches"),
+        settings.get("insert", "yes") == "yes",
+        settings.get("unique", ""),
+        settings.get("process_wide", "no") == "yes",
+        words("hardwired"),
+        below,
+        settings.get("about", ""),
+        settings.get("source", ""),
+        file,
+        line,
+        settings.get("releases", ""),
+        _tags(sites),
+    )
+
+
+def _tags(sites: Iterable[Site]) -> frozenset[str]:
+    paths = (split_path(site.path)[0] for site in sites if site.path[0] != "@")
+    return frozenset(split_step(steps[0])[0] for steps in paths)
+
+
+def merge(first: VocabularySection, second: VocabularySection) -> VocabularySection:
+    """What two sections say of one thing: a user's file may add to what is known.
+
+    Raises VocabularyError where both say something of one path or set one setting differently.
+    """
+    there: dict[str, list[Site]] = {}
+    for site in first.sites:
+        there.setdefault(site.path, []).append(site)
+    new = [it for it in second.sites if not _same_block(it, there.get(it.path, ()))]
+    for site in new:
+        if any(share_release(site.releases, it.releases) for it in there.get(site.path, ())):
+            raise VocabularyError(
+                f"{second.file}:{site.line}: {site.path} is there already, in {first.file}"
+            )
+    below = _either(first, second, "model_namespace")
+    sites = first.sites + tuple(new)
+    return first._replace(
+        sites=tuple(site._replace(below_model=below) for site in sites),
+        model_namespace=below,
+        at=first.at + tuple(name for name in second.at if name not in first.at),
+        blocks=first.blocks + tuple(name for name in second.blocks if name not in first.blocks),
+        select=_either(first, second, "select"),
+        unique=_either(first, second, "unique"),
+        wired=first.wired + second.wired,
+        switches=first.switches + second.switches,
+        hardwired=first.hardwired + second.hardwired,
+        inserts=first.inserts and second.inserts,
+        process_wide=first.process_wide or second.process_wide,
+        tags=first.tags | second.tags,
+    )
+
+
+def _same_block(site: Site, others: Iterable[Site]) -> bool:
+    """Two sections with one block: its lines are not there twice."""
+    is_block = site.section[:6] == "block "
+    return is_block and any(site.section == it.section for it in others)
+
+
+def _either(first: VocabularySection, second: VocabularySection, setting: str) -> str:
+    old, new = getattr(first, setting), getattr(second, setting)
+    if old and new and old != new:
+        place = f"{second.file}:{second.line}"
+        raise VocabularyError(f"{place}: {setting}: is {old!r} already, in {first.file}")
+    return str(old or new)
+
+
+def _setting(settings: dict[str, str], place: str, words: list[str]) -> None:
+    key = words[0][:-1]
+    if key not in SETTINGS:
+        raise VocabularyError(f"{place}: unknown setting {key!r}, use one of {', '.join(SETTINGS)}")
+    value = " ".join([settings[key], *words[1:]] if key in settings else words[1:])
+    allowed = VALUES.get(key)
+    if not value or (allowed and value not in allowed):
+        choice = " or ".join(allowed or ("text",))
+        raise VocabularyError(f"{place}: {key}: is {value!r}, use {choice}")
+    if key in ("releases", "model_namespace") and not is_release_words(value):
+        raise VocabularyError(f"{place}: {key}: {_no_releases(value)}")
+    wrong = [word for word in words[1:] if key == "switches" and not _SWITCH.fullmatch(word)]
+    if wrong:
+        raise VocabularyError(f"{place}: switches: {wrong[0]!r} is not PARAMETER=TOPIC[=on]")
+    tuple(wired_topics(place, {key: value}))
+    settings[key] = value
+
+
+def _site(place: str, section: str, line: int, row: str) -> Site:
+    file = place.rpartition(":")[0]
+    spec, _, note = row.partition(" # ")
+    path, *words = spec.split()
+    if not _PATH.fullmatch(path):
+        raise VocabularyError(f"{place}: bad path {path!r}: write a/b, a@x, @x or a[@x=y]/b")
+    if not words or words[0] not in ROLES:
+        raise VocabularyError(f"{place}: {path} needs one of {', '.join(ROLES)} after it")
+    role, *rest = words
+    releases = next((it[len(RELEASES) :] for it in rest if it.startswith(RELEASES)), "")
+    if releases and not is_release_words(releases):
+        raise VocabularyError(f"{place}: {path} releases={_no_releases(releases)}")
+    rest = [word for word in rest if not word.startswith(RELEASES)]
+    if role == "keep":
+        if not rest:
+            raise VocabularyError(f"{place}: {path} keep: say why it must stay")
+        why = " ".join(rest)
+        more = {"file": file, "releases": releases}
+        return Site(path, role, (), "whole", "", False, section, why, line, **more)
+    options = dict(word.split("=", 1) for word in rest if "=" in word)
+    kinds = tuple(word for word in rest if "=" not in word)
+    _check_words(place, path, kinds, options)
+    form, default = options.get("form", "whole"), options.get("default", "")
+    plain = kinds[0] if form == "whole" and kinds in (("link",), ("joint",)) else ""
+    when = options.get("when", "")
+    empty = options.get("empty", "default" if kinds[0] == "namespace" else "itself")
+    note = note.strip()
+    own = (path, role, kinds, form, default, False, section, note, line)
+    fill = options.get("fill", "")
+    does, type_ = role_and_type(place, options)
+    return Site(*own, plain, when, file, empty, "", releases, fill, does, type_)
+
+
+def _no_releases(words: str) -> str:
+    return f"{words!r} names no releases, write jazzy, kilted+ or <=jazzy, of {', '.join(KNOWN)}"
+
+
+def _check_words(place: str, path: str, kinds: Iterable[str], options: dict[str, str]) -> None:
+    kinds = list(kinds)
+    if not kinds:
+        raise VocabularyError(f"{place}: {path} has no kind, use one of {', '.join(KINDS)}")
+    checks = (
+        (kinds, KINDS, "kind"),
+        (options, OPTIONS, "option"),
+        ([options.get("form", "whole")], FORMS, "form"),
+        ([options.get("empty", "itself")], EMPTY, "empty="),
+    )
+    for words, allowed, what in checks:
+        for word in words:
+            if word not in allowed:
+                raise VocabularyError(
+                    f"{place}: unknown {what} {word!r}, use one of {', '.join(allowed)}"
+                )
+
+
+def is_step(text: str) -> bool:
+    """Is this one step of a path, as a vocabulary file may have it?"""
+    return _ONE_STEP.fullmatch(text) is not None
+
+
+@lru_cache(maxsize=PATHS)
+def split_path(path: str) -> tuple[tuple[str, ...], str]:
+    """The child steps of a path, and the attribute at its end or an empty string."""
+    bracket = path.rfind("]") + 1
+    steps, _, attribute = path[bracket:].partition("@")
+    whole = path[:bracket] + steps
+    return (tuple(whole.split("/")) if whole else ()), attribute
+
+
+@lru_cache(maxsize=PATHS)
+def split_step(step: str) -> tuple[str, str, str]:
+    """Tag, attribute and wanted value of a step: ``param[@name=mimic]``; empty where not asked."""
+    tag, _, ask = step.partition("[@")
+    attribute, _, value = ask.rstrip("]").partition("=")
+    return tag, attribute, value

@@ -1,0 +1,225 @@
+"""What the expansion of a xacro file may use: files below its roots, packages, ROS's variables."""
+
+from __future__ import annotations
+
+import os
+import stat
+from collections.abc import Callable, Iterator
+from fnmatch import fnmatchcase
+
+from multibot_rewrite.base.bounded import MAX_BYTES
+from multibot_rewrite.base.model import InputError, MultibotError
+from multibot_rewrite.base.outside import outside, real_path, variable
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.sources.child.frames import FENCES
+from multibot_rewrite.description.sources.packages import in_sources, package_folder
+
+# The folder of a package for $(find PACKAGE), empty where it is not known.
+Find = Callable[[str], str]
+# A xacro file sees the variables of the environment that begin so: ROS's, and no passwords.
+VARIABLES = (
+    "AMENT_", "CMAKE_PREFIX_PATH", "COLCON_", "GAZEBO_MODEL_PATH", "GAZEBO_PLUGIN_PATH",
+    "GAZEBO_RESOURCE_PATH", "GZ_SIM_RESOURCE_PATH", "GZ_SIM_SYSTEM_PLUGIN_PATH", "GZ_VERSION",
+    "IGN_GAZEBO_RESOURCE_PATH", "RMW_", "ROS_", "SDF_PATH", "TURTLEBOT",
+)  # fmt: skip
+# Folders above a file in which its package and its repository are looked for.
+HIGHEST = 8
+# Files that one pattern is compared with.
+MOST_FILES = 20_000
+SECONDS = 60.0
+
+
+class Reach(NamedTuple):
+    """How far expansions may reach: ``roots`` are more folders to read in, ``seconds`` the time that
+    one may take. ``trust`` lifts all bounds. ``fences`` are those of the child."""
+
+    roots: tuple[str, ...] = ()
+    trust: bool = False
+    seconds: float = SECONDS
+    fences: tuple[str, ...] = FENCES
+
+
+BOUNDED, TRUSTED = Reach(), Reach(trust=True)
+
+
+class NotAllowedError(MultibotError):
+    """The boundary forbids it; the text says what and why."""
+
+
+class Access:
+    """What one expansion may use. ``path`` is its file, which may be anywhere; ``find`` is asked for
+    packages before a sourced ROS is. A package that was found may be read."""
+
+    def __init__(self, path: str, reach: Reach, find: Find | None) -> None:
+        self.path, self.reach, self.find = path, reach, find
+        self.beside = {os.path.dirname(it) for it in _real(path)}
+        self.roots = [real_path(it) for it in (*_homes(path), *reach.roots)]
+        self.sourced = [os.path.abspath(it) for it in (*_prefixes(), *_listed("ROS_PACKAGE_PATH"))]
+
+    def readable(self, name: str) -> str:
+        """The path to open for ``name``; raises NotAllowedError."""
+        if self.reach.trust or name == self.path:
+            return name
+        # A workspace that was sourced is trusted, with the links that colcon makes in it.
+        plain, real = os.path.abspath(name), real_path(name)
+        if any(_below(plain, it) for it in self.sourced):
+            return plain
+        folder = os.path.dirname(real)
+        roots = (*self.roots, folder) if folder in self.beside else self.roots
+        root = next((it for it in roots if _below(real, it)), None)
+        if root is None:
+            raise NotAllowedError(f"{name} is outside of the folders that xacro may read")
+        if any(it[0] == "." for it in os.path.relpath(real, root).split(os.sep) if it != "."):
+            raise NotAllowedError(f"{name} is hidden, and xacro may not read it")
+        return real
+
+    def package(self, name: str) -> str:
+        """The folder for $(find NAME), which may be read from now on; raises LookupError."""
+        if os.path.basename(name) != name or name in ("", os.curdir, os.pardir):
+            raise LookupError(f"{name!r} is no name of a package")
+        folder = (self.find and self.find(name)) or _installed(name) or self._beside(name)
+        if not folder:
+            why = "" if _prefixes() or self.find else ": AMENT_PREFIX_PATH is not set"
+            raise LookupError(f"package {name!r} is not found{why}")
+        self.roots.append(real_path(folder))
+        return folder
+
+    def _beside(self, name: str) -> str:
+        """A package of the same repository, or beside the file's own: no ROS has to be sourced."""
+        repository = _marked(os.path.dirname(_real(self.path)[0]), ".git")
+        # A workspace has its repositories side by side in src.
+        above = os.path.dirname(repository)
+        workspace = above if os.path.basename(above) == "src" else ""
+        home = os.path.realpath(os.path.expanduser("~"))
+        both = (it for it in (repository, workspace) if it)
+        roots = tuple(it for it in both if not _below(home, it))
+        folder = package_folder(name, _real(self.path)[0], roots)
+        return folder if os.path.isfile(os.path.join(folder, "package.xml")) else ""
+
+    def variable(self, name: str) -> str | None:
+        """The value of a variable of the environment; raises NotAllowedError for one that is set."""
+        value = variable(name)
+        if value is not None and not self.reach.trust and not name.startswith(VARIABLES):
+            hint = "is set, but xacro sees ROS's variables alone"
+            raise NotAllowedError(f"the environment variable {name!r} {hint}")
+        return value
+
+    def matching(self, pattern: str) -> list[str]:
+        """The files that a pattern with ``*``, ``?`` or ``[`` names, sorted; raises NotAllowedError."""
+        found, seen = [os.sep if os.path.isabs(pattern) else ""], 0
+        for part in pattern.split(os.sep):
+            if not any(it in part for it in "*?["):
+                found = [os.path.join(it, part) for it in found]
+                continue
+            beside = []
+            for folder in found:
+                self.readable(folder or os.curdir)
+                names = [it for it in _names(folder) if it[0] != "." and fnmatchcase(it, part)]
+                beside += [os.path.join(folder, it) for it in names]
+                seen += len(names)
+                if seen > MOST_FILES:
+                    raise NotAllowedError(f"{pattern} names more than {MOST_FILES} files")
+            found = beside
+        return sorted(it for it in found if self.readable(it) and _is_there(it))
+
+    def read(self, name: str) -> bytes:
+        """The bytes of a file, one more than may be if it has more; raises NotAllowedError, OSError.
+
+        Of a package that is not built its sources count: a build may install files elsewhere.
+        """
+        path = self.readable(name)
+        if not _is_there(path):
+            path = self.readable(in_sources(path) or path)
+        data = _content(path, self.reach.trust)
+        if data is None:
+            raise NotAllowedError(f"{name} is no regular file, and xacro may not read it")
+        return data
+
+
+@outside
+def check_file(path: str) -> None:
+    """Raise InputError for a file that cannot be read, or is too large."""
+    try:
+        with open(path, "rb") as file:
+            size = os.fstat(file.fileno()).st_size
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
+    if size > MAX_BYTES:
+        limit = f"{MAX_BYTES // 2**20} MB"
+        raise InputError(f"{path}: {size / 2**20:.0f} MB is over the limit of {limit}")
+
+
+@outside
+def _content(path: str, trust: bool) -> bytes | None:
+    """The bytes of a file, one more than may be; None for a device or pipe that is not trusted."""
+    flags = os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC
+    with open(path, "rb", opener=lambda it, _: os.open(it, flags)) as file:
+        is_regular = stat.S_ISREG(os.fstat(file.fileno()).st_mode)
+        return file.read(MAX_BYTES + 1) if is_regular or trust else None
+
+
+@outside
+def _is_there(path: str) -> bool:
+    return os.path.lexists(path)
+
+
+@outside
+def _real(path: str) -> tuple[str, str]:
+    """A file without links in its folder, and the file that it is a link to."""
+    folder, name = os.path.split(os.path.abspath(path))
+    return os.path.join(os.path.realpath(folder), name), os.path.realpath(path)
+
+
+@outside
+def _homes(path: str) -> tuple[str, ...]:
+    """The folder of a file, its package and its repository; those of the file a link leads to, too.
+
+    The home of a user and what is above it are none, although they may hold a robot or be a repository.
+    """
+    home = os.path.realpath(os.path.expanduser("~"))
+    found: list[str] = []
+    for file in _real(path):
+        folder = os.path.dirname(file)
+        marked = (_marked(folder, mark) for mark in ("package.xml", ".git"))
+        found += (it for it in (folder, *marked) if it and not _below(home, it))
+    return tuple(found)
+
+
+def _marked(folder: str, mark: str) -> str:
+    """The nearest folder above that holds ``mark``; empty if there is none."""
+    return next((it for it in _above(folder) if os.path.lexists(os.path.join(it, mark))), "")
+
+
+def _above(folder: str) -> Iterator[str]:
+    for _ in range(HIGHEST):
+        yield folder
+        folder = os.path.dirname(folder)
+
+
+def _below(path: str, folder: str) -> bool:
+    return path == folder or path.startswith(os.path.join(folder, ""))
+
+
+def _prefixes() -> list[str]:
+    return _listed("AMENT_PREFIX_PATH")
+
+
+def _listed(name: str) -> list[str]:
+    return [it for it in (variable(name) or "").split(os.pathsep) if it]
+
+
+@outside
+def _installed(name: str) -> str:
+    """The folder of an installed package, as ament_index_python finds it; empty if there is none."""
+    for prefix in _prefixes():
+        if os.path.isfile(os.path.join(prefix, "share/ament_index/resource_index/packages", name)):
+            return os.path.join(prefix, "share", name)
+    return ""
+
+
+@outside
+def _names(folder: str) -> list[str]:
+    try:
+        return os.listdir(folder or os.curdir)
+    except OSError:
+        return []

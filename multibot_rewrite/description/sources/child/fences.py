@@ -1,0 +1,62 @@
+"""All fences around a process, put up once what it needs is loaded."""
+
+from __future__ import annotations
+
+import os
+import resource
+import signal
+from collections.abc import Callable, Collection, Mapping
+
+from multibot_rewrite.description.sources.child import audit, landlock, seccomp
+from multibot_rewrite.description.sources.child.frames import (
+    AUDIT,
+    FENCES,
+    LANDLOCK,
+    LIMITS,
+    SECCOMP,
+)
+from multibot_rewrite.description.sources.child.system import undumpable
+
+# Beyond what the process has when it starts.
+MOST_MEMORY = 2 * 2**30
+
+
+def put_up(wanted: Collection[str], seconds: float) -> list[str]:
+    """Put up those fences, for good; the names of those that this system has."""
+    memory = _memory()
+    ways: Mapping[str, Callable[[], bool]] = {
+        LIMITS: lambda: limit(seconds, memory),
+        LANDLOCK: landlock.enclose,
+        SECCOMP: seccomp.enclose,
+        AUDIT: audit.enclose,
+    }
+    return [name for name in FENCES if name in wanted and ways[name]()]
+
+
+def limit(seconds: float, memory: int) -> bool:
+    """Bounds of time and memory; no new file, process, or byte in a file."""
+    undumpable()
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    whole = int(seconds) + 1
+    bounds = {
+        resource.RLIMIT_CPU: whole,
+        resource.RLIMIT_AS: memory + MOST_MEMORY,
+        resource.RLIMIT_CORE: 0,
+        resource.RLIMIT_FSIZE: 0,
+        resource.RLIMIT_NPROC: 0,
+        resource.RLIMIT_NOFILE: 0,
+    }
+    for kind, most in bounds.items():
+        _, hard = resource.getrlimit(kind)
+        bound = most if hard == resource.RLIM_INFINITY else min(most, hard)
+        resource.setrlimit(kind, (bound, bound))
+    return True
+
+
+def _memory() -> int:
+    """How many bytes of addresses the process has; 0 where nothing tells."""
+    try:
+        with open("/proc/self/statm") as file:
+            return int(file.read().split()[0]) * os.sysconf("SC_PAGESIZE")
+    except OSError:
+        return 0

@@ -1,0 +1,216 @@
+"""The talk with a child that expands a file: its questions are answered, its result is doubted."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import struct
+from array import array
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from multibot_rewrite.base.bounded import MAX_BYTES, load_json
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.outside import unrepeatable
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.sources.access import Access, NotAllowedError
+from multibot_rewrite.description.sources.child.frames import (
+    CALLS,
+    ENVIRONMENT,
+    FIND,
+    GLOB,
+    LONGEST,
+    NUMBER,
+    ORIGINS,
+    QUESTION,
+    READ,
+    REFUSAL,
+    REPORT,
+    REQUEST,
+    TEXT,
+    VALUE,
+    GarbageError,
+    framed,
+    received,
+)
+from multibot_rewrite.description.sources.processes import XacroChild, child
+
+# What a child may ask, and read in all.
+MOST_QUESTIONS, MOST_READ = 20_000, 16 * MAX_BYTES
+_TRIPLE, _QUADRUPLE = 3, 4
+# What reading an answer raises that is not what was agreed on.
+_GARBAGE = (
+    GarbageError, ValueError, LookupError, TypeError, AttributeError, OverflowError, RecursionError,
+    struct.error,
+)  # fmt: skip
+
+
+class Failure(NamedTuple):
+    """Why there is no text: xacro's reason, the file it was in, where in XML that is not well-formed,
+    or the numbers of the file and element and the attribute that were worked on; the macro call."""
+
+    reason: str
+    file: str
+    position: tuple[int, int] | None
+    place: tuple[int, int, str] | None
+    call: int
+
+
+class Result(NamedTuple):
+    """What a child told; nothing says that it is true. ``fences`` are those that it has, ``files``
+    the names and numbers of elements of what it read, ``origins`` and ``calls`` as in ``marks``."""
+
+    notes: str
+    fences: tuple[str, ...]
+    files: tuple[tuple[str, int], ...]
+    macros: tuple[str, ...]
+    failure: Failure | None
+    root: tuple[str, str]
+    text: bytes
+    origins: array[int]
+    calls: array[int]
+
+
+class Sources:
+    """The files that were read for one expansion, by the name that was asked for."""
+
+    def __init__(self, access: Access, at_hand: Mapping[str, bytes]) -> None:
+        self.access, self.texts = access, dict(at_hand)
+        self.left = MOST_READ
+
+    def read(self, name: str) -> bytes:
+        """The bytes of a file, the same each time; raises NotAllowedError and OSError."""
+        if name not in self.texts:
+            data = self.access.read(name)
+            if len(data) > MAX_BYTES:
+                raise NotAllowedError(f"{name} is over the limit of {MAX_BYTES // 2**20} MB")
+            self.texts[name] = data
+        self.left -= len(self.texts[name])
+        if self.left < 0 and not self.access.reach.trust:
+            raise NotAllowedError(f"{name}: too much is included")
+        return self.texts[name]
+
+
+def converse(arguments: Mapping[str, str], sources: Sources, traced: bool) -> Result:
+    """Let a child expand the file of ``sources.access``; raises InputError where it cannot tell."""
+    access = sources.access
+    reach = access.reach
+    if reach.trust:
+        unrepeatable()  # it may look at anything
+    seconds = reach.seconds
+    request = {
+        "path": access.path,
+        "arguments": dict(arguments),
+        "traced": traced,
+        "folder": os.getcwd(),
+        "fences": () if reach.trust else reach.fences,
+        "seconds": seconds,
+    }
+    with child(seconds) as it:
+        try:
+            it.send(framed(REQUEST, json.dumps(request).encode()))
+            return _result(it, _answered(it, sources))
+        except TimeoutError:
+            raise InputError(_ended(access.path, signal.SIGALRM, seconds)) from None
+        except (EOFError, ConnectionError):
+            raise InputError(_ended(access.path, it.end(ended=True), seconds)) from None
+        except _GARBAGE:
+            said = "its process gave a wrong answer; a file that tampers with it is not expanded"
+            raise InputError(f"{access.path}: xacro failed: {said}") from None
+
+
+def _answered(it: XacroChild, sources: Sources) -> bytes:
+    """Answer questions until there is a report."""
+    for _ in range(MOST_QUESTIONS):
+        kind, data = received(it.read, LONGEST)
+        if kind == REPORT:
+            return data
+        if kind != QUESTION:
+            break
+        it.send(_answer(data, sources))
+    raise GarbageError
+
+
+def _answer(data: bytes, sources: Sources) -> bytes:
+    what, name = load_json(data)
+    access = sources.access
+    ways: Mapping[str, Callable[[str], bytes]] = {
+        READ: sources.read,
+        GLOB: lambda pattern: json.dumps(access.matching(pattern)).encode(),
+        FIND: lambda package: os.fsencode(access.package(package)),
+        ENVIRONMENT: lambda variable: json.dumps(access.variable(variable)).encode(),
+    }
+    try:
+        return framed(VALUE, ways[what](_text(name)))
+    except NotAllowedError as error:
+        said: list[object] = ["refused", str(error)]
+    except OSError as error:
+        said = ["os", error.errno or 0, error.strerror or str(error), name]
+    except LookupError as error:
+        said = ["lookup", str(error.args[0])]
+    except ValueError as error:
+        said = ["refused", f"{name!r}: {error}"]
+    return framed(REFUSAL, json.dumps(said).encode())
+
+
+def _result(it: XacroChild, data: bytes) -> Result:
+    """The rest of what a child tells; raises what converse catches."""
+    report = load_json(data)
+    if "missing" in report:
+        raise InputError(f"{_text(report['missing'])}; pip install xacro, or source ROS 2")
+    failed = report.get("error")
+    text = b"" if failed else _expected(it, TEXT)
+    origins = b"" if failed else _expected(it, ORIGINS)
+    return Result(
+        _text(report["notes"]),
+        tuple(_text(name) for name in report["fences"]),
+        tuple((_text(name), int(count)) for name, count in report["files"]),
+        tuple(_text(name) for name in report["macros"]),
+        _failure(failed) if failed else None,
+        ("", "") if failed else (_text(report["root"][0] or ""), _text(report["root"][1])),
+        text,
+        _numbers(origins, _TRIPLE),
+        _numbers(_expected(it, CALLS), _QUADRUPLE),
+    )
+
+
+def _expected(it: XacroChild, kind: bytes) -> bytes:
+    return received(it.read, {kind: LONGEST[kind]})[1]
+
+
+def _failure(told: Any) -> Failure:
+    position, place = told["position"], told["place"]
+    return Failure(
+        _text(told["reason"]),
+        _text(told["file"]),
+        (int(position[0]), int(position[1])) if position else None,
+        (int(place[0]), int(place[1]), _text(place[2])) if place else None,
+        int(told["call"]),
+    )
+
+
+def _text(value: object) -> str:
+    if not isinstance(value, str):
+        raise GarbageError
+    return value
+
+
+def _numbers(data: bytes, together: int) -> array[int]:
+    found = array(NUMBER)
+    found.frombytes(data)
+    if len(found) % together:
+        raise GarbageError
+    return found
+
+
+def _ended(path: str, died_of: int, seconds: float) -> str:
+    """The message for a child that gave no answer."""
+    unrepeatable()
+    if died_of in (signal.SIGALRM, signal.SIGXCPU):
+        why = f"it took more than {seconds:g} s; does a macro call itself? --trust lifts the limit"
+    elif died_of:
+        why = f"its process was ended by {signal.Signals(died_of).name}"
+    else:
+        why = "its process ended before it was done"
+    return f"{path}: xacro failed: {why}"

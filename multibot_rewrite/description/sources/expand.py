@@ -1,0 +1,186 @@
+"""Expand xacro in a process of its own, which reaches no further than it may."""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+from collections.abc import Mapping
+
+from multibot_rewrite.base.findings.place import locate
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.sources.access import BOUNDED, Access, Find, Reach, check_file
+from multibot_rewrite.description.sources.conversation import Failure, Result, Sources, converse
+from multibot_rewrite.description.sources.trace import Origins, Trace, alike
+from multibot_rewrite.description.steps.document import start_offsets, tag_end
+
+__all__ = ["Expanded", "Expansion", "Find", "Reach", "expand", "expand_traced", "expand_whole"]
+# Of a longer message no repetition is looked for.
+LONG = 1000
+# What xacro says -> what to do about it; {} stands for the argument that is missing.
+_HINTS = (
+    ("xacro may", "give --trust if you trust the file, or urdf-lint the folder: --roots"),
+    ("variables alone", "give --trust if you trust the file"),
+    ("refused: ", "a xacro file may compute, no more; give --trust if you trust it"),
+    ("not permitted", "a xacro file may compute, no more; give --trust if you trust it"),
+    ("new thread", "a xacro file may compute, no more; give --trust if you trust it"),
+    ("open files", "a xacro file may compute, no more; give --trust if you trust it"),
+    ("MemoryError", "does a macro call itself? it has 2 GiB, --trust lifts the limit"),
+    ("Undefined substitution argument", "give it as {}:=VALUE"),
+    (
+        "AMENT_PREFIX_PATH",
+        "$(find PACKAGE) needs a sourced ROS 2, or its repository beside this one in src/",
+    ),
+    ("No such file", "check the path"),
+    ("Is a directory", "check the path"),
+    (
+        "is not found",
+        "source the workspace it is in; urdf-lint takes a folder above it, too: --roots",
+    ),
+    ("package", "source the workspace that holds it"),
+    ("Undefined block", "give it to the macro, or call it what the macro's params call it: *NAME"),
+    ("Invalid parameter", "the macro has no such parameter: see its params"),
+    ("missing attribute", "add it, an <xacro:arg> needs its default"),
+    ("not a boolean", "write true, false, 1, 0 or an expression"),
+    ("must be valid python identifiers", "use letters, digits and underscores"),
+    ("invalid syntax", "correct the expression"),
+    ("unknown macro name", "check its name and the <xacro:include> it comes from"),
+    ("Undefined parameters", "give the macro all its parameters"),
+    ("is not defined", "define it with <xacro:property> or <xacro:arg>"),
+    ("environment variable", "set it, or use $(optenv NAME DEFAULT)"),
+    ("recursion", "a macro or an include leads back to itself, or elements are nested too deep"),
+    ("not UTF-8", "save it as UTF-8"),
+    ("amplification", "entities are not accepted, write out what they stand for"),
+    ("unbound prefix", 'declare it: xmlns:xacro="http://www.ros.org/wiki/xacro"'),
+    ("not well-formed XML", "correct the XML and try again"),
+)
+
+
+class Expanded(NamedTuple):
+    """A text, and the files that were read for it, as they were asked for."""
+
+    data: bytes
+    texts: Mapping[str, bytes]
+
+
+class Expansion(NamedTuple):
+    """A text, the origin of each of its elements, the XML files that were read, by their names; and
+    all files that were ``read``, as they were asked for."""
+
+    data: bytes
+    origins: Origins
+    sources: Mapping[str, bytes]
+    read: tuple[str, ...]
+
+
+def expand(
+    path: str, arguments: Mapping[str, str], find: Find | None = None, reach: Reach = BOUNDED
+) -> bytes:
+    """The URDF text of a xacro file, UTF-8; raises InputError with xacro's reason.
+
+    ``find`` is asked for packages before a sourced ROS is; ``reach`` says what the file may use.
+    """
+    return expand_whole(path, arguments, find, reach).data
+
+
+def expand_whole(
+    path: str, arguments: Mapping[str, str], find: Find | None = None, reach: Reach = BOUNDED
+) -> Expanded:
+    """The same with the files that were read."""
+    check_file(path)
+    sources = Sources(Access(path, reach, find), {})
+    result = converse(arguments, sources, traced=False)
+    return Expanded(_text(path, result, Trace(result, sources, path)), sources.texts)
+
+
+def expand_traced(
+    path: str,
+    data: bytes,
+    arguments: Mapping[str, str],
+    find: Find | None = None,
+    reach: Reach = BOUNDED,
+) -> Expansion:
+    """The same for a file that holds ``data``, with the origins of the elements."""
+    sources = Sources(Access(path, reach, find), {path: data})
+    result = converse(arguments, sources, traced=True)
+    trace = Trace(result, sources, path)
+    text = _text(path, result, trace)
+    if len(result.origins) != 3 * len(start_offsets(text)):
+        raise InputError(f"{path}: xacro failed: the places that its process told are wrong")
+    return Expansion(text, Origins(trace), trace.sources, tuple(sources.texts))
+
+
+def _text(path: str, result: Result, trace: Trace) -> bytes:
+    _print(result.notes)
+    if result.failure:
+        raise InputError(_message(path, result.failure, trace))
+    _check_root(path, *result.root)
+    return result.text
+
+
+def _print(notes: str) -> None:
+    """What xacro warns about, without what a terminal would obey."""
+    lines = ("".join(it if it.isprintable() else "?" for it in line) for line in notes.splitlines())
+    sys.stderr.writelines(f"{line}\n" for line in lines)
+
+
+def _check_root(path: str, prefix: str, tag: str) -> None:
+    """xacro expands what is inside the root, and drops the declaration of its own prefix."""
+    if prefix == "xacro":
+        raise InputError(
+            f"{path}: the root element is <{tag}>, which xacro does not expand; "
+            "put everything inside a <robot> element"
+        )
+
+
+def _message(path: str, failure: Failure, trace: Trace) -> str:
+    inner = alike(failure.file, path)
+    inner = path if inner == os.path.normpath(path) else inner
+    reason = " ".join(_reason(failure.reason).split())
+    if not os.path.isabs(path):
+        reason = reason.replace(os.path.join(os.getcwd(), ""), "")
+    hint = next((hint for word, hint in _HINTS if word in reason), "run xacro on it to see more")
+    argument = reason.partition(" argument ")[2].partition(" ")[0]
+    where = f"{inner}:{failure.position[0]}:{failure.position[1]}" if failure.position else ""
+    where = where or _place(failure, trace) or inner
+    # The file that failed is this one, or one that it includes.
+    included = "" if inner == path else f" (included from {path})"
+    said = f"xacro failed{included}{_macros(trace, failure, reason)}: {reason}"
+    return f"{where}: {said}; {hint.replace('{}', argument)}"
+
+
+def _macros(trace: Trace, failure: Failure, reason: str) -> str:
+    """The macro that failed, and the line of its call."""
+    calls = trace.calls(failure.call)
+    if not calls or "unknown macro" in reason:
+        return ""
+    line, _ = locate(trace.sources[calls[0].file], calls[0].start)
+    file = os.path.basename(calls[0].file)
+    return f" in the macro {calls[0].macro!r} that line {line} of {file} calls"
+
+
+def _place(failure: Failure, trace: Trace) -> str:
+    """``file:line:column`` of the element that was worked on, or of its attribute; "" if unknown."""
+    place = trace.place(*failure.place[:2]) if failure.place else None
+    if place is None or failure.place is None:
+        return ""
+    file, start = place
+    source = trace.sources[file]
+    line, column = locate(source, _attribute(source, start, failure.place[2].encode()))
+    return f"{file}:{line}:{column}"
+
+
+def _attribute(source: bytes, start: int, name: bytes) -> int:
+    """The offset of an attribute of the tag at ``start``; that of the tag where it has none."""
+    pattern = re.compile(rb"\s(" + re.escape(name) + rb"\s*=)")
+    found = pattern.search(source, start, tag_end(source, start)) if name else None
+    return found.start(1) if found else start
+
+
+def _reason(said: str) -> str:
+    text = re.sub(r"^\[Errno \d+\] |<class '[\w.]+'>: ", "", said.partition(" [Errno")[0])
+    # xacro may say it twice: in its own words and in those of the cause.
+    if len(text) < LONG:
+        text = re.sub(r"(.{9,}) \1(?= |$)", r"\1", text, flags=re.DOTALL)
+    return text or said

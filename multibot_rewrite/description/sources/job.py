@@ -1,0 +1,268 @@
+"""What one rewrite works on: everything it depends on but the robots, read once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable, Sequence
+from contextlib import suppress
+from functools import cache
+
+from multibot_rewrite.base.model import InputError, UsageError
+from multibot_rewrite.base.naming import Naming, OwnNames
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.forms import Declared
+from multibot_rewrite.description.rewriters.tree import Tree
+from multibot_rewrite.description.sources.known_arguments import joined
+from multibot_rewrite.description.sources.own_names import (
+    OF_ALL,
+    Arguments,
+    NameTexts,
+    OwnSource,
+    as_twin,
+    filled,
+    has_mark,
+    marked,
+    marked_texts,
+    name_robot,
+    own_affixes,
+    own_names,
+    own_texts,
+    templates,
+)
+from multibot_rewrite.description.sources.read import Source, SourceText, args_for, read_whole
+from multibot_rewrite.description.steps.apply import cut, fill
+from multibot_rewrite.description.steps.collect import NOTHING, Inventory, collect, declarations
+from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.description.steps.plan import make_plan
+
+# What an SRDF names of its URDF.
+PARTS = frozenset({"link", "joint"})
+
+
+class FilesRead(NamedTuple):
+    """The ``files`` that were read for a job, the ``arguments`` that their xacro knows, and those that
+    were given and that no file knows."""
+
+    files: tuple[str, ...] = ()
+    arguments: tuple[str, ...] = ()
+    unread: tuple[str, ...] = ()
+
+
+NO_FILES = FilesRead()
+
+
+def joined_reads(one: FilesRead, other: FilesRead) -> FilesRead:
+    """What was read for two descriptions of one robot: an argument is for one or for both."""
+    known = dict.fromkeys((*one.arguments, *other.arguments))
+    unread = dict.fromkeys(it for it in (*one.unread, *other.unread) if it not in known)
+    return FilesRead((*one.files, *other.files), tuple(known), tuple(unread))
+
+
+class Job(NamedTuple):
+    """Bytes, options and file names; ``file`` is the name in messages, ``urdf`` the bytes and the
+    name of the URDF beside an SRDF; ``own`` says more where it is one robot's own; ``release`` is that
+    whose facts count. It holds no parsed document, so it can be pickled."""
+
+    data: bytes
+    file: str
+    naming: Naming
+    vocabulary: tuple[str, ...]
+    urdf: tuple[bytes, str] | None
+    release: str
+    own: OwnSource = OF_ALL
+    read: FilesRead = NO_FILES
+
+    @property
+    def tree(self) -> Tree:
+        """The rewriters; raises VocabularyError."""
+        return builtin_tree(self.vocabulary, self.release)
+
+    @property
+    def urdf_declarations(self) -> Declared:
+        """What the URDF beside an SRDF declares; raises InputError."""
+        return declarations(*self.urdf, self.tree) if self.urdf else NOTHING
+
+    @property
+    def inventories(self) -> list[Inventory]:
+        """What is in the description, and in the URDF beside an SRDF; raises InputError."""
+        tree, apart = self.tree, self.naming.layout.at_run_time
+        own = collect(read_document(self.data, self.file), tree, self.urdf_declarations, apart)
+        urdf = [collect(read_document(*self.urdf), tree, apart=apart)] if self.urdf else []
+        return [own, *urdf]
+
+
+def read_job(
+    source: Source,
+    naming: Naming,
+    urdf: Source | None = None,
+    xacro_args: Arguments | None = None,
+    vocabulary: Iterable[str] = (),
+    file: str = "",
+    words: Sequence[str] = (),
+    trust: bool = False,
+    *,
+    release: str,
+) -> Job:
+    """Read the sources; raises InputError, and UsageError for arguments that no xacro takes.
+
+    ``words`` are those of the robot that the job is for: the first one is filled into the arguments,
+    and what they name after any of the words is the robot's own. ``trust`` lets xacro files do
+    anything.
+    """
+    read = reader(source, naming, urdf, tuple(vocabulary), file, trust, release)
+    return job_for(read, xacro_args or {}, words)
+
+
+def read_jobs(
+    robots: Sequence[str],
+    source: Source,
+    naming: Naming,
+    urdf: Source | None,
+    xacro_args: Arguments | None,
+    vocabulary: Iterable[str],
+    file: str,
+    trust: bool,
+    release: str,
+) -> dict[str, Job]:
+    """The job of each robot: one for all that the arguments do not name. Raises as ``read_job``."""
+    given = xacro_args or {}
+    read = reader(source, naming, urdf, tuple(vocabulary), file, trust, release)
+    named = [robot for robot in robots if name_robot(given, [robot])]
+    others = [robot for robot in robots if robot not in named]
+    jobs = {robot: job_for(read, given, [robot]) for robot in named}
+    if others:
+        _check_meant(given, {robot: job for robot, job in jobs.items() if job.naming.own}, others)
+        jobs |= dict.fromkeys(others, job_for(read, given, others[:1]))
+    return {robot: jobs[robot] for robot in robots}
+
+
+def _check_meant(given: Arguments, own: Iterable[str], others: Sequence[str]) -> None:
+    """An argument that makes names of one robot is not for another one."""
+    for robot in own:
+        named = {name: text for name, text in given.items() if name_robot({name: text}, [robot])}
+        values = " ".join(f"{name}:={text}" for name, text in named.items())
+        hint = " ".join(f"{name}:={text}" for name, text in templates(named, robot).items())
+        what = f"{values} puts {robot} into names"
+        raise UsageError(f"{what}, and {others[0]} gets it, too; write {hint}")
+
+
+Reader = Callable[[Arguments], Job]
+
+
+def reader(
+    source: Source,
+    naming: Naming,
+    urdf: Source | None,
+    vocabulary: tuple[str, ...],
+    file: str,
+    trust: bool,
+    release: str,
+) -> Reader:
+    """Reads the sources with xacro arguments, with the same ones once; raises as ``read_job``."""
+
+    @cache
+    def read(pairs: frozenset[tuple[str, str]]) -> Job:
+        args = dict(pairs)
+        own = read_whole(source, args_for(source, urdf, args), trust)
+        beside = None if urdf is None else read_whole(urdf, args_for(urdf, source, args), trust)
+        found = _files_read(args, [own, beside] if beside else [own])
+        pair = (beside.data, beside.file) if beside else None
+        name = file or own.file
+        return Job(own.data, name, naming, vocabulary, pair, release, read=found)
+
+    return lambda args: read(frozenset(args.items()))
+
+
+def _files_read(args: Arguments, texts: Sequence[SourceText]) -> FilesRead:
+    """An argument is for a URDF, its SRDF, or both."""
+    each = [it.known for it in texts if it.known is not None]
+    known, files = joined(each), tuple(path for it in texts for path in it.read)
+    return FilesRead(files, known.names, known.lacks(sorted(args)) if each else ())
+
+
+def job_for(
+    read: Reader, given: Arguments, words: Sequence[str], common: Collection[str] = ()
+) -> Job:
+    """The job of the robot with these words, which arguments that are ``common`` to robots do not
+    name; raises as ``read_job``."""
+    job = read(filled(given, *words[:1]))
+    if not name_robot(given, words, common):
+        return job
+    other = _marked(read, given, words, common)
+    own = {key: None for part in other.inventories for key in own_names(part, words)}
+    _check_links(job, own, given, words)
+    twin = as_twin(other.data) if has_mark(other.data) else b""
+    job = job._replace(naming=job.naming._replace(own=own), own=OwnSource(words[0], twin=twin))
+    try:
+        kept = (it for it in given.items() if not name_robot(dict([it]), words, common))
+        plain = read(dict(kept))
+    except InputError:
+        # An argument without a default: nothing is known of names without it.
+        return job
+    if twin and job.urdf and _misses(job, plain):
+        # The arguments make an SRDF of it that is not the URDF's: the one without them follows that.
+        job, twin = job._replace(data=plain.data), b""
+        texts = marked_texts(plain.inventories[1], other.inventories[1])
+    else:
+        texts = _marked_texts(plain, other)
+    job = job._replace(own=OwnSource(words[0], own_texts(texts, words), twin))
+    affixes = own_affixes(texts) if job.urdf and not twin else None
+    if not affixes:
+        return job
+    follow = _of_plain if len(set(words)) == 1 else _followed
+    return follow(job, plain, affixes)
+
+
+def _check_links(job: Job, own: OwnNames, given: Arguments, words: Sequence[str]) -> None:
+    """Where nodes put the robot's name before links, no argument may."""
+    links = sorted(text for kind, text in own if kind == "link")
+    if job.naming.layout.at_run_time and links:
+        named = ", ".join(
+            f"{it}:={text}" for it, text in given.items() if words[0] in text or "{" in text
+        )
+        what = f"{job.file}: {named} puts the robot's name into the link {links[0]!r}"
+        again = f"robot_state_publisher would add it once more in layout {job.naming.layout.name}"
+        raise InputError(f"{what}, and {again}; leave it out, or take frames-per-robot")
+
+
+def _marked(read: Reader, given: Arguments, words: Sequence[str], common: Collection[str]) -> Job:
+    """The sources with marks for the robot's words in every argument that takes them."""
+    with suppress(InputError):
+        return read(marked(given, words, common))
+    # Some file takes only words that it knows for one of them.
+    args = filled(given, words[0])
+    for name, text in marked(given, words, common).items():
+        with suppress(InputError):
+            read({**args, name: text})
+            args[name] = text
+    return read(args)
+
+
+def _marked_texts(plain: Job, other: Job) -> NameTexts:
+    pairs = zip(plain.inventories, other.inventories, strict=True)
+    return {key: text for pair in pairs for key, text in marked_texts(*pair).items()}
+
+
+def _misses(job: Job, plain: Job) -> bool:
+    """Does an SRDF name links or joints that the URDF lacks, and lacks none without the arguments?"""
+    return _lacks(job) and not _lacks(plain)
+
+
+def _lacks(job: Job) -> bool:
+    said = job.inventories[0]
+    found = (name for names in said.names for name in names if not name.kind)
+    return any(not PARTS.isdisjoint(name.kinds) for name in found)
+
+
+def _of_plain(job: Job, plain: Job, affixes: OwnNames) -> Job:
+    """An SRDF that knows nothing of the arguments: its names are those of the URDF without them, and
+    become what the arguments make of these."""
+    return job._replace(urdf=plain.urdf, naming=job.naming._replace(own=affixes))
+
+
+def _followed(job: Job, plain: Job, affixes: OwnNames) -> Job:
+    """The same where a robot has several words: its SRDF as the arguments would have made it."""
+    inventory = collect(read_document(job.data, job.file), job.tree, plain.urdf_declarations)
+    own = job.naming._replace(separators={}, own=affixes)
+    edits = make_plan(inventory, own).edits
+    return job._replace(data=fill(cut(job.data, edits), job.own.robot))

@@ -1,0 +1,187 @@
+"""Where packages and the files in them are: looked up once per process."""
+
+from __future__ import annotations
+
+import os
+from collections import deque
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from itertools import islice
+
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.outside import outside
+
+DEEPEST = 4
+MOST_FOLDERS = 20_000
+# Ancestors of a description in which its own package is looked for.
+HIGHEST = 6
+_MANIFEST = "package.xml"
+_NAME = lazy_compile(rb"<name>\s*([^<\s]+)\s*</name>")
+# Build results, libraries and similar folders: there are no sources of meshes below them.
+_SKIPPED = frozenset(("build", "log", "lib", "lib64", "include", "bin", "node_modules", "cmake"))
+
+
+@outside
+def package_folders(name: str, file: str, roots: tuple[str, ...]) -> tuple[str, ...]:
+    """Every folder that may be the package ``name`` for a description ``file``."""
+    sources = os.environ.get("ROS_PACKAGE_PATH", "")
+    installed = os.environ.get("AMENT_PREFIX_PATH", "")
+    here = os.path.dirname(os.path.abspath(file))
+    return _candidates(name, here, (*roots, *_split(sources)), _split(installed))
+
+
+@outside
+def package_folder(name: str, file: str, roots: tuple[str, ...]) -> str:
+    """The folder that $(find NAME) stands for in ``file``; empty if there is none.
+
+    Other packages in the same repository are found as well.
+    """
+    known = package_folders(name, file, roots)
+    own = _own_package(os.path.dirname(os.path.abspath(file)))
+    if known or own is None or ".git" in entries(own[1]):
+        return known[0] if known else ""
+    beside = _below((os.path.dirname(own[1]),)).get(name, ())
+    return next((it for it in beside if _MANIFEST in entries(it)), "")
+
+
+@outside
+def package_of(file: str) -> tuple[str, str] | None:
+    """Name and folder of the package that a file is in."""
+    return _own_package(os.path.dirname(os.path.abspath(file)))
+
+
+@lru_cache(maxsize=4096)
+def _candidates(
+    name: str, here: str, roots: tuple[str, ...], prefixes: tuple[str, ...]
+) -> tuple[str, ...]:
+    own = _own_package(here)
+    found = [own[1]] if own is not None and own[0] == name else []
+    shares = (os.path.join(prefix, "share", name) for prefix in prefixes)
+    found += _below(roots).get(name, ())
+    return (*found, *(it for it in shares if _MANIFEST in entries(it)))
+
+
+def _split(paths: str) -> tuple[str, ...]:
+    return tuple(it for it in paths.split(os.pathsep) if it)
+
+
+@lru_cache(maxsize=256)
+def _own_package(folder: str) -> tuple[str, str] | None:
+    """Name and folder of the package that a folder is in."""
+    for _ in range(HIGHEST):
+        # Asked for alone: folders above may be those of all users, or for temporary files.
+        if os.path.isfile(os.path.join(folder, _MANIFEST)):
+            return _package_name(folder), folder
+        folder = os.path.dirname(folder)
+    return None
+
+
+@lru_cache(maxsize=8)
+def _below(roots: tuple[str, ...]) -> Mapping[str, tuple[str, ...]]:
+    """Packages below some folders by name; a folder of that name counts where no manifest has it."""
+    named: dict[str, tuple[str, ...]] = {}
+    called: dict[str, tuple[str, ...]] = {}
+    for folder in _folders(roots):
+        if _MANIFEST in entries(folder):
+            name = _package_name(folder)
+            named[name] = (*named.get(name, ()), folder)
+        else:
+            name = os.path.basename(folder)
+            called[name] = (*called.get(name, ()), folder)
+    return called | named
+
+
+def _folders(roots: tuple[str, ...]) -> Iterator[str]:
+    """Folders breadth first, links not followed, down to packages and no further than the bounds."""
+    waiting = deque((os.path.abspath(root), 0) for root in roots)
+    for _ in range(MOST_FOLDERS):
+        if not waiting:
+            return
+        folder, depth = waiting.popleft()
+        yield folder
+        if depth < DEEPEST and _MANIFEST not in entries(folder):
+            waiting += ((it, depth + 1) for it in _subfolders(folder))
+
+
+def _subfolders(folder: str) -> list[str]:
+    try:
+        with os.scandir(folder) as found:
+            return sorted(it.path for it in found if _worth_a_look(it))
+    except OSError:
+        return []
+
+
+def _worth_a_look(entry: os.DirEntry[str]) -> bool:
+    name = entry.name
+    return name[0] != "." and name not in _SKIPPED and entry.is_dir(follow_symlinks=False)
+
+
+@outside
+@lru_cache(maxsize=4096)
+def entries(folder: str) -> frozenset[str]:
+    """The names in a folder, as they are written; none where it cannot be read."""
+    try:
+        return frozenset(os.listdir(folder))
+    except (OSError, ValueError):  # a path of a damaged file may hold a null character
+        return frozenset()
+
+
+def _package_name(folder: str) -> str:
+    try:
+        with open(os.path.join(folder, _MANIFEST), "rb") as file:
+            found = _NAME.search(file.read(8192))
+    except OSError:
+        found = None
+    return found[1].decode("utf-8", "replace") if found else os.path.basename(folder)
+
+
+@lru_cache(maxsize=1024)
+def _by_lower_case(folder: str) -> Mapping[str, str]:
+    """The names in a folder, the first of those that differ in upper and lower case alone."""
+    return {it.lower(): it for it in sorted(entries(folder), reverse=True)}
+
+
+@outside
+def find_in(folder: str, path: str) -> str:
+    """The path below a folder as it is written on the disk, whatever the case; empty if absent."""
+    found: list[str] = []
+    here = folder
+    for step in os.path.normpath(path).split(os.sep):
+        here = os.path.join(here, *found[-1:])
+        if step == os.pardir or step in entries(here):
+            found.append(step)
+            continue
+        near = _by_lower_case(here).get(step.lower(), "")
+        if not near:
+            return ""
+        found.append(near)
+    return os.path.join(*found)
+
+
+@outside
+def in_sources(path: str) -> str:
+    """The file that a build installs as ``path`` from a package's sources; empty if none is certain.
+
+    The only file of the package that ends so, as ``description/urdf/arm.xacro`` for ``urdf/arm.xacro``.
+    """
+    folder = os.path.dirname(os.path.abspath(path))
+    while not os.path.isdir(folder):
+        folder = os.path.dirname(folder)
+    package = _own_package(folder)
+    if package is None:
+        return ""
+    end = os.sep + os.path.relpath(os.path.abspath(path), package[1])
+    found = [it for it in _every_file(package[1]) if it.endswith(end)]
+    return found[0] if len(found) == 1 else ""
+
+
+@lru_cache(maxsize=64)
+def _every_file(folder: str) -> tuple[str, ...]:
+    """The files of a package, as many as are looked at."""
+    every = (
+        os.path.join(above, name)
+        for above, _, names in os.walk(folder)
+        if os.path.basename(above) not in _SKIPPED
+        for name in names
+    )
+    return tuple(islice(every, MOST_FOLDERS))

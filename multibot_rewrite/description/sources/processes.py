@@ -1,0 +1,148 @@
+"""The parent's side of the processes that expand xacro.
+
+A server, started once for each process and ended when it is idle, forks a child for each expansion.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import socket
+import subprocess
+import sys
+import threading
+import weakref
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from functools import lru_cache
+from time import monotonic
+
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.description.sources.child.commands import COMMAND, END, ENDED, REPLY, START
+
+_MODULE = "multibot_rewrite.description.sources.child.serve"
+# Python finds what this process finds, and nothing by the variables of the environment.
+_RUN = "import json, sys; sys.path[:] = json.loads(sys.argv[1]); from {} import main; main()"
+# For the start of a process that is to answer within a time.
+SLACK_SECONDS = 5.0
+# The libraries of an installation; without the other, wheels of rclpy would start Python twice.
+_KEPT_VARIABLES = ("LD_LIBRARY_PATH", "_ROS_WHEELS_BOOTSTRAP_COMPLETE")
+
+
+class ServerGoneError(Exception):
+    """The server ended: it was idle, or somebody killed it."""
+
+
+class Server:
+    """The process that forks. Any thread may use it."""
+
+    def __init__(self) -> None:
+        self.control, theirs = socket.socketpair()
+        self.lock = threading.Lock()
+        paths = json.dumps([os.path.abspath(it) for it in sys.path])
+        command = [sys.executable, "-I", "-X", "utf8", "-c", _RUN.format(_MODULE), paths]
+        kept = {it: os.environ[it] for it in _KEPT_VARIABLES if it in os.environ}
+        nothing = subprocess.DEVNULL
+        with theirs:
+            process = subprocess.Popen(
+                command, stdin=theirs.fileno(), stdout=nothing, stderr=nothing, env=kept, cwd=os.sep
+            )
+        self.pid = process.pid
+        weakref.finalize(self, _close, self.control, process)
+
+    def start(self, theirs: socket.socket) -> int:
+        """Start a child with that socket; its number. Raises ServerGoneError."""
+        return self._ask(START, 0, [theirs.fileno()])
+
+    def end(self, pid: int, ended: bool) -> int:
+        """End a child; the signal if it had ended by itself, or 0. Raises ServerGoneError."""
+        return self._ask(ENDED if ended else END, pid, [])
+
+    def _ask(self, command: bytes, pid: int, descriptors: list[int]) -> int:
+        with self.lock:
+            try:
+                socket.send_fds(self.control, [COMMAND.pack(command, pid)], descriptors)
+                answer = self.control.recv(REPLY.size, socket.MSG_WAITALL)
+            except OSError:
+                raise ServerGoneError from None
+            except BaseException:
+                # Interrupted: the answer to come would be taken for that of the next question.
+                self.control.close()
+                raise
+        if len(answer) < REPLY.size:
+            raise ServerGoneError
+        return int(REPLY.unpack(answer)[0])
+
+
+class XacroChild:
+    """A process that expands one file, and the socket that leads to it."""
+
+    def __init__(self, server: Server, pid: int, ours: socket.socket, deadline: float) -> None:
+        self.server, self.pid, self.ours, self.deadline = server, pid, ours, deadline
+        self.signal: int | None = None
+
+    def send(self, data: bytes) -> None:
+        """Send all of it; raises OSError."""
+        self.ours.settimeout(self._left())
+        self.ours.sendall(data)
+
+    def read(self, count: int) -> bytes:
+        """That many bytes; raises EOFError where the child has ended, and TimeoutError."""
+        parts = bytearray()
+        while len(parts) < count:
+            self.ours.settimeout(self._left())
+            more = self.ours.recv(min(count - len(parts), 2**20))
+            if not more:
+                raise EOFError
+            parts += more
+        return bytes(parts)
+
+    def _left(self) -> float:
+        left = self.deadline - monotonic()
+        if left <= 0:
+            raise TimeoutError
+        return left
+
+    def end(self, ended: bool = False) -> int:
+        """End it; the signal if it had ended by itself, or 0."""
+        if self.signal is None:
+            self.ours.close()
+            self.signal = 0
+            with suppress(ServerGoneError):
+                self.signal = self.server.end(self.pid, ended)
+        return self.signal
+
+
+@contextmanager
+def child(seconds: float) -> Iterator[XacroChild]:
+    """A child that has that long; it has ended when the block has. Raises InputError."""
+    ours, theirs = socket.socketpair()
+    with theirs:
+        server, pid = _started(theirs)
+    found = XacroChild(server, pid, ours, monotonic() + seconds + SLACK_SECONDS)
+    try:
+        yield found
+    finally:
+        found.end()
+
+
+def _started(theirs: socket.socket) -> tuple[Server, int]:
+    for _ in range(2):
+        server = _server(os.getpid())
+        try:
+            return server, server.start(theirs)
+        except ServerGoneError:
+            _server.cache_clear()
+    raise InputError(f"xacro: no process can be started: {sys.executable} does not run {_MODULE}")
+
+
+@lru_cache(maxsize=1)
+def _server(pid: int) -> Server:
+    """The server of this process; a fork of it gets its own."""
+    return Server()
+
+
+def _close(control: socket.socket, process: subprocess.Popen[bytes]) -> None:
+    control.close()
+    process.terminate()
+    process.wait()

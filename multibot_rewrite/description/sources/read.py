@@ -1,0 +1,102 @@
+"""Where a description comes from: a path, text or bytes, xacro expanded on the way."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Mapping
+from contextlib import suppress
+from typing import TYPE_CHECKING
+
+from multibot_rewrite.base.bounded import MAX_BYTES, read_bytes
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.model import InputError, UsageError
+from multibot_rewrite.base.record import NamedTuple
+
+if TYPE_CHECKING:
+    from multibot_rewrite.description.sources.known_arguments import KnownArguments
+
+Source = str | bytes | os.PathLike[str]
+XACRO = ".xacro"
+_MAYBE_XACRO = (".urdf", ".srdf", ".sdf", ".xml")
+_COMMENT = lazy_compile(rb"<!--.*?-->", re.DOTALL)
+_SPACE = lazy_compile(rb"""xmlns:([\w.-]+)\s*=\s*["'][^"'<>]*/xacro/?["']""")
+
+
+class SourceText(NamedTuple):
+    """A source as it was read.
+
+    ``file`` is its name for messages. Of a xacro file ``read`` are all paths that were read for it and
+    ``known`` are the arguments that these files know; None for what is no xacro.
+    """
+
+    data: bytes
+    file: str
+    read: tuple[str, ...] = ()
+    known: KnownArguments | None = None
+
+
+def args_for(source: Source, other: Source | None, args: Mapping[str, str]) -> Mapping[str, str]:
+    """The xacro arguments for ``source``: they are for a URDF, its SRDF, or both."""
+    return {} if other is not None and _is_xacro(other) and not _is_xacro(source) else args
+
+
+def _is_xacro(source: Source) -> bool:
+    return not isinstance(source, bytes) and is_xacro(os.fspath(source))
+
+
+def is_xacro(path: str) -> bool:
+    """Is it a xacro, by its name or, as turtlebot3's .urdf files are, by what is in it?"""
+    if not path.endswith(_MAYBE_XACRO):
+        return path.endswith(XACRO)
+    with suppress(InputError):
+        return has_xacro(read_file(path))
+    return False
+
+
+def has_xacro(data: bytes) -> bool:
+    """Does a text have elements of xacro, under whatever prefix?"""
+    if b"xacro" not in data:
+        return False
+    text = _COMMENT.sub(b"", data)
+    return any(b"<" + prefix + b":" in text for prefix in _SPACE.findall(text))
+
+
+def read_whole(source: Source, xacro_args: Mapping[str, str], trust: bool = False) -> SourceText:
+    """The bytes of a source with what is known of the files that were read; ``trust`` lets a xacro file
+    do anything."""
+    if isinstance(source, bytes):
+        return SourceText(source, "<bytes>")
+    if isinstance(source, str) and source.lstrip("\ufeff \t\r\n").startswith("<"):
+        return SourceText(_encoded(source), "<text>")
+    path = os.fspath(source)
+    if is_xacro(path):
+        from multibot_rewrite.description.sources.access import BOUNDED, TRUSTED
+        from multibot_rewrite.description.sources.expand import expand_whole
+        from multibot_rewrite.description.sources.known_arguments import (
+            KnownArguments,
+            known_arguments,
+        )
+
+        data, texts = expand_whole(path, xacro_args, reach=TRUSTED if trust else BOUNDED)
+        known = known_arguments(texts.values()) if xacro_args else KnownArguments()
+        return SourceText(data, f"{path} (expanded)", tuple(texts), known)
+    if xacro_args:
+        raise UsageError(f"{path}: xacro arguments given, but the file is no xacro")
+    return SourceText(read_file(path), path, (path,))
+
+
+def _encoded(text: str) -> bytes:
+    try:
+        return text.encode()
+    except UnicodeEncodeError as error:
+        raise InputError(f"<text>: character {error.start + 1} is half of one: {error}") from None
+
+
+def read_file(path: str, limit: int = MAX_BYTES) -> bytes:
+    """The bytes of a file; raises InputError with the reason, which may be its size."""
+    try:
+        return read_bytes(path, limit)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", "") or error
+        raise InputError(f"{path}: cannot be read: {reason}") from None

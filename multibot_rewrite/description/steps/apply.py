@@ -1,0 +1,30 @@
+"""Plan -> text: cut the source once at every slot, then each robot is one ``bytes.join``."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from multibot_rewrite.base.model import Edit
+
+
+def cut(source: bytes, edits: Iterable[Edit]) -> list[bytes]:
+    """The source with all edits made, in pieces; the robot's name goes between them.
+
+    ``edits`` are in source order and do not overlap.
+    """
+    pieces = []
+    held: list[bytes] = []
+    last = 0
+    for start, end, before, after in edits:
+        held += (source[last:start], before)
+        if after is not None:
+            pieces.append(b"".join(held))
+            held = [after]
+        last = end
+    pieces.append(b"".join(held) + source[last:])
+    return pieces
+
+
+def fill(pieces: list[bytes], robot: str) -> bytes:
+    """The text for one robot."""
+    return robot.encode().join(pieces)

@@ -1,0 +1,150 @@
+"""Document -> inventory: every value a site claims, the names in it, every symbol declared, every
+plugin met."""
+
+from __future__ import annotations
+
+from lxml import etree
+
+from multibot_rewrite.base.findings.place import locate
+from multibot_rewrite.base.model import Claim, InputError, Site
+from multibot_rewrite.base.naming import DECLARED_KINDS
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.rewriters.forms import Declared
+from multibot_rewrite.description.rewriters.model_namespaces import below_models
+from multibot_rewrite.description.rewriters.remap_rules import names_in_rules
+from multibot_rewrite.description.rewriters.spelling import (
+    ResolvedName,
+    resolved_names,
+    takes_empty,
+)
+from multibot_rewrite.description.rewriters.text import text_at, text_of
+from multibot_rewrite.description.rewriters.tree import Tree, TreeNode
+from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
+from multibot_rewrite.description.steps.document import Document, read_document
+
+NOTHING: Declared = {}
+SRDF = "srdf.robot"
+
+
+class Host(NamedTuple):
+    """An element whose section was chosen by what it loads: a plugin or a ros2_control system."""
+
+    element: etree._Element
+    start: int
+    node: TreeNode
+
+
+class Inventory(NamedTuple):
+    """Everything a plan needs. ``declared`` maps a kind to its declarations by name, those of the
+    URDF beside an SRDF included; ``format`` is the section of the root element; ``names`` are the
+    names in each of the ``claims``, in their order; ``release`` is that of the facts."""
+
+    document: Document
+    claims: list[Claim]
+    hosts: list[Host]
+    declared: dict[str, dict[str, Claim]]
+    format: str
+    names: list[tuple[ResolvedName, ...]]
+    release: str
+
+    @property
+    def served(self) -> list[tuple[etree._Element, VocabularySection]]:
+        """The hosts that have a section, with it."""
+        return [(it.element, it.node.section) for it in self.hosts if it.node.section is not None]
+
+
+def collect(
+    document: Document, tree: Tree, urdf_declarations: Declared = NOTHING, apart: bool = False
+) -> Inventory:
+    """Walk the document in order along the tree of rewriters.
+
+    ``urdf_declarations`` is what the URDF beside an SRDF declares; ``apart`` says that frames are not
+    spelled as links are.
+    """
+    format_ = _format(document, tree, SRDF if urdf_declarations else "")
+    claims, hosts = _walk(document, tree, format_)
+    release = tree.vocabulary.release
+    claims = below_models(claims, document.source, release)
+    declared = _declared(claims, urdf_declarations)
+    inventory = Inventory(document, claims, hosts, declared, format_, [], release)
+    rules = names_in_rules(claims, inventory.served)
+    return inventory._replace(names=resolved_names(claims, declared, apart, rules))
+
+
+def _walk(document: Document, tree: Tree, format_: str) -> tuple[list[Claim], list[Host]]:
+    """The claims and hosts along the tree of one format."""
+    claims: list[Claim] = []
+    hosts: list[Host] = []
+    nothing: dict[str, TreeNode] = {}
+    below: dict[etree._Element | None, dict[str, TreeNode]]
+    below = {None: {str(document.root.tag): tree.formats[format_]}}
+    known = tree.tags
+    for element, start in zip(document.elements, document.starts, strict=True):
+        tag = element.tag
+        # Most elements hold numbers: one look decides that nothing anywhere asks for them.
+        if tag not in known:
+            continue
+        found = below.get(element.getparent(), nothing).get(tag)
+        if found is None:
+            continue
+        select, active, attributes, text = found.visit
+        if select is not None:
+            found = select(element)
+            if found.section is not None:
+                hosts.append(Host(element, start, found))
+            _, active, attributes, text = found.visit
+        if active:
+            below[element] = active
+        for attribute, site in attributes:
+            value = element.get(attribute)
+            if value is not None:
+                claims.append(Claim(site, element, start, attribute, value))
+        if text is not None:
+            claims += _text_claim(text, element, start)
+    return claims, hosts
+
+
+def _format(document: Document, tree: Tree, likely: str) -> str:
+    found = tree.format_of(document.root, likely)
+    if not found:
+        known = " or ".join(f"<{name}>" for name in sorted(tree.formats) if "." not in name)
+        line, column = locate(document.source, document.starts[0])
+        tag = etree.QName(document.root)
+        where = f" in the namespace {tag.namespace!r}" if tag.namespace else ""
+        hint = "take out its xmlns" if where else "give a robot description"
+        raise InputError(
+            f"{document.file}:{line}:{column}: the root element is <{tag.localname}>{where}, "
+            f"expected {known}; {hint}"
+        )
+    return found
+
+
+def _text_claim(site: Site, element: etree._Element, start: int) -> list[Claim]:
+    text = text_of(element)
+    is_name = (text or takes_empty(site)) and _applies(site, element)
+    return [Claim(site, element, start, "", text)] if is_name else []
+
+
+def _applies(site: Site, element: etree._Element) -> bool:
+    if not site.when:
+        return True
+    sibling, _, text = site.when.partition("=")
+    parent = element.getparent()
+    return parent is not None and text_at(parent, sibling) == text
+
+
+def _declared(claims: list[Claim], urdf_declarations: Declared) -> dict[str, dict[str, Claim]]:
+    declared = {kind: dict(urdf_declarations.get(kind, {})) for kind in DECLARED_KINDS}
+    for claim in claims:
+        site = claim.site
+        if site.role != "declares" or site.kinds[0] not in declared:
+            continue
+        name = claim.value.strip()
+        if name:
+            declared[site.kinds[0]].setdefault(name, claim)
+    return declared
+
+
+def declarations(source: bytes, file: str, tree: Tree) -> Declared:
+    """What a description declares, by kind and name."""
+    return collect(read_document(source, file), tree).declared

@@ -1,0 +1,294 @@
+"""Source bytes -> lxml tree and byte positions. Everything later decides on the tree and edits the
+bytes, so whatever is not edited stays as it was.
+
+A position is found by scanning one start tag; a value is editable only if the bytes there read
+back as the parsed value. What would make that unsafe (other encodings, DOCTYPE) is refused here.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from functools import lru_cache
+from operator import sub
+
+from lxml import etree
+
+from multibot_rewrite.base.bounded import MAX_BYTES
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.place import locate
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.model import Edit, InputError
+from multibot_rewrite.base.record import NamedTuple
+
+# No element of a robot has fifty.
+MAX_ATTRIBUTES = 1000
+# Entities are never resolved, nothing is loaded: the input may come from anywhere. (collect_ids
+# stays on: without it lxml makes libxml2 load external DTDs.) Blanks between elements are most of a
+# tree, and mean nothing.
+_PARSER = etree.XMLParser(
+    resolve_entities=False, no_network=True, load_dtd=False, remove_blank_text=True
+)
+_OPENING = lazy_compile(rb"<[A-Za-z_:\x80-\xff]")
+_SILENT = lazy_compile(rb"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>", re.DOTALL)
+_TAG = lazy_compile(rb"<[^\s/>]+(?:[^>\"']|\"[^\"]*\"|'[^']*')*>")
+_COMMENTS = lazy_compile(rb"\s*(?:<!--.*?-->\s*)*", re.DOTALL)
+_ATTRIBUTE = lazy_compile(rb"\s([^\s=/>\"']+)\s*=\s*(\"[^\"]*\"|'[^']*')")
+_ATTRIBUTES = etree.XPath("//@*", smart_strings=False)
+_TEXTS = etree.XPath("/descendant::text()[normalize-space()]", smart_strings=False)
+# How far the common spelling of an attribute is looked for.
+_NEAR = 4096
+CORRECT = "correct the XML and try again"
+_HINTS = (
+    ("entity amplification", "DOCTYPE and entities are not accepted; expand them first"),
+    ("Excessive depth", "a robot description is never nested this deep"),
+    ("declaration allowed only at the start", "delete what is before <?xml ...?>"),
+    ("Invalid bytes in character encoding", "the text is not UTF-8; convert it: iconv -t UTF-8"),
+    ("not proper UTF-8", "convert it: iconv -f LATIN1 -t UTF-8"),
+    ("XML or text declaration not at start", "delete what is before <?xml ...?>"),
+    ("Namespace prefix", 'declare it on the root element: xmlns:prefix="..."'),
+    ("Unsupported version", 'write <?xml version="1.0"?>'),
+    ("Document is empty", "the file holds no XML"),
+    ("Start tag expected", "the file is not XML"),
+    ("Premature end", "the file is cut short"),
+)
+
+
+class Document(NamedTuple):
+    """One parsed file. ``elements`` are all of the tree in document order, ``starts`` the byte
+    offsets of their start tags, or their numbers where no place is asked for. ``file`` is the name
+    used in messages."""
+
+    source: bytes
+    file: str
+    root: etree._Element
+    elements: list[etree._Element]
+    starts: Sequence[int]
+
+
+def read_document(source: bytes, file: str, placed: bool = True) -> Document:
+    """Parse ``source``; raises InputError with place, cause and remedy where that cannot be done.
+
+    Without ``placed`` elements are numbered and not looked for in the bytes.
+    """
+    _refuse_bytes(source, file)
+    try:
+        root = etree.fromstring(source, _PARSER)
+    except etree.XMLSyntaxError as error:
+        raise InputError(_syntax_message(error, file)) from None
+    elements = list(root.iter("*"))
+    starts = start_offsets(source) if placed else range(len(elements))
+    document = Document(source, file, root, elements, starts)
+    _refuse_tree(document)
+    if placed:
+        _refuse_wide(document)
+    return document
+
+
+def _refuse_bytes(source: bytes, file: str) -> None:
+    if not source or source.isspace():
+        raise InputError(f"{file}: the file is empty; a robot description starts with <robot>")
+    if len(source) > MAX_BYTES:
+        sizes = f"{len(source):,} bytes, over the limit of {MAX_BYTES:,}"
+        raise InputError(f"{file}: {sizes}; is this a mesh?")
+    if source.startswith((b"\xff\xfe", b"\xfe\xff", b"<\0", b"\0<", b"\0\0\xfe\xff", b"\0\0\0<")):
+        width = 32 if b"\0\0" in source[:8] else 16
+        name = f"UTF-{width}"
+        raise InputError(f"{file}: the text is {name}; convert it: iconv -f {name} -t UTF-8")
+    at = source.find(b"\0")
+    # The libxml2 of Ubuntu 22.04 takes it for the end of the file.
+    if at >= 0 and source[:at].strip():
+        line, column = locate(source, at)
+        raise InputError(f"{file}:{line}:{column}: not well-formed XML: a NUL byte; {CORRECT}")
+
+
+def _syntax_message(error: etree.XMLSyntaxError, file: str) -> str:
+    message = " ".join(str(error.msg).split()).partition(", line ")[0]
+    message = message.partition(", use XML_PARSE_HUGE")[0].partition(", see xml")[0]
+    hint = next((hint for start, hint in _HINTS if start in message), CORRECT)
+    line, column = error.position
+    return f"{file}:{line or 1}:{column or 1}: not well-formed XML: {message}; {hint}"
+
+
+def _refuse_tree(document: Document) -> None:
+    source, file, root, *_ = document
+    info = root.getroottree().docinfo
+    if info.internalDTD is not None:
+        raise InputError(f"{file}: DOCTYPE and entities are not accepted; expand them first")
+    encoding = (info.encoding or "UTF-8").upper()
+    if encoding not in ("UTF-8", "UTF8", "ASCII", "US-ASCII") and not source.isascii():
+        raise InputError(
+            f"{file}: the encoding is {encoding}; convert it: iconv -f {encoding} -t UTF-8"
+        )
+
+
+def _refuse_wide(document: Document) -> None:
+    """lxml looks through all attributes of an element for each of them."""
+    source, file, _, elements, starts = document
+    # ` a=""`
+    least = 5 * MAX_ATTRIBUTES
+    half = least // 2
+    # A tag as long has one of these parts all to itself.
+    if all(source.find(b"<", at, at + half) >= 0 for at in range(0, len(source) - half, half)):
+        return
+    for at, length in enumerate(map(sub, (*starts[1:], len(source)), starts)):
+        if length <= least:
+            continue
+        start = starts[at]
+        count = len(elements[at].attrib) + source.count(b" xmlns:", start, tag_end(source, start))
+        if count > MAX_ATTRIBUTES:
+            line, column = locate(source, start)
+            what = f"an element has {count:,} attributes, over the limit of {MAX_ATTRIBUTES:,}"
+            raise InputError(f"{file}:{line}:{column}: {what}")
+
+
+def start_offsets(source: bytes) -> list[int]:
+    """The byte offsets of the start tags of a well-formed text, in document order."""
+    after_declaration = 5 if source.startswith(b"<?xml ") else 0
+    if b"<!--" in source or b"<![CDATA[" in source or source.find(b"<?", after_declaration) >= 0:
+        # Blanks of the same length, so that every offset still holds.
+        source = _SILENT.sub(lambda found: b" " * len(found[0]), source)
+    return [found.start() for found in _OPENING.finditer(source)]
+
+
+def without_comments(source: bytes) -> bytes:
+    """A well-formed text without its comments and processing instructions."""
+    return _SILENT.sub(lambda found: found[0] if found[0].startswith(b"<![") else b"", source)
+
+
+def slot_values(root: etree._Element) -> list[str]:
+    """The value of every attribute and of every text that is more than white space."""
+    texts: list[str] = _TEXTS(root)  # type: ignore[assignment]
+    attributes: list[str] = _ATTRIBUTES(root)  # type: ignore[assignment]
+    return attributes + [text.strip() for text in texts]
+
+
+def value_slot(source: bytes, start: int, attribute: str, value: str) -> tuple[int, int] | None:
+    """Where a value of the element at ``start`` is: of an attribute, or its text if that is empty.
+    None if the bytes there do not read back as ``value``."""
+    if not attribute:
+        return text_slot(source, start, value)
+    # The common spelling, inside this tag and not inside another value; else the exact way.
+    written = f' {attribute}="{value}"'.encode()
+    begin = source.find(written, start, start + _NEAR)
+    earlier = source[start:begin]
+    if begin < 0 or b">" in earlier:
+        return attribute_slot(source, start, attribute, value)
+    if b"=" in earlier and (b"'" in earlier or earlier.count(b'"') % 2):
+        return attribute_slot(source, start, attribute, value)
+    return begin + len(attribute) + 3, begin + len(written) - 1
+
+
+def value_places(
+    source: bytes, start: int, attribute: str, value: str, characters: Iterable[int]
+) -> list[int] | None:
+    """The byte offsets of ``characters`` of a value; None where escapes hide one of them."""
+    slot = value_slot(source, start, attribute, value)
+    if slot is None:
+        return None
+    places = [place_in(source, slot, value, at) for at in characters]
+    found = [place for place in places if place is not None]
+    return found if len(found) == len(places) else None
+
+
+def place_in(source: bytes, slot: tuple[int, int], value: str, at: int) -> int | None:
+    """The byte offset of character ``at`` of the value in ``slot``; None where escapes hide it."""
+    begin, end = slot
+    # As many bytes as characters: nothing is escaped.
+    if end - begin == len(value):
+        return begin + at
+    raw = source[begin:end]
+    head, tail = value[:at].encode(), value[at:].encode()
+    if raw.endswith(tail) and b";" not in tail:
+        return end - len(tail)
+    for written in (head, head.replace(b"\n", b"\r\n")):
+        if raw.startswith(written):
+            return begin + len(written)
+    return None
+
+
+def attribute_slot(source: bytes, start: int, name: str, value: str) -> tuple[int, int] | None:
+    """Where the value of an attribute is, however it is quoted, spaced and escaped.
+
+    A ``name`` of a namespace (``{uri}local``) matches under whatever prefix.
+    """
+    uri, _, local = name.encode().rpartition(b"}")
+    there = _attribute_slots(source, start)
+    # Without a prefix a name is in no namespace.
+    names = (it for it in there if it.endswith(b":" + local)) if uri else (local,)
+    slot = next((there[it] for it in names if it in there), None)
+    return slot if slot and _reads_as(b'<a b="%s"/>', source[slice(*slot)], value) else None
+
+
+# A tag may have thousands of attributes.
+@lru_cache(maxsize=4)
+def _attribute_slots(source: bytes, start: int) -> dict[bytes, tuple[int, int]]:
+    found = _ATTRIBUTE.finditer(source, start, tag_end(source, start))
+    return {it[1]: (it.start(2) + 1, it.end(2) - 1) for it in found}
+
+
+def text_slot(source: bytes, start: int, value: str) -> tuple[int, int] | None:
+    """Where the text after a start tag is, white space around it and comments before it aside; None
+    if it does not read back as ``value``, or if a comment cuts it: its readers differ then."""
+    raw = value.encode()
+    begin = source.find(b">", start) + 1
+    end = begin + len(raw)
+    if source.startswith(raw, begin) and source.startswith(b"</", end):
+        return begin, end
+    begin = _behind_comments(source, tag_end(source, start))
+    text = source[begin : source.find(b"<", begin)].rstrip()
+    end = begin + len(text)
+    rest = _behind_comments(source, end)
+    whole = source.startswith(b"<", rest) and not source.startswith(b"<!", rest)
+    return (begin, end) if whole and _reads_as(b"<a>%s</a>", text, value) else None
+
+
+def _behind_comments(source: bytes, at: int) -> int:
+    found = _COMMENTS.match(source, at)
+    return found.end() if found else at
+
+
+def fillable(source: bytes, start: int) -> tuple[int, int, bytes, bytes]:
+    """Where the text of an element without text goes, and what to write around it.
+
+    A filled ``<a/>`` ends in ``</a>``, a filled ``<a></a>`` in ``</a >``: so both can be emptied again.
+    Before anything else, white space or a comment, the text is just put.
+    """
+    end = tag_end(source, start)
+    if source[end - 2 : end] == b"/>":
+        name = source[start + 1 : end].split(None, 1)[0].rstrip(b"/>")
+        return end - 2, end, b">", b"</%s>" % name
+    if not source.startswith(b"</", end):
+        return end, end, b"", b""
+    close = source.index(b">", end)
+    return end, close, b"", source[end:close] + b" "
+
+
+def emptied(source: bytes, slot: tuple[int, int]) -> Edit:
+    """The edit that takes the text of a filled element out again."""
+    begin, end = slot
+    if not source.startswith(b"</", end):
+        return Edit(begin, end, b"", None)
+    close = source.index(b">", end)
+    if source[close - 1 : close].isspace():
+        return Edit(begin, close, source[end : close - 1], None)
+    return Edit(begin - 1, close + 1, b"/>", None)
+
+
+def _reads_as(frame: bytes, raw: bytes, value: str) -> bool:
+    element = etree.fromstring(frame % raw.replace(b'"', b"&quot;"))
+    return (element.get("b") if b"b=" in frame else element.text or "") == value
+
+
+def tag_end(source: bytes, start: int) -> int:
+    """The offset right after the ``>`` of the start tag at ``start``."""
+    tag = _TAG.match(source, start)
+    assert tag is not None, "lxml read a start tag here"
+    return tag.end()
+
+
+def finding(
+    document: Document, offset: int, code: str, level: str, message: str, hint: str = ""
+) -> Finding:
+    """A finding at a byte offset of the document."""
+    return Finding(code, level, message, hint, document.file, *locate(document.source, offset))

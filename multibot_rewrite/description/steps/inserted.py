@@ -1,0 +1,210 @@
+"""Inserted elements in the bytes: how they are written, and how ``--strip`` finds them again.
+
+They come first in their parent element, after a marker comment:
+
+    <!-- multibot robot1 +2 (added, or all robots would share odom, cmd_vel) -->
+
+The number counts the inserted elements that follow; ``expanded`` after it means that the parent was
+``<a/>`` before, ``filled namespace`` that the parent's first ``<namespace>`` was there and empty. The
+text holds no ": ": launch files pass a description on as a YAML string. The
+marker is a comment because TinyXML-2, which urdfdom and sdformat read with, refuses processing
+instructions inside the root element.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import groupby
+
+from lxml import etree
+
+from multibot_rewrite.base.model import Edit, InputError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.rewriters.insert import ESCAPES, Insertion, query, without
+from multibot_rewrite.description.rewriters.own_defaults import MODEL
+from multibot_rewrite.description.rewriters.spelling import ROBOT_SLOT
+from multibot_rewrite.description.rewriters.text import text_of
+from multibot_rewrite.description.rewriters.vocabulary import is_step
+from multibot_rewrite.description.steps.document import (
+    Document,
+    emptied,
+    fillable,
+    tag_end,
+    text_slot,
+)
+
+MARKER = b"<!-- multibot "
+
+
+class Marker(NamedTuple):
+    """A marker comment read back."""
+
+    comment: etree._Element
+    robot: str
+    elements: int
+    expanded: bool
+    filled: tuple[str, ...]
+
+
+def insertion_edits(document: Document, items: list[Insertion], release: str) -> list[Edit]:
+    """One edit group per parent element, right after its start tag, worded for a release."""
+    if not items:
+        return []
+    starts = dict(zip(document.root.iter("*"), document.starts, strict=True))
+    edits = []
+    for parent, group in groupby(sorted(items, key=lambda i: starts[i.parent]), lambda i: i.parent):
+        why = _why(these := list(group), release)
+        edits += _parent_edits(document.source, parent, starts[parent], these, why)
+    for item in items:
+        if item.filled is not None:
+            start, end, opening, close = fillable(document.source, starts[item.filled])
+            text = item.new.translate(ESCAPES)
+            edits += slot_edits(start, end, f"{opening.decode()}{text}{close.decode()}")
+    return edits
+
+
+def _parent_edits(
+    source: bytes, parent: etree._Element, start: int, items: list[Insertion], why: str
+) -> list[Edit]:
+    end = tag_end(source, start)
+    expanded = source[end - 2 : end] == b"/>"
+    lead = _lead(source, start, end)
+    elements = _elements([item for item in items if not item.step], lead)
+    filled = [item.step for item in items if item.step]
+    words = ["expanded"] if expanded else ["filled", *filled] if filled else []
+    head = " ".join(["multibot", ROBOT_SLOT, f"+{len(elements)}", *words])
+    added = "added, " if elements else ""
+    marker = f"<!-- {head} ({added}or {why}) -->"
+    text = "".join(lead + part for part in (marker, *elements))
+    if expanded:
+        name = source[start + 1 : end].split(None, 1)[0].rstrip(b"/>").decode()
+        return slot_edits(end - 2, end, f">{text}{lead}</{name}>")
+    return slot_edits(end, end, text)
+
+
+def _why(items: list[Insertion], release: str) -> str:
+    """What would be without the inserted elements, as a comment can hold it."""
+    texts: dict[str, list[Insertion]] = {}
+    for item in items:
+        texts.setdefault(without(item, release), []).append(item)
+    parts = [f"{text} {_names(found)}" for text, found in texts.items()]
+    # A comment may not hold "--", a YAML string may not hold a colon and a space.
+    return ", and ".join(parts).replace("--", "- -").replace(": ", ":")
+
+
+def _names(items: list[Insertion]) -> str:
+    names = ("the root namespace" if item.kind == "namespace" else item.old for item in items)
+    return ", ".join(dict.fromkeys(name.replace(MODEL, "MODEL/") for name in names))
+
+
+def _lead(source: bytes, start: int, end: int) -> str:
+    """Line break and indentation of the parent's first child, as the file writes them."""
+    space = source[end : len(source) - len(source[end:].lstrip())].decode()
+    if "\n" in space and source[end + len(space) : end + len(space) + 2] != b"</":
+        return space[space.rindex("\n") - space.count("\r\n", space.rindex("\n") - 1) :]
+    return ""
+
+
+def _elements(items: list[Insertion], lead: str) -> list[str]:
+    plain = [item.xml for item in items if not item.wrap]
+    for wrap in dict.fromkeys(item.wrap for item in items if item.wrap):
+        inner = "".join(f"{lead}{lead and '  '}{item.xml}" for item in items if item.wrap == wrap)
+        plain.append(f"<{wrap}>{inner}{lead}</{wrap}>")
+    return plain
+
+
+def slot_edits(start: int, end: int, text: str) -> list[Edit]:
+    """Replace ``start:end`` by ``text``, in which ``ROBOT_SLOT`` stands for the robot's name."""
+    first, *rest = (piece.encode() for piece in text.split(ROBOT_SLOT))
+    if not rest:
+        return [Edit(start, end, first, None)]
+    return [Edit(start, end, first, rest[0])] + [Edit(end, end, b"", piece) for piece in rest[1:]]
+
+
+def markers(document: Document) -> list[Marker]:
+    """All markers of a document; raises InputError for one that was edited by hand."""
+    if MARKER not in document.source:
+        return []
+    found = []
+    for comment in document.root.iter(etree.Comment):
+        words = (comment.text or "").partition("(")[0].split()
+        # A person may write a comment that starts with this word, too.
+        if words[:1] == ["multibot"] and words[2:3] and words[2][0] == "+":
+            found.append(_read_marker(document, comment, words))
+    return found
+
+
+def _read_marker(document: Document, comment: etree._Element, words: list[str]) -> Marker:
+    _, robot, number, *rest = words
+    filled = rest[1:] if rest[:1] == ["filled"] else []
+    known = rest in ([], ["expanded"]) or (filled and all(map(is_step, filled)))
+    if not number[1:].isdigit() or not known:
+        raise InputError(f"{document.file}:{comment.sourceline}:1: this marker was edited by hand")
+    return Marker(comment, robot, int(number[1:]), rest == ["expanded"], tuple(filled))
+
+
+def removals(document: Document, robot: str) -> list[Edit]:
+    """Edits that take out what was inserted for ``robot``."""
+    mine = [marker for marker in markers(document) if marker.robot == robot]
+    if not mine:
+        return []
+    starts = dict(zip(document.root.iter("*"), document.starts, strict=True))
+    return [edit for marker in mine for edit in _removals(document, marker, starts)]
+
+
+def _removals(document: Document, marker: Marker, starts: dict[etree._Element, int]) -> list[Edit]:
+    try:
+        return list(_removal(document, marker, starts))
+    except ValueError:  # an end tag is not where this module writes it
+        raise _edited(document, marker) from None
+
+
+def _removal(
+    document: Document, marker: Marker, starts: dict[etree._Element, int]
+) -> Iterator[Edit]:
+    source = document.source
+    parent = marker.comment.getparent()
+    inserted = list(marker.comment.itersiblings("*"))[: marker.elements]
+    if parent is None or len(inserted) != marker.elements:
+        raise _edited(document, marker)
+    at = source.index(b"<!--%s-->" % (marker.comment.text or "").encode(), starts[parent])
+    # Everything back to the tag before it is white space that was written with it.
+    begin = source.rindex(b">", 0, at) + 1
+    end = _end(source, starts[inserted[-1]]) if inserted else source.index(b"-->", at) + 3
+    if marker.expanded:
+        yield Edit(begin - 1, source.index(b">", source.index(b"</", end)) + 1, b"/>", None)
+    else:
+        yield Edit(begin, end, b"", None)
+    for step in marker.filled:
+        yield _emptying(document, marker, parent.find(query(step)), starts)
+
+
+def _emptying(
+    document: Document,
+    marker: Marker,
+    filled: etree._Element | None,
+    starts: dict[etree._Element, int],
+) -> Edit:
+    """The whole element, up to the end of the text that was put into it, as it was before."""
+    start = starts[filled] if filled is not None else 0
+    text = text_of(filled) if filled is not None else ""
+    slot = text_slot(document.source, start, text) if text else None
+    if slot is None:
+        raise _edited(document, marker)
+    begin, end, before, _ = emptied(document.source, slot)
+    return Edit(start, end, document.source[start:begin] + before, None)
+
+
+def _edited(document: Document, marker: Marker) -> InputError:
+    place = f"{document.file}:{marker.comment.sourceline}:1"
+    return InputError(f"{place}: the elements this marker counts were edited by hand")
+
+
+def _end(source: bytes, start: int) -> int:
+    """The end of an element that this module wrote: no child has its tag."""
+    end = tag_end(source, start)
+    if source[end - 2 : end] == b"/>":
+        return end
+    name = source[start + 1 : end - 1].split(None, 1)[0]
+    close = b"</" + name + b">"
+    return source.index(close, end) + len(close)

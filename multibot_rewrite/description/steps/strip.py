@@ -1,0 +1,123 @@
+"""The inverse, from the rewritten file alone: take every affix and every inserted element out."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Callable, Iterable
+from itertools import accumulate
+
+from multibot_rewrite.base.model import Claim, Edit
+from multibot_rewrite.base.naming import Naming, removal
+from multibot_rewrite.description.rewriters.contact import respell_collisions
+from multibot_rewrite.description.rewriters.spelling import ResolvedName, is_reached, unspelled
+from multibot_rewrite.description.steps.collect import Inventory
+from multibot_rewrite.description.steps.document import emptied, value_places, value_slot
+from multibot_rewrite.description.steps.inserted import removals
+
+# A name of a description: the number of its value among the claims, its own in the value.
+Place = tuple[int, int]
+NOWHERE: frozenset[Place] = frozenset()
+
+
+def own_places(inventory: Inventory, naming: Naming) -> frozenset[Place]:
+    """Where a description that is not rewritten has names that are the robot's already."""
+    places = (
+        (at, number, (name.kind, name.text))
+        for at, names in enumerate(inventory.names if naming.own else ())
+        for number, name in enumerate(names)
+    )
+    return frozenset((at, number) for at, number, key in places if naming.own.get(key, key) is None)
+
+
+def strip_edits(
+    inventory: Inventory, naming: Naming, robot: str, own: frozenset[Place] = NOWHERE
+) -> list[Edit]:
+    """Edits that undo ``make_plan`` for ``robot``, in source order.
+
+    ``own`` are the ``own_places`` of what was rewritten: what is there was not put there by a rewrite,
+    though a rewrite makes another name like it.
+    """
+    document = inventory.document
+    edits = removals(document, robot)
+    claims = not_inserted(inventory.claims, edits)
+    is_inserted = inside_of(edits)
+    # Claims share the names of equal values, so few are different.
+    known: dict[tuple[int, bool], list[tuple[int, int]]] = {}
+    kept_out = _without(inventory, own, is_inserted) if own else inventory.names
+    for claim, names in zip(inventory.claims, kept_out, strict=True):
+        key = id(names), claim.site.namespaced
+        spans = known.get(key)
+        if spans is None:
+            spans = known[key] = _spans(names, claim.site.namespaced, naming, robot)
+        if spans and is_reached(claim, naming) and not is_inserted(claim):
+            edits += _claim_edits(document.source, claim, spans)
+
+    def unspell(kind: str, name: str) -> str:
+        return unspelled(naming, kind, name, robot)
+
+    for claim, old in respell_collisions(document.root, claims, inventory.declared, unspell):
+        slot = value_slot(document.source, *claim[2:])
+        if slot is not None:
+            edits.append(Edit(*slot, old.encode(), None))
+    return sorted(edits, key=lambda edit: edit.start)
+
+
+def stripped(claim: Claim, names: tuple[ResolvedName, ...], naming: Naming, robot: str) -> str:
+    """A claimed value without its affixes."""
+    value, namespaced = claim.value, claim.site.namespaced
+    for name in reversed(names) if is_reached(claim, naming) else ():
+        span = removal(naming, robot, name.kind, name.text, namespaced)
+        if span is not None:
+            value = value[: name.at + span[0]] + value[name.at + span[1] :]
+    return value
+
+
+def _without(
+    inventory: Inventory, own: frozenset[Place], is_inserted: Callable[[Claim], bool]
+) -> list[tuple[ResolvedName, ...]]:
+    """The names in each value but those at places of ``own``."""
+    at = 0
+    found = []
+    for claim, names in zip(inventory.claims, inventory.names, strict=True):
+        if is_inserted(claim):
+            found.append(names)
+            continue
+        found.append(tuple(it for number, it in enumerate(names) if (at, number) not in own))
+        at += 1
+    return found
+
+
+def not_inserted(claims: list[Claim], removed: list[Edit]) -> list[Claim]:
+    """The claims that are not in inserted elements."""
+    is_inserted = inside_of(removed)
+    return [claim for claim in claims if not is_inserted(claim)] if removed else claims
+
+
+def inside_of(removed: Iterable[Edit]) -> Callable[[Claim], bool]:
+    """Whether a claim is in one of the elements."""
+    spans = sorted((edit.start, edit.end) for edit in removed)
+    starts = [start for start, _ in spans]
+    # How far those up to each one reach.
+    ends = [0, *accumulate((end for _, end in spans), max)]
+    return lambda claim: claim.start < ends[bisect_right(starts, claim.start)]
+
+
+def _spans(
+    names: tuple[ResolvedName, ...], namespaced: bool, naming: Naming, robot: str
+) -> list[tuple[int, int]]:
+    """The parts of a value with these names that an affix put there."""
+    spans = []
+    for name in names:
+        span = removal(naming, robot, name.kind, name.text, namespaced)
+        if span is not None:
+            spans.append((name.at + span[0], name.at + span[1]))
+    return spans
+
+
+def _claim_edits(source: bytes, claim: Claim, spans: list[tuple[int, int]]) -> list[Edit]:
+    value = claim.start, claim.attribute, claim.value
+    if claim.site.form == "prefix" and spans == [(0, len(claim.value))]:
+        slot = value_slot(source, *value)
+        return [emptied(source, slot)] if slot else []
+    places = value_places(source, *value, [at for span in spans for at in span]) or []
+    return [Edit(a, b, b"", None) for a, b in zip(places[::2], places[1::2], strict=True)]

@@ -1,0 +1,342 @@
+"""The proof that runs on every rewrite: it reads the output bytes again and compares.
+
+It trusts how the source was read and what the naming says. It does not trust the plan, nor what was
+made of it.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Collection, Iterator
+from operator import attrgetter
+
+from lxml import etree
+
+from multibot_rewrite.base.gc_pause import gc_paused
+from multibot_rewrite.base.model import Claim, Edit, InputError, ProofError
+from multibot_rewrite.base.naming import FRAME_KINDS, Naming, affix, removal, spelled
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.rewriters.contact import respell_collisions
+from multibot_rewrite.description.rewriters.forms import Declared
+from multibot_rewrite.description.rewriters.insert import insertions, query, without
+from multibot_rewrite.description.rewriters.spelling import (
+    ROBOT_SLOT,
+    ResolvedName,
+    is_reached,
+    spelled_names,
+)
+from multibot_rewrite.description.rewriters.text import text_of
+from multibot_rewrite.description.rewriters.tree import Tree
+from multibot_rewrite.description.steps.apply import cut
+from multibot_rewrite.description.steps.collect import Inventory, collect
+from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.description.steps.inserted import MARKER, Marker, markers, removals
+from multibot_rewrite.description.steps.plan import Plan
+from multibot_rewrite.description.steps.strip import (
+    Place,
+    inside_of,
+    own_places,
+    strip_edits,
+    stripped,
+)
+
+Names = tuple[ResolvedName, ...]
+_KIND = attrgetter("kind")
+
+
+class Evidence(NamedTuple):
+    """What the checks compare: the source as it was read, the plan, and the output read again.
+
+    ``slots`` says how often a robot's name is put in; ``expected`` is what each claimed value is to
+    become, with ``ROBOT_SLOT`` where that name goes. ``inserted`` are the spans of the output that
+    the robot's ``markers`` say were inserted; ``added`` are the claims in them with their names,
+    ``found`` all others.
+    """
+
+    inventory: Inventory
+    plan: Plan
+    slots: int
+    robot: str
+    naming: Naming
+    expected: list[str]
+    result: Inventory
+    markers: list[Marker]
+    inserted: list[Edit]
+    found: list[tuple[Claim, Names]]
+    added: list[tuple[Claim, Names]]
+
+
+@gc_paused()
+def verify(
+    inventory: Inventory,
+    plan: Plan,
+    slots: int,
+    output: bytes,
+    robot: str,
+    naming: Naming,
+    tree: Tree,
+    urdf_declarations: Declared,
+) -> None:
+    """Raise ProofError unless ``output`` is the input with its names renamed and nothing else changed.
+
+    ``slots`` says how often the robot's name was put in; ``urdf_declarations`` is what the URDF
+    beside an SRDF declares.
+    """
+    file = inventory.document.file
+    beside = spelled_names(urdf_declarations, naming, robot)
+    try:
+        read = read_document(output, f"{file} for {robot}", _asks_places(plan, output, naming))
+        result = collect(read, tree, beside, naming.layout.at_run_time)
+        mine = [marker for marker in markers(result.document) if marker.robot == robot]
+        inserted = removals(result.document, robot)
+    except InputError as error:
+        raise ProofError(f"the output does not parse: {error}") from None
+    pairs = list(zip(result.claims, result.names, strict=True))
+    is_inserted = inside_of(inserted)
+    added = [pair for pair in pairs if is_inserted(pair[0])] if inserted else []
+    found = [pair for pair in pairs if not is_inserted(pair[0])] if inserted else pairs
+    expected = list(_expected(inventory, naming))
+    it = Evidence(
+        inventory, plan, slots, robot, naming, expected, result, mine, inserted, found, added
+    )
+    for check in CHECKS:
+        check(it)
+
+
+def _asks_places(plan: Plan, output: bytes, naming: Naming) -> bool:
+    """Does a check ask where in the bytes an element of the output is? Only where more than affixes
+    has to be taken out."""
+    return MARKER in output or bool(naming.own) or _replaces(plan)
+
+
+def _replaces(plan: Plan) -> bool:
+    return any(edit.start < edit.end for edit in plan.edits)
+
+
+def same_names(it: Evidence) -> None:
+    """The same sites are there in the same order, each with the value that the naming says."""
+    claims, file = it.inventory.claims, it.inventory.document.file
+    if len(it.found) != len(claims):
+        raise ProofError(f"{file}: {len(claims)} names went in, {len(it.found)} came out")
+    for claim, (new, _), slotted in zip(claims, it.found, it.expected, strict=True):
+        value = slotted.replace(ROBOT_SLOT, it.robot)
+        if new.site is not claim.site or new.value != value:
+            raise ProofError(f"{file}: {claim.value!r} became {new.value!r}, expected {value!r}")
+
+
+def _expected(inventory: Inventory, naming: Naming) -> Iterator[str]:
+    """What each claimed value is to become; claims with the same names share one spelling."""
+    collisions = _collisions(inventory, naming)
+    known: dict[tuple[int, bool], str] = {}
+    for claim, names in zip(inventory.claims, inventory.names, strict=True):
+        if not names or not is_reached(claim, naming):
+            yield collisions.get((claim.start, claim.attribute), claim.value)
+            continue
+        key = id(names), claim.site.namespaced
+        if key not in known:
+            known[key] = _named(claim, names, naming)
+        yield known[key]
+
+
+def _named(claim: Claim, names: Names, naming: Naming) -> str:
+    value, namespaced = claim.value, claim.site.namespaced
+    if names[0].text == value:
+        return spelled(naming, ROBOT_SLOT, names[0].kind, value, namespaced)
+    for name in reversed(names):
+        new = spelled(naming, ROBOT_SLOT, name.kind, name.text, namespaced)
+        # Names may be inside one another; of these at most one changes.
+        if new != name.text:
+            value = value[: name.at] + new + value[name.at + len(name.text) :]
+    return value
+
+
+def _collisions(inventory: Inventory, naming: Naming) -> dict[tuple[int, str], str]:
+    """The contact collisions that change, by the place of their elements."""
+    document, claims, _, declared, *_ = inventory
+
+    def respell(kind: str, name: str) -> str:
+        return spelled(naming, ROBOT_SLOT, kind, name)
+
+    found = respell_collisions(document.root, claims, declared, respell)
+    return {(claim.start, claim.attribute): new for claim, new in found}
+
+
+def same_targets(it: Evidence) -> None:
+    """Every name means what it meant: a use finds what it named, and nothing else does."""
+    file, own = it.inventory.document.file, it.naming.own
+    # Claims share the names of equal values, so few are different.
+    seen: set[tuple[int, int]] = set()
+    for names, (new, now) in zip(it.inventory.names, it.found, strict=True):
+        pair = id(names), id(now)
+        if pair in seen:
+            continue
+        seen.add(pair)
+        kept = {at for at, name in enumerate(names) if (name.kind, name.text) in own} if own else ()
+        kinds = _kinds(now, kept)
+        lost = any(_left_behind(name, it.inventory) for name in now) if "" in kinds else False
+        if lost or kinds != _kinds(names, kept):
+            raise ProofError(f"{file}: {new.value!r} does not name what it named before")
+
+
+def _kinds(names: Names, kept: Collection[int]) -> list[str]:
+    """The kinds of names; a frame that an argument of the xacro names may become that of a link."""
+    if not kept:
+        return [*map(_KIND, names)]
+    return [
+        "frame" if at in kept and name.kind in FRAME_KINDS else name.kind
+        for at, name in enumerate(names)
+    ]
+
+
+def _left_behind(name: ResolvedName, inventory: Inventory) -> bool:
+    """Does this name lead nowhere now, though there was something called so?"""
+    kinds = () if name.kind else name.kinds
+    return any(name.text in inventory.declared.get(kind, ()) for kind in kinds)
+
+
+def robots_own(it: Evidence) -> None:
+    """Every name in an inserted element that another robot would have, too, has this robot's name."""
+    for name, reach in _inserted_names(it):
+        # What must be declared and is not is of no kind: it is another robot's, or nobody's.
+        if not name.kind or removal(it.naming, it.robot, name.kind, name.text, reach) is None:
+            file = it.inventory.document.file
+            raise ProofError(f"{file}: {name.text!r} was inserted, which is not {it.robot}'s own")
+
+
+def _inserted_names(it: Evidence) -> Iterator[tuple[ResolvedName, bool]]:
+    """The names in inserted elements that the naming changes, and whether a namespace reaches them."""
+    for claim, names in it.added:
+        reach = claim.site.namespaced
+        for name in names:
+            if not name.kind or affix(it.naming, name.kind, name.text, reach) is not None:
+                yield name, reach
+
+
+def nothing_to_add(it: Evidence) -> None:
+    """No plugin is left with a default or hard-wired topic that another robot would share."""
+    for item in insertions(it.result.served, it.result.declared, it.naming):
+        file = it.inventory.document.file
+        raise ProofError(
+            f"{file}: {without(item, it.inventory.release)} {item.old!r}: nothing was inserted"
+        )
+
+
+def added_once(it: Evidence) -> None:
+    """No inserted element is there already: consumers read the first, or both."""
+    for marker in it.markers:
+        behind = list(marker.comment.itersiblings("*"))
+        added = behind[: marker.elements]
+        _once(it, added, [*behind, *marker.comment.itersiblings("*", preceding=True)])
+        for element in added:
+            _once(it, list(element), list(element))
+
+
+def _once(it: Evidence, added: list[etree._Element], beside: list[etree._Element]) -> None:
+    there = Counter(map(_key, beside))
+    for element in added:
+        if there[_key(element)] > 1:
+            file = it.inventory.document.file
+            raise ProofError(f"{file}: <{element.tag}> was inserted and is there already")
+
+
+def _key(element: etree._Element) -> tuple[str, str | None, str]:
+    """What an element is about: a rule by the name it is for, any other by its tag and name."""
+    rule, is_rule, _ = (element.text or "").strip().partition(":=")
+    return str(element.tag), element.get("name"), rule if is_rule else ""
+
+
+def as_decided(it: Evidence) -> None:
+    """What the plan decided to insert is what its edits write."""
+    output, file, robot = it.result.document.source, it.inventory.document.file, it.robot
+    inserted = b"".join(output[edit.start : edit.end] for edit in it.inserted)
+    for item in it.plan.insertions:
+        if not item.step and item.xml.replace(ROBOT_SLOT, robot).encode() not in inserted:
+            raise ProofError(f"{file}: {item.old!r} was to be replaced by {item.xml}")
+    filled = (item.new for item in it.plan.insertions if item.step)
+    wanted = sorted(text.replace(ROBOT_SLOT, robot) for text in filled)
+    if sorted(_filled(it)) != wanted:
+        raise ProofError(f"{file}: empty elements were to be filled with {', '.join(wanted)}")
+
+
+def _filled(it: Evidence) -> Iterator[str]:
+    """The texts of the elements that the markers say were empty."""
+    for marker in it.markers:
+        parent = marker.comment.getparent()
+        if parent is not None:
+            found = (parent.find(query(step)) for step in marker.filled)
+            yield from (text_of(element) for element in found if element is not None)
+
+
+def as_planned(it: Evidence) -> None:
+    """The text is the source with the planned edits."""
+    source, file, *_ = it.inventory.document
+    if b"".join(_planned(source, it.plan.edits, it.robot.encode())) != it.result.document.source:
+        raise ProofError(f"{file}: the text is not the source with the planned edits")
+
+
+def _planned(source: bytes, edits: list[Edit], robot: bytes) -> Iterator[bytes]:
+    last = 0
+    for start, end, before, after in edits:
+        yield source[last:start] + before
+        if after is not None:
+            yield robot + after
+        last = end
+    yield source[last:]
+
+
+def a_slot_each(it: Evidence) -> None:
+    """Each name of this robot was put into a slot: any other robot gets its own at the same places."""
+    values = "".join(it.expected).count(ROBOT_SLOT)
+    wanted = values + len(list(_inserted_names(it))) + len(it.markers)
+    if it.slots != wanted:
+        file = it.inventory.document.file
+        raise ProofError(f"{file}: {it.robot} is named {wanted} times, in {it.slots} slots")
+
+
+def strips_to_source(it: Evidence) -> None:
+    """Undoing the rewrite, by what the output alone says, gives the input back."""
+    own = own_places(it.inventory, it.naming)
+    fills = any(marker.filled for marker in it.markers)
+    if not (_strips(it, own) if own or fills or _replaces(it.plan) else _adds_affixes(it)):
+        file = it.inventory.document.file
+        raise ProofError(
+            f"{file}: stripping {it.robot} from the output does not give the input back"
+        )
+
+
+def _strips(it: Evidence, own: frozenset[Place]) -> bool:
+    edits = strip_edits(it.result, it.naming, it.robot, own)
+    return b"".join(cut(it.result.document.source, edits)) == it.inventory.document.source
+
+
+def _adds_affixes(it: Evidence) -> bool:
+    """Do affixes in values and inserted elements make up all that a text has more than its source?
+
+    Where a plan only adds, that is the same as to strip the text: nothing of the source is gone, and
+    a byte added elsewhere would be one too many.
+    """
+    more = len(it.result.document.source) - len(it.inventory.document.source)
+    more -= sum(edit.end - edit.start for edit in it.inserted)
+    known: dict[tuple[int, bool], str] = {}
+    for old, (claim, names) in zip(it.inventory.claims, it.found, strict=True):
+        key = id(names), claim.site.namespaced
+        if names and key not in known:
+            known[key] = stripped(claim, names, it.naming, it.robot)
+        if old.value != (known[key] if names else claim.value):
+            return False
+        more -= len(claim.value) - len(old.value)
+    return more == 0
+
+
+# In this order: the first ones say best what is wrong.
+CHECKS = (
+    same_names,
+    same_targets,
+    robots_own,
+    nothing_to_add,
+    added_once,
+    a_slot_each,
+    strips_to_source,
+    as_decided,
+    as_planned,
+)

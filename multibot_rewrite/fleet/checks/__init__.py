@@ -1,0 +1,1 @@
+"""What was made is asked whether it fits together."""

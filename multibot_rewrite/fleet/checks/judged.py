@@ -1,0 +1,160 @@
+"""What the rules of any system find in a fleet as it is written, and whether its sources have it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import cast
+
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.fleet.fleet import Fleet, planned
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.outputs.output_values import OutputText, line_in_source
+from multibot_rewrite.fleet.robots.rewritten_robots import SET_PREFIX, RewrittenRobot
+from multibot_rewrite.producers.ends import NEEDS
+from multibot_rewrite.rules.check import absences, contradictions
+from multibot_rewrite.rules.index import Index, index
+from multibot_rewrite.rules.ownership import (
+    ALONE,
+    Whose,
+    frame_ownership,
+    name_ownership,
+    whose_by_plan,
+)
+from multibot_rewrite.rules.system.interfaces import (
+    interface_claimed_twice,
+    interface_not_exported,
+    open_claims,
+)
+from multibot_rewrite.rules.system.states import interface_commanded_twice
+from multibot_rewrite.rules.system.tf_topics import tf_tree_in_pieces
+from multibot_rewrite.rules.system.unsent import no_longer_sent, open_ends
+from multibot_rewrite.system.records import CLAIMS, EXPORTS, NOWHERE, RUNS, End, Interface, System
+
+Key = tuple[str, ...]
+
+
+def whose_names(fleet: Fleet) -> Whose:
+    """Whose the names of a fleet are, by its plan."""
+    plan = planned(fleet)
+    return whose_by_plan(plan, name_ownership(plan), frame_ownership(plan))
+
+
+def contradicted(plan: FleetPlan, whole: System, whose: Whose) -> Iterator[Finding]:
+    """What nodes that surely run do to each other; in one robot they did so before its rewrite.
+
+    What all robots are told to share is meant.
+    """
+    shared = {f"/{it}" for it in plan.fleet.naming.shared_topics}
+    robots = {it.spec.namespace: it for it in plan.robots}
+    sure = tuple(it for it in whole.ends if it.sure == RUNS)
+    found = contradictions(index(whole._replace(ends=sure), whose))
+    for it in (it for it in found if not it.names or not shared.issuperset(it.names)):
+        level = WARNING if it.robot and it.level == ERROR else it.level
+        yield in_file(it._replace(level=level), robots.get(it.robot) or plan.robots[-1])
+
+
+def missing(
+    robot: RewrittenRobot, before: System, after: System, whose: Whose
+) -> Iterator[Finding]:
+    """What a robot needs and nothing gives, as it is written: an error where its sources had it.
+
+    What the sources need is asked for; what the build adds, such as rows of a bridge, may give it.
+    """
+    old, new = index(before, ALONE), index(_asked(before, after), whose)
+    was_open = _by_key(before, open_ends(old))
+    lost = {
+        (it.node, it.name): it
+        for key, it in _by_key(after, open_ends(new)).items()
+        if key not in was_open
+    }
+    in_sources = {_about(it, before): it for it in absences(old) if it.node}
+    for it in (it for it in absences(new) if it.code != tf_tree_in_pieces.code):
+        if it.node and (it.node, it.names[0]) in lost:
+            del lost[it.node, it.names[0]]
+            yield in_file(it, robot)
+            continue
+        # Names as the sources have them, where these have both.
+        source = in_sources.get(_about(it, after)) if it.node else None
+        said = source if source and _is_placed(before, source.names[-1]) else it
+        level = WARNING if said.level == ERROR else said.level
+        yield in_file(said._replace(level=level), robot, by_sources=said is source)
+    yield from (in_file(no_longer_sent(it), robot) for it in lost.values())
+
+
+def apart(robot: RewrittenRobot, before: System, after: System, whose: Whose) -> Iterator[Finding]:
+    """Where the robot's frames are in pieces by its sources, and where only its rewrite cuts them."""
+    check = cast(Callable[[Index], Iterator[Finding]], tf_tree_in_pieces.check)
+    found = [*check(index(before, ALONE))]
+    known = {it.name: it.known for it in after.nodes}
+    told = {it.node.lstrip("/") for it in found}
+    yield from (in_file(it, robot, by_sources=True) for it in found)
+    for it in check(index(after, whose)):
+        if known.get(it.node, it.node) not in told:
+            yield in_file(it._replace(level=ERROR), robot)
+
+
+def controlled(
+    robot: RewrittenRobot, before: System, after: System, texts: Sequence[OutputText]
+) -> Iterator[Finding]:
+    """What is wrong between a robot's controllers and its hardware, by its sources; an error where only
+    its rewrite has opened it."""
+    for it in _ask(
+        (interface_not_exported, interface_claimed_twice, interface_commanded_twice), before
+    ):
+        yield in_file(it._replace(level=WARNING), robot, by_sources=True)
+    was_open = open_claims(before.interfaces)
+    old = {at for at, it in enumerate(_claims(before)) if it in was_open}
+    left = [it for at, it in enumerate(_claims(after)) if at not in old]
+    exports = [it for it in after.interfaces if it.role == EXPORTS]
+    opened = after._replace(interfaces=(*exports, *left))
+    for it in _ask((interface_not_exported,), opened):
+        source = next((text for text in texts if text.path == it.file and text.sources), None)
+        file, line = line_in_source(source, it.line) if source else (it.file, it.line)
+        hint = SET_PREFIX if robot.needs_prefix else it.hint
+        found = it._replace(level=ERROR, file=file, line=line, hint=hint)
+        yield in_file(found, robot, by_sources=True)
+
+
+def _ask(rules: Iterable[Rule], system: System) -> Iterator[Finding]:
+    seen = index(system, ALONE)
+    for rule in rules:
+        yield from cast(Callable[[Index], Iterator[Finding]], rule.check)(seen)
+
+
+def _claims(system: System) -> list[Interface]:
+    return [it for it in system.interfaces if it.role == CLAIMS]
+
+
+def _asked(before: System, after: System) -> System:
+    """The system as it is written, with the needs that its sources have."""
+    needed = _by_key(before, (it for it in before.ends if it.role in NEEDS))
+    keys = {id(it): key for key, it in _by_key(after, after.ends).items()}
+    ends = (it for it in after.ends if it.role not in NEEDS or keys.get(id(it)) in needed)
+    return after._replace(ends=tuple(ends))
+
+
+def _by_key(system: System, ends: Iterable[End]) -> Mapping[Key, End]:
+    """Ends by what is the same before and after a rewrite: the node, and the name in its code."""
+    known = {it.name: it.known for it in system.nodes}
+    return {(it.kind, it.role, known.get(it.node, it.node), it.code_name): it for it in ends}
+
+
+def _about(finding: Finding, system: System) -> Key | None:
+    """The key of the end that a finding is about."""
+    ends = (it for it in system.ends if (it.node, it.name) == (finding.node, finding.names[0]))
+    return next(iter(_by_key(system, ends)), None)
+
+
+def _is_placed(system: System, name: str) -> bool:
+    return any(it.name == name and it.place != NOWHERE for it in system.ends)
+
+
+def in_file(finding: Finding, robot: RewrittenRobot, by_sources: bool = False) -> Finding:
+    """The finding as one of its file, else of the robot's line in the fleet file: who it is about is in
+    the message. The names of the sources say no robot."""
+    it, spec = finding, robot.spec
+    file, line, column = (it.file, it.line, it.column) if it.file else (spec.file, spec.line, 1)
+    who = f"{it.node} of {spec.name} " if by_sources else f"{it.node} "
+    message = f"{who}{it.message}" if it.node else it.message
+    return it._replace(message=message, node="", robot="", file=file, line=line, column=column)

@@ -1,0 +1,219 @@
+"""The system of a fleet as it is written: by its table, the transforms of its nodes, its bridges."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import islice
+
+from multibot_rewrite.base.conventions import OF_EVERY_NODE, is_tool_word
+from multibot_rewrite.companions.yaml_text import read_yaml
+from multibot_rewrite.description.rewriters.own_defaults import frame_sites
+from multibot_rewrite.description.rewriters.text import text_at
+from multibot_rewrite.fleet.fleet import Fleet
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.outputs.output_values import OutputText, line_in_source
+from multibot_rewrite.fleet.robots.member import line_of
+from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleet.robots.robot_groups import group_robots
+from multibot_rewrite.fleet.robots.robot_nodes import node_sources
+from multibot_rewrite.producers.ends import (
+    BRIDGE_FILE,
+    BRIDGE_NODE,
+    NEEDS,
+    bridge_ends,
+    either_way,
+    plugin_ends,
+)
+from multibot_rewrite.producers.evidence.records import GivenNode
+from multibot_rewrite.producers.transforms import edge
+from multibot_rewrite.spelling.plan import tf_topic
+from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
+from multibot_rewrite.spelling.transforms import Edge as Pair
+from multibot_rewrite.spelling.ways import merged
+from multibot_rewrite.system.records import (
+    MAY,
+    NOWHERE,
+    RUNS,
+    UNKNOWN_NODES,
+    Caveat,
+    Edge,
+    End,
+    Environment,
+    Node,
+    Place,
+    Robot,
+    System,
+    place_of,
+)
+
+# Of robots that differ in their names alone two show where they meet.
+SHOWN = 2
+_MAY_RUN = "a driver that no file names may run"
+DRIVERS = Environment(caveats=(Caveat(UNKNOWN_NODES, True, _MAY_RUN),))
+Sections = Mapping[str, GivenNode]
+NO_SECTIONS: Sections = {}
+
+
+def of_each_kind(plan: FleetPlan) -> list[RewrittenRobot]:
+    """Some robots of each kind: the others are the same but for their names."""
+    return [it for group in group_robots(plan) for it in islice(group.robots, SHOWN)]
+
+
+def with_robots(fleet: Fleet, robots: Iterable[RewrittenRobot]) -> Fleet:
+    """What a fleet has of some robots and for all."""
+    kept = {"", *(it.spec.namespace for it in robots)}
+    table = fleet.table._replace(
+        nodes=tuple(it for it in fleet.table.nodes if it.robot in kept),
+        names=tuple(it for it in fleet.table.names if it.robot in kept),
+    )
+    return fleet._replace(
+        table=table,
+        inventories={name: it for name, it in fleet.inventories.items() if name in kept},
+        described={name: it for name, it in fleet.described.items() if name in kept},
+        edges={key: it for key, it in fleet.edges.items() if key[0] in kept},
+    )
+
+
+def written_system(
+    plan: FleetPlan, fleet: Fleet, shown: Sequence[RewrittenRobot], texts: Sequence[OutputText]
+) -> System:
+    """What runs on these robots by the files that were made, with the places in the sources."""
+    robots = {it.spec.namespace: it for it in shown}
+    may = {name: _conditional(plan, it) for name, it in robots.items()}
+    given = {name: _sections(plan, it) for name, it in robots.items()}
+    nodes = tuple(_nodes(fleet, may, given))
+    # Rules of a plugin are for its whole process: topics of controllers that the table does not have.
+    by_process = (end for it in shown for end in plugin_ends(it.member.reading) if end.sure == MAY)
+    edges = (edge for it in shown for edge in _edges(plan, fleet, it))
+    return System(
+        nodes=(*nodes, *_bridges(shown, texts)),
+        ends=(*_ends(fleet, nodes, given), *_bridged(shown, texts), *by_process),
+        edges=tuple(edges),
+        robots=tuple(Robot(it.spec.namespace) for it in shown),
+        environment=DRIVERS,
+    )
+
+
+def _conditional(plan: FleetPlan, robot: RewrittenRobot) -> frozenset[str]:
+    """The nodes of a robot that are started under a condition."""
+    facts = plan.evidence[node_sources(robot.spec)].nodes
+    return frozenset(it.name for it in facts if it.when)
+
+
+def _sections(plan: FleetPlan, robot: RewrittenRobot) -> Sections:
+    """What the robot's own files set, by node; their places are those of the sources."""
+    return {it.name: it for it in plan.evidence[node_sources(robot.spec)].given}
+
+
+def _nodes(
+    fleet: Fleet, may: Mapping[str, frozenset[str]], given: Mapping[str, Sections]
+) -> Iterator[Node]:
+    for it in merged(fleet.table.nodes):
+        if not it.robot or it.robot in may:
+            # A person starts a tool, or nobody does.
+            doubtful = it.node in may.get(it.robot, ()) or is_tool_word(it.code_name)
+            place = _section(it.node, given.get(it.robot, NO_SECTIONS))
+            plugin = place_of(fleet.sources.get(it.full_name, ""))
+            place = plugin if plugin != NOWHERE else place
+            sure = MAY if doubtful else RUNS
+            yield Node(it.full_name, robot=it.robot, known=it.node, sure=sure, place=place)
+
+
+def _ends(fleet: Fleet, nodes: Iterable[Node], given: Mapping[str, Sections]) -> Iterator[End]:
+    known = {it.name: it for it in nodes}
+    for it in fleet.table.names:
+        end, node = it.endpoint, known.get(it.node)
+        if node is None or it.name in OF_EVERY_NODE:
+            continue
+        sections = given.get(it.robot, NO_SECTIONS)
+        place = _parameter(node.known, end.parameter, sections) if it.robot else NOWHERE
+        # A node with parameters is meant to run: what it needs has to be there.
+        needs = end.role in NEEDS and node.place != NOWHERE
+        sure = MAY if end.when else RUNS if needs else node.sure
+        told = (end.name, end.also, sure, place if place != NOWHERE else node.place)
+        yield from either_way(
+            End(end.kind, end.role, it.name, end.type, "", it.node, None, "", *told)
+        )
+
+
+def _bridges(robots: Iterable[RewrittenRobot], texts: Iterable[OutputText]) -> Iterator[Node]:
+    paths = {it.path for it in texts}
+    for it in robots:
+        if f"{it.spec.name}/{BRIDGE_FILE}" in paths:
+            name = it.spec.namespace
+            yield Node(f"/{name}/{BRIDGE_NODE}", robot=name, known=BRIDGE_NODE)
+
+
+def _bridged(robots: Iterable[RewrittenRobot], texts: Iterable[OutputText]) -> Iterator[End]:
+    """What the bridges carry; a row for both ways may be for one of them."""
+    spaces = {f"{it.spec.name}/{BRIDGE_FILE}": f"/{it.spec.namespace}" for it in robots}
+    spaces[BRIDGE_FILE] = ""
+    for text in (it for it in texts if it.path in spaces):
+        node = f"{spaces[text.path]}/{BRIDGE_NODE}"
+        for it in bridge_ends(read_yaml(text.text.encode(), text.path)):
+            place = Place(*line_in_source(text, it.place.line)) if text.sources else NOWHERE
+            yield from either_way(it._replace(node=node, place=place))
+
+
+def of_robot(whole: System, robot: str) -> System:
+    """What one robot has of a fleet's system; what nodes for all robots need is left out."""
+    nodes = {it.name: it.robot for it in whole.nodes if it.robot in ("", robot)}
+    other = {it.name for it in whole.nodes} - nodes.keys()
+    ends = (
+        it
+        for it in whole.ends
+        if it.node not in other and (nodes.get(it.node) == robot or it.role not in NEEDS)
+    )
+    kept = tuple(it for it in whole.nodes if it.name in nodes)
+    own = (it for it in whole.edges for node in it.publishers if _is_of(node, robot, nodes))
+    return whole._replace(nodes=kept, ends=tuple(ends), edges=tuple(own))
+
+
+def _is_of(node: str, robot: str, nodes: Mapping[str, str]) -> bool:
+    return nodes.get(node, "") == robot or node.startswith(f"/{robot}/")
+
+
+def _edges(plan: FleetPlan, fleet: Fleet, robot: RewrittenRobot) -> Iterator[Edge]:
+    name, given = robot.spec.namespace, _sections(plan, robot)
+    topic = tf_topic(name, fleet.naming)
+    full = {it.node: it.full_name for it in fleet.table.nodes if it.robot == name}
+    root = full.get(STATE_PUBLISHER, f"/{name}/{STATE_PUBLISHER}")
+    children: set[str] = set()
+    for number, it in enumerate(robot.tree):
+        place = Place(robot.spec.description, line_of(robot.member.source, "joint", number))
+        # Two joints have one child in a closed loop of an SDF, which is no tree.
+        if it.child not in children or robot.member.source.root.tag == "robot":
+            children.add(it.child)
+            yield edge(it, root, place, topic)
+    for it in _simulated(robot):
+        yield edge(it, f"/{name}/{BRIDGE_NODE}", topic=topic)
+    for (owner, node), sent in fleet.edges.items():
+        if owner == name:
+            place = _section(node, given)
+            yield from (
+                edge(it, full.get(node, f"/{name}/{node}"), place, topic)
+                for it in sent
+                if it not in robot.tree
+            )
+
+
+def _simulated(robot: RewrittenRobot) -> Iterator[Pair]:
+    """The transforms of gz-sim's drive and odometry systems, which the bridge brings to tf."""
+    for host, section in robot.member.inventory.served:
+        sites = frame_sites(host, section, robot.names.naming)
+        given = [text_at(host, it.path) for it in sites]
+        if len(given) == 2 and all(given):
+            yield Pair(given[0], given[1], False)
+
+
+def _section(node: str, given: Sections) -> Place:
+    """Where a file has parameters for the node."""
+    found = given.get(node) or given.get(node.rpartition("/")[2])
+    return found.place if found else NOWHERE
+
+
+def _parameter(node: str, name: str, given: Sections) -> Place:
+    """Where a file sets a parameter of the node."""
+    found = given.get(node) or given.get(node.rpartition("/")[2])
+    value = found.values.get(name) if found else None
+    return value.place if value else NOWHERE

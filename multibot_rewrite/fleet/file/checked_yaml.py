@@ -1,0 +1,159 @@
+"""YAML checked against a JSON Schema: plain data with its lines, or one line with the error."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+import yaml
+
+from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.model import InputError, UsageError
+from multibot_rewrite.base.nearest import did_you_mean_one_of
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.yaml_text import line_of, pairs, read_yaml, refuse_anchors
+from multibot_rewrite.description.sources.read import read_file
+
+Path = tuple[Any, ...]
+# JSON Schema's types in plain words.
+TYPES = {
+    "array": "a list",
+    "object": "keys with values",
+    "string": "text",
+    "number": "a number",
+    "integer": "a whole number",
+    "boolean": "true or false",
+}
+SHOWN = 60
+
+
+class CheckedYaml(NamedTuple):
+    """The data of a file, and the line of each of its values by path."""
+
+    data: dict[str, Any]
+    lines: Mapping[Path, int]
+
+
+def read_checked(path: str, schema: Mapping[str, Any], hint: str) -> CheckedYaml:
+    """Read a file; InputError with its line, the key and what is allowed. ``hint`` says what to write
+    into an empty file."""
+    return text_checked(read_file(path), path, schema, hint)
+
+
+def text_checked(text: bytes, path: str, schema: Mapping[str, Any], hint: str) -> CheckedYaml:
+    """The same of a text, which errors call ``path``."""
+    document = read_yaml(text, path)
+    if document.root is None:
+        raise InputError(f"{path}: the file is empty; {hint}")
+    refuse_anchors(document)
+    if not isinstance(document.root, yaml.MappingNode):
+        raise InputError(f"{path}:1: the file must hold keys with values; {hint}")
+    try:
+        lines = dict(_lines(document.root, path, ()))
+        data = load_yaml(document.text)
+    except yaml.MarkedYAMLError as error:
+        line = error.problem_mark.line + 1 if error.problem_mark else 1
+        problem = " ".join(str(error.problem).split())
+        raise InputError(f"{path}:{line}: {problem}; write plain keys and values") from None
+    _validate(data, schema, path, lines)
+    return CheckedYaml(data, lines)
+
+
+def _lines(node: yaml.Node, file: str, path: Path) -> Iterator[tuple[Path, int]]:
+    """The line of every value and key; a repeated key is an error."""
+    yield path, line_of(node)
+    if isinstance(node, yaml.SequenceNode):
+        for at, item in enumerate(node.value):
+            yield from _lines(item, file, (*path, at))
+    seen: dict[str, int] = {}
+    for key, value in pairs(node):
+        if key.value in seen:
+            place = f"{file}:{line_of(key)}"
+            first = f"first in line {seen[key.value]}; remove one of them"
+            raise InputError(f"{place}: the key {key.value!r} is repeated, {first}")
+        seen[key.value] = line_of(key)
+        for below, line in _lines(value, file, (*path, key.value)):
+            yield below, line_of(key) if below == (*path, key.value) else line
+
+
+def _first_error(data: Any, schema: Mapping[str, Any]) -> Any:
+    try:
+        import jsonschema
+        from jsonschema.exceptions import best_match
+
+        # Ubuntu 22.04 has 3.2; the schema says nothing that its draft reads differently.
+        newest = getattr(jsonschema, "Draft202012Validator", None) or jsonschema.Draft7Validator
+    except (ImportError, AttributeError) as error:
+        what = "jsonschema 3.2 or newer is needed to read a fleet file"
+        hint = "install it: pip install 'jsonschema>=3.2'"
+        raise UsageError(f"{what}; {hint} ({error})") from None
+    return best_match(newest(schema).iter_errors(data))
+
+
+def _validate(data: Any, schema: Mapping[str, Any], file: str, lines: Mapping[Path, int]) -> None:
+    error = _first_error(data, schema)
+    if error is None:
+        return
+    path = tuple(error.absolute_path)
+    line = next(lines[path[:end]] for end in range(len(path), -1, -1) if path[:end] in lines)
+    if error.validator == "additionalProperties":
+        line = lines.get((*path, _unknown(error)), line)
+    raise InputError(f"{file}:{line}: {_where(path)}{_in_words(error)}")
+
+
+def _unknown(error: Any) -> Any:
+    return next(key for key in error.instance if key not in error.schema["properties"])
+
+
+def _in_words(error: Any) -> str:
+    """A validation error in plain words, with what is allowed."""
+    given, wanted = error.instance, error.validator_value
+    if error.validator == "additionalProperties":
+        known = error.schema["properties"]
+        return f"unknown key {_shown(_unknown(error))}; {_known(_unknown(error), known)}"
+    if error.validator == "required":
+        missing = next(key for key in wanted if key not in given)
+        return f"the key {missing!r} is missing; add it"
+    if given is None:
+        return "the value is missing; write one, or remove the key"
+    if error.validator == "enum":
+        return f"{_shown(given)} is not known; {_known(given, wanted)}"
+    if error.validator == "minItems" and not given:
+        return "the list is empty; write at least one item"
+    return f"{_shown(given)} is not valid; {_wanted(error)}"
+
+
+def _wanted(error: Any) -> str:
+    given, wanted = error.instance, error.validator_value
+    about = error.schema.get("description", "")
+    if error.validator == "type" and wanted == "string" and not isinstance(given, dict | list):
+        return "write it in quotes"
+    if error.validator == "type":
+        types = [wanted] if isinstance(wanted, str) else wanted
+        return f"write {' or '.join(TYPES[it] for it in types)}"
+    if about:
+        return f"write {about}"
+    rules = {
+        "minLength": "write some text",
+        "minItems": f"write {wanted} items",
+        "maxItems": f"write {wanted} items",
+        "minimum": f"the minimum is {wanted}",
+        "maximum": f"the maximum is {wanted}",
+    }
+    return rules.get(error.validator, "correct it")
+
+
+def _shown(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
+
+
+def _where(path: Path) -> str:
+    text = "".join(f"[{it}]" if isinstance(it, int) else f".{it}" for it in path).lstrip(".")
+    return f"{text}: " if text else ""
+
+
+def _known(word: object, known: Iterable[object]) -> str:
+    """What to write instead of an unknown word: the nearest known one, else all of them."""
+    words = [str(it) for it in known]
+    return did_you_mean_one_of(str(word), words) or f"known are {', '.join(words)}"

@@ -1,0 +1,136 @@
+"""Outputs in the place and the form that a vendor's launch files take; ``shapes.yaml`` has them."""
+
+from __future__ import annotations
+
+import itertools
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.model import InputError, UsageError
+from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.params.sections import raw_sections
+from multibot_rewrite.fleet.file.fleet_file import FleetFile, RobotSpec
+from multibot_rewrite.fleet.outputs.output_file import expanded_name, params_of, path_for
+from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+
+REAL, SIMULATED = "real", "simulated"
+DESCRIPTION, SRDF, BRIDGE = "description", "srdf", "bridge"
+NOTHING: Mapping[str, Any] = {}
+
+
+class TakingCommand(NamedTuple):
+    """A vendor's command with its words for a robot; ``takes`` are launch arguments and whose file each
+    gets, ``as_it_is`` the same for files with full names. ``robots`` is ``REAL`` or ``SIMULATED``, if
+    it is not for both; ``pose`` are the arguments of a start pose."""
+
+    command: str
+    takes: Mapping[str, str] = NOTHING
+    as_it_is: Mapping[str, str] = NOTHING
+    robots: str = ""
+    releases: str = ""
+    pose: tuple[str, ...] = ()
+
+
+class Shape(NamedTuple):
+    """What a vendor's launch files take: the keys of ``shapes.yaml``."""
+
+    source: str
+    layouts: tuple[str, ...]
+    launch: tuple[TakingCommand, ...]
+    params_style: str = ""
+    places: Mapping[str, str] = NOTHING
+    keeps: tuple[str, ...] = ()
+    namespace_in: Mapping[str, tuple[str, ...]] = NOTHING
+
+
+@cache
+def shapes() -> Mapping[str, Shape]:
+    """All shapes by name."""
+    text = files("multibot_rewrite.fleet").joinpath("shapes.yaml").read_text()
+    return {name: _shape(it) for name, it in load_yaml(text).items()}
+
+
+def _shape(it: dict[str, Any]) -> Shape:
+    launch = ({**row, "robots": row.get("for", "")} for row in it.pop("launch"))
+    rows = ({key: value for key, value in row.items() if key != "for"} for row in launch)
+    return Shape(**it, launch=tuple(TakingCommand(**row) for row in rows))
+
+
+def with_shape(file: FleetFile) -> FleetFile:
+    """The fleet with the style of parameter files that its shape needs.
+
+    Raises UsageError for a layout or a style that the vendor's launch files cannot start.
+    """
+    if not file.shape:
+        return file
+    shape, place = shapes()[file.shape], f"{file.file}: shape {file.shape}"
+    layout, style = make_naming(**file.policy).layout.name, shape.params_style or "full"
+    if layout not in shape.layouts:
+        own = " or ".join(shape.layouts)
+        raise UsageError(
+            f"{place}: the vendor's launch files do not start layout {layout}; use {own}"
+        )
+    if file.params_style not in ("", style):
+        hint = f"leave it out, or write {style}"
+        raise UsageError(
+            f"{place}: the vendor's launch files do not take params_style {file.params_style}; {hint}"
+        )
+    return file._replace(params_style=style)
+
+
+def placed(robot: RewrittenRobot, shape: str) -> RewrittenRobot:
+    """The robot with the places of its outputs, by the names that they have without a shape."""
+    if not shape:
+        return robot
+    made = dict(_kept(robot, shapes()[shape]))
+    for place, what in shapes()[shape].places.items():
+        if place not in made.values():
+            free = (name for name in _names_of(robot, what) if name not in made)
+            made |= dict.fromkeys(itertools.islice(free, 1), place)
+    return robot._replace(spec=robot.spec._replace(places=tuple(made.items())))
+
+
+def _kept(robot: RewrittenRobot, shape: Shape) -> Iterator[tuple[str, str]]:
+    """The files that lie in a vendor's folder already."""
+    companions = robot.spec.companions
+    for source in (*companions.get("params", ()), *companions.get(BRIDGE, ())):
+        folder = os.path.dirname(os.path.abspath(source))
+        for it in shape.keeps:
+            if f"{folder}/".endswith(f"/{it}/"):
+                yield _plain_name(robot, source), f"{it}/{os.path.basename(source)}"
+
+
+def name_of(robot: RewrittenRobot, what: str) -> str:
+    """The output of a robot without its place: its description, its SRDF, its bridge, or the first
+    parameter file with a section of a node; empty if it has none."""
+    return next(_names_of(robot, what), "")
+
+
+def _names_of(robot: RewrittenRobot, what: str) -> Iterator[str]:
+    spec = robot.spec
+    described = {DESCRIPTION: spec.description, SRDF: spec.srdf}
+    if what in described:
+        yield from [expanded_name(described[what])] if described[what] else ()
+    elif what == BRIDGE:
+        yield from ["bridge.yaml"] if spec.companions.get(BRIDGE) else ()
+    else:
+        found = (path for path, nodes in _nodes_by_file(spec) if what in nodes)
+        yield from (_plain_name(robot, path) for path in found)
+
+
+def _plain_name(robot: RewrittenRobot, source: str) -> str:
+    plain = robot._replace(spec=robot.spec._replace(places=()))
+    return path_for(plain, source).partition("/")[2]
+
+
+def _nodes_by_file(spec: RobotSpec) -> Iterator[tuple[str, set[str]]]:
+    """The parameter files with the names of the nodes that they have sections for."""
+    for path, document in params_of(spec).items():
+        with suppress(InputError):
+            yield path, {it.path.rpartition("/")[2] for it in raw_sections(document)}

@@ -1,0 +1,126 @@
+"""A system from each of its sources, and what the rules say of one or of two: the library's calls.
+
+They are the functions that ``plan``, ``check-launch``, ``snapshot``, ``check`` and ``doctor`` use.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+
+from multibot_rewrite.base.bounded import MAX_FLEET_BYTES
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.policy import Policy
+from multibot_rewrite.base.releases import release_here
+from multibot_rewrite.description.sources.read import Source, read_file
+from multibot_rewrite.fleet.checks.closed_plan import closed_plan
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet import expected, known_nodes, make_fleet
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
+from multibot_rewrite.knowledge.parameters import load_known_nodes
+from multibot_rewrite.live.diagnose import diagnose
+from multibot_rewrite.producers.snapshot_file import read_snapshots
+from multibot_rewrite.rules.check import check
+from multibot_rewrite.spelling.plan_file import is_plan, read_plan
+from multibot_rewrite.system.answers import with_answers
+from multibot_rewrite.system.environment import settings
+from multibot_rewrite.system.questions import ANSWER_SECONDS, questions
+from multibot_rewrite.system.records import System
+
+NO_ARGUMENTS: Mapping[str, str] = {}
+AS_USUAL: Policy = {}
+Path = str | os.PathLike[str]
+
+
+def system_of_description(
+    source: Source,
+    robots: Sequence[str],
+    *,
+    stacks: Sequence[str] = (),
+    policy: Policy = AS_USUAL,
+    xacro_args: Mapping[str, str] = NO_ARGUMENTS,
+    trust: bool = False,
+    distro: str = "",
+) -> System:
+    """What robots of a description should run, with the nodes of ``stacks``: a plan.
+
+    ``policy`` are naming options of ``rewrite``. Raises as ``rewrite_all``, and UsageError for a stack
+    that is not known.
+    """
+    release = release_here(distro)
+    made = make_fleet(
+        source, robots, stacks, policy, xacro_args=xacro_args, trust=trust, release=release
+    )
+    return expected(made)
+
+
+def system_of_fleet(path: Path, *, trust: bool = False, distro: str = "") -> System:
+    """What the robots of a fleet file should run: a plan. Raises as ``load_fleet``."""
+    file = read_fleet(os.fspath(path), distro, os.environ)
+    return expected(closed_plan(plan_fleet(file, trust=trust)))
+
+
+def system_of_launch(
+    path: Path,
+    arguments: Mapping[str, str] = NO_ARGUMENTS,
+    *,
+    roots: Sequence[str] = (),
+    distro: str = "",
+) -> System:
+    """What a launch file would start. It is a program: name one that you trust. ``roots`` are folders
+    with the sources of packages. Raises InputError for a file that cannot be read."""
+    from multibot_rewrite.producers.launch.child import launch_graph
+    from multibot_rewrite.producers.launch.records import LaunchOrder
+    from multibot_rewrite.producers.launch.running import Knowledge
+    from multibot_rewrite.producers.launch.snapshot import would_run
+
+    release = release_here(distro)
+    order = LaunchOrder(os.fspath(path), tuple(arguments.items()), tuple(roots), trusted=True)
+    library = known_nodes(None, release, ()).library
+    known = Knowledge(library.nodes, load_known_nodes("", release), release)
+    return would_run(launch_graph(order), known)
+
+
+def system_of_files(*paths: Path) -> System:
+    """What a plan says (``multibot plan``), or what any of several snapshots has seen.
+
+    Raises InputError with file, place and what is wrong.
+    """
+    if len(paths) == 1:
+        file = os.fspath(paths[0])
+        data = read_file(file, MAX_FLEET_BYTES)
+        if is_plan(data):
+            return read_plan(data, file)
+    return read_snapshots([os.fspath(it) for it in paths])
+
+
+def system_of_bag(path: Path) -> System:
+    """What a recording shows; raises InputError, and MultibotError without the extra ``bags``."""
+    from multibot_rewrite.producers.bags.read import read_bag
+    from multibot_rewrite.producers.bags.recording import as_snapshot
+
+    return as_snapshot(read_bag(os.fspath(path)))
+
+
+def system_of_graph(
+    *, seconds: float = 30.0, domain: int | None = None, states: bool = False
+) -> System:
+    """The running ROS graph, looked at until it no longer changes; with ``states`` its nodes are asked
+    for theirs. Raises MultibotError where rclpy is missing or does not start."""
+    from multibot_rewrite.producers.ros.child import ask, observe
+    from multibot_rewrite.producers.ros.request import Request
+
+    around = dict(os.environ) | ({} if domain is None else {"ROS_DOMAIN_ID": str(domain)})
+    settings(around)
+    seen = observe(Request(seconds, headers=True), around)
+    return with_answers(seen, ask(questions(seen), ANSWER_SECONDS, around) if states else ())
+
+
+def judge(system: System) -> list[Finding]:
+    """What is wrong with a system, as ``multibot check`` says it. Raises nothing."""
+    return list(diagnose(system).findings)
+
+
+def compare(plan: System, seen: System) -> list[Finding]:
+    """What of a system is not as planned, as ``multibot check`` says it. Raises nothing."""
+    return check(plan, seen)

@@ -1,0 +1,314 @@
+"""A description, its robots and their stacks -> the remap table and the expected graph."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.naming import Naming, make_naming
+from multibot_rewrite.base.policy import Policy
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.library import rewrite_all
+from multibot_rewrite.description.sources.read import Source
+from multibot_rewrite.description.steps.collect import Inventory
+from multibot_rewrite.fleet.checks.meeting import with_meetings
+from multibot_rewrite.fleet.launch.launched_robot import (
+    given_with,
+    launched_robot,
+    nodes_with,
+    under_plugins,
+)
+from multibot_rewrite.fleet.outputs.bridged import bridged_as
+from multibot_rewrite.fleet.robots.member import Member, line_of, member
+from multibot_rewrite.knowledge.node_library import with_included
+from multibot_rewrite.knowledge.nodl.facts import NodeKnowledge, nodes_of
+from multibot_rewrite.knowledge.nodl.lookup import find_interfaces
+from multibot_rewrite.knowledge.parameters import load_known_nodes
+from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.knowledge.stacks import built_in, user_stack
+from multibot_rewrite.producers.evidence.hardware import with_hardware
+from multibot_rewrite.producers.launch.records import LaunchOrder
+from multibot_rewrite.spelling.bridged_topics import bridged_topics
+from multibot_rewrite.spelling.plan import expect, from_text, named_frames, planned_end, vacuous
+from multibot_rewrite.spelling.plugin_nodes import plugin_nodes
+from multibot_rewrite.spelling.records import Table
+from multibot_rewrite.spelling.table import build_table, joined
+from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, Edges, edges_of, frames_of
+from multibot_rewrite.spelling.transforms import Edge as SentEdge
+from multibot_rewrite.spelling.ways import merged
+from multibot_rewrite.system.parameters import parameter_text
+from multibot_rewrite.system.records import SIM_TIME, Edge, End, Parameter, System, Topic
+
+NOTHING: Mapping[str, str] = {}
+ALIKE: Mapping[str, Inventory] = {}
+# The stack of a robot whose description is published by something else.
+NO_STATE_PUBLISHER = f"no_{STATE_PUBLISHER}"
+FRAME_PREFIX = "frame_prefix"
+
+
+class Fleet(NamedTuple):
+    """A fleet's remap table, what each robot's rewritten description holds, and the transforms that
+    each robot's nodes publish. ``facts`` are the nodes of the stacks, ``sources`` the place in the
+    description (``file:line``) of each plugin's node, ``origins`` of every other node the file or stack
+    that names it. ``tags`` are the robots whose prefix or postfix
+    differs from their namespace, with it. ``read`` are the files that were read for descriptions,
+    ``gaps`` what is open in the robots, ``bridged`` what a ros_gz_bridge has to carry;
+    ``maybe_real`` are robots of which nothing says that they are simulated, ``clocks`` the
+    ``use_sim_time`` of robots for which the fleet file says it, ``described`` the descriptions of
+    robots whose simulator gets another file."""
+
+    table: Table
+    inventories: dict[str, Inventory]
+    naming: Naming
+    edges: Edges
+    facts: tuple[NodeFacts, ...]
+    sources: dict[str, str]
+    origins: dict[str, str]
+    tags: dict[str, str]
+    read: tuple[str, ...]
+    gaps: tuple[Finding, ...] = ()
+    bridged: tuple[Topic, ...] = ()
+    maybe_real: frozenset[str] = frozenset()
+    clocks: tuple[tuple[str, bool], ...] = ()
+    described: Mapping[str, Inventory] = ALIKE
+
+
+def make_fleet(
+    source: Source,
+    robots: Sequence[str],
+    stacks: Sequence[str],
+    policy: Policy,
+    *,
+    nodes: str | None = None,
+    nodl: Sequence[str] = (),
+    vocabulary: Sequence[str] = (),
+    xacro_args: Mapping[str, str] = NOTHING,
+    trust: bool = False,
+    launch: Sequence[LaunchOrder] = (),
+    release: str,
+) -> Fleet:
+    """Rewrite a description for every robot and make the fleet's table, with the facts of a release.
+
+    ``nodes`` is a file with more nodes and stacks, ``nodl`` are NoDL files, see ``find_interfaces``;
+    ``trust`` lets a xacro file do anything; ``launch`` are the launch files that start each robot's
+    nodes. Raises as ``rewrite_all``, and UsageError for an unknown stack.
+    """
+    known = known_nodes(nodes, release, nodl).library.nodes
+    facts = facts_of(stacks, nodes, release, nodl)
+    usual = load_known_nodes(nodes or "", release)
+    launched = launched_robot(facts, launch, known, robots[:1], usual, release)
+    runs = nodes_with(launched, facts, given_with(launched, ()), known)
+    found = rewrite_all(
+        source,
+        robots,
+        vocabulary=vocabulary,
+        xacro_args=xacro_args,
+        trust=trust,
+        distro=release,
+        **policy,
+    )
+    members = [member(it, it.data, it.robot) for it in found]
+    wired = under_plugins(runs.nodes, launched, members[0].handed_on, release)
+    every = with_hardware(wired, members[0].source.root, members[0].source.file, known)
+    fleet = assemble(members, every, make_naming(**policy), release)
+    return _with_bridge_and_findings(fleet, members, runs.findings)
+
+
+def _with_bridge_and_findings(
+    fleet: Fleet, members: Sequence[Member], findings: Iterable[Finding]
+) -> Fleet:
+    """The fleet with where its robots meet, findings about their nodes, and what has to be bridged."""
+    table = with_meetings(fleet.table, members, fleet.naming)
+    table = table._replace(problems=(*table.problems, *findings))
+    topics, _ = bridged_topics(fleet.inventories, fleet.naming)
+    own = topics if any(it.robot for it in topics) else ()
+    return fleet._replace(table=table, bridged=bridged_as(own))
+
+
+def facts_of(
+    stacks: Sequence[str],
+    nodes: str | None,
+    release: str,
+    nodl: Sequence[str] = (),
+) -> tuple[NodeFacts, ...]:
+    """The nodes that a robot with these stacks runs in a release, each once.
+
+    Raises UsageError for an unknown stack, and for one that the release lacks.
+
+    Every robot runs robot_state_publisher: one of its stacks has it, or it is added. It is left out
+    for the stack ``no_robot_state_publisher``.
+    """
+    known = known_nodes(nodes, release, nodl)
+    library = known.library
+    runs = {name: list(nodes_of(known, name)) for name in stacks}
+    named = {node: name for name in reversed(stacks) for node in runs[name]}
+    order = dict.fromkeys(node for name in stacks for node in runs[name])
+    found = [node._replace(origin=_origin(node, named[node])) for node in order]
+    has_publisher = any(node.package == STATE_PUBLISHER for node in found)
+    if not any(NO_STATE_PUBLISHER in with_included(library, name) for name in stacks):
+        added = () if has_publisher else nodes_of(known, STATE_PUBLISHER)
+        return (*found, *added)
+    if has_publisher:
+        hint = f"leave out one of the stacks, {NO_STATE_PUBLISHER} or the one that has it"
+        raise UsageError(f"{STATE_PUBLISHER} is asked for and left out; {hint}")
+    return tuple(found)
+
+
+def _origin(node: NodeFacts, stack: str) -> str:
+    # Without its folder: a plan is the same from every working directory.
+    file = os.path.basename(node.interface)
+    return f"stack {stack}, described in {file}" if file else f"stack {stack}"
+
+
+def known_nodes(nodes: str | None, release: str, nodl: Sequence[str]) -> NodeKnowledge:
+    """What is known of nodes in a release: built in, by NoDL, in the user's file ``nodes``."""
+    built = built_in(release)
+    library = user_stack(nodes, release) if nodes else built
+    own = (name for name, node in library.nodes.items() if node != built.nodes.get(name))
+    return NodeKnowledge(library, find_interfaces(nodl), frozenset(own))
+
+
+def assemble(
+    members: Sequence[Member],
+    facts: tuple[NodeFacts, ...],
+    naming: Naming,
+    release: str,
+) -> Fleet:
+    """The fleet of robots that run the same nodes of a release."""
+    inventories = {it.robot: it.inventory for it in members}
+    plugins = {it.robot: list(plugin_nodes(it.reading, it.robot)) for it in members}
+    edges: dict[tuple[str, str], list[SentEdge]] = {}
+    for it in members:
+        own = [node for node, _ in plugins[it.robot]]
+        edges |= edges_of(it.robot, it.described, facts, own, naming, it.tag, it.plain)
+    table = build_table([it.robot for it in members], facts, naming, plugins, release=release)
+    unread = dict.fromkeys(found for it in members for found in it.unread)
+    table = table._replace(problems=(*table.problems, *unread))
+    return Fleet(
+        table,
+        inventories,
+        naming,
+        edges,
+        facts,
+        _sources(members),
+        _origins(table, facts),
+        {it.robot: it.tag for it in members if it.tag != it.robot},
+        _read(members),
+        described={it.robot: it.described for it in members if it.described is not it.inventory},
+    )
+
+
+def _read(members: Sequence[Member]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(path for it in members for path in it.read))
+
+
+def _sources(members: Sequence[Member]) -> dict[str, str]:
+    """The places of the plugins in the source: inserted text moves the lines of the result."""
+    found = {}
+    for it in members:
+        for node in it.reading.nodes:
+            line = line_of(it.source, "plugin", node.number)
+            found[node.full_name] = f"{it.source.file}:{line}"
+    return found
+
+
+def _origins(table: Table, facts: tuple[NodeFacts, ...]) -> dict[str, str]:
+    """By full name: the file or stack that names a node."""
+    known = {it.name: it.origin for it in facts}
+    return {
+        f"{it.namespace.rstrip('/')}/{it.name}": origin
+        for it in table.nodes
+        if (origin := known.get(it.node, ""))
+    }
+
+
+def merge(fleets: Sequence[Fleet]) -> Fleet:
+    """Robots of different descriptions as one fleet; their names may not collide either."""
+    first, *others = fleets
+    for other in others:
+        first = Fleet(
+            joined(first.table, other.table, first.naming),
+            {**first.inventories, **other.inventories},
+            first.naming,
+            {**first.edges, **other.edges},
+            tuple(dict.fromkeys((*first.facts, *other.facts))),
+            {**first.sources, **other.sources},
+            {**first.origins, **other.origins},
+            {**first.tags, **other.tags},
+            tuple(dict.fromkeys((*first.read, *other.read))),
+            described={**first.described, **other.described},
+        )
+    return first
+
+
+def expected(fleet: Fleet) -> System:
+    """The graph that the fleet should have; UsageError where any graph would be as planned."""
+    plan = planned(fleet)
+    nothing = vacuous(plan)
+    if nothing:
+        hint = f"name a stack of its nodes, or leave out {NO_STATE_PUBLISHER}"
+        raise UsageError(f"{nothing}, so every graph would be as planned; {hint}")
+    return plan
+
+
+def planned(fleet: Fleet) -> System:
+    """The graph that the fleet should have, be it one that any graph is like."""
+    sent: dict[str, list[SentEdge]] = {robot: [] for robot in fleet.inventories}
+    for (robot, _), edges in fleet.edges.items():
+        sent[robot] += edges
+    frames = {
+        robot: frames_of(found, sent[robot], fleet.naming, fleet.tags.get(robot, robot))
+        for robot, found in {**fleet.inventories, **fleet.described}.items()
+    }
+    named = {robot: named_frames(found) for robot, found in fleet.inventories.items()}
+    tags, places = fleet.tags, fleet.sources
+    plan = expect(
+        fleet.table, fleet.naming, frames, fleet.facts, named, places, tags, fleet.maybe_real
+    )
+    plan = plan._replace(
+        nodes=tuple(from_text(it, fleet.origins.get(it.name, "")) for it in plan.nodes),
+        edges=tuple(_sends(fleet)),
+    )
+    return plan._replace(
+        release=fleet.table.release,
+        gaps=fleet.gaps,
+        topics=fleet.bridged,
+        parameters=tuple(_parameters(fleet)),
+    )
+
+
+def _parameters(fleet: Fleet) -> Iterator[Parameter]:
+    """The clock of each node of a robot, where one in a plugin has that of the simulator, and what
+    puts the robot's name before the frames of its description."""
+    clocks = dict(fleet.clocks)
+    described = {it.name for it in fleet.facts if it.package == STATE_PUBLISHER}
+    for it in merged(fleet.table.nodes):
+        given: dict[str, object] = {}
+        if it.robot in clocks and not it.home.plugin:
+            given[SIM_TIME] = clocks[it.robot]
+        if it.robot and it.node in described and fleet.naming.layout.at_run_time:
+            given[FRAME_PREFIX] = f"{fleet.tags.get(it.robot, it.robot)}/"
+        for name, value in given.items():
+            yield Parameter(it.full_name, name, parameter_text(value))
+
+
+def _sends(fleet: Fleet) -> Iterator[Edge]:
+    """The transforms that nodes' parameters name."""
+    described = {it.name for it in fleet.facts if it.package == STATE_PUBLISHER}
+    for it in fleet.table.nodes:
+        edges = fleet.edges.get((it.robot, it.node), ())
+        if edges and it.node not in described:
+            sender = (it.full_name,)
+            yield from (Edge(edge.child, edge.parent, "", edge.static, sender) for edge in edges)
+
+
+def possible(fleet: Fleet) -> tuple[End, ...]:
+    """Every endpoint that its nodes may have, by parameter too."""
+    return tuple(
+        planned_end(it.node, end.kind, end.role, it.name, end.type, end.name)
+        for it in fleet.table.names
+        for end in [it.endpoint]
+        if end.role
+    )

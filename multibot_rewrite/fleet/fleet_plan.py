@@ -1,0 +1,124 @@
+"""A fleet file -> its rewritten robots and their remap table; all output follows from these."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.gc_pause import gc_paused
+from multibot_rewrite.base.naming import Naming, make_naming
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.fleet.checks.meeting import with_meetings
+from multibot_rewrite.fleet.file.filled_arguments import with_own_arguments
+from multibot_rewrite.fleet.file.fleet_file import FleetFile, Sources
+from multibot_rewrite.fleet.file.shape import placed, with_shape
+from multibot_rewrite.fleet.fleet import Fleet, assemble, merge
+from multibot_rewrite.fleet.launch.launched_bridges import with_bridge_namespaces
+from multibot_rewrite.fleet.launch.launched_files import with_launched_files
+from multibot_rewrite.fleet.outputs.relays import with_relays
+from multibot_rewrite.fleet.robots.loaded_files import with_loaded_files
+from multibot_rewrite.fleet.robots.rewritten_robots import (
+    Jobs,
+    RewrittenRobot,
+    read_jobs,
+    rewrite_robots,
+)
+from multibot_rewrite.fleet.robots.robot_nodes import (
+    NodeSources,
+    RobotEvidence,
+    node_sources,
+    robot_nodes,
+)
+from multibot_rewrite.fleet.robots.shared_nodes import check_shared
+from multibot_rewrite.fleet.robots.simulators import may_be_real, note
+
+
+class FleetPlan(NamedTuple):
+    """A fleet file, its rewritten robots, and the fleet of all of them; ``jobs`` are the
+    descriptions as they were read, ``evidence`` is what the robots' own files say of their nodes."""
+
+    file: FleetFile
+    robots: tuple[RewrittenRobot, ...]
+    fleet: Fleet
+    jobs: Mapping[Sources, Jobs]
+    evidence: Mapping[NodeSources, RobotEvidence]
+
+
+def plan_fleet(
+    file: FleetFile, jobs: Mapping[Sources, Jobs] | None = None, trust: bool = False
+) -> FleetPlan:
+    """Rewrite every robot's description and make the table of the whole fleet.
+
+    The parameter files that launch files and descriptions name are rewritten, too.
+
+    ``jobs`` are the descriptions if they have been read already; ``trust`` lets xacro files do
+    anything, and launch files run. Raises as ``rewrite_all``, and UsageError for an unknown stack.
+    """
+    file, notes = with_launched_files(_trusted(with_shape(file)) if trust else with_shape(file))
+    file = with_bridge_namespaces(file)
+    with gc_paused():
+        naming = make_naming(**file.policy)
+        said: Mapping[str, Sequence[Finding]] = {}
+        if jobs is None:
+            file, said = with_own_arguments(file, naming, trust)
+        read = jobs or read_jobs(file.robots, naming, file.vocabulary, trust, file.distro)
+        robots = [
+            placed(with_loaded_files(it._replace(findings=(*it.findings, *own))), file.shape)
+            for it in rewrite_robots(file.robots, read)
+            for own in [said.get(it.spec.name, ())]
+        ]
+        file = file._replace(robots=tuple(it.spec for it in robots))
+        evidence, maybe = _evidence(file, robots, notes)
+        fleet = _fleet(file, robots, naming, evidence)._replace(maybe_real=maybe)
+        told = ((it.spec.namespace, it.spec.use_sim_time) for it in robots)
+        clocks = tuple((name, clock) for name, clock in told if clock is not None)
+        fleet = with_relays(fleet._replace(clocks=clocks), file)
+        return FleetPlan(file, tuple(robots), fleet, read, evidence)
+
+
+def _evidence(
+    file: FleetFile, robots: Sequence[RewrittenRobot], notes: Mapping[str, Sequence[Finding]]
+) -> tuple[dict[NodeSources, RobotEvidence], frozenset[str]]:
+    """What the files say of the nodes of each kind of robot, and the namespaces of those robots that
+    may be real ones, which is said once."""
+    specs = {node_sources(it): it for it in reversed(file.robots)}
+    members = {node_sources(it.spec): it.member for it in robots}
+    found = {
+        key: robot_nodes(spec, file, notes[spec.name], members[key]) for key, spec in specs.items()
+    }
+    check_shared(file, {node.name: node for it in found.values() for node in it.nodes})
+    real = [it for it in robots if may_be_real(it, found[node_sources(it.spec)])]
+    for it in real[:1]:
+        key = node_sources(it.spec)
+        found[key] = found[key]._replace(findings=(*found[key].findings, note(it)))
+    return found, frozenset(it.spec.namespace for it in real)
+
+
+def _trusted(file: FleetFile) -> FleetFile:
+    robots = (
+        it._replace(launch=tuple(order._replace(trusted=True) for order in it.launch))
+        for it in file.robots
+    )
+    return file._replace(robots=tuple(robots))
+
+
+def _fleet(
+    file: FleetFile,
+    robots: Sequence[RewrittenRobot],
+    naming: Naming,
+    evidence: Mapping[NodeSources, RobotEvidence],
+) -> Fleet:
+    groups: dict[NodeSources, list[RewrittenRobot]] = {}
+    for robot in robots:
+        groups.setdefault(node_sources(robot.spec), []).append(robot)
+    fleets: list[Fleet] = []
+    notes: list[Finding] = []
+    for key, group in groups.items():
+        found = evidence[key]
+        fleets.append(assemble([it.member for it in group], found.nodes, naming, file.distro))
+        notes += found.findings
+    fleet = merge(fleets)
+    members = [it.member for it in robots]
+    table = with_meetings(fleet.table, members, naming)
+    problems = tuple(dict.fromkeys((*table.problems, *notes)))
+    return fleet._replace(table=table._replace(problems=problems))

@@ -1,0 +1,1 @@
+"""Launch files: the one that is written, and those that a fleet names."""

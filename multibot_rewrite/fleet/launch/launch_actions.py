@@ -1,0 +1,313 @@
+"""A planned fleet -> what its launch file starts, robot by robot; ``launch_python`` writes it down.
+
+What only runs under a condition that no file answers, and nodes whose program is not known, are left
+to the reader: they are named in the file.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from typing import Any
+
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.fleet.file.cell_file import MOVE_GROUP
+from multibot_rewrite.fleet.file.fleet_file import BRINGUP, REAL
+from multibot_rewrite.fleet.file.fleet_starts import Component, File, RobotStarts, Start, Text
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.outputs import moveit_parameters, spawn
+from multibot_rewrite.fleet.outputs.cell_outputs import parameters_path
+from multibot_rewrite.fleet.outputs.output_file import expanded_name, path_for
+from multibot_rewrite.fleet.outputs.relays import Relay, relays
+from multibot_rewrite.fleet.outputs.rviz_outputs import RvizOutput, window_path
+from multibot_rewrite.fleet.robots import start_poses
+from multibot_rewrite.fleet.robots.node_names import NodeNames, names_of
+from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleet.robots.robot_nodes import node_sources
+from multibot_rewrite.knowledge.programs import (
+    LIFECYCLE_MANAGER,
+    PROGRAMS,
+    Program,
+    activates_itself,
+    program_of,
+)
+from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.producers.evidence.parameter_files import OWN_TYPE
+from multibot_rewrite.spelling.records import EndpointName
+from multibot_rewrite.spelling.started import SPAWN, Started, spawner_arguments
+from multibot_rewrite.spelling.ways import COMPONENT, SPAWNER
+from multibot_rewrite.system.records import PUBLISHES
+
+STATE, JOINT_STATES, BRIDGE = "robot_state_publisher", "joint_state_publisher", "bridge.yaml"
+# Started by hand, or once for all robots.
+_BY_HAND = ("teleop_twist_keyboard", "rviz2", "ros_gz_bridge", start_poses.NODE)
+_BRIDGE = Program("ros_gz_bridge", "parameter_bridge")
+
+
+def of_robot(one: FleetPlan, files: Collection[str], bridged: Collection[str]) -> RobotStarts:
+    """What the one robot of a plan runs; ``files`` are the paths that the build writes, ``bridged`` the
+    topics that bridges bring from a simulator."""
+    (robot,) = one.robots
+    names = names_of(one.fleet.table, robot.spec.namespace)
+    facts = {it.name: it for it in one.evidence[node_sources(robot.spec)].nodes}
+    given = _Given(one, robot, names, facts, files, bridged)
+    left = dict(_left(given))
+    simulated = spawn.is_simulated(robot)
+    starts = [it for name in names.started if name not in left for it in _started(given, name)]
+    bridge = path_for(robot, BRIDGE)
+    spawned = []
+    if simulated:
+        spawned = [_spawner(given)]
+        spawned += [_bridge(names, robot, bridge)] if bridge in files else []
+    placed = start_poses.start_poses(one).transforms
+    about = f"{os.path.basename(robot.spec.description)} in {_where(names)}"
+    starts += [_transform(it) for it in placed]
+    copied, bridged_tf = _relays(given)
+    starts += copied
+    params = tuple(path_for(robot, it) for it in robot.spec.companions.get("params", ()))
+    found = tuple(starts), tuple(spawned), tuple(left.items())
+    return RobotStarts(robot.spec.name, about, params, *found, bridged_tf)
+
+
+class _Given(NamedTuple):
+    plan: FleetPlan
+    robot: RewrittenRobot
+    names: NodeNames
+    facts: Mapping[str, NodeFacts]
+    files: Collection[str]
+    bridged: Collection[str]
+
+    @property
+    def release(self) -> str:
+        return self.plan.file.distro
+
+
+def _where(names: NodeNames) -> str:
+    spaces = {it.namespace for it in names.nodes.values() if it.namespace != "/"}
+    return f"namespace {min(spaces, key=len)}" if spaces else "the root namespace"
+
+
+def _left(given: _Given) -> Iterator[tuple[str, str]]:
+    """The nodes that are not started, each with the reason; it is empty for those that are started by
+    something else."""
+    naming, file = given.plan.fleet.naming, given.plan.file
+    relayed = {it.table.node for it in relays(given.robot.spec.namespace, naming, file)}
+    for name in given.names.started:
+        it = given.facts.get(name)
+        if name in _BY_HAND or name in relayed:
+            yield name, ""
+        elif it is None:
+            yield name, "nothing is known of its program"
+        elif it.when and not _is_needed(given, it):
+            yield name, it.when
+        elif given.plan.file.params_style == BRINGUP and name != STATE:
+            yield name, "parameter files are in the form of nav2_bringup, which starts it"
+        elif not given.names.is_controller(name) and program_of(it, given.release) is None:
+            yield name, f"the program of package {it.package} is not known"
+
+
+def _is_needed(given: _Given, it: NodeFacts) -> bool:
+    """A node under a condition: joint states that nobody else sends are needed."""
+    if (it.known or it.name) != JOINT_STATES:
+        return False
+    sent = [one for one in given.plan.fleet.table.names if _sends_joint_states(one)]
+    mine = {one.name for one in sent if one.node == given.names.full_name(it.name)}
+    others = {one.name for one in sent if one.node != given.names.full_name(it.name)}
+    return mine.isdisjoint({*others, *given.bridged})
+
+
+def _sends_joint_states(it: EndpointName) -> bool:
+    end = it.endpoint
+    return end.role == PUBLISHES and not end.when and end.name.endswith("joint_states")
+
+
+def _started(given: _Given, name: str) -> Iterator[Start]:
+    it, facts = given.names.started[name], given.facts[name]
+    if it.way == SPAWNER:
+        yield _controller(given, it)
+    elif it.way != COMPONENT:
+        program = program_of(facts, given.release)
+        assert program is not None
+        yield Start(
+            program.package,
+            program.executable,
+            it.node.namespace,
+            it.node.name,
+            _parameters(given, name),
+            it.rules,
+            program.words,
+            tuple(_components(given, name)),
+            not activates_itself(facts, given.release),
+        )
+
+
+def _components(given: _Given, container: str) -> Iterator[Component]:
+    for name, it in given.names.started.items():
+        if it.way == COMPONENT and it.node.home.container == container and name in given.facts:
+            program = program_of(given.facts[name], given.release)
+            if program is not None and program.plugin:
+                yield Component(
+                    program.package,
+                    program.plugin,
+                    it.node.namespace,
+                    it.node.name,
+                    _parameters(given, name),
+                    it.rules,
+                )
+
+
+def _parameters(given: _Given, name: str) -> tuple[File | Mapping[str, Any], ...]:
+    """Its robot's parameter files, and what no file says of it."""
+    robot, facts = given.robot, given.facts[name]
+    found: list[File | Mapping[str, Any]] = [
+        File(path_for(robot, it)) for it in robot.spec.companions.get("params", ())
+    ]
+    known = facts.known or facts.name
+    if known == start_poses.AMCL and path_for(robot, "start_pose.yaml") in given.files:
+        found.append(File(path_for(robot, "start_pose.yaml")))
+    if known == STATE:
+        prefix = {"frame_prefix": robot.frame_prefix} if robot.frame_prefix else {}
+        found.append({"robot_description": Text(_description(robot)), **prefix})
+    if known in ("move_group", "servo_node"):
+        found.append({"robot_description": Text(_description(robot))})
+        made = File(path_for(robot, moveit_parameters.FILE))
+        if made.path in given.files:
+            found.append(made)
+        elif robot.spec.srdf:
+            srdf = Text(path_for(robot, expanded_name(robot.spec.srdf)))
+            found.append({moveit_parameters.SEMANTIC: srdf})
+    if known == LIFECYCLE_MANAGER:
+        managed = (_called(given, it) for it in given.names.managed.get(name, ()))
+        found.append({"autostart": True, "node_names": list(filter(None, managed))})
+    return tuple(found)
+
+
+def _called(given: _Given, node: str) -> str:
+    """What a node of a stack is called: its robot's parameter file may have it under an older name."""
+    if node in given.names.nodes:
+        return given.names.name(node)
+    alike = (name for name, it in given.facts.items() if it.known == node)
+    return next((given.names.name(it) for it in alike if it in given.names.nodes), "")
+
+
+def _description(robot: RewrittenRobot) -> str:
+    return path_for(robot, expanded_name(robot.spec.description))
+
+
+def _controller(given: _Given, it: Started) -> Start:
+    """The spawner of a controller, with the file that has its type where that is its own section."""
+    package, executable = SPAWN
+    words: list[str | File] = list(spawner_arguments(it))
+    evidence = given.plan.evidence[node_sources(given.robot.spec)]
+    own = next((one for one in evidence.given if one.name == it.node.node), None)
+    params = given.robot.spec.companions.get("params", ())
+    if own and OWN_TYPE in own.values and own.values[OWN_TYPE].place.file in params:
+        words += ["--param-file", File(path_for(given.robot, own.values[OWN_TYPE].place.file))]
+    if it.node.node in evidence.spawned and evidence.spawned[it.node.node].inactive:
+        words.append("--inactive")
+    return Start(package, executable, it.node.namespace, arguments=tuple(words))
+
+
+def _spawner(given: _Given) -> Start:
+    """What puts the robot into its simulator; an SDF is read from its file, nobody publishes it."""
+    (it,), _ = spawn.spawns(given.plan)
+    classic = is_classic(given.robot)
+    package, executable = spawn.CLASSIC if classic else spawn.GZ
+    words: list[str | File] = list((spawn.classic_arguments if classic else spawn.gz_arguments)(it))
+    own_file = it.file
+    if given.robot.member.inventory.document.root.tag == "sdf":
+        own_file = it.file or _description(given.robot)
+    if own_file:
+        at = words.index(it.source[0])
+        words[at : at + 2] = ["-file", File(own_file)]
+    return Start(package, executable, arguments=tuple(words))
+
+
+def _bridge(names: NodeNames, robot: RewrittenRobot, path: str) -> Start:
+    spaces = {it.namespace for it in names.nodes.values()}
+    namespace = min(spaces, key=len, default="/")
+    name = "" if namespace != "/" else f"ros_gz_bridge_{robot.spec.namespace}"
+    found: tuple[File | Mapping[str, Any], ...] = ({"config_file": File(path)},)
+    return Start(*_BRIDGE[:2], namespace, name, found)
+
+
+def _transform(it: start_poses.StaticTransform) -> Start:
+    words = start_poses.arguments(it)
+    return Start("tf2_ros", "static_transform_publisher", arguments=tuple(words))
+
+
+def _relays(given: _Given) -> tuple[tuple[Start, ...], tuple[Start, ...]]:
+    """What brings its tf to ``/tf``, if the fleet file says so; and what does it with the bridge, which
+    may not be installed."""
+    naming, file = given.plan.fleet.naming, given.plan.file
+    made = relays(given.robot.spec.namespace, naming, file)
+    starts = tuple(_relay(it) for it in made)
+    return (starts, ()) if naming.layout.frames else ((), starts)
+
+
+def _relay(it: Relay) -> Start:
+    told = (dict(it.parameters),) if it.parameters else ()
+    return Start(*it.program, it.table.namespace, it.table.name, told, arguments=it.arguments)
+
+
+def is_classic(robot: RewrittenRobot) -> bool:
+    """Is its simulator Gazebo Classic?"""
+    return spawn.CLASSIC_PLUGIN.encode() in (robot.simulated or robot.description)
+
+
+def simulators(plan: FleetPlan) -> list[str]:
+    """The simulators of the robots: ``classic``, ``gz``, none."""
+    simulated = [it for it in plan.robots if spawn.is_simulated(it) and it.spec.simulator != REAL]
+    return sorted({"classic" if is_classic(it) else "gz" for it in simulated})
+
+
+def of_all(plan: FleetPlan, files: Collection[str]) -> tuple[Start, ...]:
+    """What runs once for all robots: the bridge of the clock, and nodes that all of them share."""
+    names = names_of(plan.fleet.table, "")
+    known = {it.name: it for one in plan.evidence.values() for it in one.nodes}
+    starts = [*_shared(plan, names, known)]
+    if BRIDGE in files:
+        starts.append(Start(*_BRIDGE[:2], "", "", ({"config_file": File(BRIDGE)},)))
+    return tuple(starts)
+
+
+def _shared(plan: FleetPlan, names: NodeNames, known: Mapping[str, NodeFacts]) -> Iterator[Start]:
+    """The shared nodes have their sections in the files of every robot, and they are alike."""
+    first, started = plan.robots[0], []
+    for name, it in names.started.items():
+        facts = known.get(name)
+        program = program_of(facts, plan.file.distro) if facts and name not in _BY_HAND else None
+        if program is None or name == "ros_gz_bridge":
+            continue
+        files = [File(path_for(first, one)) for one in first.spec.companions.get("params", ())]
+        if program in PROGRAMS.values():
+            started.append(it.node.name)
+        if plan.file.cell and name == MOVE_GROUP:
+            files = [File(parameters_path(plan.file.cell))]
+        yield Start(*program[:2], it.node.namespace, it.node.name, tuple(files), it.rules)
+    if started:
+        manager = PROGRAMS[LIFECYCLE_MANAGER]
+        values = {"autostart": True, "node_names": started}
+        yield Start(*manager[:2], "", f"{LIFECYCLE_MANAGER}_shared", (values,))
+
+
+def windows(configs: Sequence[RvizOutput], files: Collection[str]) -> Iterator[tuple[str, Start]]:
+    """The windows of RViz, each with the one robot that it shows, or "" for all.
+
+    MoveIt's displays read the parameters of their process.
+    """
+    for it in configs:
+        for window in it.windows:
+            given = f"{window.robot}/{moveit_parameters.FILE}"
+            yield (
+                window.robot,
+                Start(
+                    "rviz2",
+                    "rviz2",
+                    window.namespace,
+                    "",
+                    (File(given),) if given in files else (),
+                    tuple(window.remaps),
+                    ("-d", File(window_path(window, it.source))),
+                ),
+            )

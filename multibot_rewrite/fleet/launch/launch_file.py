@@ -1,0 +1,71 @@
+"""``fleet.launch.py``: one command that starts the fleet that was built."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Collection, Sequence
+
+from multibot_rewrite.base.plural import plural
+from multibot_rewrite.base.releases import facts_of_release
+from multibot_rewrite.fleet.file.fleet_starts import GZ, File, FleetStarts, RobotStarts, Start
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.launch import launch_actions
+from multibot_rewrite.fleet.launch.launch_python import to_python
+from multibot_rewrite.fleet.outputs import teleop, world_file
+from multibot_rewrite.fleet.outputs.output_file import OutputFile
+from multibot_rewrite.fleet.outputs.rviz_outputs import RvizOutput
+
+LAUNCH = "fleet.launch.py"
+
+
+def launch_file(
+    plan: FleetPlan,
+    each: Sequence[FleetPlan],
+    configs: Sequence[RvizOutput],
+    files: Sequence[OutputFile],
+    bridged: Collection[str],
+) -> OutputFile:
+    """The launch file; ``each`` is every robot as a fleet of its own, ``configs`` are the windows of
+    RViz, ``files`` what else is built, ``bridged`` the topics that bridges bring."""
+    paths = frozenset(it.path for it in files)
+    robots = [launch_actions.of_robot(one, paths, bridged) for one in each]
+    starts = _starts(plan, each, configs, paths, robots)
+    return OutputFile(LAUNCH, to_python(starts).encode())
+
+
+def _starts(
+    plan: FleetPlan,
+    each: Sequence[FleetPlan],
+    configs: Sequence[RvizOutput],
+    paths: frozenset[str],
+    robots: Sequence[RobotStarts],
+) -> FleetStarts:
+    simulators = launch_actions.simulators(plan)
+    clocks = {it.spec.use_sim_time for it in plan.robots}
+    clock = clocks.pop() if len(clocks) == 1 else None
+    source = os.path.basename(plan.file.file) or "a fleet"
+    count = plural(len(plan.robots), "robot")
+    opened = list(launch_actions.windows(configs, paths))
+    names = {it.name for it in robots}
+    return FleetStarts(
+        f"Start {count} of {source}{facts_of_release(plan.file.distro)}.",
+        simulators,
+        launch_actions.of_all(plan, paths),
+        [_with_windows(it, opened) for it in robots],
+        [window for name, window in opened if name not in names],
+        bool(simulators) if clock is None else clock,
+        [teleop.command(it) for one in each for it in teleop.teleops(one)],
+        _world(simulators, paths),
+    )
+
+
+def _with_windows(it: RobotStarts, opened: Sequence[tuple[str, Start]]) -> RobotStarts:
+    """The robot with the windows that show it alone: they are not opened without it."""
+    return it._replace(windows=tuple(window for name, window in opened if name == it.name))
+
+
+def _world(simulators: Collection[str], paths: Collection[str]) -> File | str:
+    """The world of the build, else that of Gazebo."""
+    if GZ not in simulators:
+        return ""
+    return File(world_file.FILE) if world_file.FILE in paths else "empty.sdf"

@@ -1,0 +1,334 @@
+"""What a fleet starts -> ``fleet.launch.py``: plain launch and launch_ros, to be read and edited."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any
+
+from multibot_rewrite.fleet.file.fleet_starts import (
+    CLASSIC,
+    GZ,
+    Component,
+    File,
+    FleetStarts,
+    RobotStarts,
+    Start,
+    Text,
+    launch_arguments,
+)
+from multibot_rewrite.fleet.outputs.relays import BRIDGE, not_bridged
+
+_Files = tuple[File, ...]
+
+
+_BODY = '''\
+from pathlib import Path
+
+{prefix}from launch import LaunchDescription
+from launch.actions import (
+    {actions},
+)
+from launch.conditions import IfCondition
+{events}from launch.substitutions import {substitutions}
+from launch_ros.actions import {ros_actions}
+{more}from launch_ros.parameter_descriptions import ParameterValue
+{share}{messages}
+FOLDER = Path(__file__).resolve().parent
+CLOCK = {{"use_sim_time": ParameterValue(LaunchConfiguration("use_sim_time"), value_type=bool)}}
+
+
+def file(name):
+    """The path of a file beside this one."""
+    return str(FOLDER / name)
+
+
+def text(name):
+    """What a file beside this one holds, as a parameter."""
+    return ParameterValue((FOLDER / name).read_text(), value_type=str)
+'''
+_INSTALLED = '''\
+def if_installed(package, otherwise, actions):
+    """The actions where the package is installed, else a line that says what is missing."""
+    try:
+        get_package_prefix(package)
+    except PackageNotFoundError:
+        return [LogInfo(msg=otherwise)]
+    return actions
+'''
+_BROUGHT_UP = '''\
+def brought_up(node):
+    """A node with a life cycle: it is configured, and activated when that is done."""
+
+    def change(transition):
+        matched = matches_action(node)
+        event = ChangeState(lifecycle_node_matcher=matched, transition_id=transition)
+        return EmitEvent(event=event)
+
+    configured = OnStateTransition(
+        target_lifecycle_node=node,
+        start_state="configuring",
+        goal_state="inactive",
+        entities=[change(Transition.TRANSITION_ACTIVATE)],
+    )
+    return [node, RegisterEventHandler(configured), change(Transition.TRANSITION_CONFIGURE)]
+'''
+_LIFECYCLE = """\
+from launch_ros.event_handlers import OnStateTransition
+from launch_ros.events.lifecycle import ChangeState
+"""
+_PREFIX = "from ament_index_python.packages import PackageNotFoundError, get_package_prefix\n"
+_CHOSEN = '''\
+def first(count):
+    """The names of so many robots."""
+    if not 0 < count <= len(ROBOTS):
+        more = f"multibot build FLEET -o {FOLDER} --count {count}"
+        raise RuntimeError(f"robots:={count}: {len(ROBOTS)} robots were built; for more: {more}")
+    return list(ROBOTS)[:count]
+
+
+def chosen(context):
+    """What the robots run that robots:= names, or so many of them; all of them by default."""
+    words = LaunchConfiguration("robots").perform(context).replace(",", " ").split()
+    if len(words) == 1 and words[0].isdigit():
+        words = first(int(words[0]))
+    unknown = [it for it in words if it not in ROBOTS]
+    if unknown:
+        raise RuntimeError(f"robots:={unknown[0]} is not in this fleet; it has {', '.join(ROBOTS)}")
+    return [action for name in words or ROBOTS for action in ROBOTS[name]()]
+'''
+
+
+def to_python(it: FleetStarts) -> str:
+    """The text of the file."""
+    return "".join(f"{line}\n" for part in _parts(it) for line in part)
+
+
+def _parts(it: FleetStarts) -> Iterator[Iterable[str]]:
+    yield _head(it)
+    yield _imports(it)
+    if any(robot.bridged_tf for robot in it.robots):
+        yield "", "", *_INSTALLED.splitlines()
+    if _has_life_cycle(it):
+        yield "", "", *_BROUGHT_UP.splitlines()
+    for robot in it.robots:
+        yield ("", "", *_robot(robot, bool(it.simulators)))
+    names = (f'    "{robot.name}": start_{robot.name},' for robot in it.robots)
+    yield "", "", "ROBOTS = {", *names, "}", "", "", *_CHOSEN.splitlines()
+    yield "", "", *_description(it)
+
+
+def _head(it: FleetStarts) -> Iterator[str]:
+    yield f'"""{it.head}'
+    yield ""
+    yield "Plain launch and launch_ros: read it, edit it, or include it from another launch file."
+    yield ""
+    yield "    ros2 launch fleet.launch.py"
+    yield f"    ros2 launch fleet.launch.py robots:={it.robots[0].name}"
+    if it.driving:
+        yield ""
+        yield "In other terminals, to drive:"
+        yield ""
+        yield from (f"    {line}" for line in it.driving)
+    yield '"""'
+    yield ""
+
+
+def _imports(it: FleetStarts) -> list[str]:
+    components = any(start.components for robot in it.robots for start in robot.starts)
+    actions = ["DeclareLaunchArgument", "GroupAction", "OpaqueFunction"]
+    managed = _has_life_cycle(it)
+    if managed:
+        actions += ["EmitEvent", "RegisterEventHandler"]
+    prefix = ""
+    if any(robot.bridged_tf for robot in it.robots):
+        actions.append("LogInfo")
+        prefix = _PREFIX
+    substitutions = ["LaunchConfiguration"]
+    if it.simulators:
+        actions.append("IncludeLaunchDescription")
+        substitutions += ["PathJoinSubstitution", "PythonExpression"]
+    ros = ["ComposableNodeContainer"] * components + ["LifecycleNode"] * managed + ["Node"]
+    more = "from launch_ros.descriptions import ComposableNode\n" if components else ""
+    more += _LIFECYCLE if managed else ""
+    share = "from launch_ros.substitutions import FindPackageShare\n" if it.simulators else ""
+    body = _BODY.format(
+        actions=",\n    ".join(sorted(actions)),
+        events="from launch.events import matches_action\n" if managed else "",
+        messages="from lifecycle_msgs.msg import Transition\n" if managed else "",
+        substitutions=", ".join(substitutions),
+        ros_actions=", ".join(ros),
+        more=more,
+        prefix=prefix,
+        share=share,
+    )
+    return body.splitlines()
+
+
+def _has_life_cycle(it: FleetStarts) -> bool:
+    return any(start.brought_up for robot in it.robots for start in robot.starts)
+
+
+def _robot(it: RobotStarts, simulated: bool) -> Iterator[str]:
+    yield f"def start_{it.name}():"
+    yield f'    """{it.about}."""'
+    for name, why in it.left:
+        if why:
+            yield f"    # Not started: {name} ({why})"
+    if it.files:
+        yield f"    params = [{', '.join(_value(File(path)) for path in it.files)}]"
+    own = tuple(File(path) for path in it.files)
+    yield "    return ["
+    for start in it.starts:
+        yield from _process(start, 8, own)
+    if it.bridged_tf:
+        yield "        *if_installed("
+        yield f"            {_quoted(BRIDGE)},"
+        yield f"            {_quoted(not_bridged(it.name))},"
+        yield "            ["
+        for start in it.bridged_tf:
+            yield from _process(start, 16)
+        yield "            ],"
+        yield "        ),"
+    yield from _group(it.spawned, "simulator", 8)
+    yield from _group(it.windows, "rviz", 8)
+    yield "    ]"
+
+
+def _group(starts: Sequence[Start], argument: str, indent: int) -> Iterator[str]:
+    """What is started where a launch argument is true."""
+    if not starts:
+        return
+    space = " " * indent
+    yield f"{space}GroupAction("
+    yield f"{space}    ["
+    for start in starts:
+        yield from _process(start, indent + 8)
+    yield f"{space}    ],"
+    yield f'{space}    condition=IfCondition(LaunchConfiguration("{argument}")),'
+    yield f"{space}),"
+
+
+def _process(it: Start, indent: int, own: _Files = (), action: str = "Node") -> Iterator[str]:
+    space = " " * indent
+    if it.brought_up:
+        yield f"{space}*brought_up("
+        yield from _process(it._replace(brought_up=False), indent + 4, own, "LifecycleNode")
+        yield f"{space}),"
+        return
+    yield f"{space}{'ComposableNodeContainer' if it.components else action}("
+    yield from (f"{space}    {line}" for line in _keywords(it, own))
+    if it.components:
+        yield f"{space}    composable_node_descriptions=["
+        for one in it.components:
+            yield from _component(one, indent + 8, own)
+        yield f"{space}    ],"
+    yield f"{space}),"
+
+
+def _keywords(it: Start, own: _Files) -> Iterator[str]:
+    yield f'package="{it.package}",'
+    yield f'executable="{it.executable}",'
+    yield from _names(it.namespace, it.name)
+    if it.arguments:
+        yield f"arguments=[{', '.join(_value(word) for word in it.arguments)}],"
+    yield from _given(it.parameters, it.remappings, own)
+    yield 'output="screen",'
+
+
+def _names(namespace: str, name: str) -> Iterator[str]:
+    if namespace:
+        yield f'namespace="{namespace}",'
+    if name:
+        yield f'name="{name}",'
+
+
+def _given(
+    parameters: Sequence[File | Mapping[str, Any]],
+    remappings: Iterable[tuple[str, str]],
+    own: _Files,
+) -> Iterator[str]:
+    """``own`` are the files that the robot's function calls ``params``."""
+    common = bool(own) and tuple(parameters[: len(own)]) == own
+    words = ["*params"] if common else []
+    words += [_value(it) for it in parameters[len(own) * common :]]
+    yield f"parameters=[{', '.join([*words, 'CLOCK'])}],"
+    pairs = list(remappings)
+    if pairs:
+        yield "remappings=["
+        yield from (f"    ({_value(old)}, {_value(new)})," for old, new in pairs)
+        yield "],"
+
+
+def _component(it: Component, indent: int, own: _Files) -> Iterator[str]:
+    space = " " * indent
+    yield f"{space}ComposableNode("
+    yield f'{space}    package="{it.package}",'
+    yield f'{space}    plugin="{it.plugin}",'
+    lines = (*_names(it.namespace, it.name), *_given(it.parameters, it.remappings, own))
+    yield from (f"{space}    {line}" for line in lines)
+    yield f"{space}),"
+
+
+def _value(it: Any) -> str:
+    if isinstance(it, File):
+        return f"file({_quoted(it.path)})"
+    if isinstance(it, Text):
+        return f"text({_quoted(it.path)})"
+    if isinstance(it, str):
+        return _quoted(it)
+    if isinstance(it, Mapping):
+        return "{" + ", ".join(f"{_quoted(key)}: {_value(one)}" for key, one in it.items()) + "}"
+    if isinstance(it, list):
+        return f"[{', '.join(map(_value, it))}]"
+    return repr(it)
+
+
+def _quoted(text: str) -> str:
+    import json
+
+    return json.dumps(text)
+
+
+def _description(it: FleetStarts) -> Iterator[str]:
+    yield "def generate_launch_description():"
+    yield '    """The simulator, then robot by robot, then the windows for all."""'
+    yield "    return LaunchDescription("
+    yield "        ["
+    for name, default, about in launch_arguments(it):
+        yield f'            DeclareLaunchArgument("{name}", default_value={_value(default)},'
+        yield f'                                  description="{about}"),'
+    for simulator in it.simulators:
+        yield from (f"            {line}" for line in _SIMULATORS[simulator])
+    for start in it.shared:
+        yield from _process(start, 12)
+    yield "            OpaqueFunction(function=chosen),"
+    yield from _group(it.windows, "rviz", 12)
+    yield "        ]"
+    yield "    )"
+
+
+_SIMULATORS: Mapping[str, tuple[str, ...]] = {
+    GZ: (
+        "IncludeLaunchDescription(",
+        '    PathJoinSubstitution([FindPackageShare("ros_gz_sim"), "launch", "gz_sim.launch.py"]),',
+        "    launch_arguments=[",
+        '        ("gz_args", ["-r ", PythonExpression(["\'-s \' if \'", '
+        'LaunchConfiguration("headless"),',
+        "                     \"'.lower() == 'true' else ''\"]), "
+        "'\"', LaunchConfiguration(\"world\"), '\"']),",
+        "    ],",
+        '    condition=IfCondition(LaunchConfiguration("simulator")),',
+        "),",
+    ),
+    CLASSIC: (
+        "IncludeLaunchDescription(",
+        '    PathJoinSubstitution([FindPackageShare("gazebo_ros"), "launch", "gazebo.launch.py"]),',
+        "    launch_arguments=[",
+        '        ("gui", PythonExpression(["\'false\' if \'", LaunchConfiguration("headless"),',
+        "                                  \"'.lower() == 'true' else 'true'\"])),",
+        '        ("world", LaunchConfiguration("world")),',
+        "    ],",
+        '    condition=IfCondition(LaunchConfiguration("simulator")),',
+        "),",
+    ),
+}

@@ -1,0 +1,140 @@
+"""Parameter files that only launch files name: they are rewritten as the files of ``params`` are."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping, Sequence
+
+from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
+from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.params.sections import raw_sections
+from multibot_rewrite.fleet.file.fleet_file import FleetFile, RobotSpec
+from multibot_rewrite.fleet.launch.launched_robot import launch_of
+from multibot_rewrite.fleet.outputs.output_file import yaml_of
+from multibot_rewrite.system.records import Place
+
+PARAMS = "params"
+# What launch_ros fills in a file with allow_substs.
+_SUBSTITUTED = "$(var "
+_SPAWNER = (
+    "structure:\n  nodes:\n    /spawner:\n      pkg: controller_manager\n      exec: spawner\n"
+)
+_DRIVE = "drive:\n  ros__parameters: {type: diff_drive_controller/DiffDriveController}\n"
+_FLEET = """\
+companions: {params: PARAMS}
+launch: system_model.yaml
+robots:
+  - {name: robot1, description: robot.urdf}
+  - {name: robot2, description: robot.urdf}
+"""
+NOT_REWRITTEN = declare(
+    "MF824",
+    "launched-parameters-not-rewritten",
+    NOTE,
+    what="A launch file gives a node a parameter file that is not rewritten: the robot has another "
+    "file of that name (a note), or the launch writes a robot's name in it, or more (a warning).",
+    why="Robots that are launched with it all read the same frames, joints and topics.",
+    fix="Nothing, if the launch is to get the file that is written in its place; else give one of them "
+    "another name. Write a file with $(var ...) out for one robot, and list that under `params`.",
+    bad=_FLEET.replace("PARAMS", "drive.yaml"),
+    good=_FLEET.replace("PARAMS", "config/drive.yaml"),
+    line=3,
+    formats=("fleet",),
+    beside={
+        "system_model.yaml": f"{_SPAWNER}      args: [drive, -p, config/drive.yaml]\n",
+        "drive.yaml": _DRIVE,
+        "config/drive.yaml": _DRIVE,
+    },
+)
+
+
+class _Named(NamedTuple):
+    """A file that a launch names, what the node gets of it, and where the launch has that node."""
+
+    path: str
+    text: str
+    place: Place
+
+
+class LaunchedFiles(NamedTuple):
+    """A fleet with the parameter files of its launch files, and for each robot by its name notes of
+    those that are left out."""
+
+    file: FleetFile
+    notes: Mapping[str, Sequence[Finding]]
+
+
+def with_launched_files(file: FleetFile) -> LaunchedFiles:
+    """The fleet with parameter files that only its launch files name.
+
+    Raises InputError for a launch file that cannot be read. Robots with the same launch files have
+    those of the first; an argument that names a file by ``{robot}`` makes them differ.
+    """
+    first = {it.launch: it for it in reversed(file.robots) if it.launch}
+    named = {launch: tuple(_named(spec)) for launch, spec in first.items()}
+    found = [_with(it, named.get(it.launch, ())) for it in file.robots]
+    robots = tuple(it for it, _ in found)
+    return LaunchedFiles(file._replace(robots=robots), {it.name: notes for it, notes in found})
+
+
+def _named(spec: RobotSpec) -> Iterator[_Named]:
+    """The parameter files that are there without the launch, each once."""
+    seen: set[str] = set()
+    nodes = launch_of(spec.launch, spec.words[0]).nodes
+    for given, place in ((it, node.place) for node in nodes for it in node.parameters):
+        if given.source and given.source not in seen and _sets_parameters(given.source):
+            yield _Named(given.source, given.text, place)
+        seen.add(given.source)
+
+
+def _sets_parameters(path: str) -> bool:
+    try:
+        return bool(raw_sections(yaml_of(path)))
+    except InputError:
+        return False
+
+
+def _with(spec: RobotSpec, named: Sequence[_Named]) -> tuple[RobotSpec, list[Finding]]:
+    """The robot with the files that it has not got, and notes of those that are left out."""
+    own, filled, notes = list(spec.companions.get(PARAMS, ())), [], []
+    taken = {os.path.basename(it): it for it in _written(spec)}
+    for it in named:
+        there = taken.setdefault(os.path.basename(it.path), it.path)
+        text = yaml_of(it.path).text
+        if os.path.realpath(there) != it.path:
+            notes.append(_has_other(it, there))
+        elif _SUBSTITUTED not in text or _is_filled(it, text, spec):
+            own += [] if there in own else [there]
+            filled += [(there, it.text)] if _SUBSTITUTED in text else []
+        elif there not in own:
+            notes.append(_unfilled(it))
+    companions = {**spec.companions, PARAMS: tuple(own)} if own else spec.companions
+    return spec._replace(companions=companions, filled=tuple(filled)), notes
+
+
+def _written(spec: RobotSpec) -> Iterator[str]:
+    yield from filter(None, (spec.description, spec.srdf, spec.simulated))
+    yield from (path for paths in spec.companions.values() for path in paths)
+
+
+def _is_filled(it: _Named, text: str, spec: RobotSpec) -> bool:
+    """Is what the launch makes of the file the same for all robots, line by line that file?"""
+    same = len(it.text.splitlines()) == len(text.splitlines())
+    named = {word for word in spec.words if word in it.text and word not in text}
+    return same and not named and _SUBSTITUTED not in it.text
+
+
+def _unfilled(it: _Named) -> Finding:
+    message = f"the launch fills {_SUBSTITUTED}...) in {it.path}; it is not rewritten"
+    hint = "write it out for one robot without a prefix, and list that file under params"
+    own = {"file": it.place.file, "line": it.place.line, "column": 1}
+    return NOT_REWRITTEN.finding(message, hint, level=WARNING, **own)
+
+
+def _has_other(it: _Named, there: str) -> Finding:
+    message = f"the launch gives a node {it.path}; {there} is rewritten in its place"
+    hint = "give the launch what is written for the robot, or give one of them another name"
+    own = {"file": it.place.file, "line": it.place.line, "column": 1}
+    return NOT_REWRITTEN.finding(message, hint, **own)

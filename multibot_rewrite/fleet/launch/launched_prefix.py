@@ -1,0 +1,84 @@
+"""A prefix of frames that a launch file gives robot_state_publisher, beside the built description.
+
+Source: robot_state_publisher src/robot_state_publisher.cpp: frame_prefix is put before each frame; tf2
+takes a leading slash away.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.fleet.fleet import FRAME_PREFIX
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence, node_sources
+from multibot_rewrite.producers.evidence.records import Given
+from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
+
+_FLEET = """\
+launch: system_model.yaml
+robots:
+  - {name: robot1, description: robot.urdf}
+  - {name: robot2, description: robot.urdf}
+"""
+_MODEL = f"""\
+structure:
+  nodes:
+    /robot_state_publisher:
+      pkg: {STATE_PUBLISHER}
+      exec: {STATE_PUBLISHER}
+      node_name: {STATE_PUBLISHER}
+      params: {{frame_prefix: robot1/}}
+"""
+OTHER_PREFIX = declare(
+    "MF841",
+    "launch-file-adds-prefix",
+    WARNING,
+    what="A launch file starts robot_state_publisher with a frame_prefix that does not go with the "
+    "layout: the built description has the robot's name in its links already, or the layout leaves "
+    "frames without it.",
+    why="The frames of the description get the prefix besides, and every lookup of the planned frames "
+    "fails: there are two trees.",
+    fix="Leave frame_prefix out of the launch file, start the robots with the built launch file, or "
+    "use layout frame-prefix, in which the description keeps its links.",
+    bad=f"layout: both\n{_FLEET}",
+    good=f"layout: frame-prefix\n{_FLEET}",
+    line=3,
+    formats=("fleet",),
+    beside={"system_model.yaml": _MODEL},
+)
+
+
+def launched_prefixes(plan: FleetPlan) -> Iterator[Finding]:
+    """Those of the first robot of each kind."""
+    for key, found in plan.evidence.items():
+        robot = next(it for it in plan.robots if node_sources(it.spec) == key)
+        given = _prefix_of(found)
+        # What is in a parameter file is rewritten there.
+        if given and given.place.file in robot.spec.companions.get("params", ()):
+            continue
+        prefix = str(given.value).strip("/") if given else ""
+        if given and prefix != robot.frame_prefix.strip("/"):
+            yield _finding(robot, given, prefix)
+
+
+def _prefix_of(found: RobotEvidence) -> Given | None:
+    """What its own robot_state_publisher gets; there may be another one, as of a dock."""
+    every = [it for it in found.given if it.known == STATE_PUBLISHER]
+    own = next((it for it in every if it.name == STATE_PUBLISHER), None)
+    publisher = own or (every[0] if len(every) == 1 else None)
+    return publisher.values.get(FRAME_PREFIX) if publisher else None
+
+
+def _finding(robot: RewrittenRobot, given: Given, prefix: str) -> Finding:
+    layout = robot.names.naming.layout.name
+    starts = f"{STATE_PUBLISHER} of {robot.spec.name} is started with"
+    message = f"{starts} frame_prefix {prefix!r}, which layout {layout} has not"
+    hint = "leave it out of the launch file, or use layout frame-prefix"
+    if not prefix:
+        message = f"{starts} no frame_prefix, and layout {layout} needs {robot.frame_prefix!r}"
+        hint = f"give it frame_prefix: {robot.frame_prefix}"
+    file, line, _ = given.place
+    return OTHER_PREFIX.finding(message, hint, file=file, line=line, column=1)

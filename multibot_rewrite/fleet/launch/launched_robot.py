@@ -1,0 +1,117 @@
+"""The launch files of a robot -> its nodes: its stacks as the launch files start them."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+
+from multibot_rewrite.base.rosnames import RemapRule
+from multibot_rewrite.description.sources.own_names import filled
+from multibot_rewrite.knowledge.parameters import KnownNodes
+from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
+from multibot_rewrite.producers.evidence.nodes import RobotNodes, nodes_of
+from multibot_rewrite.producers.evidence.records import GivenNode
+from multibot_rewrite.producers.evidence.remapped import under_plugin
+from multibot_rewrite.producers.launch.child import launch_graph
+from multibot_rewrite.producers.launch.of_robot import Launched, as_launched, with_launched
+from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder
+
+NOT_SPAWNED = "no spawner of the launch files loads it"
+
+
+def launched_robot(
+    stack: Sequence[NodeFacts],
+    orders: Sequence[LaunchOrder],
+    known: Mapping[str, NodeFacts],
+    words: Sequence[str],
+    parameters: KnownNodes,
+    release: str,
+) -> Launched | None:
+    """The nodes of a robot with these launch files, in a release; None without any.
+
+    ``words`` stand for the robot in names, the first one for ``{robot}`` in arguments. Raises
+    InputError for a launch file that cannot be read, and UsageError for an unknown placeholder.
+    """
+    if not orders:
+        return None
+    mine = _own(orders, words[0])
+    graph = launch_of(orders, words[0])
+    return with_launched(stack, graph, known, {*words, *_values(mine)}, parameters, release)
+
+
+def launch_of(orders: Sequence[LaunchOrder], robot: str) -> LaunchGraph:
+    """All that these launch files start, with the robot in the place of ``{robot}``; raises as
+    ``launched_robot``."""
+    graphs = [launch_graph(it) for it in _own(orders, robot)]
+    return LaunchGraph(
+        tuple(node for it in graphs for node in it.nodes),
+        tuple(note for it in graphs for note in it.notes),
+        tuple(file for it in graphs for file in it.files),
+        any(it.stood_in for it in graphs),
+    )
+
+
+def _own(orders: Sequence[LaunchOrder], robot: str) -> list[LaunchOrder]:
+    return [it._replace(arguments=tuple(_filled(it, robot))) for it in orders]
+
+
+def nodes_with(
+    launched: Launched | None,
+    stack: Sequence[NodeFacts],
+    given: Sequence[GivenNode],
+    known: Mapping[str, NodeFacts],
+) -> RobotNodes:
+    """The nodes that a robot runs, by its launch files, its other files and its stacks."""
+    if launched is None:
+        return nodes_of(stack, given, known)
+    nodes, findings = nodes_of(launched.nodes, given, known, _spawned(launched, given))
+    return RobotNodes(tuple(as_launched(nodes, launched)), (*launched.findings, *findings))
+
+
+def under_plugins(
+    nodes: Sequence[NodeFacts], launched: Launched | None, rules: Sequence[RemapRule], release: str
+) -> tuple[NodeFacts, ...]:
+    """The nodes, with the controllers under the rules of the plugin in the description that loads them,
+    unless a launch file starts their controller manager."""
+    if launched and MANAGER in launched.started:
+        return tuple(nodes)
+    return tuple(under_plugin(it, rules, release) for it in nodes)
+
+
+def _spawned(launched: Launched, given: Sequence[GivenNode]) -> dict[str, str]:
+    """Controllers of which launch files say whether they run -> the condition; empty for always."""
+    found = {name: it.later for name, it in launched.spawned.items()}
+    rest = (it.name for it in given if it.manager and it.name not in found)
+    return found | (dict.fromkeys(rest, NOT_SPAWNED) if found and launched.whole else {})
+
+
+def given_with(launched: Launched | None, given: Sequence[GivenNode]) -> tuple[GivenNode, ...]:
+    """What a robot's files set and what its launch files do: these come last, so they count."""
+    if launched is None:
+        return tuple(given)
+    started = {it.name: it for it in launched.given}
+    # In the order of the files, so that they can be compared with what is made of them.
+    own = [_both(it, started.pop(it.name)) if it.name in started else it for it in given]
+    return (*own, *started.values())
+
+
+def _both(own: GivenNode, launched: GivenNode) -> GivenNode:
+    """A value that both have keeps its place in the robot's own file."""
+    same = {
+        k: it
+        for k, it in own.values.items()
+        if k in launched.values and launched.values[k].value == it.value
+    }
+    values = {**own.values, **launched.values, **same}
+    # The file may say what the launch alone does not: the type of a controller.
+    said = launched if launched.type or not own.type else own
+    manager = launched.manager or own.manager
+    return said._replace(values=values, place=own.place, manager=manager)
+
+
+def _filled(order: LaunchOrder, robot: str) -> Iterator[tuple[str, str]]:
+    yield from filled(dict(order.arguments), robot).items()
+
+
+def _values(orders: Collection[LaunchOrder]) -> Iterator[str]:
+    """What stands for the robot besides its own words: its namespace in a launch."""
+    yield from (value.strip("/") for it in orders for _, value in it.arguments if value.strip("/"))

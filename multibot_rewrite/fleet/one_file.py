@@ -1,0 +1,185 @@
+"""A file beside a description, rewritten for robots without a fleet file: parameters, RViz, MoveIt, a
+bridge, a behavior tree, Lua."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+from multibot_rewrite.base.arguments import checked
+from multibot_rewrite.base.conventions import SHARED_TOPICS, WORLD_FRAMES
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.naming import DEFAULT_LAYOUT, Naming, make_naming
+from multibot_rewrite.base.plural import plural
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.releases import release_here
+from multibot_rewrite.base.rosnames import check_robot_name
+from multibot_rewrite.companions.alone import kind_alone, named_file, rewrite_alone
+from multibot_rewrite.companions.context import Context, make_context
+from multibot_rewrite.companions.names.rename_map import KINDS, NO_OWN, companion_names
+from multibot_rewrite.description.sources.job import Job, read_jobs
+from multibot_rewrite.description.sources.read import Source, read_whole
+from multibot_rewrite.rules.files.judge import judged_once
+
+# Code -> what is counted and what is said of it. A file with one of these findings is not proved.
+REASONS = {
+    "MB853": ("frame", "in no description"),
+    "MB854": ("joint", "in no description"),
+    "MB860": ("name", "not understood"),
+    "MB862": ("placeholder", "that a launch file has to replace"),
+    "MF114": ("node", "not known"),
+    "MF117": ("prefix parameter", "that no postfix reaches"),
+    "MF118": ("port or file", "shared by all robots"),
+    "MF119": ("name", "in a block of text"),
+    "MF120": ("topic", "that remap rules move"),
+    "MF122": ("pattern", "not rewritten"),
+    "MF203": ("tf topic", "that rviz2 has to be given"),
+    "MF204": ("display", "not known"),
+    "MF208": ("value", "not rewritten"),
+    "MF403": ("tree", "in another file"),
+    "MF451": ("frame", "that is no plain string"),
+    "MF453": ("file", "not read"),
+}
+_DECLARED = frozenset(it for kinds in KINDS.values() for it in kinds)
+# Kinds of names that are spelled without a description.
+_IN_GRAPH = frozenset(("topic", "service"))
+
+
+class RewrittenFile(NamedTuple):
+    """A file as one robot needs it: its ``kind`` (params, rviz, moveit, bridge, tree or lua), its
+    bytes, what is wrong in it, and why robots may meet all the same (empty where it is proved)."""
+
+    robot: str
+    kind: str
+    data: bytes
+    findings: tuple[Finding, ...]
+    not_proved: tuple[str, ...]
+
+    @property
+    def text(self) -> str:
+        """The result as str; raises nothing."""
+        return self.data.decode()
+
+
+@checked
+def rewrite_file(
+    source: Source,
+    robot: str,
+    *,
+    urdf: Source | None = None,
+    layout: str = DEFAULT_LAYOUT,
+    affix: str | None = None,
+    topics: str | None = None,
+    separators: Mapping[str, str] | None = None,
+    shared_frames: Iterable[str] = WORLD_FRAMES,
+    shared_topics: Iterable[str] = SHARED_TOPICS,
+    groups: str = "keep",
+    xacro_args: Mapping[str, str] | None = None,
+    vocabulary: Iterable[str] = (),
+    file: str = "",
+    trust: bool = False,
+    distro: str = "",
+) -> RewrittenFile:
+    """Rewrite a file beside a description for ``robot``: parameters, RViz, MoveIt, ros_gz_bridge, a
+    behavior tree of Nav2, Cartographer's Lua, told by what is in it.
+
+    ``urdf`` is the robot's description, not rewritten; the other options are those of ``rewrite``.
+    Raises InputError (cannot be read), UsageError (a wrong argument, or a description is needed).
+    """
+    naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
+    given = (urdf, xacro_args, vocabulary, file, trust, release_here(distro))
+    return next(_rewritten(source, (robot,), naming, *given))
+
+
+@checked
+def rewrite_files(
+    source: Source,
+    robots: Iterable[str],
+    *,
+    urdf: Source | None = None,
+    layout: str = DEFAULT_LAYOUT,
+    affix: str | None = None,
+    topics: str | None = None,
+    separators: Mapping[str, str] | None = None,
+    shared_frames: Iterable[str] = WORLD_FRAMES,
+    shared_topics: Iterable[str] = SHARED_TOPICS,
+    groups: str = "keep",
+    xacro_args: Mapping[str, str] | None = None,
+    vocabulary: Iterable[str] = (),
+    file: str = "",
+    trust: bool = False,
+    distro: str = "",
+) -> Iterator[RewrittenFile]:
+    """The same for several robots, in their order. What a bridge carries for all of them, such as the
+    clock, is in the file of the first. Raises as ``rewrite_file``, before the first result."""
+    naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
+    given = (urdf, xacro_args, vocabulary, file, trust, release_here(distro))
+    return _rewritten(source, tuple(robots), naming, *given)
+
+
+def _rewritten(
+    source: Source,
+    robots: Sequence[str],
+    naming: Naming,
+    urdf: Source | None,
+    xacro_args: Mapping[str, str] | None,
+    vocabulary: Iterable[str],
+    file: str,
+    trust: bool,
+    release: str,
+) -> Iterator[RewrittenFile]:
+    _check_robots(robots)
+    read = read_whole(source, {}, trust)
+    name = file or read.file
+    kind = kind_alone(read.data, name)
+    jobs: Mapping[str, Job] = {}
+    if urdf is not None:
+        given = (xacro_args, vocabulary, "", trust, release)
+        jobs = read_jobs(robots, urdf, naming, None, *given)
+    contexts = {it: _context(jobs.get(it), naming, release) for it in robots}
+    if urdf is None:
+        _check_free(kind, read.data, name, contexts[robots[0]])
+    made = [_for_robot(kind, read.data, name, it, robots, contexts[it]) for it in robots]
+    return iter(made)
+
+
+def _check_robots(robots: Sequence[str]) -> None:
+    for at, robot in enumerate(robots):
+        check_robot_name(robot)
+        if robot in robots[:at]:
+            raise UsageError(f"robot name {robot!r} is given twice; every robot needs its own")
+
+
+def _context(job: Job | None, naming: Naming, release: str) -> Context:
+    if job is None:
+        return make_context({kind: {} for kind in _DECLARED}, naming, (), release)
+    declared, own = job.inventories[0].declared, job.own.plain or NO_OWN
+    names = companion_names(declared, job.naming, "", own)
+    return make_context(names.declared, job.naming, (), release, names.own)
+
+
+def _check_free(kind: str, data: bytes, file: str, context: Context) -> None:
+    """Without a description only files whose names do not rest on one can be rewritten."""
+    spelled = (_DECLARED - _IN_GRAPH).intersection(context.names.naming.separators)
+    named = named_file(kind, data, file, context)
+    found = next((it for it in named.names if not spelled.isdisjoint(KINDS.get(it.kind, ()))), None)
+    if found:
+        what = f"{file}:{found.line} names the {found.kind} {found.text!r}"
+        raise UsageError(f"{what}; give the robot's description with --urdf (urdf=)")
+
+
+def _for_robot(
+    kind: str, data: bytes, file: str, robot: str, robots: Sequence[str], context: Context
+) -> RewrittenFile:
+    made = rewrite_alone(kind, data, file, context, robot, robot == robots[0])
+    named = made.file._replace(robots=frozenset(robots))
+    findings = tuple(dict.fromkeys((*made.findings, *judged_once(named))))
+    ordered = tuple(sorted(findings, key=lambda it: (it.line, it.column, it.code)))
+    return RewrittenFile(robot, kind, made.text.encode(), ordered, _not_proved(ordered, made.kept))
+
+
+def _not_proved(findings: Sequence[Finding], kept: int) -> tuple[str, ...]:
+    """Why a file is not proved, with counts; empty where it is."""
+    counted = {code: sum(it.code == code for it in findings) for code in REASONS}
+    found = [f"{plural(n, REASONS[it][0])} {REASONS[it][1]}" for it, n in counted.items() if n]
+    return (*found, *([f"{plural(kept, 'name')} not the robot's"] if kept else []))

@@ -1,0 +1,1 @@
+"""The files of a built fleet, one module a file."""

@@ -1,0 +1,162 @@
+"""The ros_gz_bridge files of a fleet: one for each robot, and one for what all robots share."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import cast
+
+from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.bridge import BridgeFile, rewrite_bridge
+from multibot_rewrite.companions.bridge_entry import BOTH, GZ
+from multibot_rewrite.companions.rviz.read_config import text_of
+from multibot_rewrite.companions.yaml_text import items, read_yaml
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.outputs.bridge_merge import as_spawned, fill_bridge, merge_bridges
+from multibot_rewrite.fleet.outputs.companion_files import of_fleet
+from multibot_rewrite.fleet.outputs.output_file import (
+    FilesAndFindings,
+    OutputFile,
+    path_for,
+    yaml_of,
+)
+from multibot_rewrite.fleet.robots.member import line_of
+from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleet.robots.robot_groups import RobotGroup, group_robots
+from multibot_rewrite.fleet.robots.robot_nodes import node_sources
+from multibot_rewrite.rules.files.judge import judged_once
+from multibot_rewrite.spelling.bridged_topics import BridgedTopic, UnbridgedTopic, bridged_topics
+
+BRIDGE = "bridge.yaml"
+
+
+class GroupBridges(NamedTuple):
+    """A group of robots with its bridge files by path, each rewritten once."""
+
+    group: RobotGroup
+    files: dict[str, BridgeFile]
+
+
+def bridge_outputs(plan: FleetPlan) -> FilesAndFindings:
+    """Every bridge file of a fleet.
+
+    Raises InputError for a bridge file that cannot be read or rewritten.
+    """
+    topics, unbridged = bridged_topics(plan.fleet.inventories, plan.fleet.naming)
+    topics = as_spawned(topics, plan.robots)
+    groups = [_read(group) for group in group_robots(plan)]
+    for group, files in groups:
+        for file in files.values():
+            yield from (*file.own.findings, *judged_once(of_fleet(plan, file.own.file)))
+        for robot in group.robots:
+            made = list(_for_robot(robot, files, topics))
+            yield from made
+            own = [it for it in unbridged if it.robot == robot.spec.namespace]
+            texts = [it for it in made if isinstance(it, OutputFile)]
+            given = plan.evidence[node_sources(robot.spec)].arguments
+            open_ = (it for it in own if not _is_launched(it, given))
+            yield from (_unbridged(robot, it) for it in open_ if not _is_carried(it, texts, topics))
+    yield from _for_all(groups, topics)
+
+
+def _read(group: RobotGroup) -> GroupBridges:
+    paths = group.companions.get("bridge", ())
+    above = group.robots[0].spec.bridge_namespace_of
+    made = {it: rewrite_bridge(yaml_of(it), group.context, above=above(it)) for it in paths}
+    return GroupBridges(group, made)
+
+
+def _for_robot(
+    robot: RewrittenRobot, files: dict[str, BridgeFile], topics: Iterable[BridgedTopic]
+) -> FilesAndFindings:
+    spec = robot.spec
+    texts = [
+        (path, fill_bridge(file.own.template, spec.namespace, spec.tag, spec.model))
+        for path, file in files.items()
+    ]
+    for path, own in texts:
+        # A vendor's launch file starts a bridge for each of them.
+        if path_for(robot, path).partition("/")[2] in dict(spec.places).values():
+            yield OutputFile(path_for(robot, path), own.encode(), (path,))
+    text, findings = merge_bridges(texts, [it for it in topics if it.robot == spec.namespace])
+    yield from findings
+    if text:
+        yield OutputFile(path_for(robot, BRIDGE), text.encode(), tuple(files))
+
+
+def _for_all(groups: Iterable[GroupBridges], topics: Sequence[BridgedTopic]) -> FilesAndFindings:
+    """The bridge of what all robots share, where there is anything to bridge."""
+    shared = dict.fromkeys(
+        (path, file.shared) for it in groups for path, file in it.files.items() if file.shared
+    )
+    if not shared and not any(it.robot for it in topics):
+        return
+    text, findings = merge_bridges(shared, [it for it in topics if not it.robot])
+    yield from findings
+    yield OutputFile(BRIDGE, text.encode(), tuple(dict.fromkeys(path for path, _ in shared)))
+
+
+NO_TOPIC = declare(
+    "MF509",
+    "sensor-without-gz-topic",
+    WARNING,
+    what="A sensor or plugin of gz-sim has no topic in the description, and its default topic has the "
+    "name of the world in it.",
+    why="The bridge cannot name the topic, so the sensor's data does not arrive in ROS.",
+    fix="Give it a topic in the description.",
+    bad="""\
+<robot name="rover">
+  <link name="base_link"/>
+  <gazebo reference="base_link">
+    <sensor name="lidar" type="gpu_lidar"/>
+  </gazebo>
+</robot>
+""",
+    good="""\
+<robot name="rover">
+  <link name="base_link"/>
+  <gazebo reference="base_link">
+    <sensor name="lidar" type="gpu_lidar"><topic>scan</topic></sensor>
+  </gazebo>
+</robot>
+""",
+    line=4,
+    formats=("fleet-urdf",),
+)
+
+
+def _is_carried(
+    topic: UnbridgedTopic, made: Iterable[OutputFile], others: Iterable[BridgedTopic]
+) -> bool:
+    """Does a file of the user have a row for it? Only who knows the world can write one."""
+    known = {it.gz.lstrip("/") for it in others}
+    for row in (row for it in made for row in items(read_yaml(it.data, it.path).root)):
+        name = text_of(row, GZ) or text_of(row, BOTH)
+        alike = topic.part or text_of(row, "gz_type_name") == topic.type
+        if alike and topic.part in name and name.lstrip("/") not in known:
+            return True
+    return False
+
+
+def _is_launched(topic: UnbridgedTopic, arguments: Iterable[str]) -> bool:
+    """Has a bridge of the robot's launch files an argument for it?"""
+    return bool(topic.part) and any(topic.part in it for it in arguments)
+
+
+def _line(robot: RewrittenRobot, topic: UnbridgedTopic) -> int:
+    """The line in the source: inserted text moves those of the result."""
+    tag = "sensor" if topic.part else "plugin"
+    written = robot.member.inventory.document.root.iter(tag)
+    lines = [cast("int", it.sourceline) for it in written]
+    number = lines.index(topic.line)
+    return line_of(robot.member.source, tag, number)
+
+
+def _unbridged(robot: RewrittenRobot, topic: UnbridgedTopic) -> Finding:
+    message = (
+        f"{topic.what} of {topic.robot} has no topic of its own: its gz topic depends on the world"
+    )
+    hint = "give it a topic in the description, so that a bridge can name it"
+    place = {"file": robot.spec.description, "line": _line(robot, topic), "column": 1}
+    return NO_TOPIC.finding(message, hint, **place)

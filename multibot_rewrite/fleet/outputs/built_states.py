@@ -1,0 +1,80 @@
+"""The parameter files that a build wrote -> the parameters that each node of the plan has by them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Sequence
+
+from multibot_rewrite.companions.params.sections import PARAMETERS
+from multibot_rewrite.companions.yaml_text import YamlText, pairs, read_yaml
+from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.fleet.manifest import folders_of
+from multibot_rewrite.fleet.outputs.params_style import ZONES
+from multibot_rewrite.producers.evidence.parameter_files import named_values
+from multibot_rewrite.producers.evidence.records import Given
+from multibot_rewrite.system.parameters import parameter_text
+from multibot_rewrite.system.records import Parameter, System, nodes_by_robot
+
+# A launch file replaces these; the last ones stand alone (nav2_bringup bringup_launch.py, kilted+).
+_PLACEHOLDERS = ("$(", "${", "<", *ZONES)
+
+
+def with_built(plan: System, folder: str) -> System:
+    """The plan with the parameters in the files of ``folder``, which has a folder for each robot.
+
+    What the plan itself says of a node comes first. Raises InputError for a file that rcl rejects.
+    """
+    folders = folders_of(folder)
+    found = (
+        it for robot, nodes in nodes_by_robot(plan).items() if robot
+        for it in _of_robot(robot, nodes, os.path.join(folder, folders.get(robot, robot)))
+    )  # fmt: skip
+    built: dict[str, dict[str, Parameter]] = {}
+    for node, parameters in found:
+        known = built.setdefault(node, {})
+        for name, it in parameters.items():
+            # Two files may be for two ways to start a node: what they agree on is planned.
+            other = known.setdefault(name, it)
+            if other.value != it.value:
+                known[name] = it._replace(value="")
+    return plan._replace(parameters=tuple(_joined(plan, built)))
+
+
+def _joined(plan: System, built: dict[str, dict[str, Parameter]]) -> Iterator[Parameter]:
+    yield from plan.parameters
+    said = {(it.node, it.name) for it in plan.parameters}
+    for parameters in built.values():
+        yield from (it for it in parameters.values() if it.value and (it.node, it.name) not in said)
+
+
+def _of_robot(
+    robot: str, nodes: Sequence[str], folder: str
+) -> Iterator[tuple[str, dict[str, Parameter]]]:
+    for name in sorted(os.listdir(folder)) if os.path.isdir(folder) else ():
+        path = os.path.join(folder, name)
+        data = read_file(path) if name.endswith((".yaml", ".yml")) else b""
+        if PARAMETERS.encode() in data:
+            document = read_yaml(data, path)
+            names = _names(document, robot, nodes)
+            for node, values in named_values(document, names):
+                yield names[node], {it.name: it for it in _parameters(names[node], values)}
+
+
+def _names(document: YamlText, robot: str, nodes: Sequence[str]) -> dict[str, str]:
+    """The names that a file has for a robot's nodes -> their full names.
+
+    A file for nav2_bringup has them below the robot's namespace; all others begin with a slash.
+    """
+    if any(key.value.startswith("/") for key, _ in pairs(document.root)):
+        return {it: it for it in nodes}
+    above = f"/{robot}"
+    return {it.removeprefix(above): it for it in nodes if it.startswith(f"{above}/")}
+
+
+def _parameters(node: str, values: dict[str, Given]) -> Iterator[Parameter]:
+    for name, (value, place) in values.items():
+        texts = [
+            it for it in (value if isinstance(value, list) else [value]) if isinstance(it, str)
+        ]
+        if not any(it in text for text in texts for it in _PLACEHOLDERS):
+            yield Parameter(node, name, parameter_text(value), place)

@@ -1,0 +1,163 @@
+"""The files of a cell: the URDF and SRDF of all arms, and the parameters of their one move_group.
+
+Controllers stay in the namespaces of their arms, and so does the name by which move_group asks for
+their actions (moveit2 2.12.4 action_based_controller_handle.h, ``getActionName``).
+"""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.naming import NAMESPACE
+from multibot_rewrite.fleet.file.cell_file import MOVE_GROUP, Cell
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.outputs.moveit_parameters import (
+    FILE,
+    PROGRAMS,
+    SEMANTIC,
+    SERVO_PARAMETERS,
+    SIMPLE,
+    parameter_file,
+    parameters_of,
+)
+from multibot_rewrite.fleet.outputs.output_file import (
+    FilesAndFindings,
+    OutputFile,
+)
+from multibot_rewrite.fleet.robots.joined_arms import Arm, joined_srdf, joined_urdf
+from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleet.robots.start_poses import world_of
+
+_NAMES, _MANAGER = "controller_names", "moveit_controller_manager"
+_ONE_MANAGER = "Ros2ControlManager"
+_ARM = """\
+<robot name="arm">
+  <link name="base"/><link name="hand"/>
+  <joint name="elbow" type="fixed"><parent link="base"/><child link="hand"/></joint>
+</robot>
+"""
+_SRDF = '<robot name="arm"><group name="arm"><joint name="elbow"/></group></robot>\n'
+_FLEET = """\
+cell: {}
+layout: frames-per-robot
+description: arm.urdf
+srdf: arm.srdf
+stack: moveit
+robots:
+  - {name: left, pose: {y: 1}, companions: {moveit: limits.yaml}}
+  - {name: right, pose: {y: 0}, companions: {moveit: OTHER}}
+"""
+DISAGREE = declare(
+    "MF836",
+    "arms-of-a-cell-disagree",
+    WARNING,
+    what="The MoveIt files of two arms of a cell give one parameter two values; the first is taken.",
+    why="move_group runs once for all arms and has one value: the other arm moves by a limit or a "
+    "setting that was not meant for it.",
+    fix="Give both arms the same value, or set it in your launch file after these parameters.",
+    bad=_FLEET.replace("OTHER", "slow/limits.yaml"),
+    good=_FLEET.replace("OTHER", "limits.yaml"),
+    line=8,
+    formats=("fleet",),
+    beside={
+        "arm.urdf": _ARM,
+        "arm.srdf": _SRDF,
+        "limits.yaml": "default_velocity_scaling_factor: 0.5\n",
+        "slow/limits.yaml": "default_velocity_scaling_factor: 0.1\n",
+    },
+)
+
+
+def cell_outputs(plan: FleetPlan, files: Iterable[OutputFile]) -> FilesAndFindings:
+    """The files of a fleet's cell, if it has one, made of the ``files`` of its robots.
+
+    Raises InputError where the arms cannot be joined.
+    """
+    cell = plan.file.cell
+    if cell is None:
+        return
+    made = {it.path: it.data for it in files}
+    arms = [_arm(plan, robot) for robot in plan.robots]
+    urdf = joined_urdf(cell.name, world_of(plan.file, plan.fleet.naming), arms)
+    srdf = joined_srdf(cell, arms)
+    values: dict[str, Any] = {"robot_description": urdf.decode(), SEMANTIC: srdf.decode()}
+    for robot in plan.robots:
+        own = _of_cell(plan, robot, parameters_of(robot, made, plan.file.distro))
+        for name, first, other in _add(values, own, ""):
+            yield _disagree(robot, name, first, other)
+    sources = tuple(it for robot in plan.robots for it in _sources(robot))
+    for name, data in ((".urdf", urdf), (".srdf", srdf)):
+        yield OutputFile(f"{cell.name}/{cell.name}{name}", data, sources)
+    yield OutputFile(parameters_path(cell), parameter_file(values), sources)
+
+
+def parameters_path(cell: Cell) -> str:
+    """Where the parameters of a cell's move_group are."""
+    return f"{cell.name}/{FILE}"
+
+
+def cell_commands(plan: FleetPlan) -> Iterator[str]:
+    """The section of ``commands.md`` that starts the cell."""
+    if cell := plan.file.cell:
+        words = ["ros2", "run", *PROGRAMS[MOVE_GROUP], "--ros-args", "--params-file"]
+        line = shlex.join([*words, parameters_path(cell)])
+        yield f"\n## {cell.name}\n\nOne move_group for all arms.\n\n```sh\n{line}\n```\n"
+
+
+def _arm(plan: FleetPlan, robot: RewrittenRobot) -> Arm:
+    spec = robot.spec
+    place = f"{spec.file}:{spec.line}"
+    return Arm(spec.name, spec.tag, robot.description, robot.srdf, spec.pose, place)
+
+
+def _sources(robot: RewrittenRobot) -> Iterator[str]:
+    spec = robot.spec
+    yield from (spec.description, spec.srdf, *spec.companions.get("moveit", ()))
+
+
+def _of_cell(plan: FleetPlan, robot: RewrittenRobot, own: Mapping[str, Any]) -> dict[str, Any]:
+    """An arm's parameters as a move_group for all has them; servo runs for each arm."""
+    found = {key: it for key, it in own.items() if key not in (SEMANTIC, SERVO_PARAMETERS)}
+    if str(found.get(_MANAGER, "")).endswith(f"/{_ONE_MANAGER}"):
+        place = f"{robot.spec.file}:{robot.spec.line}: cell: {robot.spec.name!r}"
+        what = f"{_MANAGER} is {_ONE_MANAGER}, which asks one controller manager"
+        raise InputError(f"{place}: {what}; write moveit_simple_controller_manager")
+    if SIMPLE in found and plan.fleet.naming.topics == NAMESPACE:
+        found[SIMPLE] = dict(_in_namespace(found[SIMPLE], robot.spec.namespace))
+    return found
+
+
+def _in_namespace(controllers: Mapping[str, Any], namespace: str) -> Iterator[tuple[str, Any]]:
+    names = controllers.get(_NAMES, [])
+    for key, value in controllers.items():
+        if key == _NAMES:
+            yield key, [f"{namespace}/{it}" for it in names]
+        else:
+            yield (f"{namespace}/{key}" if key in names else key), value
+
+
+def _add(
+    into: dict[str, Any], more: Mapping[str, Any], at: str
+) -> Iterator[tuple[str, object, object]]:
+    """Add parameters, lists behind each other; those with two values: name, first, other."""
+    for key, value in more.items():
+        first, name = into.setdefault(key, value), f"{at}{key}"
+        if isinstance(first, dict) and isinstance(value, dict):
+            into[key] = dict(first)
+            yield from _add(into[key], value, f"{name}.")
+        elif isinstance(first, list) and isinstance(value, list):
+            into[key] = [*first, *(it for it in value if it not in first)]
+        elif first != value:
+            yield name, first, value
+
+
+def _disagree(robot: RewrittenRobot, name: str, first: object, other: object) -> Finding:
+    spec = robot.spec
+    message = f"{spec.name!r} has {name} {other!r}, an arm before it {first!r}, which is taken"
+    hint = "give all arms of the cell one value"
+    return DISAGREE.finding(message, hint, file=spec.file, line=spec.line, column=1)

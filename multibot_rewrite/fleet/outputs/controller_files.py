@@ -1,0 +1,138 @@
+"""The files of controllers that descriptions load: each robot's loads the one that was made for it.
+
+gz_ros2_control and gazebo_ros2_control hand ``<parameters>`` on as ``--params-file``
+(gz_ros2_control_plugin.cpp), and rcl opens it as it stands: there is no ``package://`` and no
+``$(find ...)``, and a relative path is one from where Gazebo was started.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+
+from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.model import Edit
+from multibot_rewrite.description.rewriters.insert import ESCAPES
+from multibot_rewrite.description.rewriters.text import text_of
+from multibot_rewrite.description.sources.packages import package_of
+from multibot_rewrite.description.steps.apply import cut
+from multibot_rewrite.description.steps.document import text_slot
+from multibot_rewrite.fleet.file.fleet_file import REAL
+from multibot_rewrite.fleet.outputs.output_file import path_for
+from multibot_rewrite.fleet.outputs.yarp_files import own_yarp_paths
+from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
+
+PARAMETERS = "parameters"
+# A package and the path in it, as xacro, a resource or an installed file names them.
+IN_PACKAGE = lazy_compile(
+    r"(?:\$\(find(?:-pkg-share)?\s+([^)\s]+)\)|package://([^/]+)|.*/share/([^/]+))/(.+)"
+)
+
+OTHER_CONTROLLER_FILE = declare(
+    "MF708",
+    "controller-file-of-all-robots",
+    WARNING,
+    what="A description loads a file of controllers that has the name of one of the fleet's parameter "
+    "files, and it is not certain that they are the same.",
+    why="The robot's own file is written, and its controller manager still reads the old one: the "
+    "node in it has another name, and the joints are those of one robot.",
+    fix="Name under `params` the file that the description loads.",
+    bad="""\
+layout: both
+robots:
+  - {name: robot1, description: arm.urdf}
+companions:
+  params: [controllers.yaml]
+""",
+    good="""\
+layout: both
+robots:
+  - {name: robot1, description: arm.urdf}
+companions:
+  params: [config/controllers.yaml]
+""",
+    line=3,
+    formats=("fleet",),
+    beside={
+        "arm.urdf": """\
+<robot name="arm">
+  <link name="base_link"/>
+  <gazebo>
+    <plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" filename="gz_ros2_control-system">
+      <parameters>config/controllers.yaml</parameters>
+    </plugin>
+  </gazebo>
+</robot>
+""",
+        "controllers.yaml": "controller_manager: {ros__parameters: {update_rate: 100}}\n",
+        "config/controllers.yaml": "controller_manager: {ros__parameters: {update_rate: 100}}\n",
+    },
+)
+
+
+def with_own_controllers(robot: RewrittenRobot, folder: str) -> tuple[bytes, tuple[Finding, ...]]:
+    """What the simulator gets, with the paths of the files that are made for this robot in ``folder``.
+
+    Without a ``folder`` nothing is written, and it stays as it is. So does that of a real robot, which
+    loads no file for its simulator's plugin.
+    """
+    if robot.spec.simulator == REAL:
+        return robot.description, ()
+    source = robot.member.inventory.document.source
+    file = robot.spec.simulated or robot.spec.description
+    params = robot.spec.companions.get("params", ())
+    edits, findings = list(own_yarp_paths(robot, folder)), []
+    for path, slot in loaded_files(robot) if params else ():
+        same = [it for it in params if is_same(path, it, file)]
+        if same and folder:
+            made = os.path.join(folder, path_for(robot, same[0])).translate(ESCAPES)
+            edits.append(Edit(*slot, made.encode(), None))
+        elif not same and any(named_alike(path, it) for it in params):
+            findings.append(_unsure(robot, path))
+    return b"".join(cut(source, sorted(edits))), tuple(findings)
+
+
+def loaded_files(robot: RewrittenRobot) -> Iterator[tuple[str, tuple[int, int]]]:
+    """Each file that a plugin with a controller manager loads, and where its path stands."""
+    inventory = robot.member.inventory
+    document = inventory.document
+    starts = dict(zip(document.elements, document.starts, strict=True))
+    for host in inventory.hosts:
+        if host.node.section is None or not host.node.section.process_wide:
+            continue
+        for element in host.element.iterchildren(PARAMETERS):
+            path = text_of(element)
+            slot = text_slot(document.source, starts[element], path) if path else None
+            if slot is not None:
+                yield path, slot
+
+
+def is_same(path: str, file: str, description: str) -> bool:
+    """Is ``path``, as ``description`` names it, this ``file`` or an installed copy of it?"""
+    plain = path.removeprefix("file://")
+    for it in (plain, os.path.join(os.path.dirname(description), plain)):
+        if os.path.isfile(it) and os.path.samefile(it, file):
+            return True
+    found = IN_PACKAGE.fullmatch(plain)
+    if found is None:
+        return False
+    *names, rest = found.groups()
+    package = next(filter(None, names), "")
+    own = package_of(file)
+    whole = os.path.abspath(file)
+    if own is not None and own[0] == package:
+        return os.path.relpath(whole, own[1]) == rest
+    return whole.endswith(f"/{package}/{rest}")
+
+
+def named_alike(path: str, file: str) -> bool:
+    """Has ``path`` the file name of this ``file``?"""
+    return os.path.basename(path) == os.path.basename(file)
+
+
+def _unsure(robot: RewrittenRobot, path: str) -> Finding:
+    made = path_for(robot, path)
+    message = f"robot {robot.spec.name!r} has {made}, and its description still loads {path!r}"
+    return at_robot(OTHER_CONTROLLER_FILE, robot, message, "name this very file under params")

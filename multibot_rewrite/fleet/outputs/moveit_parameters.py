@@ -1,0 +1,162 @@
+"""``NAME/moveit_parameters.yaml``: a robot's SRDF and MoveIt files as the parameters of its nodes.
+
+In place of what MoveItConfigsBuilder makes in a launch file, so move_group, servo_node and rviz2 can be
+started with it. Source: moveit2 4d8410635 moveit_configs_utils/moveit_configs.py (``to_dict``),
+moveit_configs_builder.py, and its default_configs/ompl_planning.yaml of each release.
+"""
+
+from __future__ import annotations
+
+import os
+import shlex
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+import yaml
+
+from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.releases import has_release
+from multibot_rewrite.companions.moveit.file_kind import file_kind
+from multibot_rewrite.companions.yaml_text import read_yaml
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.outputs.output_file import OutputFile, expanded_name, path_for, yaml_of
+from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+from multibot_rewrite.spelling.started import arguments, started
+
+FILE = "moveit_parameters.yaml"
+# Package and executable of the nodes that take it, by their names in the stack.
+_MOVE_GROUP, _SERVO = "move_group", "servo"
+PROGRAMS = {
+    _MOVE_GROUP: ("moveit_ros_move_group", "move_group"),
+    "servo_node": ("moveit_servo", "servo_node"),
+}
+SIMPLE = "moveit_simple_controller_manager"
+_MANAGER = f"{SIMPLE}/MoveItSimpleControllerManager"
+SEMANTIC, SERVO_PARAMETERS = "robot_description_semantic", "moveit_servo"
+# Below which parameter the content of a file is; that of others is at the top.
+_ABOVE = {
+    "kinematics": "robot_description_kinematics",
+    "joint_limits": "robot_description_planning",
+    _SERVO: SERVO_PARAMETERS,
+}
+_OMPL = "ompl"
+_REQUEST, _RESPONSE = "default_planning_request_adapters", "default_planning_response_adapters"
+_PLANNING = {
+    "planning_plugins": ["ompl_interface/OMPLPlanner"],
+    "request_adapters": [
+        f"{_REQUEST}/{it}"
+        for it in (
+            *("ResolveConstraintFrames", "ValidateWorkspaceBounds", "CheckStartStateBounds"),
+            "CheckStartStateCollision",
+        )
+    ],
+    "response_adapters": [
+        f"{_RESPONSE}/{it}"
+        for it in ("AddTimeOptimalParameterization", "ValidateSolution", "DisplayMotionPath")
+    ],
+}
+_OF_HUMBLE = "default_planner_request_adapters"
+_PLANNING_HUMBLE = {
+    "planning_plugin": "ompl_interface/OMPLPlanner",
+    "request_adapters": " ".join(
+        f"{_OF_HUMBLE}/{it}"
+        for it in (
+            *("AddTimeOptimalParameterization", "ResolveConstraintFrames", "FixWorkspaceBounds"),
+            *("FixStartStateBounds", "FixStartStateCollision", "FixStartStatePathConstraints"),
+        )
+    ),
+}
+
+
+def has_moveit(robot: RewrittenRobot) -> bool:
+    """Has the robot what the file is made of?"""
+    return bool(robot.srdf and robot.spec.companions.get("moveit"))
+
+
+def moveit_commands(plan: FleetPlan) -> Iterator[str]:
+    """The lines that start move_group and servo_node of the one robot of a plan."""
+    (robot,) = plan.robots
+    servo = any(file_kind(yaml_of(it)) == _SERVO for it in robot.spec.companions.get("moveit", ()))
+    nodes = PROGRAMS if servo else (_MOVE_GROUP,)
+    for it in started(plan.fleet.table) if has_moveit(robot) else ():
+        if it.node.node in nodes:
+            rules = arguments(it) or ["--ros-args"]
+            words = ["ros2", "run", *PROGRAMS[it.node.node], *rules]
+            yield shlex.join([*words, "--params-file", path_for(robot, FILE)])
+
+
+def moveit_parameters(plan: FleetPlan, files: Iterable[OutputFile]) -> Iterator[OutputFile]:
+    """The file of each robot that has an SRDF and MoveIt files, of ``files`` that were made."""
+    made = {it.path: it.data for it in files}
+    for robot in filter(has_moveit, plan.robots):
+        values = parameters_of(robot, made, plan.file.distro)
+        sources = (robot.spec.srdf, *robot.spec.companions["moveit"])
+        yield OutputFile(path_for(robot, FILE), parameter_file(values), sources)
+
+
+def parameters_of(
+    robot: RewrittenRobot, made: Mapping[str, bytes], release: str
+) -> Mapping[str, Any]:
+    """The parameters of a robot's MoveIt, by its files that were ``made``, by path."""
+    paths = robot.spec.companions.get("moveit", ())
+    texts = {it: made[path_for(robot, it)].decode() for it in paths}
+    srdf = made[path_for(robot, expanded_name(robot.spec.srdf))].decode()
+    return _parameters(srdf, texts, release)
+
+
+def parameter_file(values: Mapping[str, Any]) -> bytes:
+    """A file that any node takes."""
+    data = {"/**": {"ros__parameters": values}}
+    dumper = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
+    return str(yaml.dump(data, None, dumper, sort_keys=False, width=100)).encode()
+
+
+def _parameters(srdf: str, texts: Mapping[str, str], release: str) -> Mapping[str, Any]:
+    found: dict[str, Any] = {
+        SEMANTIC: srdf,
+        "publish_robot_description_semantic": True,
+    }
+    pipelines: list[str] = []
+    for path, text in texts.items():
+        data, kind = _plain(load_yaml(text)) or {}, file_kind(read_yaml(text.encode(), path))
+        if kind == "planning" and (name := _pipeline(path)):
+            pipelines.append(name)
+            found.setdefault(name, {}).update(_with_plugins(name, data, release))
+        elif kind == "controllers" and "controller_names" in data:
+            found |= {"moveit_controller_manager": _MANAGER, SIMPLE: data}
+        elif above := _ABOVE.get(kind, ""):
+            found.setdefault(above, {}).update(data.get(above, data))
+        elif kind != "initial_positions":
+            found.update(data)
+    if not pipelines:
+        pipelines, found[_OMPL] = [_OMPL], _with_plugins(_OMPL, {}, release)
+    first = _OMPL if _OMPL in pipelines else pipelines[0]
+    return found | {"planning_pipelines": pipelines, "default_planning_pipeline": first}
+
+
+def _pipeline(path: str) -> str:
+    """``ompl`` of ``ompl_planning.yaml``; empty for a file that is of none."""
+    stem = os.path.splitext(os.path.basename(path))[0]
+    return stem.removesuffix("_planning") if stem.endswith("_planning") else ""
+
+
+def _with_plugins(name: str, data: Mapping[str, Any], release: str) -> Mapping[str, Any]:
+    """A pipeline with the plugins that its file leaves to the launch file."""
+    if name != _OMPL or "planning_plugins" in data or "planning_plugin" in data:
+        return data
+    own = _PLANNING_HUMBLE if has_release("<=humble", release) else _PLANNING
+    return {**own, **data}
+
+
+def _plain(value: Any) -> Any:
+    """A value as rcl takes it, without what it does not: nothing, and lists of several types."""
+    if isinstance(value, dict):
+        items = ((str(key), _plain(it)) for key, it in value.items())
+        return {key: it for key, it in items if it is not None and it not in ([], {})}
+    if not isinstance(value, list):
+        return value
+    types = {type(it) for it in value}
+    if types == {int, float}:
+        return [float(it) for it in value]
+    # rcl takes lists of one type, launch_ros refuses others, too.
+    return value if len(types) == 1 and not types & {dict, list} else None

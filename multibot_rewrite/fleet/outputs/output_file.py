@@ -1,0 +1,72 @@
+"""A file that a build writes, and what each step of a build yields: files and findings."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Collection, Iterator
+from typing import TypeAlias
+
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
+from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.fleet.file.fleet_file import RobotSpec
+from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+
+# The plan of a built fleet.
+PLAN = "plan.yaml"
+
+
+class OutputFile(NamedTuple):
+    """A file to be written: its path below the output folder, its bytes, the files it is made from."""
+
+    path: str
+    data: bytes
+    sources: tuple[str, ...] = ()
+
+
+FilesAndFindings: TypeAlias = Iterator[OutputFile | Finding]
+
+
+def path_for(robot: RewrittenRobot, source: str) -> str:
+    """Where the robot's version of a source file goes: ``robot1/params.yaml``.
+
+    Files with one name are in folders called as their own, as many as it takes to tell them apart:
+    ``robot1/base/params.yaml``. A vendor's launch files may want one in a place of their own.
+    """
+    name = os.path.basename(source)
+    every = (it for its in robot.spec.companions.values() for it in its)
+    alike = {os.path.abspath(it) for it in every if os.path.basename(it) == name}
+    if len(alike) > 1 and os.path.abspath(source) in alike:
+        name = _told_apart(os.path.abspath(source), alike)
+    return f"{robot.spec.name}/{dict(robot.spec.places).get(name, name)}"
+
+
+def _told_apart(path: str, alike: Collection[str]) -> str:
+    """The shortest end of a path, in whole steps, that no other one ends with."""
+    steps = path.split(os.sep)
+    for at in range(len(steps) - 2, 0, -1):
+        end = os.sep.join(steps[at:])
+        if sum(it.endswith(f"/{end}") for it in alike) == 1:
+            return end
+    return path.lstrip(os.sep)
+
+
+def expanded_name(path: str) -> str:
+    """The file's name once xacro is expanded."""
+    name = os.path.basename(path).removesuffix(".xacro")
+    return name if "." in name else f"{name}.urdf"
+
+
+def params_of(spec: RobotSpec) -> dict[str, YamlText]:
+    """A robot's parameter files by path, as a launch fills them; raises InputError as ``read_yaml``."""
+    filled = dict(spec.filled)
+    return {
+        it: read_yaml(filled[it].encode(), it) if it in filled else yaml_of(it)
+        for it in spec.companions.get("params", ())
+    }
+
+
+def yaml_of(path: str) -> YamlText:
+    """Read a YAML file; raises InputError as ``read_yaml``."""
+    return read_yaml(read_file(path), path)

@@ -1,0 +1,143 @@
+"""How a build writes parameter files: with full names of nodes, or as nav2_bringup takes them.
+
+What nav2_bringup starts is below a namespace, with the rules ``/tf:=tf`` and ``/tf_static:=tf_static``
+for all nodes and the container; no argument says otherwise. Source: nav2_bringup
+launch/bringup_launch.py, localization_launch.py, navigation_launch.py and slam_launch.py of humble
+(1.1.20), jazzy (1.3.13), kilted (1.4.2), lyrical (1.5.1) and rolling (a3a97043e).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from types import MappingProxyType
+
+from multibot_rewrite.base.findings.finding import NOTE, Finding
+from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS, make_naming
+from multibot_rewrite.companions.params.bringup_style import for_bringup
+from multibot_rewrite.companions.yaml_text import read_yaml
+from multibot_rewrite.fleet.file.fleet_file import BRINGUP, FleetFile, RobotSpec
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.outputs.output_file import FilesAndFindings, OutputFile, path_for
+from multibot_rewrite.fleet.outputs.shape_outputs import taken_as_they_are
+from multibot_rewrite.fleet.robots.robot_nodes import stack_nodes
+from multibot_rewrite.fleet.robots.start_poses import start_poses
+from multibot_rewrite.knowledge.stacks import load_stack
+from multibot_rewrite.spelling.records import EndpointName
+
+# The stacks that are nav2_bringup's launch files.
+_STACKS = ("nav2_composed", "nav2_slam")
+# What its launch files replace in parameter files, from Kilted on -> the node that makes it true.
+ZONES = MappingProxyType(
+    {
+        "KEEPOUT_ZONE_ENABLED": "keepout_filter_mask_server",
+        "SPEED_ZONE_ENABLED": "speed_filter_mask_server",
+    }
+)
+_TF = frozenset(f"/{it}" for it in TF_TOPICS)
+_INSTEAD = "take layout tf-per-robot or both, or start Nav2 with nav2.launch.py of multibot_rewrite"
+
+NO_RULE = declare(
+    "MF829",
+    "rule-not-of-bringup",
+    NOTE,
+    what="With `params_style: bringup`, a node may use a topic or service that all robots would share, "
+    "since nav2_bringup gives no remap rule for it.",
+    why="Its launch files give the rules for tf and cmd_vel alone, and no parameter sets the name.",
+    fix="Nothing if the robots do not use what is named; else start Nav2 with nav2.launch.py of this "
+    "package.",
+    bad="""\
+layout: tf-per-robot
+params_style: bringup
+distro: jazzy
+stack: nav2
+robots:
+  - {name: robot1, description: robot.urdf}
+  - {name: robot2, description: robot.urdf}
+""",
+    good="""\
+layout: tf-per-robot
+distro: jazzy
+stack: nav2
+robots:
+  - {name: robot1, description: robot.urdf}
+  - {name: robot2, description: robot.urdf}
+""",
+    formats=("fleet",),
+)
+
+
+def check_style(file: FleetFile) -> None:
+    """Raises UsageError for a fleet that nav2_bringup cannot start, with parameter files for it."""
+    if file.params_style != BRINGUP:
+        return
+    naming = make_naming(**file.policy)
+    layout, place = naming.layout, f"{file.file}: params_style {BRINGUP}"
+    if naming.topics != NAMESPACE or not layout.tf_per_robot:
+        why = "it always starts Nav2 in the robot's namespace and remaps /tf to tf there"
+        what = f"nav2_bringup cannot start layout {layout.name}"
+        raise UsageError(f"{place}: {what}: {why}; {_INSTEAD}")
+    started = {it.name for stack in _STACKS for it in load_stack(stack, file.distro)}
+    for name in (it for it in file.shared_nodes if it in started):
+        hint = f"remove {name} from shared_nodes, or start Nav2 with nav2.launch.py of multibot_rewrite"
+        raise UsageError(f"{place}: nav2_bringup starts {name} for each robot; {hint}")
+
+
+def in_style(plan: FleetPlan, files: Sequence[OutputFile]) -> FilesAndFindings:
+    """The files of a fleet in the style that it asks for."""
+    robots = {
+        path_for(robot, source): robot.spec
+        for robot in plan.robots
+        for source in robot.spec.companions.get("params", ())
+    }
+    bringup = plan.file.params_style == BRINGUP
+    poses = start_poses(plan).initial if bringup else ()
+    as_they_are = taken_as_they_are(plan)
+    for it in files:
+        if it.path not in robots:
+            yield it
+        elif bringup and it.path not in as_they_are:
+            document = read_yaml(it.data, it.path)._replace(file=it.sources[0])
+            own = robots[it.path].namespace
+            more = {pose.node: dict(pose.values) for pose in poses if pose.robot == own}
+            text, findings = for_bringup(document, own, more)
+            yield it._replace(data=text.encode())
+            yield from findings
+        else:
+            yield _with_zones(it, robots[it.path], plan.file)
+    if bringup:
+        yield from _without_rule(plan)
+
+
+def _with_zones(it: OutputFile, spec: RobotSpec, file: FleetFile) -> OutputFile:
+    """The file with what the launch files of nav2_bringup write into it: a word is no boolean."""
+    if not any(word.encode() in it.data for word in ZONES):
+        return it
+    runs = {node.name for node in stack_nodes(spec, file)}
+    data = it.data
+    for word, server in ZONES.items():
+        data = data.replace(word.encode(), b"true" if server in runs else b"false")
+    return it._replace(data=data)
+
+
+def _without_rule(plan: FleetPlan) -> Iterator[Finding]:
+    """What a robot's nodes use by an absolute name that neither a rule nor a parameter moves."""
+    first = plan.robots[0].spec.namespace
+    started = {it.name for stack in _STACKS for it in load_stack(stack, plan.file.distro)}
+    names = {it.full_name: it.node for it in plan.fleet.table.nodes if it.robot == first}
+    left = [
+        f"{it.endpoint.name} of {names[it.node]} ({it.endpoint.when})"
+        for it in plan.fleet.table.names
+        if it.robot == first and names.get(it.node) in started and _is_left(it)
+    ]
+    if left:
+        message = f"nav2_bringup gives no remap rule for {', '.join(dict.fromkeys(left))}"
+        hint = "all robots share these names where they are used"
+        yield NO_RULE.finding(message, hint, file=plan.file.file, line=1, column=1)
+
+
+def _is_left(it: EndpointName) -> bool:
+    own = it.endpoint
+    moved = own.name.startswith("/") and own.name != it.name and own.name not in _TF
+    return moved and not own.parameter and not own.fixed

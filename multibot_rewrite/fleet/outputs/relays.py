@@ -1,0 +1,120 @@
+"""``relayed`` of a fleet file: each robot's tf on ``/tf``, too, so that one RViz shows all robots.
+
+Where frames differ, a ``relay`` of topic_tools for tf and one for tf_static, for each robot. It takes
+QoS from what it reads, so tf_static stays latched. Source: topic_tools src/relay_node.cpp,
+src/tool_base_node.cpp.
+Where they have the same names, husarion's tf_namespace_bridge: it runs in the robot's namespace, reads
+``tf`` and ``tf_static`` there, and puts that namespace before every frame, the world's too: a static
+transform joins that to the world of the fleet. Source: tf_namespace_bridge
+src/tf_namespace_bridge.cpp, launch/tf_namespace_bridge.yaml, CMakeLists.txt (41881734b).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS, Naming
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.rviz.rewrite import world_frame
+from multibot_rewrite.fleet.file.fleet_file import FleetFile
+from multibot_rewrite.fleet.fleet import Fleet
+from multibot_rewrite.knowledge.records import Endpoint
+from multibot_rewrite.spelling.bridged_topics import TF_TYPE
+from multibot_rewrite.spelling.records import EndpointName, NodeTable
+from multibot_rewrite.spelling.targets import placed, target_of
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
+
+BRIDGE, _WORLD = "tf_namespace_bridge", "bridged_world"
+_RELAY, _STATIC = ("topic_tools", "relay"), ("tf2_ros", "static_transform_publisher")
+_FIXED = "the parameters input_topic and output_topic say its names"
+_IN_CODE = "its code says its names"
+
+
+class Relay(NamedTuple):
+    """A node that brings tf of one robot to ``/tf``: as the table has it, its program, the topics that
+    it reads and writes, what it is told."""
+
+    table: NodeTable
+    program: tuple[str, str]
+    reads: tuple[str, ...]
+    writes: tuple[str, ...]
+    parameters: Mapping[str, str] = {}
+    arguments: tuple[str, ...] = ()
+
+
+def check_relayed(file: FleetFile, naming: Naming) -> None:
+    """Raises UsageError for a layout whose tf need not be relayed to one topic, or cannot be."""
+    layout, place = naming.layout, f"{file.file}: relayed"
+    if not layout.tf_per_robot:
+        raise UsageError(
+            f"{place}: layout {layout.name} has one /tf for all robots; remove relayed"
+        )
+    if not layout.frames and naming.topics != NAMESPACE:
+        what = f"{BRIDGE} reads tf in the robot's namespace, and topics: {naming.topics} moves it"
+        raise UsageError(f"{place}: {what}; remove topics, or take layout both")
+
+
+def relays(robot: str, naming: Naming, file: FleetFile) -> list[Relay]:
+    """The relays of a robot (its namespace), if the fleet file asks for them."""
+    if not file.relayed:
+        return []
+    copied = naming.layout.frames
+    return [*(_copies(robot, naming) if copied else _bridge(robot, naming, file.world))]
+
+
+def _copies(robot: str, naming: Naming) -> Iterator[Relay]:
+    above = f"/{robot}" if naming.topics == NAMESPACE else ""
+    for topic in TF_TOPICS:
+        table = _table(robot, f"{topic}_relay", naming)
+        target = target_of(f"/{topic}", TOPIC, robot, naming)
+        source = f"{above}/{target.lstrip('/')}"
+        told = {"input_topic": source, "output_topic": f"/{topic}"}
+        yield Relay(table, _RELAY, (source,), (f"/{topic}",), told)
+
+
+def _bridge(robot: str, naming: Naming, world: str) -> Iterator[Relay]:
+    reads, writes = (tuple(f"{above}/{it}" for it in TF_TOPICS) for above in (f"/{robot}", ""))
+    table = _table(robot, BRIDGE, naming)
+    yield Relay(table, (BRIDGE, BRIDGE), reads, writes)
+    if frame := world or world_frame(naming):
+        words = ("--frame-id", frame, "--child-frame-id", bridged_frame(robot, frame))
+        yield Relay(_table(robot, _WORLD, naming), _STATIC, (), writes[1:], arguments=words)
+
+
+def bridged_frame(robot: str, frame: str) -> str:
+    """What the bridge of a robot (its namespace) makes of a frame."""
+    return f"{robot}/{frame}"
+
+
+def not_bridged(robot: str) -> str:
+    """What is said where the bridge is not installed: a relay would put all robots' frames into one."""
+    why = f"{BRIDGE} is not installed, so the tf of {robot} is not on /tf"
+    return f"{why}: install it, or take layout both"
+
+
+def _table(robot: str, node: str, naming: Naming) -> NodeTable:
+    return NodeTable(robot, node, *placed(robot, node, naming), ())
+
+
+def with_relays(fleet: Fleet, file: FleetFile) -> Fleet:
+    """The fleet with the relays that its file asks for; raises as ``check_relayed``."""
+    if not file.relayed:
+        return fleet
+    check_relayed(file, fleet.naming)
+    made = [it for spec in file.robots for it in relays(spec.namespace, fleet.naming, file)]
+    table = fleet.table
+    nodes = (*table.nodes, *(it.table for it in made))
+    names = (*table.names, *(name for it in made for name in _names(it)))
+    origins = {it.table.full_name: "relayed of the fleet file" for it in made}
+    return fleet._replace(
+        table=table._replace(nodes=nodes, names=names), origins={**fleet.origins, **origins}
+    )
+
+
+def _names(relay: Relay) -> Iterable[EndpointName]:
+    robot, node = relay.table.robot, relay.table.full_name
+    why = _FIXED if relay.program == _RELAY else _IN_CODE
+    for role, names in ((SUBSCRIBES, relay.reads), (PUBLISHES, relay.writes)):
+        for name in names:
+            yield EndpointName(robot, node, Endpoint(TOPIC, role, name, TF_TYPE, fixed=why), name)

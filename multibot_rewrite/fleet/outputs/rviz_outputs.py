@@ -1,0 +1,135 @@
+"""The RViz configs of a fleet: what each window shows, and the command that opens it."""
+
+from __future__ import annotations
+
+import os
+import shlex
+from collections.abc import Iterable, Iterator, Mapping
+
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.names.robot_topics import fleet_topics
+from multibot_rewrite.companions.rviz.bridged import bridged_window
+from multibot_rewrite.companions.rviz.read import read_for
+from multibot_rewrite.companions.rviz.rewrite import RvizText, rewrite_rviz, start_command
+from multibot_rewrite.companions.rviz.values import RvizRobot
+from multibot_rewrite.companions.rviz.window_checks import ONE_TF_TOPIC
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.outputs.cell_outputs import parameters_path
+from multibot_rewrite.fleet.outputs.cell_window import cell_window
+from multibot_rewrite.fleet.outputs.companion_files import of_fleet
+from multibot_rewrite.fleet.outputs.moveit_parameters import FILE, has_moveit
+from multibot_rewrite.fleet.outputs.output_file import (
+    FilesAndFindings,
+    OutputFile,
+    path_for,
+    yaml_of,
+)
+from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleet.robots.start_poses import world_of
+from multibot_rewrite.fleet.robots.with_start_pose_nodes import split_per_robot
+from multibot_rewrite.rules.files.judge import judged_once
+
+RVIZ = "rviz2"
+
+
+class RvizOutput(NamedTuple):
+    """The results of one RViz config, whose path is ``source``."""
+
+    source: str
+    windows: tuple[RvizText, ...]
+    findings: tuple[Finding, ...]
+
+
+def rviz_outputs(plan: FleetPlan, each: Iterable[FleetPlan]) -> Iterator[RvizOutput]:
+    """The windows by the config they are made from; ``each`` is every robot as a fleet of its own.
+
+    Raises InputError for a config that cannot be read or rewritten.
+    """
+    robots_of: dict[str, list[RewrittenRobot]] = {}
+    for robot in plan.robots:
+        for path in robot.spec.companions.get("rviz", ()):
+            robots_of.setdefault(path, []).append(robot)
+    own = {it.robots[0].spec.name: it for it in each}
+    world = world_of(plan.file, plan.fleet.naming)
+    for path, robots in robots_of.items():
+        shown = [_as_rviz_robot(own[robot.spec.name]) for robot in robots]
+        relayed = plan.file.relayed
+        texts, found = rewrite_rviz(yaml_of(path), shown, world=world, relayed=relayed)
+        if plan.file.cell:
+            made = cell_window(yaml_of(path), plan.file.cell, robots[0], world)
+            texts = (*(it for it in texts if not (it.robot and made)), *filter(None, [made]))
+        if relayed and not plan.fleet.naming.layout.frames:
+            window, bare = bridged_window(yaml_of(path), shown, world)
+            texts, found = (window, *texts), (*found, *bare)
+        found = (
+            *found,
+            *judged_once(of_fleet(plan, read_for(yaml_of(path), shown, plan.file.distro))),
+        )
+        done = ONE_TF_TOPIC.code if relayed else ""
+        yield RvizOutput(path, texts, tuple(it for it in found if it.code != done))
+
+
+def robot_windows(plan: FleetPlan, each: bool) -> list[tuple[str, RvizText]]:
+    """The windows of a fleet with the names of their files, or with ``each`` one for each robot.
+
+    Raises as ``rviz_outputs``.
+    """
+    apart = list(split_per_robot(plan))
+    made = [rviz_outputs(one, [one]) for one in apart] if each else [rviz_outputs(plan, apart)]
+    found = (it for outputs in made for it in outputs)
+    return [(os.path.basename(it.source), window) for it in found for window in it.windows]
+
+
+def _as_rviz_robot(plan: FleetPlan) -> RvizRobot:
+    """The one robot of a plan as RViz shows it."""
+    (robot,) = plan.robots
+    spec = robot.spec
+    names = robot.names._replace(robot=spec.tag)
+    topics = robot.topics._replace(robot=spec.namespace)
+    known = fleet_topics(plan.fleet.table, plan.fleet.facts, spec.namespace)
+    rules = tuple(_own_rules(plan))
+    prefix = spec.tag if names.naming.layout.at_run_time else ""
+    return RvizRobot(spec.name, names, topics, spec.colour, known, prefix, rules)
+
+
+def _own_rules(plan: FleetPlan) -> Iterator[tuple[str, str]]:
+    """The name and the rules of an rviz2 that the robot's stacks start."""
+    table = plan.fleet.table
+    own = next((it for it in table.nodes if it.robot and it.node == RVIZ), None)
+    if own and not plan.fleet.naming.layout.namespaced:
+        yield "__node", own.name
+    yield from ((it.source, it.target) for it in (own.rules if own else ()))
+
+
+def rviz_files(configs: Iterable[RvizOutput]) -> FilesAndFindings:
+    """The files of the windows, and what was found."""
+    for source, windows, findings in configs:
+        yield from findings
+        yield from (
+            OutputFile(window_path(it, source), it.text.encode(), (source,)) for it in windows
+        )
+
+
+def rviz_commands(plan: FleetPlan, configs: Iterable[RvizOutput]) -> list[str]:
+    """The line that opens each window; MoveIt's displays read the parameters of their process."""
+    given = {it.spec.name: path_for(it, FILE) for it in plan.robots if has_moveit(it)}
+    if cell := plan.file.cell:
+        given[cell.name] = parameters_path(cell)
+    return [
+        shlex.join([*start_command(window, window_path(window, it.source)), *_given(window, given)])
+        for it in configs
+        for window in it.windows
+    ]
+
+
+def _given(window: RvizText, given: Mapping[str, str]) -> list[str]:
+    path = given.get(window.robot, "")
+    lead = [] if window.namespace or window.remaps else ["--ros-args"]
+    return [*lead, "--params-file", path] if path else []
+
+
+def window_path(window: RvizText, source: str) -> str:
+    """Where the config of a window goes."""
+    name = os.path.basename(source)
+    return f"{window.robot}/{name}" if window.robot else name

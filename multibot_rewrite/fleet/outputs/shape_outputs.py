@@ -1,0 +1,100 @@
+"""What a vendor's launch files want besides the robot's own outputs: the commands that take them, and
+files that are copied with the robot's namespace."""
+
+from __future__ import annotations
+
+import os
+import shlex
+from collections.abc import Iterator, Sequence
+
+import yaml
+
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.releases import has_release
+from multibot_rewrite.companions.yaml_text import YamlText, pairs, replaced, spliced
+from multibot_rewrite.fleet.file.fleet_file import REAL as NOT_SIMULATED
+from multibot_rewrite.fleet.file.fleet_file import Pose
+from multibot_rewrite.fleet.file.shape import REAL, SIMULATED, TakingCommand, name_of, shapes
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.outputs.output_file import OutputFile, yaml_of
+from multibot_rewrite.fleet.outputs.spawn import is_simulated
+from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+
+
+def vendor_commands(plan: FleetPlan) -> Iterator[str]:
+    """The vendor's commands that take the files of the one robot of a plan."""
+    (robot,) = plan.robots
+    for it in _commands(plan, robot):
+        given = {**it.takes, **it.as_it_is}
+        files = {argument: name_of(robot, what) for argument, what in given.items()}
+        if given and not any(files.values()):
+            continue
+        paths = {key: shlex.quote(_path(robot, name)) for key, name in files.items() if name}
+        words = (f"{argument}:=$PWD/{path}" for argument, path in paths.items())
+        yield " ".join([it.command.format(**_words(robot)), *_pose(it, robot), *words])
+
+
+def taken_as_they_are(plan: FleetPlan) -> set[str]:
+    """The outputs that a vendor's launch file hands on to nodes as they are."""
+    return {
+        _path(robot, name)
+        for robot in plan.robots
+        for it in _commands(plan, robot)
+        for what in it.as_it_is.values()
+        if (name := name_of(robot, what))
+    }
+
+
+def copied(plan: FleetPlan) -> Iterator[OutputFile]:
+    """The vendor's files beside descriptions, with each robot's namespace.
+
+    Raises InputError for one that cannot be read or has no namespace.
+    """
+    wanted = shapes()[plan.file.shape].namespace_in if plan.file.shape else {}
+    for robot in plan.robots:
+        for name, keys in wanted.items():
+            source = os.path.join(os.path.dirname(robot.spec.description), name)
+            if os.path.isfile(source):
+                text = _with_namespace(yaml_of(source), keys, robot.spec.namespace)
+                yield OutputFile(f"{robot.spec.name}/{name}", text.encode(), (source,))
+
+
+def _commands(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[TakingCommand]:
+    kind = SIMULATED if _in_simulator(robot) else REAL
+    for it in shapes()[plan.file.shape].launch if plan.file.shape else ():
+        if it.robots in ("", kind) and (
+            not it.releases or has_release(it.releases, plan.file.distro)
+        ):
+            yield it
+
+
+def _in_simulator(robot: RewrittenRobot) -> bool:
+    """As the fleet file says, else by the description."""
+    said = robot.spec.simulator
+    return said != NOT_SIMULATED if said else is_simulated(robot)
+
+
+def _words(robot: RewrittenRobot) -> dict[str, str]:
+    spec = robot.spec
+    clock = str(_in_simulator(robot)).lower()
+    return {"namespace": spec.namespace, "folder": f"$PWD/{spec.name}", "clock": clock}
+
+
+def _pose(it: TakingCommand, robot: RewrittenRobot) -> Iterator[str]:
+    pose = (robot.spec.pose or Pose())._asdict()
+    yield from (f"{name}:={pose[name]}" for name in it.pose if pose[name])
+
+
+def _path(robot: RewrittenRobot, name: str) -> str:
+    return f"{robot.spec.name}/{dict(robot.spec.places).get(name, name)}"
+
+
+def _with_namespace(document: YamlText, keys: Sequence[str], namespace: str) -> str:
+    """The text with another value of a key; raises InputError where it has no such key."""
+    node = document.root
+    for key in keys:
+        node = next((value for name, value in pairs(node) if name.value == key), None)
+    if not isinstance(node, yaml.ScalarNode) or node.style in ("|", ">"):
+        what = f"{document.file}: {'.'.join(keys)} is not one word"
+        raise InputError(f"{what}; write it: each robot gets its own namespace there")
+    return spliced(document, [replaced(node, namespace)])

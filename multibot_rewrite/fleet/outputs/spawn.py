@@ -1,0 +1,264 @@
+"""Spawning the robots of a fleet in Gazebo: arguments of the two spawners.
+
+Sources: ros_gz jazzy ``ros_gz_sim/src/create.cpp``; gazebo_ros_pkgs ros2 ``spawn_entity.py`` and
+``gazebo_ros_factory.cpp``.
+"""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Iterator
+
+from lxml import etree
+
+from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.naming import NAMESPACE
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.names.robot_topics import NOTHING, fleet_topics, robot_topic
+from multibot_rewrite.description.rewriters.text import text_at
+from multibot_rewrite.fleet.file.fleet_file import REAL, Pose
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.outputs.output_file import expanded_name, path_for
+from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
+
+GZ, CLASSIC = ("ros_gz_sim", "create"), ("gazebo_ros", "spawn_entity.py")
+FLAGS = {"x": "-x", "y": "-y", "z": "-z", "roll": "-R", "pitch": "-P", "yaw": "-Y"}
+DESCRIPTION = "/robot_description"
+# File names of Gazebo Classic plugins that are ROS nodes start like this.
+CLASSIC_PLUGIN = "libgazebo_ros"
+
+
+class Spawn(NamedTuple):
+    """A robot to be spawned from a topic, a file or its text.
+
+    ``namespace`` is for the spawner of Gazebo Classic; it is empty if the
+    plugins of the description have one, which the spawner would overwrite."""
+
+    robot: str
+    model: str
+    topic: str
+    pose: Pose
+    namespace: str
+    file: str = ""
+    text: str = ""
+
+    @property
+    def source(self) -> tuple[str, str]:
+        """The option that says what is spawned; only that of gz-sim takes a text."""
+        if self.text:
+            return "-string", self.text
+        return ("-file", self.file) if self.file else ("-topic", self.topic)
+
+
+def spawns(plan: FleetPlan) -> tuple[tuple[Spawn, ...], tuple[Finding, ...]]:
+    """How each robot is spawned, and findings: only some of its plugins have a namespace, a plugin
+    looks for the robot by another name."""
+    made: list[Spawn] = []
+    findings: list[Finding] = []
+    for robot in plan.robots:
+        known = fleet_topics(plan.fleet.table, plan.fleet.facts, robot.spec.namespace)
+        made.append(spawn(robot, known.get(DESCRIPTION, "")))
+        findings += _half(robot)
+        findings += _other_models(robot)
+    return tuple(made), tuple(findings)
+
+
+def is_simulated(robot: RewrittenRobot) -> bool:
+    """May Gazebo run it? Not if the fleet file says that it is real, nor if its ros2_control drives
+    hardware and nothing in it is for Gazebo."""
+    if robot.spec.simulator == REAL:
+        return False
+    root = robot.member.inventory.document.root
+    gazebo = any(
+        it.find("plugin") is not None or it.find("sensor") is not None for it in root.iter("gazebo")
+    )
+    return gazebo or root.tag == "sdf" or next(root.iter("ros2_control"), None) is None
+
+
+def spawn(robot: RewrittenRobot, topic: str = "") -> Spawn:
+    """How one robot is spawned; ``topic`` is that of its description if it is not the usual one."""
+    spec = robot.spec
+    named, bare = _namespaces(robot)
+    needed = robot.topics.naming.topics == NAMESPACE and bare and not named
+    return Spawn(
+        spec.namespace,
+        spec.model,
+        topic or robot_topic(robot.topics, DESCRIPTION, NOTHING),
+        spec.pose or Pose(),
+        spec.namespace if needed else "",
+        path_for(robot, expanded_name(spec.simulated)) if spec.simulated else "",
+    )
+
+
+def gz_arguments(it: Spawn) -> list[str]:
+    """What follows ``ros_gz_sim create``.
+
+    It uses gflags, where ``-allow_renaming false`` means true: a boolean flag takes its value only
+    after an equals sign.
+    """
+    return ["-name", it.model, *it.source, *_pose(it.pose), "-allow_renaming=false"]
+
+
+def classic_arguments(it: Spawn) -> list[str]:
+    """What follows ``gazebo_ros spawn_entity.py``."""
+    namespace = ["-robot_namespace", f"/{it.namespace}"] if it.namespace else []
+    return ["-entity", it.model, *it.source, *_pose(it.pose), *namespace]
+
+
+def gz_command(it: Spawn) -> str:
+    """The command that spawns a robot in gz-sim."""
+    return shlex.join(["ros2", "run", *GZ, *gz_arguments(it)])
+
+
+def classic_command(it: Spawn) -> str:
+    """The command that spawns a robot in Gazebo Classic."""
+    return shlex.join(["ros2", "run", *CLASSIC, *classic_arguments(it)])
+
+
+def either(it: Spawn, robot: RewrittenRobot) -> str:
+    """The command for the description's simulator, with the other simulator's as a comment."""
+    gz, classic = gz_command(it), classic_command(it)
+    if CLASSIC_PLUGIN.encode() in (robot.simulated or robot.description):
+        return f"{classic}\n# gz-sim: {gz}\n"
+    return f"{gz}\n# Gazebo Classic: {classic}\n"
+
+
+def _pose(pose: Pose) -> list[str]:
+    values = pose._asdict()
+    return [word for key, flag in FLAGS.items() for word in (flag, str(values[key]))]
+
+
+def _namespaces(robot: RewrittenRobot) -> tuple[list[str], list[str]]:
+    """The Gazebo Classic plugins of a description: those with a namespace, those without."""
+    named: list[str] = []
+    bare: list[str] = []
+    for plugin in robot.member.inventory.document.root.iter("plugin"):
+        if CLASSIC_PLUGIN in (plugin.get("filename") or ""):
+            (named if _namespace(plugin) else bare).append(plugin.get("name") or "")
+    return named, bare
+
+
+def _namespace(plugin: etree._Element) -> str:
+    # Without <ros> gazebo_ros reads the plugin element itself (node.cpp).
+    ros = plugin.find("ros")
+    return text_at(plugin if ros is None else ros, "namespace")
+
+
+PARTLY_NAMESPACED = declare(
+    "MF706",
+    "plugins-partly-namespaced",
+    WARNING,
+    what="Some Gazebo Classic plugins of a description have a namespace, others have none, in a layout "
+    "that gives each robot one.",
+    why="The spawner can set one namespace for all plugins, which would overwrite those that are "
+    "there. It is not set, so the other plugins run in the root namespace: those of all robots "
+    "use the same topics.",
+    fix="Add <ros><namespace> to each plugin.",
+    bad="""\
+# in half.urdf only one of two plugins has <ros><namespace>
+robots:
+  - {name: robot1, description: half.urdf}
+  - {name: robot2, description: half.urdf}
+""",
+    good="""\
+# in each.urdf both plugins have <ros><namespace>
+robots:
+  - {name: robot1, description: each.urdf}
+  - {name: robot2, description: each.urdf}
+""",
+    line=3,
+    formats=("fleet",),
+    beside={
+        "half.urdf": """\
+<robot name="rover">
+  <link name="base_link"/>
+  <gazebo>
+    <plugin name="arm" filename="libgazebo_ros_acme_arm.so">
+      <ros><namespace>/rover</namespace></ros>
+    </plugin>
+    <plugin name="lamp" filename="libgazebo_ros_acme_lamp.so"/>
+  </gazebo>
+</robot>
+""",
+        "each.urdf": """\
+<robot name="rover">
+  <link name="base_link"/>
+  <gazebo>
+    <plugin name="arm" filename="libgazebo_ros_acme_arm.so">
+      <ros><namespace>/rover</namespace></ros>
+    </plugin>
+    <plugin name="lamp" filename="libgazebo_ros_acme_lamp.so">
+      <ros><namespace>/rover</namespace></ros>
+    </plugin>
+  </gazebo>
+</robot>
+""",
+    },
+)
+
+
+def _half(robot: RewrittenRobot) -> Iterator[Finding]:
+    """Where names have a postfix, a plugin needs no namespace."""
+    named, bare = _namespaces(robot)
+    if not (named and bare and robot.topics.naming.topics == NAMESPACE):
+        return
+    some = f"robot {robot.spec.name!r}: some plugins have a namespace"
+    hint = "add <ros><namespace> to these; -robot_namespace would overwrite the others"
+    yield at_robot(PARTLY_NAMESPACED, robot, f"{some}, but not {', '.join(bare)}", hint)
+
+
+MODEL_OF_OTHER_NAME = declare(
+    "MF707",
+    "model-of-other-name",
+    WARNING,
+    what="A plugin looks for its robot in the simulator by the name in the description, and the "
+    "robot is spawned by another name.",
+    why="The spawner's name is the model's: the plugin finds no model, or that of another robot.",
+    fix="Give the robot that name with `model:`, in a layout that renames the description's for each "
+    "robot.",
+    bad="""\
+layout: both
+affix: prefix
+robots:
+  - {name: robot1, description: docking.urdf}
+""",
+    good="""\
+layout: both
+affix: prefix
+robots:
+  - {name: robot1, description: docking.urdf, model: robot1_create3}
+""",
+    line=4,
+    formats=("fleet",),
+    beside={
+        "docking.urdf": """\
+<robot name="create3">
+  <link name="base_link"/>
+  <gazebo>
+    <plugin name="dock" filename="libgazebo_ros_create_docking_status.so">
+      <robot_model_name>create3</robot_model_name>
+      <receiver_link_name>base_link</receiver_link_name>
+    </plugin>
+  </gazebo>
+</robot>
+""",
+    },
+)
+
+
+def _other_models(robot: RewrittenRobot) -> Iterator[Finding]:
+    """The first plugin that names the robot's own model, and not by the name it is spawned with."""
+    inventory = robot.member.inventory
+    own = inventory.document.root.get("name", "")
+    if own == robot.spec.model:
+        return
+    for claim, names in zip(inventory.claims, inventory.names, strict=True):
+        if claim.site.role == "uses" and any(it.kind == "model" and it.text == own for it in names):
+            who = f"robot {robot.spec.name!r} is spawned as {robot.spec.model!r}"
+            message = f"{who}, <{claim.element.tag}> looks for the model {own!r}"
+            hint = f"write model: {own} for it"
+            if "model" not in robot.names.naming.separators:
+                hint = "use layout: both, which renames the model, and give its name with model:"
+            yield at_robot(MODEL_OF_OTHER_NAME, robot, message, hint)
+            return

@@ -1,0 +1,114 @@
+"""Keyboard teleoperation of each robot of a fleet.
+
+Source: teleop_twist_keyboard jazzy (``stamped`` and ``frame_id``; it publishes ``cmd_vel``).
+"""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Collection, Iterator
+
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.bridge_entry import BOTH, GZ, ROS, below
+from multibot_rewrite.companions.names.robot_topics import robot_topic
+from multibot_rewrite.companions.rviz.read_config import text_of
+from multibot_rewrite.companions.yaml_text import items
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.outputs.output_file import yaml_of
+from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, bridged_topics
+from multibot_rewrite.system.records import PUBLISHES, TOPIC
+
+PLAIN, STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
+COMMAND = "cmd_vel"
+TO_GZ = DIRECTIONS["out"]
+
+
+class Teleop(NamedTuple):
+    """The command topic of a robot and its type; ``frame`` counts only if commands are stamped."""
+
+    robot: str
+    topic: str
+    stamped: bool
+    frame: str
+
+
+def teleops(plan: FleetPlan, stamped: Collection[str] = ()) -> tuple[Teleop, ...]:
+    """How each robot is driven that reads velocity commands; ``stamped`` are topics that are bridged
+    with a stamp. Raises InputError for a bridge file that cannot be read."""
+    driven = (it for it in plan.robots if _is_driven(plan, it) or _usual(it) in stamped)
+    return tuple(teleop(plan, robot, stamped) for robot in driven)
+
+
+def _is_driven(plan: FleetPlan, robot: RewrittenRobot) -> bool:
+    """Does something read velocity commands, or send them to a base that is not in the plan?"""
+    own = (it for it in plan.fleet.table.names if it.robot == robot.spec.namespace)
+    sends = any(it.endpoint.role == PUBLISHES and it.name == _usual(robot) for it in own)
+    return sends or bool(_listeners(plan, robot))
+
+
+def _usual(robot: RewrittenRobot) -> str:
+    return robot_topic(robot.topics, f"/{COMMAND}")
+
+
+def teleop(plan: FleetPlan, robot: RewrittenRobot, stamped: Collection[str] = ()) -> Teleop:
+    """The robot's ``cmd_vel`` if a node subscribes to it, else the first one with a subscriber."""
+    name, usual = robot.spec.namespace, _usual(robot)
+    heard = _listeners(plan, robot)
+    fed = usual in heard or usual in stamped or not heard
+    topic = usual if fed else next(iter(heard))
+    types = heard.get(topic, set())
+    with_stamp = topic in stamped or (STAMPED in types and PLAIN not in types)
+    return Teleop(name, topic, with_stamp, _base(robot) if with_stamp else "")
+
+
+def arguments(it: Teleop) -> list[str]:
+    """What follows ``teleop_twist_keyboard``."""
+    stamped = ["-p", "stamped:=true", "-p", f"frame_id:={it.frame}"] if it.stamped else []
+    return ["--ros-args", "-r", f"{COMMAND}:={it.topic}", *stamped]
+
+
+def command(it: Teleop) -> str:
+    """The command that drives a robot."""
+    run = ["ros2", "run", "teleop_twist_keyboard", "teleop_twist_keyboard"]
+    return shlex.join([*run, *arguments(it)])
+
+
+def _listeners(plan: FleetPlan, robot: RewrittenRobot) -> dict[str, set[str]]:
+    """Subscribed ``cmd_vel`` topics without a publisher in the plan, with their types, then those of
+    any name that bridges bring to the simulator."""
+    names = (it for it in plan.fleet.table.names if it.robot == robot.spec.namespace)
+    own = [it for it in names if it.endpoint.kind == TOPIC]
+    sent = {it.name for it in own if it.endpoint.role == PUBLISHES}
+    heard: dict[str, set[str]] = {}
+    for name in own:
+        asked = name.endpoint.name.rpartition("/")[2]
+        if asked == COMMAND and name.endpoint.role != PUBLISHES and name.name not in sent:
+            heard.setdefault(name.name, set()).add(name.endpoint.type)
+    for topic, type_ in _bridged(plan, robot):
+        if type_ in (PLAIN, STAMPED) and topic not in sent:
+            heard.setdefault(topic, set()).add(type_)
+    return heard
+
+
+def _bridged(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, str]]:
+    """The topics that go to the simulator, with their types: those of the robot's bridge files, then
+    those of the bridge that is made."""
+    for path in robot.spec.companions.get("bridge", ()):
+        root = yaml_of(path).root
+        for entry in items(root) if root is not None else ():
+            ros = text_of(entry, BOTH) or text_of(entry, ROS) or text_of(entry, GZ)
+            if text_of(entry, "direction") == TO_GZ and ros:
+                yield (
+                    robot_topic(robot.topics, below(ros, robot.spec.bridge_namespace_of(path))),
+                    text_of(entry, "ros_type_name"),
+                )
+    own = {robot.spec.namespace: plan.fleet.inventories[robot.spec.namespace]}
+    made, _ = bridged_topics(own, plan.fleet.naming)
+    yield from ((it.ros, it.ros_type) for it in made if it.direction == TO_GZ)
+
+
+def _base(robot: RewrittenRobot) -> str:
+    """The root link of the rewritten description."""
+    children = {edge.child for edge in robot.tree}
+    return next((link for link in robot.links if link not in children), "")

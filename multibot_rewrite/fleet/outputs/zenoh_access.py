@@ -1,0 +1,185 @@
+"""The plan of a fleet -> what each robot may say and hear in Zenoh: rules of access control. Pure.
+
+Source: zenoh ``DEFAULT_CONFIG.json5`` (access_control): a message passes where a rule's key expression
+includes its own. rmw_zenoh ``docs/design.md`` has the keys: a topic or service is
+``DOMAIN/NAME/TYPE/HASH``. What is latched is in the cache of an advanced publisher, whose keys go on
+with ``@adv`` (zenoh-ext ``advanced_publisher.rs``); ``**`` does not match a part that begins with @.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+from multibot_rewrite.base.conventions import OF_EVERY_NODE, SENT_BY_ANY_NODE
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.producers.zenoh.tokens import SPACE
+from multibot_rewrite.system.records import (
+    ACTION,
+    PUBLISHES,
+    SERVES,
+    End,
+    Robot,
+    System,
+    nodes_by_robot,
+)
+
+Rule = dict[str, object]
+IN, OUT = "ingress", "egress"
+# Where rules are applied: what leaves a robot's session comes in at a router, and passes its own.
+SESSION, OWN_ROUTER, FLEET_ROUTER = "session", "own router", "fleet's router"
+_FLOWS = {
+    SESSION: ((OUT,), (IN,)),
+    OWN_ROUTER: ((OUT, IN), (OUT, IN)),
+    FLEET_ROUTER: ((IN,), (OUT,)),
+}
+_SENDS = ["put", "delete", "reply", "declare_queryable"]
+_ASKS = ["declare_subscriber", "query"]
+_LIVELINESS = ["liveliness_token", "liveliness_query", "declare_liveliness_subscriber", "reply"]
+
+
+class Rights(NamedTuple):
+    """The key expressions of a robot: its ``own``, and of the others those it sends and hears."""
+
+    robot: str
+    own: tuple[str, ...]
+    sends: tuple[str, ...]
+    hears: tuple[str, ...]
+
+
+def rights(plan: System, domain: int) -> list[Rights]:
+    """What each robot of the plan may do in this domain.
+
+    All below its namespace is its own, unless another robot has names there too. Of all other names
+    it has those that its nodes have in the plan.
+    """
+    owner = {it.name: it.robot for it in plan.nodes}
+    by_robot: dict[str, list[End]] = {robot.name: [] for robot in plan.robots}
+    for end in plan.ends:
+        if robot := owner.get(end.node):
+            by_robot[robot].append(end)
+    nodes = nodes_by_robot(plan)
+    spaces = _own_spaces(nodes, by_robot)
+    return [
+        _rights(
+            robot,
+            nodes[robot.name],
+            by_robot[robot.name],
+            spaces.get(robot.name, ""),
+            plan.shared_topics,
+            domain,
+        )
+        for robot in plan.robots
+    ]
+
+
+def _own_spaces(
+    nodes: Mapping[str, Sequence[str]], by_robot: Mapping[str, Sequence[End]]
+) -> dict[str, str]:
+    """The namespace that all nodes of a robot are in, where no other robot has a name."""
+    names = {
+        robot: [*nodes[robot], *(end.name for end in ends)] for robot, ends in by_robot.items()
+    }
+    found = {}
+    for robot in by_robot:
+        space = _common_space(nodes[robot])
+        others = (name for other, mine in names.items() if other != robot for name in mine)
+        if space and not any(name.startswith(space) for name in others):
+            found[robot] = space
+    return found
+
+
+def _common_space(nodes: Sequence[str]) -> str:
+    """``/robot1/`` for ``/robot1/amcl`` and ``/robot1/local_costmap/x``; empty for the root."""
+    common: list[str] = []
+    for parts in zip(*(node.split("/")[1:-1] for node in nodes), strict=False):
+        if len(set(parts)) > 1:
+            break
+        common.append(parts[0])
+    return f"/{'/'.join(common)}/" if common else ""
+
+
+def _rights(
+    robot: Robot,
+    nodes: Iterable[str],
+    ends: Iterable[End],
+    space: str,
+    shared: Iterable[str],
+    domain: int,
+) -> Rights:
+    """Every node may listen to tf and to what all robots share, whether or not the plan says so."""
+    # Without a namespace at least the parameter and lifecycle services of its nodes are its own.
+    own = [f"{domain}{space}**"] if space else [f"{domain}{it}/*/*/*" for it in nodes]
+    sends: set[str] = set()
+    hears: set[str] = set()
+    for end in ends:
+        if not (space and end.name.startswith(space)):
+            (sends if end.role in (PUBLISHES, SERVES) else hears).add(_key(domain, end))
+    static = "/".join("tf_static" if word == "tf" else word for word in robot.tf_topic.split("/"))
+    tf = () if space and robot.tf_topic.startswith(space) else (robot.tf_topic, static)
+    sends |= {f"{domain}{name}/*/*" for name in (*SENT_BY_ANY_NODE, *tf)}
+    hears |= {f"{domain}{name}/*/*" for name in (*OF_EVERY_NODE, *shared, *tf)}
+    return Rights(robot.name, _latched(own), _latched(sorted(sends)), _latched(sorted(hears)))
+
+
+def _key(domain: int, end: End) -> str:
+    """An action has its services and topics below ``_action``."""
+    return f"{domain}{end.name}/_action/*/*/*" if end.kind == ACTION else f"{domain}{end.name}/*/*"
+
+
+def _latched(keys: Sequence[str]) -> tuple[str, ...]:
+    return (*keys, *(f"{key}/@adv/**" for key in keys))
+
+
+def robot_rules(given: Rights, domain: int, side: str = SESSION) -> list[Rule]:
+    """The rules of a robot where they are applied: its sessions, its own router, the fleet's router."""
+    out, back = _FLOWS[side]
+    name = given.robot
+    found = [
+        _rule(f"{name}_own", [*_SENDS, *_ASKS], (OUT, IN), given.own),
+        _rule(f"{name}_sends", _SENDS, out, given.sends),
+        _rule(f"{name}_is_asked", _ASKS, back, given.sends),
+        _rule(f"{name}_hears", _SENDS, back, given.hears),
+        _rule(f"{name}_asks", _ASKS, out, given.hears),
+    ]
+    return [*found, graph_rule(f"{name}_graph", domain)]
+
+
+def graph_rule(name: str, domain: int) -> Rule:
+    """Everybody may know who is there: tokens of rmw_zenoh, and of what is latched."""
+    keys = (f"{SPACE}/{domain}/**", f"{domain}/**/@adv/**")
+    return _rule(name, _LIVELINESS, (OUT, IN), keys)
+
+
+def all_rule(name: str, domain: int) -> Rule:
+    """For who looks after all robots."""
+    keys = (f"{domain}/**", f"{domain}/**/@adv/**", f"{SPACE}/**")
+    return _rule(name, list(dict.fromkeys([*_SENDS, *_ASKS, *_LIVELINESS])), (OUT, IN), keys)
+
+
+def _rule(name: str, messages: Sequence[str], flows: Sequence[str], keys: Sequence[str]) -> Rule:
+    return {
+        "id": name,
+        "messages": list(messages),
+        "flows": list(flows),
+        "permission": "allow",
+        "key_exprs": list(keys),
+    }
+
+
+def access_control(parts: Iterable[tuple[dict[str, object], Sequence[Rule]]]) -> dict[str, object]:
+    """Who may do what, and nothing else: subjects with the rules of each."""
+    given = list(parts)
+    return {
+        "enabled": True,
+        "default_permission": "deny",
+        "rules": [rule for _, rules in given for rule in rules],
+        "subjects": [subject for subject, _ in given],
+        "policies": list(_policies(given)),
+    }
+
+
+def _policies(
+    given: Iterable[tuple[dict[str, object], Sequence[Rule]]],
+) -> Iterator[dict[str, object]]:
+    for subject, rules in given:
+        yield {"rules": [rule["id"] for rule in rules], "subjects": [subject["id"]]}

@@ -1,0 +1,207 @@
+"""Configurations of a fleet's Zenoh router and of each robot's sessions, as files. Pure.
+
+rmw_zenoh reads such a file in place of its own default, so what it sets for ROS is set here as well:
+``DEFAULT_RMW_ZENOH_SESSION_CONFIG.json5`` and ``..._ROUTER_CONFIG.json5`` at 30f3030, the values with
+"ROS setting". Who a session is a router can tell by its certificate alone: rmw_zenoh is built without
+user and password (``zenoh_cpp_vendor/CMakeLists.txt``). The certificates are those of an sros2
+keystore, as in rmw_zenoh's ``zenoh_security_tools``; their common name is the enclave (sros2
+``_enclave.py``).
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.fleet.outputs.zenoh_access import (
+    FLEET_ROUTER,
+    OWN_ROUTER,
+    Rights,
+    access_control,
+    all_rule,
+    rights,
+    robot_rules,
+)
+from multibot_rewrite.system.records import System
+
+ROUTER_FILE = "router.json5"
+# Where rmw_zenoh's sessions look for a router.
+LOCAL_ROUTER = "tcp/localhost:7447"
+_ROUTER_ENCLAVE = "/router"
+Config = dict[str, Any]
+# A subject without a property is everybody.
+_ANYBODY: Config = {"id": "anybody"}
+
+
+class Setup(NamedTuple):
+    """What the plan does not say: the router's endpoint, the domain, the keystore (empty for none),
+    the enclaves of those that may do anything, whether each robot has a router of its own."""
+
+    router: str
+    domain: int
+    keystore: str = ""
+    operators: tuple[str, ...] = ()
+    own_routers: bool = False
+
+
+def configurations(plan: System, setup: Setup) -> Iterator[tuple[str, bytes]]:
+    """Each file by name: the router's, one for the nodes of each robot, one for each operator."""
+    known = rights(plan, setup.domain)
+    yield ROUTER_FILE, _text(_router(known, setup), _about_router(setup))
+    for given in known:
+        name = f"{given.robot}.json5"
+        yield name, _text(_robot(given, setup), f"The nodes of {given.robot}: {_session(name)}")
+        if setup.own_routers:
+            name = f"{given.robot}_router.json5"
+            about = f"The router on {given.robot}: {_start(name)}"
+            yield name, _text(_own_router(given, setup), about)
+    for enclave in setup.operators:
+        name = f"{operator_word(enclave)}.json5"
+        about = (
+            f"Who may do anything, as {enclave}: {_session(name)}, multibot snapshot --zenoh {name}"
+        )
+        yield name, _text(_client(enclave, setup), about)
+
+
+def file_names(robots: Sequence[str], setup: Setup) -> list[str]:
+    """What the files are called."""
+    words = [*robots, *map(operator_word, setup.operators)]
+    words += [f"{robot}_router" for robot in robots if setup.own_routers]
+    return [ROUTER_FILE, *(f"{word}.json5" for word in words)]
+
+
+def operator_word(enclave: str) -> str:
+    """What the file of an enclave is called."""
+    return enclave.strip("/").replace("/", "_")
+
+
+def _start(name: str) -> str:
+    return f"ZENOH_ROUTER_CONFIG_URI={name} (its full path) ros2 run rmw_zenoh_cpp rmw_zenohd"
+
+
+def _session(name: str) -> str:
+    return f"export ZENOH_SESSION_CONFIG_URI={name} (its full path)"
+
+
+def _about_router(setup: Setup) -> str:
+    start = (
+        f"ZENOH_ROUTER_CONFIG_URI={ROUTER_FILE} (its full path) ros2 run rmw_zenoh_cpp rmw_zenohd"
+    )
+    if setup.keystore:
+        return f"The fleet's router: {start}. It tells robots apart by their certificates"
+    return (
+        f"The fleet's router: {start}. Without a keystore it cannot tell robots apart, so each robot's"
+        " own file is all that keeps it from the others"
+    )
+
+
+def _text(config: Config, about: str) -> bytes:
+    return f"// {about}.\n{json.dumps(config, indent=2)}\n".encode()
+
+
+def _common(enclave: str, setup: Setup) -> Config:
+    """What rmw_zenoh sets for ROS, and the certificates."""
+    transport: Config = {
+        "unicast": {
+            "open_timeout": 60000,
+            "accept_timeout": 60000,
+            "accept_pending": 10000,
+            "max_sessions": 10000,
+        },
+        "link": {
+            "tx": {
+                "lease": 60000,
+                "keep_alive": 2,
+                "queue": {"congestion_control": {"block": {"wait_before_close": 60000000}}},
+            }
+        },
+    }
+    if setup.keystore:
+        transport["link"] |= {"protocols": ["tls"], "tls": _certificates(enclave, setup)}
+    return {
+        "scouting": {"multicast": {"enabled": False}},
+        "timestamping": {"enabled": {"router": True, "peer": True, "client": True}},
+        "queries_default_timeout": 60000,
+        "transport": transport,
+    }
+
+
+def _certificates(enclave: str, setup: Setup) -> Config:
+    """As ``zenoh_security_tools`` writes them: both sides show a certificate of the keystore."""
+    folder = f"{setup.keystore}/enclaves{enclave}"
+    key, certificate = f"{folder}/key.pem", f"{folder}/cert.pem"
+    return {
+        "enable_mtls": True,
+        # Certificates of sros2 name an enclave, not a host.
+        "verify_name_on_connect": False,
+        "root_ca_certificate": f"{folder}/identity_ca.cert.pem",
+        "listen_private_key": key,
+        "listen_certificate": certificate,
+        "connect_private_key": key,
+        "connect_certificate": certificate,
+    }
+
+
+def _router(known: Sequence[Rights], setup: Setup) -> Config:
+    config = {"mode": "router", "listen": {"endpoints": [_listening(setup)]}}
+    config |= _common(_ROUTER_ENCLAVE, setup)
+    if setup.keystore:
+        parts = [
+            (_subject(f"/{it.robot}"), robot_rules(it, setup.domain, FLEET_ROUTER)) for it in known
+        ]
+        for enclave in setup.operators:
+            parts.append((_subject(enclave), [all_rule(enclave, setup.domain)]))
+        config["access_control"] = access_control(parts)
+    return config
+
+
+def _listening(setup: Setup) -> str:
+    """On every address, at the port that the robots connect to."""
+    protocol, _, address = _endpoint(setup).partition("/")
+    return f"{protocol}/0.0.0.0:{address.rpartition(':')[2]}"
+
+
+def _endpoint(setup: Setup) -> str:
+    """With certificates the link is TLS."""
+    return f"tls/{setup.router.partition('/')[2]}" if setup.keystore else setup.router
+
+
+def _subject(enclave: str) -> Config:
+    return {"id": enclave, "cert_common_names": [enclave]}
+
+
+def _robot(given: Rights, setup: Setup) -> Config:
+    """A robot's nodes: clients of the fleet's router, or peers beside a router of their own."""
+    config = _client(f"/{given.robot}", setup)
+    if setup.own_routers:
+        config = {
+            "mode": "peer",
+            "connect": {"endpoints": [LOCAL_ROUTER]},
+            "listen": {"endpoints": ["tcp/localhost:0"]},
+            **_common("", setup._replace(keystore="")),
+        }
+    config["access_control"] = access_control([(_ANYBODY, robot_rules(given, setup.domain))])
+    return config
+
+
+def _own_router(given: Rights, setup: Setup) -> Config:
+    """A router on the robot: its nodes come by loopback, all else by the fleet's router."""
+    config: Config = {
+        "mode": "router",
+        "connect": {"endpoints": [_endpoint(setup)]},
+        "listen": {"endpoints": [LOCAL_ROUTER]},
+        **_common(f"/{given.robot}", setup),
+    }
+    if setup.keystore:
+        config["transport"]["link"]["protocols"] = ["tls", "tcp"]
+    rules = robot_rules(given, setup.domain, OWN_ROUTER)
+    config["access_control"] = access_control([(_ANYBODY, rules)])
+    return config
+
+
+def _client(enclave: str, setup: Setup) -> Config:
+    """A client: all that it says goes through the router, which may refuse it."""
+    config = {"mode": "client", "connect": {"endpoints": [_endpoint(setup)]}}
+    return config | _common(enclave, setup)

@@ -1,0 +1,151 @@
+"""A proposal -> the text of its fleet file, with the reason of each key as a comment, and as data."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from multibot_rewrite.base.naming import LAYOUTS
+from multibot_rewrite.base.printable import one_line
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.fleet.proposal.choosing import Choice, Member
+from multibot_rewrite.fleet.proposal.looking import Looked
+
+# Files not taken that are named.
+MOST = 10
+
+
+class Proposal(NamedTuple):
+    """A fleet: its keys with their reasons, in the order in which they are written; its robots with
+    their poses. ``notes`` are said at the head of the file, ``others`` are descriptions not taken,
+    ``refused`` files that do not go with the robots, and why."""
+
+    keys: Mapping[str, Choice]
+    members: Sequence[Member]
+    poses: Mapping[str, Mapping[str, float]]
+    notes: tuple[str, ...] = ()
+    others: tuple[str, ...] = ()
+    refused: Mapping[str, str] = {}
+
+
+def data_of(it: Proposal, folder: str) -> dict[str, Any]:
+    """The fleet as the file has it; ``folder`` is where the file will be, paths are relative to it."""
+    keys = {key: choice.value for key, choice in it.keys.items()}
+    common = {key: value for key, (value, _) in _common(it, folder).items()}
+    return {**keys, **common, "robots": list(_robots(it, folder))}
+
+
+def text_of(it: Proposal, folder: str, name: str) -> str:
+    """The text of the file, which will be called ``name``."""
+    lines = _lines(it, folder, name)
+    return "".join(f"{one_line(line) if line.startswith('#') else line}\n" for line in lines)
+
+
+def _lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
+    yield "# A fleet of robots, for multibot_rewrite. Change what you like, then:"
+    yield f"#   multibot build {name} -o out/     writes everything that the robots need"
+    yield f"#   multibot rehearse {name}          tries the plan on a real ROS graph, no simulator"
+    yield from (f"# {note}" for note in it.notes)
+    for key, choice in it.keys.items():
+        yield ""
+        yield f"# {_sentence(choice.why)}"
+        if key == "layout":
+            yield "# The other layouts:"
+            others = (layout for layout in LAYOUTS if layout.name != choice.value)
+            yield from (f"#   {layout.name}: {layout.about}" for layout in others)
+        yield f"{key}: {_flow(choice.value)}"
+    for key, (value, whys) in _common(it, folder).items():
+        yield ""
+        yield from (f"# {line}" for line in whys)
+        yield from _block(key, value)
+    left = dict(_left(it, folder))
+    refused = {os.path.relpath(path, folder) for path in it.refused}
+    if left:
+        yield ""
+        yield "# Found beside them and not taken:"
+        home = os.path.relpath(it.members[0].looked.path, folder)
+        rows = sorted(
+            left.items(),
+            key=lambda row: (row[0] not in refused, os.path.relpath(row[0], home).count(".."), row),
+        )
+        yield from (f"#   {path}: {' '.join(why.split())}" for path, why in rows[:MOST])
+        if rows[MOST:]:
+            yield f"#   and {len(rows) - MOST} more"
+    yield ""
+    yield "# Start poses in metres and radians: x, y, z, roll, pitch, yaw"
+    yield "robots:"
+    yield from (f"  - {_flow(robot)}" for robot in _robots(it, folder))
+
+
+def _left(it: Proposal, folder: str) -> Iterator[tuple[str, str]]:
+    yield from ((os.path.relpath(path, folder), why) for path, why in it.refused.items())
+    for path in it.others:
+        yield os.path.relpath(path, folder), "another description"
+    for member in it.members:
+        for path, why in member.companions.left.items():
+            yield os.path.relpath(path, folder), why
+
+
+def _sentence(text: str) -> str:
+    return text[:1].upper() + text[1:]
+
+
+def _block(key: str, value: Any) -> Iterator[str]:
+    if not isinstance(value, dict):
+        yield f"{key}: {_flow(value)}"
+        return
+    yield f"{key}:"
+    yield from (f"  {name}: {_flow(inner)}" for name, inner in value.items())
+
+
+def _flow(value: Any) -> str:
+    import yaml
+
+    text = yaml.safe_dump(value, default_flow_style=True, width=10_000, sort_keys=False)
+    return text.removesuffix("\n").removesuffix("\n...")
+
+
+def _common(it: Proposal, folder: str) -> dict[str, tuple[Any, tuple[str, ...]]]:
+    """What all robots have, if they have one description, with the reasons."""
+    if len(it.members) > 1:
+        return {}
+    return dict(_of_member(it.members[0], folder))
+
+
+def _of_member(member: Member, folder: str) -> Iterator[tuple[str, tuple[Any, tuple[str, ...]]]]:
+    """The keys of a description and its files, each with the reasons."""
+
+    def here(path: str) -> str:
+        return os.path.relpath(path, folder)
+
+    looked, beside = member.looked, member.companions
+    yield "description", (here(looked.path), (f"It has {looked.links} links",))
+    if looked.arguments:
+        why = "Arguments of the xacro: {robot} stands for the robot's name"
+        yield "arguments", (dict(looked.arguments), (why, *_needed(looked)))
+    if beside.srdf:
+        yield "srdf", (here(beside.srdf), ("The planning groups of MoveIt",))
+    if beside.stacks:
+        whys = tuple(f"{stack}: {reason}" for stack, reason in beside.stacks.items())
+        yield "stack", (list(beside.stacks), whys)
+    if beside.files:
+        files = {kind: [here(path) for path in its] for kind, its in beside.files.items()}
+        one = {kind: its[0] if kind == "rviz" else its for kind, its in files.items()}
+        yield "companions", (one, ("Files written for one robot; each robot gets its own of them",))
+
+
+def _needed(it: Looked) -> Iterator[str]:
+    """What nobody gave and the xacro cannot do without."""
+    arguments = dict(it.arguments)
+    found = [name for name in it.needed if name in arguments]
+    if found:
+        yield f"It needs {', '.join(found)}, which nobody gave: is that right?"
+
+
+def _robots(it: Proposal, folder: str) -> Iterator[dict[str, Any]]:
+    for member in it.members:
+        own = _of_member(member, folder) if len(it.members) > 1 else ()
+        keys = {key: value for key, (value, _) in own}
+        for name in member.names:
+            yield {"name": name, **keys, "pose": dict(it.poses[name])}

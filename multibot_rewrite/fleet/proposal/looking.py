@@ -1,0 +1,151 @@
+"""A description -> what a fleet file has to know of it: simulator, xacro arguments, size."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+
+from lxml import etree
+
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.reports.xacro_arguments import find_arguments, names_robots
+from multibot_rewrite.description.rewriters.tree import Tree
+from multibot_rewrite.description.sources.access import Reach
+from multibot_rewrite.description.sources.expand import expand
+from multibot_rewrite.description.sources.own_names import filled
+from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.fleet.proposal.needed_values import NeededValues
+
+GZ, CLASSIC, NO_SIMULATOR = "gz", "classic", "none"
+# How the file names of plugins for Gazebo Classic begin.
+_CLASSIC = ("libgazebo_", "libhector_gazebo")
+# What descriptions of a part alone are called.
+_PART = lazy_compile(
+    r"gripper|hand|finger|camera|sensor|lidar|tool|effector|mount|wheel|dock|geometr"
+)
+# The end of the message about an argument that a xacro needs.
+_NEEDED = lazy_compile(r"give it as (\w+):=VALUE$")
+MOST_ARGUMENTS = 20
+# A robot to expand a xacro for.
+_ANY = "robot1"
+# A link of this name is where sdformat and MoveIt hold a robot.
+WORLD = "world"
+
+
+class Looked(NamedTuple):
+    """A description: the name in it, its root's tag, how many links it has, its simulator, whether it
+    has ``<ros2_control>``.
+
+    ``arguments`` give each robot its own names (``{robot}`` is its name) or are needed to expand it;
+    ``needed`` are those of them that were not given. ``own_tf`` is whether its plugins send tf
+    on a topic of each robot. ``fault`` is why it cannot be read; the rest is empty then.
+    """
+
+    path: str
+    name: str = ""
+    tag: str = ""
+    links: int = 0
+    simulator: str = NO_SIMULATOR
+    control: bool = False
+    arguments: tuple[tuple[str, str], ...] = ()
+    needed: tuple[str, ...] = ()
+    own_tf: bool = False
+    root: etree._Element | None = None
+    fault: str = ""
+
+
+def look(path: str, given: Mapping[str, str], reach: Reach, values: NeededValues) -> Looked:
+    """What a description is; ``given`` are values for arguments of xacros, others that it needs have
+    those of ``values``."""
+    known = dict(given)
+    for _ in range(MOST_ARGUMENTS):
+        found = _look(path, known, reach)
+        if not found.fault:
+            break
+        needed = _NEEDED.search(found.fault)
+        more = {needed[1]: values.of(needed[1])} if needed else values.of_mandatory(path)
+        if "" in more.values() or more.keys() <= known.keys():
+            break
+        known = {**more, **known}
+    return found._replace(needed=tuple(it for it in known if it not in given))
+
+
+def _look(path: str, given: Mapping[str, str], reach: Reach) -> Looked:
+    try:
+        xacro = path.endswith(".xacro")
+        text = expand(path, filled(given, _ANY), None, reach) if xacro else read_file(path)
+        return _looked(path, text, tuple(given.items()) if xacro else ())
+    except InputError as error:
+        return Looked(path, fault=str(error))
+
+
+def with_own_arguments(it: Looked, tree: Tree, reach: Reach) -> Looked:
+    """The same with the arguments of its xacro that give each robot its own names, and without those
+    that it does not have."""
+    if not it.path.endswith(".xacro"):
+        return it
+    given = dict(it.arguments)
+    filled_in = filled(given, _ANY)
+    found = find_arguments(it.path, filled_in, tree, reach=reach, wanted=names_robots)
+    own = {it.name: it.value for it in found.arguments if it.value and it.name not in given}
+    known = {one.name for one in found.arguments} | set(found.untried)
+    kept = {name: value for name, value in given.items() if name in known}
+    return it._replace(arguments=tuple({**kept, **own}.items()))
+
+
+def _looked(path: str, text: bytes, arguments: tuple[tuple[str, str], ...]) -> Looked:
+    root = read_document(text, path).root
+    model = root if root.tag != "sdf" else next(root.iter("model"), root)
+    return Looked(
+        path,
+        model.get("name", ""),
+        str(root.tag),
+        sum(1 for it in root.iter("link") if it.get("name")),
+        _simulator(root),
+        next(root.iter("ros2_control"), None) is not None,
+        arguments,
+        (),
+        any(_moves_tf(it) for it in root.iter("remapping", "argument")),
+        root,
+    )
+
+
+def _moves_tf(rule: etree._Element) -> bool:
+    return (rule.text or "").strip() == "/tf:=tf"
+
+
+def _simulator(root: etree._Element) -> str:
+    """By the plugins below ``<gazebo>``, or of an SDF; sensors alone are for gz-sim."""
+    parts = [root] if root.tag == "sdf" else root.findall("gazebo")
+    files = [it.get("filename") or "" for part in parts for it in part.iter("plugin")]
+    if any(it.startswith(tuple(_CLASSIC)) for it in files):
+        return CLASSIC
+    sensors = any(part.find(".//sensor") is not None for part in parts)
+    return GZ if files or sensors or root.tag == "sdf" else NO_SIMULATOR
+
+
+def holds_the_world(it: Looked) -> bool:
+    """Is the robot fixed to the world by its own description?"""
+    links = it.root.iterfind("link") if it.root is not None else ()
+    return any(link.get("name") == WORLD for link in links)
+
+
+def ranked(found: Sequence[Looked]) -> list[Looked]:
+    """Those first that have several links, are no part by their name, can move, have something for a
+    simulator, ``<ros2_control>``, the shortest path."""
+
+    def rank(it: Looked) -> tuple[bool, bool, bool, bool, bool, int, str]:
+        part = _PART.search(os.path.basename(it.path).lower()) is not None
+        without = it.simulator == NO_SIMULATOR, not it.control
+        return it.links < 2, part, not _moves(it), *without, len(it.path), it.path
+
+    return sorted(found, key=rank)
+
+
+def _moves(it: Looked) -> bool:
+    """Has it a joint that is not fixed? A house or a shelf has none."""
+    joints = it.root.iter("joint") if it.root is not None else ()
+    return any(joint.get("type", "fixed") != "fixed" for joint in joints)

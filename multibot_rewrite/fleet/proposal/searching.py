@@ -1,0 +1,165 @@
+"""Folders -> the files of robots in them, by what they are for.
+
+A xacro counts as a description if it names a robot and no other file includes it.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Container, Iterable, Iterator, Sequence
+
+from multibot_rewrite.base.bounded import read_bytes
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.sources.packages import package_of
+
+# Files that are looked at; of a larger one nothing is read.
+MOST_FILES, MOST_BYTES = 20_000, 4_000_000
+_SKIPPED = frozenset(("build", "install", "log", "node_modules", "test", "tests", "__pycache__"))
+_ENDS = (".urdf", ".sdf", ".xacro", ".srdf", ".yaml", ".yml", ".rviz", ".xml", ".py")
+_ROBOT = re.compile(rb"<robot\b[^>]*\sname\s*=")
+_INCLUDED = re.compile(rb"""<(?:\w+:)?include\b[^>]*\bfilename\s*=\s*["'][^"']*?([^/"']+)["']""")
+_BRIDGE = re.compile(rb"^\s*(?:- *)?(?:ros_topic_name|gz_topic_name|topic_name) *:", re.MULTILINE)
+# MoveIt's own files, by the names that its setup assistant gives them.
+_MOVEIT = frozenset(
+    (
+        "kinematics",
+        "joint_limits",
+        "ompl_planning",
+        "moveit_controllers",
+        "sensors_3d",
+        "moveit_servo",
+    )
+)
+
+
+class Found(NamedTuple):
+    """Files by what they are for, each sorted; ``srdf`` are xacros, too. ``folders`` were searched.
+
+    ``descriptions`` are those that were named, if any were; ``every`` are all that are there.
+    """
+
+    descriptions: tuple[str, ...] = ()
+    params: tuple[str, ...] = ()
+    rviz: tuple[str, ...] = ()
+    bridge: tuple[str, ...] = ()
+    moveit: tuple[str, ...] = ()
+    behavior_trees: tuple[str, ...] = ()
+    srdf: tuple[str, ...] = ()
+    launch: tuple[str, ...] = ()
+    folders: tuple[str, ...] = ()
+    every: tuple[str, ...] = ()
+
+
+def search(paths: Sequence[str]) -> Found:
+    """What there is for the descriptions and folders that are named.
+
+    With a description goes what is in its package; raises UsageError for a path that is not there.
+    """
+    for path in paths:
+        if not os.path.exists(path):
+            raise UsageError(
+                f"{path}: there is no such file or folder; give a description or a folder"
+            )
+    files = [os.path.normpath(it) for it in paths if not os.path.isdir(it)]
+    folders = [os.path.normpath(it) for it in paths if os.path.isdir(it)]
+    homes = dict.fromkeys((*folders, *(home_of(it) for it in files)))
+    every = dict.fromkeys(path for home in homes for path in _files(home))
+    kinds: dict[str, list[str]] = {}
+    for path, kind in _sorted(every):
+        kinds.setdefault(kind, []).append(path)
+    kinds["every"] = kinds.get("descriptions", [])
+    if files:
+        kinds["descriptions"] = files
+    named = {kind: tuple(its) for kind, its in kinds.items() if kind}
+    return Found(**named, folders=tuple(homes))
+
+
+def without(found: Found, paths: Container[str]) -> Found:
+    """The same without some files, of whatever kind."""
+    kept = (tuple(it for it in its if it not in paths) for its in found)
+    return Found(*kept)
+
+
+def home_of(file: str) -> str:
+    """The package of a file, as a path like the file's; its folder where it is in none."""
+    package = package_of(file)
+    return os.path.relpath(package[1]) if package else os.path.dirname(file) or os.curdir
+
+
+def _files(folder: str) -> Iterator[str]:
+    seen = 0
+    for above, folders, names in os.walk(folder):
+        folders[:] = sorted(it for it in folders if it[0] != "." and it not in _SKIPPED)
+        for name in sorted(names):
+            seen += 1
+            if seen > MOST_FILES:
+                hint = "name the folder of one package"
+                raise UsageError(f"{folder}: it has more than {MOST_FILES} files; {hint}")
+            if name.endswith(_ENDS):
+                yield os.path.normpath(os.path.join(above, name))
+
+
+def _sorted(paths: Iterable[str]) -> Iterator[tuple[str, str]]:
+    """Each path with its kind; those that others include are none."""
+    kinds, included = {}, set()
+    for path in paths:
+        data = _data(path)
+        kinds[path] = _kind(path, data)
+        if path.endswith(".xacro"):
+            included |= {it.decode("utf-8", "replace") for it in _INCLUDED.findall(data)}
+    for path, kind in kinds.items():
+        if kind != "descriptions" or os.path.basename(path) not in included:
+            yield path, kind
+
+
+def _data(path: str) -> bytes:
+    try:
+        return read_bytes(path, MOST_BYTES)
+    except OSError:
+        return b""
+
+
+def _kind(path: str, data: bytes) -> str:
+    """The field of ``Found`` that a file goes into; empty for none."""
+    stem, end = os.path.splitext(os.path.basename(path))
+    if stem.endswith((".launch", "_launch")):
+        return "launch"
+    if end in _BY_NAME:
+        return _BY_NAME[end]
+    read = _BY_TEXT.get(end)
+    return read(stem, data) if read else ""
+
+
+def _of_urdf(_: str, data: bytes) -> str:
+    return "descriptions" if b"<robot" in data else ""
+
+
+def _of_sdf(_: str, data: bytes) -> str:
+    return "descriptions" if b"<model" in data and b"<world" not in data else ""
+
+
+def _of_xml(_: str, data: bytes) -> str:
+    return "behavior_trees" if b"<BehaviorTree" in data else ""
+
+
+def _of_xacro(stem: str, data: bytes) -> str:
+    if not _ROBOT.search(data):
+        return ""
+    return "srdf" if ".srdf" in stem or b"<group " in data else "descriptions"
+
+
+def _of_yaml(stem: str, data: bytes) -> str:
+    if b"ros__parameters" in data:
+        return "params"
+    if _BRIDGE.search(data):
+        return "bridge"
+    return "moveit" if stem in _MOVEIT else ""
+
+
+_BY_NAME = {".srdf": "srdf", ".rviz": "rviz"}
+_BY_TEXT = {
+    ".urdf": _of_urdf, ".sdf": _of_sdf, ".xacro": _of_xacro,
+    ".yaml": _of_yaml, ".yml": _of_yaml, ".xml": _of_xml,
+}  # fmt: skip

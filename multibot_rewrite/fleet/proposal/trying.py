@@ -1,0 +1,99 @@
+"""A proposal tried: does it build, with which files and in which layout? Nothing is written."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.model import MultibotError
+from multibot_rewrite.base.naming import LAYOUTS
+from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
+from multibot_rewrite.fleet.proposal.choosing import Choice, affix_of
+from multibot_rewrite.fleet.proposal.fleet_text import Proposal, data_of
+from multibot_rewrite.fleet.proposal.looking import Looked
+from multibot_rewrite.fleet.proposal.propose import Wanted, propose, with_arguments
+from multibot_rewrite.fleet.proposal.searching import Found
+
+# Builds without files that turned out not to go with a robot, and descriptions that are tried.
+MOST_ROUNDS, MOST_TRIED = 10, 5
+
+
+def first_that_builds(robots: Sequence[Looked], found: Found, wanted: Wanted) -> Proposal:
+    """The fleet of the first description of which one builds; that of the first where none does."""
+    tried = (that_builds([it], found, wanted) for it in robots[:MOST_TRIED])
+    first = next(tried)
+    return first if not first.notes else next((it for it in tried if not it.notes), first)
+
+
+def that_builds(
+    robots: Sequence[Looked], found: Found, wanted: Wanted, refused: Mapping[str, str] | None = None
+) -> Proposal:
+    """The fleet of these robots without the files that do not go with them (``refused`` are left out,
+    too), in its own layout or the first one that builds."""
+    own = with_arguments(robots, wanted)
+    out = dict(refused or {})
+    for _ in range(MOST_ROUNDS):
+        made = propose(own, found, wanted, out)
+        blamed = dict(_blamed(made, wanted.trust))
+        if not blamed:
+            break
+        out |= blamed
+    return in_a_layout_that_builds(made, wanted.trust)
+
+
+def _blamed(it: Proposal, trust: bool) -> Iterator[tuple[str, str]]:
+    """The files that were found beside a description and have an error, and which."""
+    paths = (path for member in it.members for path in member.companions.paths)
+    files = {os.path.abspath(path): path for path in paths}
+    for file, line in errors_of(data_of(it, os.curdir), trust):
+        place, _, why = line.partition(": ")
+        own = file or os.path.abspath(place.partition(":")[0])
+        if own in files:
+            yield files[own], line if file else why
+
+
+def errors_of(data: Mapping[str, Any], trust: bool = False) -> list[tuple[str, str]]:
+    """Why a fleet does not build: the file, if one is at fault, and a line each; paths are relative to
+    the working directory."""
+    try:
+        plan = plan_fleet(read_fleet(data, "", os.environ), trust=trust)
+        made = make_outputs(plan, os.path.abspath("out"))
+    except MultibotError as error:
+        return [("", str(error))]
+    found = {*made.findings, *plan.fleet.table.problems}
+    errors = (it for it in found if it.level == ERROR)
+    return [(_file(it), f"{it.code} {it.message}") for it in sorted(errors, key=lambda it: it.code)]
+
+
+def _file(it: Finding) -> str:
+    return os.path.abspath(it.file) if it.file else ""
+
+
+def in_a_layout_that_builds(it: Proposal, trust: bool = False) -> Proposal:
+    """The proposal in its own layout if it builds so, else in the first one that does.
+
+    Where none does it is left as it is, and its first errors are notes.
+    """
+    first = it.keys["layout"].value
+    own = errors_of(data_of(it, os.curdir), trust)
+    if not own:
+        return it
+    for layout in (one.name for one in LAYOUTS if one.name != first):
+        why = f"layout {first} does not work for these files: {own[0][1]}"
+        other = in_layout(it, Choice(layout, why))
+        if not errors_of(data_of(other, os.curdir), trust):
+            return other
+    notes = (f"It does not build yet: {line}" for _, line in own[:3])
+    return it._replace(notes=(*it.notes, *notes))
+
+
+def in_layout(it: Proposal, layout: Choice) -> Proposal:
+    """The proposal in another layout."""
+    keys = {key: one for key, one in it.keys.items() if key not in ("layout", "affix")}
+    affix = affix_of(layout.value)
+    more = {"affix": affix} if affix else {}
+    return it._replace(keys={"layout": layout, **more, **keys})

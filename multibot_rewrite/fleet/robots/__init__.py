@@ -1,0 +1,1 @@
+"""The robots of a fleet: their descriptions, nodes and places."""

@@ -1,0 +1,275 @@
+"""One robot of a fleet, for launch scripts: what its nodes, simulator and tf need, as plain values."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping
+from functools import cached_property
+from typing import Any, Protocol
+
+from multibot_rewrite.base.arguments import checked
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS
+from multibot_rewrite.companions.names.rename_map import spell
+from multibot_rewrite.companions.names.robot_topics import fleet_topics, robot_topic
+from multibot_rewrite.companions.params.rcl_parameters import (
+    Value,
+    exact_nodes,
+    node_parameters,
+    parameters_text,
+)
+from multibot_rewrite.companions.yaml_text import YamlText
+from multibot_rewrite.fleet.file.fleet_file import Pose
+from multibot_rewrite.fleet.fleet import Fleet
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.outputs import spawn, teleop
+from multibot_rewrite.fleet.outputs.kept_files import KeptFiles
+from multibot_rewrite.fleet.outputs.move_group_parameters import move_group_parameters
+from multibot_rewrite.fleet.outputs.output_file import OutputFile
+from multibot_rewrite.fleet.outputs.relays import Relay, relays
+from multibot_rewrite.fleet.robots import start_poses
+from multibot_rewrite.fleet.robots.node_names import NodeNames, Rules, names_of
+from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleet.robots.robot_nodes import stack_nodes
+from multibot_rewrite.knowledge.stacks import is_apart
+from multibot_rewrite.knowledge.yaml_with_lines import unknown
+from multibot_rewrite.spelling.targets import placed, target_of
+from multibot_rewrite.system.records import TOPIC
+
+
+class OfFleet(Protocol):
+    """What a robot asks of its fleet, which is ``scripts.LoadedFleet``."""
+
+    plan: FleetPlan
+    kept: KeptFiles
+
+    @property
+    def planned(self) -> Fleet: ...
+    @property
+    def placed(self) -> start_poses.StartPoses: ...
+    @property
+    def files(self) -> Mapping[str, OutputFile]: ...
+    def text(self, path: str) -> str: ...
+    def node_text(self, path: str) -> str: ...
+    def parameters(self, path: str) -> YamlText: ...
+    def robot(self, name: str) -> LoadedRobot: ...
+
+
+class LoadedRobot:
+    """One robot of a fleet: what its nodes, its simulator and its tf need, as plain values.
+
+    ``namespace`` is absolute; ``tag`` is the prefix or postfix of its frames and joints; ``pose`` is
+    None if the fleet file has none; ``params_files`` are the names of its parameter files, ``stack``
+    the nodes of its stacks. It can be copied and pickled, with its fleet.
+    """
+
+    def __init__(self, fleet: OfFleet, robot: RewrittenRobot) -> None:
+        self._fleet, self._robot = fleet, robot
+        spec = robot.spec
+        self._graph = spec.namespace
+        self.name: str = spec.name
+        self.model: str = spec.model
+        self.tag: str = spec.tag
+        self.pose: Pose | None = spec.pose
+        self.use_sim_time: bool | None = spec.use_sim_time
+        self.distro: str = fleet.plan.file.distro
+        params = spec.companions.get("params", ())
+        nodes = stack_nodes(spec, fleet.plan.file)
+        self.stack: tuple[str, ...] = tuple(it.name for it in nodes)
+        self.params_files: tuple[str, ...] = tuple(map(os.path.basename, params))
+        namespaced = robot.topics.naming.topics == NAMESPACE
+        self.namespace: str = f"/{spec.namespace}" if namespaced else "/"
+
+    def __repr__(self) -> str:
+        return f"LoadedRobot({self.name!r})"
+
+    def __reduce__(self) -> tuple[Callable[..., LoadedRobot], tuple[object, ...]]:
+        return type(self._fleet).robot, (self._fleet, self.name)
+
+    @property
+    def description(self) -> str:
+        """Its rewritten description, for ``robot_description``; raises nothing."""
+        return self._robot.description.decode()
+
+    @property
+    def description_parameters(self) -> dict[str, Any]:
+        """The parameters of its robot_state_publisher: ``robot_description``, and ``frame_prefix`` in
+        the layout of that name. Raises nothing."""
+        prefix = self._robot.frame_prefix
+        given = {"robot_description": self.description}
+        return {**given, "frame_prefix": prefix} if prefix else given
+
+    @property
+    def srdf(self) -> str:
+        """Its rewritten SRDF, for ``robot_description_semantic``; empty if it has none. Raises
+        nothing."""
+        return self._robot.srdf.decode()
+
+    def to_dict(self) -> dict[str, Any]:
+        """The parameters of its move_group, as ``to_dict()`` of moveit_configs_utils has them for one
+        robot: description, SRDF and the files of ``companions: moveit``. Raises as ``text``."""
+        files = self._robot.spec.companions.get("moveit", ())
+        texts = {it: self.text(it) for it in files}
+        return move_group_parameters(self.description, self.srdf, texts)
+
+    @cached_property
+    def table(self) -> NodeNames:
+        """Names and remappings of its nodes: ``remappings=robot.table.for_node("amcl")``. Raises
+        nothing."""
+        return names_of(self._fleet.planned.table, self._graph)
+
+    @checked
+    def node(self, node: str, *files: str) -> dict[str, Any]:
+        """Name, namespace, remappings and parameters of a node of its stacks, for ``Node(**...)``.
+
+        ``files`` are parameter files of the fleet; amcl gets its start pose as well, and
+        each node the clock that the fleet file says. Where other nodes run in its process, such as
+        costmaps or components, these are paths of files, which go with this process: only files
+        reach them. Raises UsageError for a node that no stack has and for a controller
+        (``spawner``), and as ``params`` for a file.
+        """
+        clock = {} if self.use_sim_time is None else {"use_sim_time": self.use_sim_time}
+        given: list[Any] = [self.params(file, node) for file in files]
+        if self.table.inside(node):
+            given = [self._fleet.kept.path(self.name, it, self.node_text(it)) for it in files]
+            text = parameters_text({"/**": clock})
+            given += [self._fleet.kept.path(self.name, "clock.yaml", text)] if clock else []
+            clock = {}
+        return {
+            "name": self.table.name(node),
+            "namespace": self.table.namespace(node),
+            "remappings": self.table.for_node(node),
+            "parameters": [it for it in (*given, self.start_parameters(node), clock) if it],
+        }
+
+    @checked
+    def spawner(self, controller: str, *paths: str) -> dict[str, Any]:
+        """What loads a controller of its stacks, with its remappings, for ``Node(**...)``.
+
+        ``paths`` are parameter files for it. Raises UsageError for a node that is no controller or
+        that no stack has.
+        """
+        made = self.table.spawner(controller)
+        files = (word for path in paths for word in ("-p", path))
+        return {**made, "arguments": [*made["arguments"], *files]}
+
+    @checked
+    def params(self, file: str, node: str) -> dict[str, Value]:
+        """The parameters of a node in a rewritten parameter file of the fleet, by dotted names.
+
+        ``node`` is its name in the stack or in the file. A node of a stack without a section gets an
+        empty dict. Raises UsageError for an unknown node, and as ``text`` and
+        ``LoadedFleet.parameters`` for the file.
+        """
+        document = self._read(file)
+        known = node in self.table.nodes
+        full = self.table.full_name(node) if known else self._placed(node)
+        exact = exact_nodes(document)
+        if not known and full not in exact:
+            own = {it.removeprefix(f"/{self._graph}/").lstrip("/") for it in exact}
+            raise UsageError(f"{file}: {unknown('node', node, own, self.table.nodes)}")
+        return node_parameters(document, full)
+
+    @checked
+    def text(self, file: str) -> str:
+        """This robot's version of a file of the fleet, such as ``params.yaml`` or ``bridge.yaml``.
+
+        Raises as ``LoadedFleet.text``.
+        """
+        return self._fleet.text(self._path(file))
+
+    @checked
+    def node_text(self, file: str) -> str:
+        """The same of a parameter file for nodes that are started here: with their full names,
+        also where the fleet file wants files for nav2_bringup. Raises as ``text``."""
+        return self._fleet.node_text(self._path(file))
+
+    def _path(self, file: str) -> str:
+        name = os.path.basename(file)
+        own = self._own(file)
+        return own if own in self._fleet.files else name
+
+    def _own(self, file: str) -> str:
+        """Where its version of a file is; of two with one name the folder counts."""
+        *_, above, name = ("", *os.path.normpath(file).split(os.sep))
+        places = dict(self._robot.spec.places)
+        paths = [f"{self.name}/{places.get(it, it)}" for it in (f"{above}/{name}", name)]
+        return next((it for it in paths if it in self._fleet.files), paths[-1])
+
+    @checked
+    def frame(self, name: str) -> str:
+        """This robot's name of a frame or link of the description; raises UsageError for a name
+        that is not a str."""
+        return spell(self._robot.names, "frame", name)
+
+    @checked
+    def joint(self, name: str) -> str:
+        """This robot's name of a joint of the description; raises as ``frame``."""
+        return spell(self._robot.names, "joint", name)
+
+    @checked
+    def topic(self, name: str) -> str:
+        """This robot's absolute name of a single robot's topic ``name``; raises as ``frame``."""
+        plan = self._fleet.plan
+        known = fleet_topics(plan.fleet.table, plan.fleet.facts, self._graph)
+        full = robot_topic(self._robot.topics, name, known)
+        return full if full.startswith("/") else f"/{full}"
+
+    @property
+    def tf_remappings(self) -> Rules:
+        """The remappings with which a node outside the stacks reads this robot's tf; raises nothing."""
+        names = self._robot.topics
+        targets = {
+            f"/{it}": target_of(f"/{it}", TOPIC, self._graph, names.naming) for it in TF_TOPICS
+        }
+        return [(topic, target) for topic, target in targets.items() if target]
+
+    @property
+    def relays(self) -> dict[str, Relay]:
+        """The relays of its tf to ``/tf``, by their names in ``table``; empty unless the fleet file
+        says ``relayed``. Raises nothing."""
+        made = relays(self._graph, self._robot.topics.naming, self._fleet.plan.file)
+        return {it.table.node: it for it in made}
+
+    @cached_property
+    def _spawn(self) -> spawn.Spawn:
+        made, _ = spawn.spawns(self._fleet.plan)
+        return next(it for it in made if it.robot == self._graph)
+
+    @property
+    def spawn_arguments(self) -> list[str]:
+        """``arguments`` of ``ros_gz_sim create``; raises nothing."""
+        return spawn.gz_arguments(self._spawn._replace(text=self._robot.simulated.decode()))
+
+    @property
+    def classic_arguments(self) -> list[str]:
+        """``arguments`` of ``gazebo_ros spawn_entity.py``; raises nothing."""
+        return spawn.classic_arguments(self._spawn)
+
+    @property
+    def teleop_arguments(self) -> list[str]:
+        """``arguments`` of ``teleop_twist_keyboard``; raises nothing."""
+        return teleop.arguments(teleop.teleop(self._fleet.plan, self._robot))
+
+    @property
+    def transform_arguments(self) -> list[str]:
+        """``arguments`` of the ``static_transform_publisher`` of its pose, empty if it needs none;
+        raises nothing."""
+        made = self._fleet.placed.transforms
+        return next((start_poses.arguments(it) for it in made if it.robot == self._graph), [])
+
+    @checked
+    def start_parameters(self, node: str) -> dict[str, Any]:
+        """Parameters with the start pose for ``node``, empty if it does not use them; raises as
+        ``frame``."""
+        made = self._fleet.placed.initial
+        own = (it for it in made if it.robot == self._graph and it.node == node)
+        return next((dict(it.values) for it in own), {})
+
+    def _placed(self, node: str) -> str:
+        apart = is_apart(node, self._fleet.planned.table.release)
+        namespace, name = placed(self._graph, node, self._robot.topics.naming, apart)
+        return f"{namespace.rstrip('/')}/{name}"
+
+    def _read(self, file: str) -> YamlText:
+        return self._fleet.parameters(self._own(file))

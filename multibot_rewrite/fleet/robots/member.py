@@ -1,0 +1,110 @@
+"""A robot of a fleet, with all that its rewritten description says."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import islice
+
+from lxml import etree
+
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.model import InputError, UsageError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.rosnames import RemapRule, bind, resolve_bound
+from multibot_rewrite.description.checks.arguments import UNREAD
+from multibot_rewrite.description.checks.meeting import SHARED_CODES
+from multibot_rewrite.description.library import Rewrite
+from multibot_rewrite.description.readback.nodes import rules_of
+from multibot_rewrite.description.readback.reading import Reading, read
+from multibot_rewrite.description.readback.xml import read_xml
+from multibot_rewrite.description.rewriters.vocabulary import Vocabulary
+from multibot_rewrite.description.sources.own_names import NameTexts
+from multibot_rewrite.description.steps.collect import Inventory, collect
+from multibot_rewrite.description.steps.document import Document, read_document
+
+
+class Member(NamedTuple):
+    """A robot of a fleet: its namespace, the tag in its frames, and what its rewritten description
+    holds and starts. ``described`` is what robot_state_publisher gets; where the simulator gets another
+    file, all else is of that. ``source`` is the description before, ``vocabulary`` what is known of
+    plugins,
+    ``shared`` are findings about names that any two robots of it would have, ``unread`` about arguments
+    that its xacro does not know; ``read`` are the files that were read for it, ``plain`` the names that
+    arguments of its xacro make, by what they are without. ``handed_on`` are the remap rules of a
+    plugin with a controller manager, as they are in ``source``.
+    """
+
+    robot: str
+    tag: str
+    described: Inventory
+    inventory: Inventory
+    reading: Reading
+    source: Document
+    vocabulary: Vocabulary
+    shared: tuple[Finding, ...]
+    unread: tuple[Finding, ...]
+    read: tuple[str, ...]
+    plain: NameTexts
+    handed_on: tuple[RemapRule, ...] = ()
+
+
+def member(
+    source: Rewrite,
+    data: bytes,
+    tag: str,
+    real: bool = False,
+    described: Inventory | None = None,
+) -> Member:
+    """The robot of a rewrite; ``data`` is its final description, of which a ``real`` robot takes
+    nothing that is for a simulator. ``described`` is what it publishes, if that is another one.
+
+    Raises InputError where ROS refuses the names of a plugin.
+    """
+    document, tree = source.template.inventory.document, source.template.tree
+    data = without_simulator(data, document.file) if real else data
+    written = collect(read_document(data, document.file), tree)
+    reading = read(data, document.file, tree.vocabulary)
+    _check_names(reading, document)
+    shared = tuple(it for it in source.findings if it.code in SHARED_CODES)
+    unread = tuple(it for it in source.findings if it.code == UNREAD)
+    job = source.prepared.job
+    handed_on = () if real else tuple(_handed_on(source.template.inventory))
+    words = (shared, unread, job.read.files, job.own.plain, handed_on)
+    return Member(
+        source.robot, tag, described or written, written, reading, document, tree.vocabulary, *words
+    )
+
+
+def _handed_on(inventory: Inventory) -> Iterator[RemapRule]:
+    for element, section in inventory.served:
+        if section.process_wide:
+            yield from rules_of(element)
+
+
+def without_simulator(data: bytes, file: str) -> bytes:
+    """A description without its plugins and sensors for simulators; raises InputError."""
+    root = read_xml(data, file)
+    tags = ("plugin", "sensor") if root.tag == "sdf" else ("gazebo",)
+    for element in list(root.iter(*tags)):
+        above = element.getparent()
+        if above is not None:
+            above.remove(element)
+    return etree.tostring(root)
+
+
+def line_of(document: Document, tag: str, number: int) -> int:
+    """The line of the ``number``-th element with this tag, 1 where there is none."""
+    element = next(islice(document.root.iter(tag), number, None), document.root)
+    line: int = element.sourceline or 1  # type: ignore[assignment]
+    return line
+
+
+def _check_names(reading: Reading, document: Document) -> None:
+    for node in reading.nodes:
+        try:
+            bound = bind(node.name, node.namespace, [it.rule for it in node.rules])
+            for it in node.endpoints:
+                resolve_bound(it.name, it.kind, bound)
+        except UsageError as error:
+            place = f"{document.file}:{line_of(document, 'plugin', node.number)}"
+            raise InputError(f"{place}: {error}; change it in the description") from None

@@ -1,0 +1,125 @@
+"""Names and remappings of one robot's nodes, for launch files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+from multibot_rewrite.base.arguments import checked
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.knowledge.yaml_with_lines import unknown
+from multibot_rewrite.spelling.records import EndpointName, NodeTable, Table
+from multibot_rewrite.spelling.started import Started, launch_arguments, started
+from multibot_rewrite.spelling.ways import COMPONENT, SPAWNER
+from multibot_rewrite.system.records import CALLS
+
+# What a lifecycle manager calls of each node that it manages (nav2_util lifecycle_service_client.cpp).
+CHANGE_STATE = "change_state"
+Rules = list[tuple[str, str]]
+SPAWNED = "is a controller: its spawner takes its remappings, robot.spawner({node!r})"
+
+
+class NodeNames(NamedTuple):
+    """Names and remappings of a robot's nodes, by their names in the stacks.
+
+    ``started`` is what is started for the nodes, with all rules that it takes; ``managed`` are the
+    nodes whose life cycle each of them manages, in their order.
+    """
+
+    robot: str
+    nodes: Mapping[str, NodeTable]
+    started: Mapping[str, Started]
+    managed: Mapping[str, tuple[str, ...]]
+
+    @checked
+    def for_node(self, node: str) -> Rules:
+        """The node's remappings, as ``launch_ros.actions.Node`` and ``ComposableNode`` take them.
+
+        Rules for nodes in its process come first: rcl applies the first rule that matches. Raises
+        UsageError for a node that no stack of the fleet has, and for a controller.
+        """
+        own = self._found(node)
+        it = self.started.get(node)
+        if it is None:
+            return [(rule.source, rule.target) for rule in own.rules]
+        if it.way == SPAWNER:
+            raise UsageError(f"node {node!r} {SPAWNED.format(node=node)}")
+        return list(it.rules)
+
+    @checked
+    def spawner(self, node: str) -> dict[str, Any]:
+        """Package, executable, namespace and arguments of the program that loads a controller.
+
+        ``launch_ros.actions.Node`` takes them as they are. Raises as ``for_node``, and UsageError for
+        a node that is no controller.
+        """
+        self._found(node)
+        it = self.started.get(node)
+        if it is None or it.way != SPAWNER:
+            controllers = [name for name, it in self.started.items() if it.way == SPAWNER]
+            raise UsageError(f"{unknown('controller', node, controllers)}")
+        return launch_arguments(it)
+
+    def is_controller(self, node: str) -> bool:
+        """Is this node a controller, which a spawner loads? Raises nothing."""
+        return node in self.started and self.started[node].way == SPAWNER
+
+    def container(self, node: str) -> str:
+        """The full name of the container that this node is loaded into, empty for other nodes; raises
+        nothing."""
+        it = self.started.get(node)
+        return self.full_name(it.node.home.container) if it and it.way == COMPONENT else ""
+
+    def inside(self, node: str) -> list[str]:
+        """The other nodes in the process that is started for this one: costmaps, components; raises
+        nothing."""
+        homes = {it.node: it.home.host or it.home.container for it in self.nodes.values()}
+        return [name for name in homes if node in _above(name, homes)]
+
+    @checked
+    def name(self, node: str) -> str:
+        """The name the node runs under, without its namespace; raises as ``for_node``."""
+        return self._found(node).name
+
+    @checked
+    def namespace(self, node: str) -> str:
+        """The namespace the node runs in, from the root; raises as ``for_node``."""
+        return self._found(node).namespace
+
+    @checked
+    def full_name(self, node: str) -> str:
+        """The node's name with its namespace; raises as ``for_node``."""
+        return f"{self.namespace(node).rstrip('/')}/{self.name(node)}"
+
+    def _found(self, node: str) -> NodeTable:
+        if node in self.nodes:
+            return self.nodes[node]
+        where = f"robot {self.robot!r}" if self.robot else "nodes for all robots"
+        hint = "add its stack to stack: in the fleet file"
+        raise UsageError(f"{where}: {unknown('node', node, self.nodes)}; {hint}")
+
+
+def _above(name: str, homes: Mapping[str, str]) -> Iterator[str]:
+    """The nodes whose process this one is in, nearest first."""
+    while name := homes.get(name, ""):
+        yield name
+
+
+def names_of(table: Table, robot: str) -> NodeNames:
+    """The nodes of one robot in a fleet's table; of those for all robots if it is empty."""
+    nodes: dict[str, NodeTable] = {}
+    own = [it for it in table.nodes if it.robot == robot]
+    for it in own:
+        nodes.setdefault(it.node, it)
+    names = tuple(it for it in table.names if it.robot == robot)
+    found = started(table._replace(nodes=tuple(own), names=names))
+    managed = {it.node: tuple(_managed(it.full_name, names)) for it in own}
+    return NodeNames(robot, nodes, {it.node.node: it for it in found}, managed)
+
+
+def _managed(manager: str, names: Iterable[EndpointName]) -> Iterator[str]:
+    for it in names:
+        name, _, service = it.endpoint.name.rpartition("/")
+        if (it.node, it.endpoint.role, service) == (manager, CALLS, CHANGE_STATE):
+            yield name

@@ -1,0 +1,247 @@
+"""The robots of a fleet file with their rewritten descriptions; one parse for each source."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cache
+from typing import Any
+
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.naming import Naming
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.names.rename_map import (
+    CompanionNames,
+    companion_names,
+    with_srdf,
+)
+from multibot_rewrite.description import pipeline
+from multibot_rewrite.description.checks.arguments import UNREAD
+from multibot_rewrite.description.checks.meeting import SHARED_CODES
+from multibot_rewrite.description.checks.twice import CARRYING
+from multibot_rewrite.description.library import Rewrite, rewrite_job
+from multibot_rewrite.description.rewriters.forms import Declared
+from multibot_rewrite.description.sources.job import Job, Reader, job_for, joined_reads, reader
+from multibot_rewrite.description.sources.own_names import ROBOT, Arguments, common_to
+from multibot_rewrite.description.sources.read import is_xacro
+from multibot_rewrite.description.steps.collect import NOTHING
+from multibot_rewrite.description.steps.template import Template
+from multibot_rewrite.fleet.file.fleet_file import REAL, RobotSpec, Sources
+from multibot_rewrite.fleet.robots.member import Member, member
+from multibot_rewrite.fleet.robots.srdf_of_another import srdf_findings
+from multibot_rewrite.spelling.transforms import Edge, links_of, tree_of
+
+# Kinds that are ROS names and get the namespace; the others get the tag.
+GRAPH_KINDS = frozenset({"namespace", "node", "topic", "subtopic", "service", "stem"})
+
+
+class Jobs(NamedTuple):
+    """The description, SRDF and simulated model to rewrite for robots of the same sources."""
+
+    description: Job
+    srdf: Job | None
+    simulated: Job | None = None
+
+
+# The rule about such names, and what to do.
+PREFIX_ONLY = "MB422"
+SET_PREFIX = "its plugin can only put the robot's name in front of names: set affix: prefix"
+
+
+class RewrittenRobot(NamedTuple):
+    """A robot with its rewritten description and SRDF (empty if it has none).
+
+    ``names`` is the rename map of frames, joints and planning groups, ``topics`` that of ROS names.
+    ``findings`` are warnings about the source. ``simulated`` is the model for the simulator,
+    empty where that is the description.
+    """
+
+    spec: RobotSpec
+    description: bytes
+    srdf: bytes
+    names: CompanionNames
+    topics: CompanionNames
+    member: Member
+    findings: tuple[Finding, ...]
+    simulated: bytes = b""
+
+    @property
+    def tree(self) -> list[Edge]:
+        """The transforms that its robot_state_publisher sends."""
+        return list(tree_of(self.member.described, self.names.naming, self.spec.tag))
+
+    @property
+    def links(self) -> list[str]:
+        """Its links as frames."""
+        return links_of(self.member.described, self.names.naming, self.spec.tag)
+
+    @property
+    def frame_prefix(self) -> str:
+        """What its robot_state_publisher puts before the links; empty where they have its name."""
+        return f"{self.spec.tag}/" if self.names.naming.layout.at_run_time else ""
+
+    @property
+    def needs_prefix(self) -> bool:
+        """Has its description names that a plugin puts a prefix before, and the layout a postfix?"""
+        return any(it.code == PREFIX_ONLY for it in self.findings)
+
+
+def at_robot(
+    rule: Rule, robot: RewrittenRobot, message: str, hint: str, level: str = ""
+) -> Finding:
+    """A finding of ``rule`` in the robot's line of the fleet file; ``level`` is the rule's if empty."""
+    spec = robot.spec
+    place: dict[str, Any] = {"file": spec.file, "line": spec.line, "column": 1}
+    return rule.finding(message, hint, level=level or rule.level, **place)
+
+
+def read_jobs(
+    robots: Sequence[RobotSpec],
+    naming: Naming,
+    vocabulary: Sequence[str],
+    trust: bool,
+    release: str,
+) -> dict[Sources, Jobs]:
+    """Read every description and SRDF once; raises as ``read_job``. ``trust`` lets xacro files do
+    anything."""
+
+    @cache
+    def read(source: str, urdf: str | None) -> Reader:
+        return reader(source, naming, urdf, tuple(vocabulary), "", trust, release)
+
+    found: dict[Sources, Jobs] = {}
+    given_to: dict[str, list[tuple[Arguments, Sequence[str]]]] = {}
+    for it in robots:
+        given_to.setdefault(it.description, []).append((it.arguments, it.words))
+    common = {source: common_to(each) for source, each in given_to.items()}
+    for it in robots:
+        if it.sources not in found:
+            words = it.words, common[it.description]
+            given = _taken(it, it.description, it.srdf), *words
+            description = job_for(read(it.description, None), *given)
+            srdf = job_for(read(it.srdf, it.description), *given) if it.srdf else None
+            # An argument may be for the SRDF alone, which is read beside the description.
+            description = description._replace(read=(srdf or description).read)
+            model = None
+            if it.simulated:
+                model = job_for(read(it.simulated, None), _taken(it, it.simulated), *words)
+                both = joined_reads(description.read, model.read)
+                description, model = description._replace(read=both), model._replace(read=both)
+            found[it.sources] = Jobs(description, srdf, model)
+    _check_arguments(robots, found)
+    return found
+
+
+def _taken(robot: RobotSpec, *files: str) -> Arguments:
+    """The arguments for a robot's description or model: they are for whichever is a xacro."""
+    return robot.arguments if any(map(is_xacro, files)) else {}
+
+
+def _check_arguments(robots: Sequence[RobotSpec], jobs: Mapping[Sources, Jobs]) -> None:
+    """An argument that makes names of one robot is not for another one."""
+    own = {it.sources[:3]: it for it in robots if jobs[it.sources].description.naming.own}
+    for it in robots:
+        first = own.get(it.sources[:3])
+        if first is None or jobs[it.sources].description.naming.own:
+            continue
+        both = f"{it.name!r} has the arguments of {first.name!r}, which put that name into names"
+        raise InputError(f"{it.file}:{it.line}: {both}; write {ROBOT} in its place")
+
+
+def rewrite_robots(
+    robots: Sequence[RobotSpec], jobs: Mapping[Sources, Jobs]
+) -> list[RewrittenRobot]:
+    """Rewrite every robot's description and SRDF, in the order of the robots.
+
+    Raises as ``rewrite_all``.
+    """
+    groups: dict[Sources, list[RobotSpec]] = {}
+    for robot in robots:
+        groups.setdefault(robot.sources, []).append(robot)
+    made = (it for key, group in groups.items() for it in _rewritten(group, jobs[key]))
+    found = {it.spec.name: it for it in made}
+    return [found[robot.name] for robot in robots]
+
+
+def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobot]:
+    naming, own = jobs.description.naming, jobs.description.own.plain
+    if jobs.srdf:
+        own = {**jobs.srdf.own.plain, **own}
+    texts = _texts(jobs.description, group)
+    semantics: Iterable[Rewrite | None] = [None] * len(group)
+    if jobs.srdf:
+        semantics = _texts(jobs.srdf, group)
+    models: Iterable[Rewrite | None] = [None] * len(group)
+    if jobs.simulated:
+        models = _texts(jobs.simulated, group)
+    for robot, text, semantic, model in zip(group, texts, semantics, models, strict=True):
+        data = _final(text, robot, naming)
+        made, simulated = member(text, data, robot.tag, robot.simulator == REAL), b""
+        said = semantic.template.inventory.declared if semantic else NOTHING
+        declared = with_srdf(text.template.inventory.declared, said)
+        found = (*text.findings, *(srdf_findings(semantic) if semantic else ()))
+        if model and jobs.simulated:
+            declared = _both(declared, model.template.inventory.declared)
+            simulated = _final(model, robot, jobs.simulated.naming)
+            found = (*found, *model.findings)
+            made = member(model, simulated, robot.tag, described=made.inventory)
+        names = companion_names(declared, naming, robot.tag, own)
+        yield RewrittenRobot(
+            robot,
+            data,
+            _final(semantic, robot, naming) if semantic else b"",
+            names,
+            names._replace(robot=robot.namespace),
+            made,
+            # These the fleet says, of the robots that it has.
+            tuple(it for it in found if it.code not in (*SHARED_CODES, UNREAD)),
+            simulated,
+        )
+
+
+def _both(declared: Declared, model: Declared) -> Declared:
+    """What a description and the model for the simulator declare together."""
+    return {kind: {**model.get(kind, {}), **declared.get(kind, {})} for kind in {*declared, *model}}
+
+
+def _texts(job: Job, group: Sequence[RobotSpec]) -> Iterator[Rewrite]:
+    """The text of each robot with its namespace; refused where it carries one of its words.
+
+    A namespace of several levels is no robot's name: its robot's text is made of its halves alone.
+    """
+    words = [it.tag if "/" in it.namespace else it.namespace for it in group]
+    for number, text in enumerate(rewrite_job(job, words, again=True)):
+        if not number:
+            _check_new(text.template, group)
+        yield text._replace(robot=group[number].namespace)
+
+
+def _check_new(template: Template, group: Sequence[RobotSpec]) -> None:
+    """A robot's namespace and tag may be in names that get the other word."""
+    alike = [it.namespace for it in group if it.tag == it.namespace]
+    apart = [it for it in group if it.tag != it.namespace]
+    pipeline.check_new(template, alike, CARRYING)
+    pipeline.check_new(template, [it.namespace for it in apart], GRAPH_KINDS)
+    pipeline.check_new(template, [it.tag for it in apart], CARRYING - GRAPH_KINDS)
+
+
+def _final(text: Rewrite, robot: RobotSpec, naming: Naming) -> bytes:
+    """The description of a robot; if its namespace and tag differ, two rewrites, each proved."""
+    if robot.tag == robot.namespace:
+        return text.data
+    template = text.template
+    source, file = template.inventory.document.source, template.inventory.document.file
+    data = _half(source, file, robot.namespace, _kinds(naming, graph=True), template)
+    return _half(data, file, robot.tag, _kinds(naming, graph=False), template)
+
+
+def _kinds(naming: Naming, graph: bool) -> Naming:
+    kept = {kind: it for kind, it in naming.separators.items() if (kind in GRAPH_KINDS) == graph}
+    return naming._replace(separators=kept)
+
+
+def _half(source: bytes, file: str, robot: str, naming: Naming, template: Template) -> bytes:
+    # The second rewrite finds names that the first one has rewritten for the other word.
+    prepared = pipeline.prepare(source, file, naming, template.tree, template.urdf_declarations)
+    return next(pipeline.render(prepared, [robot], again=True))

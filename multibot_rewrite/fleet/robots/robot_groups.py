@@ -1,0 +1,67 @@
+"""Robots that share everything but their names: what they have in common is read and planned once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.grouping import grouped
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.context import Context, make_context
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleet.robots.robot_nodes import companion_nodes, node_sources, stack_nodes
+from multibot_rewrite.knowledge.records import NodeFacts
+
+
+class RobotGroup(NamedTuple):
+    """Robots of one description, with the same nodes and companion files."""
+
+    robots: tuple[RewrittenRobot, ...]
+    facts: tuple[NodeFacts, ...]
+    context: Context
+
+    @property
+    def companions(self) -> dict[str, tuple[str, ...]]:
+        """The companion files that all robots of the group have, by kind."""
+        return dict(self.robots[0].spec.companions)
+
+
+def group_robots(plan: FleetPlan) -> Iterator[RobotGroup]:
+    """The groups of a fleet, in the order of their first robots."""
+    groups: dict[object, list[RewrittenRobot]] = {}
+    for robot in plan.robots:
+        spec = robot.spec
+        files = tuple(spec.companions.items())
+        said = spec.use_sim_time, spec.bridge_namespace, spec.bridges_below
+        key = spec.sources, spec.stacks, spec.launch, spec.simulator, files, said
+        groups.setdefault(key, []).append(robot)
+    for robots in groups.values():
+        spec = robots[0].spec
+        nodes = plan.evidence[node_sources(spec)].nodes
+        facts = tuple(companion_nodes(nodes, stack_nodes(spec, plan.file)))
+        declared, naming, _, own = robots[0].names
+        context = make_context(declared, naming, facts, plan.file.distro, own)
+        yield RobotGroup(tuple(robots), facts, context)
+
+
+def said_once(plan: FleetPlan, findings: Iterable[Finding]) -> list[Finding]:
+    """Findings sorted by place; what is the same for many robots is one finding."""
+    specs = [it.spec for it in plan.robots]
+    words = {word: it.name for it in specs for word in (it.model, it.tag, it.namespace, it.name)}
+    ordered = sorted(
+        set(findings), key=lambda it: (it.file, it.line, it.column, it.code, it.message)
+    )
+    # Lines of robots in the fleet file: that they differ is no difference.
+    names = {(it.file, it.line): it.name for it in specs}
+    lines = {name: line for (_, line), name in names.items()}
+    alike = [_at_robot(it, names.get((it.file, it.line), "")) for it in ordered]
+    return [
+        it._replace(robot="", line=lines[it.robot]) if it.robot else it
+        for it in grouped(alike, words)
+    ]
+
+
+def _at_robot(finding: Finding, robot: str) -> Finding:
+    """The finding with the robot in the place of its line."""
+    return finding._replace(robot=robot, line=0) if robot else finding

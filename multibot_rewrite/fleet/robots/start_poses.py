@@ -1,0 +1,235 @@
+"""The start poses of a fleet: a static transform for each robot, or an initial pose for amcl.
+
+Sources: tf2_ros jazzy ``static_transform_publisher``; nav2_amcl jazzy (``set_initial_pose``).
+"""
+
+from __future__ import annotations
+
+import re
+import shlex
+from collections.abc import Iterator, Mapping
+
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.naming import Naming
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.names.rename_map import spell
+from multibot_rewrite.companions.rviz.rewrite import world_frame
+from multibot_rewrite.description.rewriters.text import text_at
+from multibot_rewrite.description.steps.collect import Inventory
+from multibot_rewrite.fleet.file.fleet_file import FleetFile, Pose
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
+from multibot_rewrite.fleet.robots.robot_nodes import node_sources
+from multibot_rewrite.fleet.robots.start_pose_rules import (
+    LOCALISED_ALREADY,
+    NO_SHARED_FRAME,
+    NO_SINGLE_ROOT,
+    OWN_ODOMETRY,
+    POSE_ON_WORLD,
+)
+from multibot_rewrite.spelling.bridged_topics import TF_TYPE, bridge_data
+from multibot_rewrite.spelling.targets import placed, target_of
+from multibot_rewrite.spelling.transforms import Edge
+from multibot_rewrite.system.records import TOPIC
+
+NODE = "start_pose"
+AMCL = "amcl"
+ORIGIN = Pose()
+# Elements of gz-sim's drive and odometry systems that hold the odometry frame.
+ODOMETRY = ("frame_id", "odom_frame")
+# What drivers call the parameter of their odometry frame.
+ODOMETRY_FRAME = re.compile(r"(^|[._])odom(etry)?_frame(_id|_name)?$")
+
+
+class StaticTransform(NamedTuple):
+    """What a robot's ``static_transform_publisher`` publishes, and how it is named and started."""
+
+    robot: str
+    parent: str
+    child: str
+    pose: Pose
+    namespace: str
+    node: str
+    remaps: tuple[tuple[str, str], ...]
+
+
+class InitialPose(NamedTuple):
+    """The start pose as parameters of the localisation ``node`` (its name in the stack)."""
+
+    robot: str
+    node: str
+    values: Mapping[str, object]
+
+
+class StartPoses(NamedTuple):
+    """The start poses of a fleet's robots, and findings about robots without one."""
+
+    transforms: tuple[StaticTransform, ...]
+    initial: tuple[InitialPose, ...]
+    findings: tuple[Finding, ...]
+
+
+def start_poses(plan: FleetPlan) -> StartPoses:
+    """A transform from the world for each robot with a pose that no other node localises."""
+    found: list[object] = []
+    for robot in plan.robots:
+        if robot.spec.pose is not None:
+            found += _place(plan, robot, robot.spec.pose)
+    return StartPoses(
+        tuple(it for it in found if isinstance(it, StaticTransform)),
+        tuple(it for it in found if isinstance(it, InitialPose)),
+        tuple(it for it in found if isinstance(it, Finding)),
+    )
+
+
+def world_of(file: FleetFile, naming: Naming) -> str:
+    """The shared frame that poses are in."""
+    return file.world or world_frame(naming)
+
+
+def _place(plan: FleetPlan, robot: RewrittenRobot, pose: Pose) -> Iterator[object]:
+    naming, name = plan.fleet.naming, robot.spec.namespace
+    world = world_of(plan.file, naming)
+    if not world:
+        hint = "set world: or shared_frames:"
+        what = "it has a pose, but no frame is shared by all robots"
+        yield _finding(NO_SHARED_FRAME, robot, what, hint)
+        return
+    sent = _sent(plan, robot)
+    locators = [node for node, edges in sent.items() if any(_locates(it, naming) for it in edges)]
+    if AMCL in locators:
+        yield InitialPose(name, AMCL, initial_pose(pose))
+        return
+    if locators:
+        nodes = " and ".join(locators)
+        what = f"its pose is not published, because {nodes} already publishes where it is"
+        hint = "a second parent would make the frame jump"
+        yield _finding(LOCALISED_ALREADY, robot, what, hint)
+        return
+    if held := [it for it in sent[""] if _holds(it, naming)]:
+        if pose != ORIGIN:
+            yield _on_world(robot, held[0])
+        return
+    roots = _roots(sent, naming)
+    if len(roots) != 1:
+        frames = f"{len(roots)} root frames ({', '.join(roots)})" if roots else "no root frame"
+        what = f"its pose is not published, because it has {frames} instead of one"
+        yield _finding(NO_SINGLE_ROOT, robot, what, "connect them")
+        return
+    if own := _own_odometry(plan, robot):
+        what = f"its pose is not published, because {own} may send where its base is"
+        yield _finding(OWN_ODOMETRY, robot, what, "describe it in a file of nodes, with sends:")
+        return
+    local = AMCL in sent
+    if local:
+        yield InitialPose(name, AMCL, initial_pose(pose))
+    yield static_transform(name, world, roots[0], ORIGIN if local else pose, naming)
+
+
+def static_transform(
+    robot: str, parent: str, child: str, pose: Pose, naming: Naming
+) -> StaticTransform:
+    """The transform of a robot, published by a node with the robot's own name."""
+    namespace, node = placed(robot, NODE, naming)
+    target = target_of("/tf_static", TOPIC, robot, naming)
+    remaps = (("/tf_static", target),) if target else ()
+    return StaticTransform(robot, parent, child, pose, namespace, node, remaps)
+
+
+def command(it: StaticTransform) -> str:
+    """The command that publishes a transform."""
+    return shlex.join(["ros2", "run", "tf2_ros", "static_transform_publisher", *arguments(it)])
+
+
+def arguments(it: StaticTransform) -> list[str]:
+    """What follows ``static_transform_publisher``; values may be negative, names come last."""
+    words = [word for key, value in it.pose._asdict().items() for word in (f"--{key}", str(value))]
+    words += ["--frame-id", it.parent, "--child-frame-id", it.child]
+    rules = [f"__ns:={it.namespace}"] if it.namespace != "/" else []
+    rules += [f"__node:={it.node}", *(f"{source}:={target}" for source, target in it.remaps)]
+    return [*words, "--ros-args", *(text for rule in rules for text in ("-r", rule))]
+
+
+def initial_pose(pose: Pose) -> dict[str, object]:
+    """The parameters for amcl's start pose; they count only with ``set_initial_pose``."""
+    values = {f"initial_pose.{key}": getattr(pose, key) for key in ("x", "y", "z", "yaw")}
+    return {"set_initial_pose": True, **values}
+
+
+def _sent(plan: FleetPlan, robot: RewrittenRobot) -> dict[str, list[Edge]]:
+    """The transforms of each node of a robot; the description's tree has an empty name."""
+    name, inventory = robot.spec.namespace, robot.member.inventory
+    sent = {node: [*edges] for (own, node), edges in plan.fleet.edges.items() if own == name}
+    tree = robot.tree
+    bare = set(robot.links) - {edge.child for edge in tree}
+    odometry = list(_gz_odometry(inventory, robot.spec.model))
+    base = next(iter(sorted(bare)), "")
+    return {
+        **sent,
+        "": [*tree, *(Edge(it, base, False) for it in odometry if base)]
+        or [Edge(link, link, True) for link in bare],
+    }
+
+
+def _own_odometry(plan: FleetPlan, robot: RewrittenRobot) -> str:
+    """A node that nothing is known of, with the odometry frame that it is told and no known node
+    sends; empty if there is none."""
+    described = {it.name for it in plan.fleet.facts}
+    own = (edges for (name, _), edges in plan.fleet.edges.items() if name == robot.spec.namespace)
+    frames = {frame for edges in own for it in edges for frame in (it.parent, it.child)}
+    for node in plan.evidence[node_sources(robot.spec)].given:
+        told = {} if node.known or node.name in described else node.values
+        for name, it in told.items():
+            value = it.value
+            is_frame = ODOMETRY_FRAME.search(name) and isinstance(value, str) and value
+            if is_frame and spell(robot.names, "frame", str(value)) not in frames:
+                return f"{node.name}, whose {name} is {value!r} ({it.place.file}:{it.place.line}),"
+    return ""
+
+
+def _gz_odometry(inventory: Inventory, model: str) -> Iterator[str]:
+    """The odometry frames of gz-sim's systems, which a bridge brings to tf."""
+    for host in inventory.hosts:
+        name = host.node.section.names[0] if host.node.section else ""
+        topics = bridge_data()["plugins"].get(name, ())
+        if any(row[2] == TF_TYPE for row in topics):
+            given = (text_at(host.element, tag) for tag in ODOMETRY)
+            yield next(filter(None, given), f"{model}/odom")
+            return
+
+
+def _locates(edge: Edge, naming: Naming) -> bool:
+    """Does it place a robot's frame in a shared frame?"""
+    shared = naming.shared_frames
+    return not edge.static and edge.parent in shared and edge.child not in shared
+
+
+def _holds(edge: Edge, naming: Naming) -> bool:
+    """Does a joint of the description fix a robot's frame to a shared one?"""
+    shared = naming.shared_frames
+    return edge.static and edge.parent in shared and edge.child not in shared
+
+
+def _on_world(robot: RewrittenRobot, held: Edge) -> Finding:
+    what = (
+        f"its pose is not used in tf: its description fixes {held.child!r} to {held.parent!r}, at the "
+        "origin of that joint"
+    )
+    hint = (
+        f"let each robot have its own {held.parent!r} (shared_frames: [map]), or set the joint's "
+        "origin by an argument of the xacro and remove the pose"
+    )
+    return _finding(POSE_ON_WORLD, robot, what, hint)
+
+
+def _roots(sent: Mapping[str, list[Edge]], naming: Naming) -> list[str]:
+    """The robot's own frames without a parent."""
+    edges = [edge for own in sent.values() for edge in own]
+    children = {edge.child for edge in edges if edge.parent != edge.child}
+    parents = dict.fromkeys(edge.parent for edge in edges)
+    return [it for it in parents if it not in children and it not in naming.shared_frames]
+
+
+def _finding(rule: Rule, robot: RewrittenRobot, what: str, hint: str) -> Finding:
+    return at_robot(rule, robot, f"robot {robot.spec.name!r}: {what}", hint)

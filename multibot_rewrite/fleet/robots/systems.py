@@ -1,0 +1,167 @@
+"""What runs on one robot, before its rewrite (by its sources) and after (by what was made)."""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.params.sections import PARAMETERS
+from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
+from multibot_rewrite.description.readback.reading import FRAME, Reading, read
+from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.fleet.checks.written_system import DRIVERS, of_robot
+from multibot_rewrite.fleet.file.fleet_file import REAL
+from multibot_rewrite.fleet.outputs.output_file import yaml_of
+from multibot_rewrite.fleet.outputs.output_values import OutputText
+from multibot_rewrite.fleet.robots.member import line_of, without_simulator
+from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence
+from multibot_rewrite.knowledge.parameters import KnownNodes
+from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.producers.ends import bridge_ends, either_way, node_ends, plugin_ends
+from multibot_rewrite.producers.evidence.hardware import Exported, exported
+from multibot_rewrite.producers.evidence.nodes import children_of
+from multibot_rewrite.producers.evidence.parameter_files import given_nodes
+from multibot_rewrite.producers.evidence.records import GivenNode
+from multibot_rewrite.producers.transforms import edges_off, joint_edges, node_edges
+from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, edges_in
+from multibot_rewrite.system.records import SUBSCRIBES, Edge, Node, Place, System
+
+FIXED, MOVEIT = "fixed", "moveit_simple_controller_manager"
+
+
+class RobotSystem(NamedTuple):
+    """What runs on a robot: what its files set for nodes, the interfaces of its hardware, the frames
+    that anything sends, its MoveIt files; ``system`` has its nodes, their ends and transforms."""
+
+    given: tuple[GivenNode, ...]
+    exports: tuple[Exported, ...]
+    sent: frozenset[str]
+    moveit: tuple[YamlText, ...]
+    system: System
+
+
+def system_before(robot: RewrittenRobot, evidence: RobotEvidence) -> RobotSystem:
+    """The system of a robot's sources, if it were alone: nothing is renamed or remapped but what the
+    usual launch files remap."""
+    source, given, bridges = robot.member.source, evidence.given, _documents(robot, "bridge")
+    moves = any(it.get("type", FIXED) != FIXED for it in source.root.iter("joint"))
+    nodes = [_runs(it, moves) for it in evidence.nodes]
+    real = robot.spec.simulator == REAL
+    text = without_simulator(source.source, source.file) if real else source.source
+    reading = read(text, source.file, robot.member.vocabulary)
+    sections = {it.name: it for it in given}
+    ends = [
+        *(end for node in nodes for end in node_ends(node, sections.get(node.name))),
+        *plugin_ends(reading),
+        *(
+            end
+            for it in bridges
+            for row in bridge_ends(it, robot.spec.bridge_namespace_of(it.file))
+            for end in either_way(row)
+        ),
+    ]
+    sent = {child for node in nodes for child in children_of(node)}
+    sent |= {it.name for it in reading.names if it.kind == FRAME and it.tag == "plugin"}
+    return RobotSystem(
+        tuple(_plainly(robot, it) for it in given),
+        tuple(_plain(robot, it) for it in exported(source.root, source.file)),
+        frozenset(sent),
+        tuple(_documents(robot, "moveit")),
+        System(
+            nodes=tuple(_nodes_of(nodes, reading)),
+            ends=tuple(ends),
+            edges=tuple(_edges_of(robot, nodes, evidence, sent)),
+            environment=DRIVERS,
+        ),
+    )
+
+
+def _nodes_of(nodes: Iterable[NodeFacts], reading: Reading) -> Iterator[Node]:
+    yield from (Node(f"/{it.name}", known=it.name) for it in nodes)
+    yield from (Node(it.full_name, known=it.name) for it in reading.nodes)
+
+
+def _edges_of(
+    robot: RewrittenRobot, nodes: Sequence[NodeFacts], evidence: RobotEvidence, sent: Container[str]
+) -> Iterator[Edge]:
+    source = robot.member.source
+    tree = (
+        (it, Place(robot.spec.description, line_of(source, "joint", at)))
+        for at, it in enumerate(edges_in(source.root))
+    )
+    yield from joint_edges(tree)
+    yield from node_edges(nodes, evidence.given, _root(robot))
+    off = edges_off(evidence.given, evidence.known)
+    yield from (it for it in off if it.child not in sent)
+
+
+def system_after(
+    robot: RewrittenRobot,
+    texts: Sequence[OutputText],
+    known: KnownNodes,
+    whole: System,
+) -> RobotSystem:
+    """The system of the files that were made for a robot, under its remap rules; ``whole`` is that of
+    the fleet."""
+    own = [it for it in texts if it.path.startswith(f"{robot.spec.name}/")]
+    params = [_read(it) for it in own if PARAMETERS in it.text]
+    written = read_document(robot.description, robot.member.source.file)
+    return RobotSystem(
+        tuple(given_nodes(params, known)),
+        tuple(exported(written.root, robot.member.source.file)),
+        frozenset(it.child for it in robot.tree),
+        tuple(_read(it) for it in own if MOVEIT in it.text),
+        of_robot(whole, robot.spec.namespace),
+    )
+
+
+def _own(robot: RewrittenRobot) -> Mapping[str, str]:
+    """What an argument makes -> the name without it, which may begin with the slash behind it: /imu."""
+    return {text: name.lstrip("/") for (_, name), text in robot.names.own.items()}
+
+
+def _plain(robot: RewrittenRobot, export: Exported) -> Exported:
+    """The interface as parameter files call it, where an argument of the xacro renames its owner."""
+    own = _own(robot)
+    # A name may have a slash of its own: robot1/imu.
+    whole = (it for it in own if export.name.startswith(f"{it}/"))
+    owner = next(whole, export.name.partition("/")[0])
+    # The code of a plugin puts the same before names that the description does not declare.
+    prefixes = {text.removesuffix(name) for text, name in own.items() if text.endswith(name)}
+    found = (it for it in prefixes if it and owner.startswith(it))
+    bare = own.get(owner, owner.removeprefix(next(found, "")))
+    return export._replace(name=f"{bare}{export.name[len(owner) :]}")
+
+
+def _plainly(robot: RewrittenRobot, given: GivenNode) -> GivenNode:
+    """The same of what a launch file fills in for a robot that has such an argument."""
+    own = _own(robot)
+    values = {
+        key: it._replace(value=own.get(it.value, it.value)) if isinstance(it.value, str) else it
+        for key, it in given.values.items()
+    }
+    return given._replace(values=values)
+
+
+def _root(robot: RewrittenRobot) -> str:
+    """The first link that no joint has as its child."""
+    joints = robot.member.source.root.iter("joint")
+    children = {end.get("link") for it in joints for end in it.iterfind("child")}
+    links = (it.get("name", "") for it in robot.member.source.root.iterfind("link"))
+    return next((it for it in links if it not in children), "")
+
+
+def _documents(robot: RewrittenRobot, kind: str) -> list[YamlText]:
+    return [yaml_of(path) for path in robot.spec.companions.get(kind, ())]
+
+
+def _read(text: OutputText) -> YamlText:
+    return read_yaml(text.text.encode(), text.path)
+
+
+def _runs(node: NodeFacts, moves: bool) -> NodeFacts:
+    """A robot without movable joints has no joint states to read."""
+    if moves or node.package != STATE_PUBLISHER:
+        return node
+    return node._replace(endpoints=tuple(it for it in node.endpoints if it.role != SUBSCRIBES))

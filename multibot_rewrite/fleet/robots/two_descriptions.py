@@ -1,0 +1,107 @@
+"""A robot whose simulator gets another file than robot_state_publisher: do the two fit?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from multibot_rewrite.base.conventions import USUAL_FRAMES
+from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.companions.names.rename_map import spell
+from multibot_rewrite.description.steps.collect import Inventory
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
+
+SHOWN = 3
+_URDF = """\
+<robot name="rover">
+  <link name="base_link"/>
+  <link name="wheel"/>
+  <joint name="wheel_joint" type="continuous"><parent link="base_link"/><child link="wheel"/></joint>
+</robot>
+"""
+_SDF = """\
+<sdf version="1.9"><model name="rover">
+  <link name="base_link"/>
+  <link name="wheel"/>
+  <joint name="{}" type="revolute"><parent>base_link</parent><child>wheel</child></joint>
+</model></sdf>
+"""
+
+DIFFERENT = declare(
+    "MF711",
+    "model-differs-from-description",
+    WARNING,
+    what="The model that the simulator gets (`simulated`) lacks a moving joint of the description, or "
+    "a sensor or plugin of it sends in a frame that the description does not have.",
+    why="Joint states of one name do not move the joint of another: its links are missing in tf. Data "
+    "in an unknown frame is dropped by whoever looks the frame up.",
+    fix="Give both the same names, or name another file under `simulated`.",
+    bad="""\
+description: rover.urdf
+simulated: other.sdf
+robots: [{name: robot1}]
+""",
+    good="""\
+description: rover.urdf
+simulated: rover.sdf
+robots: [{name: robot1}]
+""",
+    line=3,
+    formats=("fleet",),
+    beside={
+        "rover.urdf": _URDF,
+        "rover.sdf": _SDF.format("wheel_joint"),
+        "other.sdf": _SDF.format("axle"),
+    },
+)
+
+
+def differences(plan: FleetPlan) -> Iterator[Finding]:
+    """What the model of a robot and its description do not have in common."""
+    for robot in plan.robots:
+        if robot.simulated:
+            yield from _of_joints(robot)
+            yield from _of_frames(robot)
+
+
+def _of_joints(robot: RewrittenRobot) -> Iterator[Finding]:
+    described, model = _moving(robot.member.described), _moving(robot.member.inventory)
+    lacking = [it for it in described if it not in model]
+    if lacking:
+        what = "has no moving joint" if len(lacking) == 1 else "has no moving joints"
+        message = f"what the simulator gets of {robot.spec.name} {what} {_shown(lacking)}"
+        hint = "nothing in the simulator sends their states; give both files the same names"
+        yield at_robot(DIFFERENT, robot, message, hint)
+
+
+def _moving(inventory: Inventory) -> list[str]:
+    """The joints that need states: neither fixed nor following another one."""
+    return [
+        str(it.get("name", ""))
+        for it in inventory.document.root.iter("joint")
+        if it.get("type", "fixed") != "fixed"
+        if it.find("mimic") is None and it.find("axis/mimic") is None
+    ]
+
+
+def _of_frames(robot: RewrittenRobot) -> Iterator[Finding]:
+    names = robot.names._replace(robot=robot.spec.tag)
+    usual = (spell(names, "frame", it) for it in USUAL_FRAMES)
+    known = {*robot.links, *names.naming.shared_frames, *usual}
+    named = {
+        claim.value.strip()
+        for claim in robot.member.inventory.claims
+        if claim.site.kinds == ("frame",) and claim.site.form == "whole"
+    }
+    unknown = sorted(it for it in named - known if it and "<" not in it and "$" not in it)
+    if unknown:
+        model = f"what the simulator gets of {robot.spec.name}"
+        message = f"{model} names frames that its description has not: {_shown(unknown)}"
+        hint = "name links of the description, or send a transform to them"
+        yield at_robot(DIFFERENT, robot, message, hint)
+
+
+def _shown(names: list[str]) -> str:
+    more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
+    return f"{', '.join(names[:SHOWN])}{more}"

@@ -1,0 +1,163 @@
+"""Every rule of every command by its code: for ``multibot explain``, reports and pages."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import cache
+from importlib import import_module
+
+from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.record import NamedTuple
+
+
+class Home(NamedTuple):
+    """Rules whose codes begin with ``start``, and the modules (below the package) that declare them."""
+
+    start: str
+    title: str
+    modules: tuple[str, ...]
+
+
+HOMES: tuple[Home, ...] = (
+    Home(
+        "MB1",
+        "rewriting a description",
+        ("description.steps.plan", "description.checks.robots", "description.checks.arguments"),
+    ),
+    Home(
+        "MF1",
+        "parameter files",
+        (
+            "companions.params.sections",
+            "companions.params.section_checks",
+            "companions.params.robot_names",
+            "companions.params.values",
+            "companions.params.name_checks",
+            "companions.params.unknown_parameters",
+            "companions.params.shared_defaults",
+            "companions.params.bringup_style",
+            "companions.params.calibrations",
+        ),
+    ),
+    Home(
+        "MF2",
+        "RViz",
+        (
+            "companions.rviz.window_checks",
+            "companions.rviz.bridged",
+            "companions.rviz.display_checks",
+        ),
+    ),
+    Home(
+        "MF3",
+        "MoveIt",
+        ("companions.moveit.checks", "companions.moveit.controller_manager"),
+    ),
+    Home("MF4", "behavior trees and Lua", ("companions.behavior_tree.checks", "companions.lua")),
+    Home(
+        "MF5",
+        "bridges",
+        (
+            "companions.bridge_checks",
+            "fleet.outputs.bridge_merge",
+            "fleet.outputs.bridge_outputs",
+        ),
+    ),
+    Home(
+        "MF6",
+        "what was built",
+        ("fleet.checks.consistency", "fleet.checks.value_checks"),
+    ),
+    Home(
+        "MF7",
+        "start poses and spawning",
+        (
+            "fleet.robots.start_pose_rules",
+            "fleet.outputs.spawn",
+            "fleet.robots.two_descriptions",
+            "fleet.outputs.controller_files",
+        ),
+    ),
+    Home(
+        "MF8",
+        "what a robot's files say of its nodes",
+        (
+            "producers.evidence.nodes",
+            "producers.launch.findings",
+            "producers.launch.spawner_managers",
+            "fleet.launch.launched_files",
+            "fleet.robots.loaded_files",
+            "fleet.outputs.yarp_files",
+            "fleet.launch.launched_prefix",
+            "fleet.file.filled_arguments",
+            "fleet.robots.simulators",
+            "fleet.robots.shared_nodes",
+            "fleet.outputs.params_style",
+            "fleet.checks.closing",
+            "fleet.checks.closing_bridges",
+            "fleet.checks.closing_controllers",
+            "fleet.checks.closing_semantics",
+            "fleet.robots.srdf_of_another",
+            "fleet.robots.devices",
+            "fleet.robots.apart",
+            "fleet.outputs.cell_outputs",
+            "fleet.outputs.moveit_frames",
+        ),
+    ),
+    Home(
+        "MG1",
+        "not as planned: nodes, names, states",
+        (
+            "rules.pair.nodes",
+            "rules.pair.endpoints",
+            "rules.pair.demands",
+            "rules.pair.in_enclaves",
+            "rules.pair.planned_states",
+        ),
+    ),
+    Home("MG2", "not as planned: frames", ("rules.pair.frame_names", "rules.pair.frames_heard")),
+    Home(
+        "MG3",
+        "any system: nodes, names, commands, data",
+        (
+            "rules.system.nodes",
+            "rules.system.names",
+            "rules.system.matching",
+            "rules.system.commands",
+            "rules.system.relays",
+            "rules.system.sharing",
+            "rules.system.equal_robots",
+            "rules.system.unsent",
+        ),
+    ),
+    Home(
+        "MG4",
+        "any system: tf",
+        ("rules.system.transforms", "rules.system.tf_topics", "rules.system.frame_ids"),
+    ),
+    Home(
+        "MG5",
+        "any system: time and states",
+        ("rules.system.clocks", "rules.system.states", "rules.system.interfaces"),
+    ),
+    Home("MR1", "remap tables", ("spelling.table_checks", "spelling.way_checks")),
+)
+
+
+@cache
+def rules() -> Mapping[str, Rule]:
+    """All rules by code, in the order of the codes; imports every module that declares one."""
+    from multibot_rewrite.lint.registry import RULES
+
+    found = [*RULES.values(), *(it for home in HOMES for it in declared(home))]
+    by_code = {it.code: it for it in sorted(found, key=lambda it: it.code)}
+    assert len(by_code) == len(found), "two rules have one code"
+    return by_code
+
+
+def declared(home: Home) -> Iterator[Rule]:
+    """The rules of its modules."""
+    for name in home.modules:
+        module = import_module(f"multibot_rewrite.{name}")
+        found = (it for it in vars(module).values() if isinstance(it, Rule))
+        yield from (it for it in found if it.code.startswith(home.start))

@@ -1,5 +1,0 @@
-"""MB3: how names are written."""
-
-from multibot_rewrite.lint.rules.names import links_and_joints, ros_names, targets
-
-THEMES = (links_and_joints, ros_names, targets)

@@ -1,5 +1,0 @@
-"""MB8: an SRDF against its URDF."""
-
-from multibot_rewrite.lint.rules.srdf import elements, joints, names, pairs, planning, states
-
-THEMES = (names, pairs, planning, states, joints, elements)

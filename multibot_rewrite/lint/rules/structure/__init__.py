@@ -1,5 +1,0 @@
-"""MB5: the kinematic tree and its joints."""
-
-from multibot_rewrite.lint.rules.structure import joints, limits, mimic, safety, starts, tree
-
-THEMES = (tree, limits, joints, mimic, safety, starts)

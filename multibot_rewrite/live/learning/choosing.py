@@ -1,0 +1,115 @@
+"""Which nodes of a graph to learn: without tools, and without helper nodes of other nodes."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+
+from multibot_rewrite.base.conventions import LISTENER
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.nearest import nearest_few
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.rosnames import check_full_name, check_namespace
+from multibot_rewrite.system.records import System
+from multibot_rewrite.system.tool_nodes import is_tool
+
+# A tf2 listener without a node creates its own node, named after its address.
+HELPER = re.compile(LISTENER + "[0-9a-f]+")
+# Hidden nodes, launch and tf2 listeners: never part of a robot.
+NEVER_MEANT = re.compile(rf".*/(_.*|launch_ros_\d+|{LISTENER}.*)")
+
+
+class Helpers(NamedTuple):
+    """Helper nodes in a node's process; ``sure`` if no other node is in that process."""
+
+    names: tuple[str, ...] = ()
+    sure: bool = True
+
+
+def choose_nodes(graph: System, names: Sequence[str], namespace: str) -> tuple[str, ...]:
+    """Full names of the nodes to learn, sorted: ``names``, or all below ``namespace`` but tools.
+
+    Raises UsageError for a node that is not in the graph, not below the namespace, or in the graph
+    twice, and if there is no node at all.
+    """
+    base = namespace_prefix(namespace)
+    times = Counter(node.name for node in graph.nodes)
+    for name in names:
+        if name not in times:
+            raise UsageError(f"{name}: no node has this name; {_suggestion(name, times)}")
+        if not name.startswith(f"{base}/"):
+            raise UsageError(f"{name}: the node is not below --namespace {base}")
+    below = (name for name in times if name.startswith(f"{base}/") and not is_tool(name))
+    chosen = sorted(set(names) or below)
+    if not chosen:
+        where = f"below {base}" if base else "in this graph"
+        raise UsageError(f"there is no node to learn {where}; {_suggestion(base, times)}")
+    for name in chosen:
+        check_seen_name("node", name)
+        if times[name] > 1:
+            hint = "stop all but one; a node that was killed stays visible for 20 s"
+            raise UsageError(f"{name}: {times[name]} nodes have this name; {hint}")
+    return tuple(chosen)
+
+
+def left_out(graph: System, chosen: Iterable[str], namespace: str) -> tuple[str, ...]:
+    """Tools below ``namespace`` that are not learned although somebody may want to learn them."""
+    base = namespace_prefix(namespace)
+    below = {node.name for node in graph.nodes if node.name.startswith(f"{base}/")}
+    tools = (name for name in below.difference(chosen) if is_tool(name))
+    return tuple(sorted(name for name in tools if not NEVER_MEANT.fullmatch(name)))
+
+
+def namespace_prefix(namespace: str) -> str:
+    """A namespace without a slash at its end, empty for the root; UsageError if it is not valid."""
+    base = namespace.rstrip("/")
+    fault = check_namespace(base) if base else None
+    if fault:
+        raise UsageError(f"namespace {namespace!r}: {fault.reason}")
+    return base
+
+
+def check_seen_name(what: str, name: str) -> None:
+    """Raise UsageError for a name that is not valid in a ROS graph."""
+    fault = check_full_name(name)
+    if fault:
+        raise UsageError(f"{what} name {name!r} in the graph: {fault.reason}")
+
+
+def _suggestion(name: str, known: Iterable[str]) -> str:
+    nodes = sorted(node for node in known if not is_tool(node))
+    near = nearest_few(name, nodes, 3) or nodes[:3]
+    return f"running are {', '.join(near)}" if near else "no nodes are running, or only tools"
+
+
+def helpers_of(graph: System, names: Sequence[str]) -> dict[str, Helpers]:
+    """The helper nodes in the process of each node; none of ``names`` counts as a helper."""
+    inside, mains = _nodes_by_process(graph, names)
+    return {
+        node.name: Helpers(tuple(sorted(inside[node.process])), mains[node.process] == 1)
+        for node in graph.nodes
+        if node.name in names and node.process and node.process in inside
+    }
+
+
+def helpers_without_owner(graph: System, names: Sequence[str]) -> tuple[str, ...]:
+    """Helper nodes that are alone in their process, so that their node is not known."""
+    inside, mains = _nodes_by_process(graph, names)
+    alone = (helpers for process, helpers in inside.items() if not mains[process])
+    return tuple(sorted(name for helpers in alone for name in helpers))
+
+
+def _nodes_by_process(
+    graph: System, names: Sequence[str]
+) -> tuple[Mapping[str, list[str]], Counter[str]]:
+    """By process: its helper nodes, and how many others it has."""
+    inside: dict[str, list[str]] = defaultdict(list)
+    mains: Counter[str] = Counter()
+    for node in graph.nodes:
+        own = node.name.rpartition("/")[2]
+        if HELPER.fullmatch(own) and node.name not in names:
+            inside[node.process].append(node.name)
+        elif node.process and not own.startswith("_"):
+            mains[node.process] += 1
+    return inside, mains

@@ -1,0 +1,208 @@
+"""A remap table -> stub nodes: each has the names of its node's code, rcl gets the remap rules.
+
+A stub has the rules that reach its node in the table's release: a controller those that its manager
+hands on and those of its spawner, a component those of its container, a plugin those of its tag.
+Pure; ``graph.live.stub_nodes`` runs them. Parameters are taken to be set as the layout needs them,
+QoS is the default, and endpoints that depend on a condition are left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from typing import Any
+
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.rosnames import resolve_bound
+from multibot_rewrite.spelling.applied_rules import (
+    RunningNode,
+    bound_to,
+    is_stand_in,
+    running_nodes,
+)
+from multibot_rewrite.spelling.plan import planned_end
+from multibot_rewrite.spelling.records import EndpointName, NodeTable, Table
+from multibot_rewrite.spelling.started import ros_arguments
+from multibot_rewrite.spelling.targets import ACTION_PARTS
+from multibot_rewrite.spelling.transforms import Edge, Edges
+from multibot_rewrite.spelling.ways import Pair
+from multibot_rewrite.system.records import (
+    ACTION,
+    CALLS,
+    PUBLISHES,
+    SERVES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+    End,
+    System,
+    Topic,
+)
+
+TF = "tf2_msgs/msg/TFMessage"
+# The types used in place of one that is not installed.
+SUBSTITUTE_TYPES = {TOPIC: "std_msgs/msg/Empty", SERVICE: "std_srvs/srv/Empty", ACTION: ""}
+TF_SUBSTITUTE = "geometry_msgs/msg/TransformStamped"
+# Types of an action's parts that are the same for every action.
+PART_TYPES = {
+    "_action/cancel_goal": "action_msgs/srv/CancelGoal",
+    "_action/status": "action_msgs/msg/GoalStatusArray",
+}
+# Fast DDS finds only 32 participants under LOCALHOST: larger fleets share these processes.
+PROCESSES = 8
+
+
+class StubEndpoint(NamedTuple):
+    """An endpoint with the name in its node's code; ``helper`` and ``by`` as in ``Endpoint``."""
+
+    kind: str
+    role: str
+    name: str
+    type: str
+    helper: bool
+    by: str = ""
+
+
+class StubNode(NamedTuple):
+    """A stub: its name in the code, its arguments for rcl and those of its process, which are a
+    helper node's, its endpoints, what it sends on tf."""
+
+    name: str
+    arguments: tuple[str, ...]
+    process_arguments: tuple[str, ...]
+    endpoints: tuple[StubEndpoint, ...]
+    edges: tuple[Edge, ...]
+
+
+def stub_nodes(
+    table: Table, edges: Edges, left_out: Collection[str] = ()
+) -> Iterator[tuple[str, StubNode]]:
+    """The stub nodes, each with its robot (empty for all robots).
+
+    ``edges`` are by robot and node. Rules that stand at one of the ways ``left_out`` are not given;
+    without any a node gets only its namespace and its name.
+    """
+    types = {name.name: name.endpoint.type for name in table.names if name.endpoint.type}
+    names: dict[str, list[EndpointName]] = {}
+    for name in table.names:
+        if not name.endpoint.when:
+            names.setdefault(name.node, []).append(name)
+    spaces = {(it.robot, it.node): it.namespace for it in table.nodes}
+    for it in running_nodes(table, left_out):
+        node, own = it.node, names.get(it.node.full_name, [])
+        space, other = _as_started(node, spaces.get((node.robot, node.home.host)))
+        yield (
+            node.robot,
+            StubNode(
+                node.code_name,
+                tuple(ros_arguments(space, other, _rules(it, own))),
+                tuple(ros_arguments(it.process_namespace, "", it.process_rules)),
+                tuple(dict.fromkeys(_stub_endpoint(name, types) for name in own)),
+                tuple(edges.get((node.robot, node.node), ())),
+            ),
+        )
+
+
+def bridge_stub(topics: Iterable[Topic]) -> Iterator[tuple[str, StubNode]]:
+    """The bridge to a simulator that a plan needs, if it needs one."""
+    rows = [
+        StubEndpoint(TOPIC, role, topic.name, topic.type, False)
+        for topic in topics
+        for role in topic.bridge
+    ]
+    if rows:
+        yield "", StubNode("ros_gz_bridge", (), (), tuple(rows), ())
+
+
+def _as_started(node: NodeTable, host: str | None) -> tuple[str, str]:
+    """The namespace and the other name that a node is given; ``host`` is the namespace of its host.
+
+    Where the code of a host places the node itself (a costmap), it asks nobody for either.
+    """
+    if host is None or not node.home.apart:
+        return node.namespace, node.other_name
+    return f"{host.rstrip('/')}/{node.node.rpartition('/')[0]}", ""
+
+
+def _rules(running: RunningNode, names: Iterable[EndpointName]) -> tuple[Pair, ...]:
+    """The rules of a node; a controller manager that stands in for its controllers has theirs."""
+    node = running.node
+    theirs = {it.endpoint.name for it in names if is_stand_in(node, it.endpoint)}
+    if not theirs:
+        return running.rules
+    bare = bound_to(node, ())
+    full = {resolve_bound(it, TOPIC, bare) for it in theirs}
+    own = (it for it in running.rules if resolve_bound(it[0], TOPIC, bare) not in full)
+    return (*own, *running.handed_on)
+
+
+def _stub_endpoint(name: EndpointName, types: Mapping[str, str]) -> StubEndpoint:
+    kind, role, own, type_, *_ = name.endpoint
+    # A topic without a role is nearly always a sensor's output.
+    return StubEndpoint(
+        *(kind, role or PUBLISHES, own, type_ or types.get(name.name, "")),
+        *(name.endpoint.helper, name.endpoint.by),
+    )
+
+
+def split_over_processes(nodes: Iterable[tuple[str, StubNode]]) -> list[list[StubNode]]:
+    """The stub nodes by process: one process for each robot, but no more than PROCESSES."""
+    processes: dict[int, list[StubNode]] = {}
+    process_of: dict[str, int] = {}
+    for robot, node in nodes:
+        process = process_of.setdefault(robot, len(process_of) % PROCESSES)
+        processes.setdefault(process, []).append(node)
+    return list(processes.values())
+
+
+def with_substitutes(plan: System, replaced: Mapping[str, str]) -> System:
+    """The plan with the types that replace others; an action without its type becomes its parts."""
+    endpoints = [end for planned in plan.ends for end in _substituted(planned, replaced)]
+    topics = (it._replace(type=replaced.get(it.type, it.type)) for it in plan.topics)
+    return plan._replace(ends=tuple(endpoints), topics=tuple(topics))
+
+
+def _substituted(planned: End, replaced: Mapping[str, str]) -> Iterator[End]:
+    if planned.kind == ACTION and planned.type in replaced:
+        action = StubEndpoint(planned.kind, planned.role, planned.name, planned.type, False)
+        for kind, role, name, type_, *_ in action_parts(action):
+            code_name = planned.code_name + name.removeprefix(planned.name)
+            yield planned_end(planned.node, kind, role, name, type_, code_name)
+    else:
+        also = tuple(replaced.get(type_, type_) for type_ in planned.also)
+        yield planned._replace(type=replaced.get(planned.type, planned.type), also=also)
+
+
+def action_parts(action: StubEndpoint) -> Iterator[StubEndpoint]:
+    """The services and topics that make up an action, for an action without its type."""
+    roles = {
+        (SERVES, SERVICE): SERVES, (SERVES, TOPIC): PUBLISHES,
+        (CALLS, SERVICE): CALLS, (CALLS, TOPIC): SUBSCRIBES,
+    }  # fmt: skip
+    for suffix, kind in ACTION_PARTS:
+        type_ = PART_TYPES.get(suffix, SUBSTITUTE_TYPES[kind])
+        name = f"{action.name}/{suffix}"
+        yield StubEndpoint(kind, roles[action.role, kind], name, type_, action.helper, action.by)
+
+
+def substitute_type(kind: str, type_: str) -> str:
+    """The type that is used in place of one that is not installed."""
+    return TF_SUBSTITUTE if type_ == TF else SUBSTITUTE_TYPES[kind]
+
+
+def to_order(nodes: Iterable[StubNode]) -> tuple[Any, ...]:
+    """Stub nodes as plain values, the order of the process that runs them."""
+    return tuple(nodes)
+
+
+def from_order(value: Sequence[Any]) -> list[StubNode]:
+    """Read what JSON made of ``to_order``."""
+    return [
+        StubNode(
+            name,
+            tuple(words),
+            tuple(process),
+            tuple(StubEndpoint(*end) for end in endpoints),
+            tuple(Edge(*edge) for edge in edges),
+        )
+        for name, words, process, endpoints, edges in value
+    ]

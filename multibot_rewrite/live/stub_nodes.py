@@ -1,0 +1,152 @@
+"""The stub nodes of a rehearsal: ``python -m multibot_rewrite.live.stub_nodes``, a child.
+
+Its order is a list of stub nodes. Once all are in the graph it sends which types replace others.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import threading
+from collections.abc import Callable, Iterable, Iterator
+from functools import cache
+from typing import Any
+
+from multibot_rewrite.base.conventions import LISTENER
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.live.rehearsal import (
+    TF,
+    StubEndpoint,
+    StubNode,
+    action_parts,
+    from_order,
+    substitute_type,
+)
+from multibot_rewrite.producers.ros import ros
+from multibot_rewrite.producers.ros.worker import Send, run_worker
+from multibot_rewrite.spelling.transforms import Edge
+from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SERVES, SUBSCRIBES, TOPIC
+
+# The rate of robot_state_publisher and of most odometry sources.
+PUBLISH_SECONDS = 0.1
+STATIC = "tf_static"
+Publish = Callable[[], None]
+
+
+class _Stubs(NamedTuple):
+    """What the stub nodes of one process share; ``replaced`` grows."""
+
+    session: ros.Session
+    replaced: dict[str, str]
+
+
+def main(order: str, stop: threading.Event, send: Send) -> int:
+    """Run the stub nodes until ``stop``; returns the exit code."""
+    with ros.opened() as session:
+        stubs = _Stubs(session, {})
+        publishers = [
+            publish
+            for number, stub in enumerate(from_order(json.loads(order)))
+            for publish in _create_node(stubs, stub, number)
+        ]
+        send(json.dumps(stubs.replaced).encode())
+        while not stop.wait(PUBLISH_SECONDS):
+            for publish in publishers:
+                publish()
+    return 0
+
+
+def _create_node(stubs: _Stubs, stub: StubNode, number: int) -> Iterator[Publish]:
+    """Create a node with its endpoints; yields what has to be published again and again."""
+    node = ros.add_node(stubs.session, stub.name, arguments=stub.arguments)
+    helpers: dict[str, Any] = {}
+    for endpoint in stub.endpoints:
+        if endpoint.helper and endpoint.by not in helpers:
+            name = f"{LISTENER}{os.getpid():x}{number:04x}"
+            if endpoint.by:
+                name = node.get_name() + endpoint.by.replace("*", f"{os.getpid()}{number}")
+            arguments = stub.process_arguments
+            helpers[endpoint.by] = ros.add_node(stubs.session, name, arguments=arguments)
+        owner = helpers[endpoint.by] if endpoint.helper else node
+        yield from _create_endpoint(stubs, owner, _named(node, endpoint), stub.edges)
+
+
+def _named(node: Any, endpoint: StubEndpoint) -> StubEndpoint:
+    """An endpoint of a helper node below the name of the node that makes it.
+
+    As moveit_servo does (src/utils/common.cpp:510): with ~ it would be below the helper's own name.
+    """
+    if not endpoint.by or not endpoint.name.startswith("~/"):
+        return endpoint
+    return endpoint._replace(name=node.get_fully_qualified_name() + endpoint.name[1:])
+
+
+def _create_endpoint(
+    stubs: _Stubs, node: Any, endpoint: StubEndpoint, edges: Iterable[Edge]
+) -> Iterator[Publish]:
+    """Create one endpoint, with a substitute where its type is not installed."""
+    type_ = _installed(endpoint.type)
+    if type_ is None and endpoint.kind == ACTION:
+        stubs.replaced[endpoint.type] = "its services and topics"
+        for part in action_parts(endpoint):
+            yield from _create_endpoint(stubs, node, part, ())
+        return
+    if type_ is None:
+        substitute = substitute_type(endpoint.kind, endpoint.type)
+        stubs.replaced.update({endpoint.type: substitute} if endpoint.type else {})
+        type_ = _installed(substitute)
+    if endpoint.kind == TOPIC and endpoint.role == PUBLISHES:
+        yield from _create_publisher(node, type_, endpoint, edges)
+    else:
+        _CREATORS[endpoint.kind == ACTION, endpoint.role](node, type_, endpoint.name)
+
+
+@cache
+def _installed(type_: str) -> Any:
+    return ros.message_class(type_)[0] if type_ else None
+
+
+_CREATORS: dict[tuple[bool, str], Callable[[Any, Any, str], object]] = {
+    (False, SUBSCRIBES): ros.subscribe_and_drop,
+    (False, SERVES): lambda node, type_, name: node.create_service(type_, name, lambda _, it: it),
+    (False, CALLS): lambda node, type_, name: node.create_client(type_, name),
+    (True, SERVES): ros.serve_action,
+    (True, CALLS): ros.call_action,
+}
+
+
+def _create_publisher(
+    node: Any, type_: Any, endpoint: StubEndpoint, edges: Iterable[Edge]
+) -> Iterator[Publish]:
+    static = endpoint.name.rpartition("/")[2] == STATIC
+    publisher = ros.publish(node, type_, endpoint.name, static)
+    messages = _messages(type_, [edge for edge in edges if edge.static == static])
+    if endpoint.type != TF or not messages:
+        return
+    if static:
+        _publish(publisher, messages)
+    else:
+        yield lambda: _publish(publisher, messages)
+
+
+def _publish(publisher: Any, messages: Iterable[Any]) -> None:
+    for message in messages:
+        publisher.publish(message)
+
+
+def _messages(type_: Any, edges: list[Edge]) -> list[Any]:
+    """One message with all transforms, or one for each where tf's own type is not installed."""
+    transform = _installed("geometry_msgs/msg/TransformStamped")
+    made = []
+    for edge in edges:
+        one = transform(child_frame_id=edge.child)
+        one.header.frame_id = edge.parent
+        made.append(one)
+    if type_ is transform or not made:
+        return made
+    return [type_(transforms=made)]
+
+
+if __name__ == "__main__":
+    sys.exit(run_worker(main))

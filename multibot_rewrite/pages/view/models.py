@@ -1,0 +1,204 @@
+"""A rewritten description -> links with shapes, and joints. The only import of yourdfpy and trimesh.
+
+Meshes are looked for as ROS does: package://, file://, and paths beside the description.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from multibot_rewrite.base.model import InputError, MultibotError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.sources.packages import package_folder
+
+INSTALL = "the view needs yourdfpy: pip install 'multibot_rewrite[view]'"
+# Of larger meshes the bounding box is shown, or the page would not load.
+MOST_FACES = 200_000
+GREY: tuple[float, ...] = (0.72, 0.75, 0.8, 1.0)
+_LIBRARY_END = "THREE.GLTFLoader=GLTFLoader;})();"
+Matrix = Sequence[Sequence[float]]
+
+
+class ViewUnusable(MultibotError):
+    """yourdfpy is missing; the message says what to do."""
+
+
+class Shape(NamedTuple):
+    """A shape in its link's frame: ``kind`` is box, cylinder, sphere or mesh, ``size`` its sizes in
+    metres (a mesh's scale). ``mesh`` is its file, ``missing`` why it is shown as a box."""
+
+    kind: str
+    size: tuple[float, ...]
+    pose: Matrix
+    colour: tuple[float, ...]
+    mesh: str = ""
+    missing: str = ""
+
+
+class Joint(NamedTuple):
+    """A joint; ``lower`` and ``upper`` in radians or metres, equal for one that cannot move."""
+
+    name: str
+    type: str
+    parent: str
+    child: str
+    pose: Matrix
+    axis: tuple[float, ...]
+    lower: float
+    upper: float
+    mimic: tuple[str, float, float] | None
+
+
+class Model(NamedTuple):
+    """A robot: its links with their shapes, its joints."""
+
+    links: dict[str, tuple[Shape, ...]]
+    joints: tuple[Joint, ...]
+
+
+class Mesh(NamedTuple):
+    """Vertices (x, y, z as 32-bit floats) and triangles (three 32-bit numbers of vertices)."""
+
+    vertices: bytes
+    faces: bytes
+
+
+def load_model(data: bytes, source: str) -> Model:
+    """The model of a URDF; ``source`` is the file it was made from.
+
+    Raises ViewUnusable without yourdfpy, InputError for what it cannot read.
+    """
+    yourdfpy = _yourdfpy()
+    try:
+        robot = yourdfpy.URDF.load(
+            io.BytesIO(data), build_scene_graph=False, load_meshes=False
+        ).robot
+    except Exception as error:  # yourdfpy has no error of its own
+        raise InputError(f"{source}: yourdfpy cannot read it: {error}") from None
+    colours = {it.name: _rgba(it) for it in robot.materials if it.color is not None}
+    links = {it.name: tuple(_shapes(it, colours, source)) for it in robot.links}
+    return Model(links, tuple(_joint(it) for it in robot.joints))
+
+
+def _yourdfpy() -> Any:
+    try:
+        import yourdfpy
+    except ImportError:
+        raise ViewUnusable(INSTALL) from None
+    return yourdfpy
+
+
+def _rgba(material: Any) -> tuple[float, ...]:
+    return tuple(float(it) for it in material.color.rgba)
+
+
+def _shapes(link: Any, colours: dict[str, tuple[float, ...]], source: str) -> Iterator[Shape]:
+    for visual in link.visuals:
+        material = visual.material
+        colour = GREY
+        if material is not None:
+            colour = _rgba(material) if material.color else colours.get(material.name, GREY)
+        pose = _matrix(visual.origin)
+        it = visual.geometry
+        if it.box is not None:
+            yield Shape("box", tuple(map(float, it.box.size)), pose, colour)
+        elif it.cylinder is not None:
+            size = float(it.cylinder.radius), float(it.cylinder.length)
+            yield Shape("cylinder", size, pose, colour)
+        elif it.sphere is not None:
+            yield Shape("sphere", (float(it.sphere.radius),), pose, colour)
+        elif it.mesh is not None:
+            yield mesh_shape(it.mesh.filename, _scale(it.mesh), pose, colour, source)
+
+
+def mesh_shape(
+    name: str, scale: tuple[float, ...], pose: Matrix, colour: tuple[float, ...], source: str
+) -> Shape:
+    """A mesh of the file ``source``, or a small box in its place."""
+    path = find_mesh(name, source)
+    if path:
+        return Shape("mesh", scale, pose, colour, path)
+    return Shape("box", (0.1, 0.1, 0.1), pose, colour, "", f"{name} is not found")
+
+
+def _scale(mesh: Any) -> tuple[float, ...]:
+    scale = mesh.scale if mesh.scale is not None else 1.0
+    return (float(scale),) * 3 if isinstance(scale, float) else tuple(map(float, scale))
+
+
+def find_mesh(name: str, source: str) -> str:
+    """The file of a mesh's name; empty if there is none. Gazebo finds model:// where packages are."""
+    scheme, _, below = name.partition("://")
+    if scheme in ("package", "model"):
+        package, _, rest = below.partition("/")
+        folder = package_folder(package, source, ())
+        path = os.path.join(folder, rest) if folder else ""
+    elif name.startswith("file://"):
+        path = name.removeprefix("file://")
+    else:
+        path = os.path.join(os.path.dirname(source), name)
+    return path if path and os.path.isfile(path) else ""
+
+
+def load_mesh(path: str) -> Mesh | str:
+    """A mesh file, or why it cannot be shown."""
+    import numpy as np
+    import trimesh
+
+    try:
+        made: Any = trimesh.load(path, force="mesh", process=False)
+    except Exception as error:  # each format has errors of its own
+        return f"{os.path.basename(path)}: {error}"
+    if not len(getattr(made, "faces", ())):
+        return f"{os.path.basename(path)} has no triangles"
+    if len(made.faces) > MOST_FACES:
+        made = made.bounding_box
+    vertices = np.asarray(made.vertices, dtype="<f4").tobytes()
+    return Mesh(vertices, np.asarray(made.faces, dtype="<u4").tobytes())
+
+
+def _matrix(origin: Any) -> Matrix:
+    if origin is None:
+        return ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1))
+    return [[round(float(it), 9) for it in row] for row in origin]
+
+
+def _joint(it: Any) -> Joint:
+    turning = it.type in ("revolute", "continuous")
+    moving = turning or it.type == "prismatic"
+    lower = upper = 0.0
+    if it.type == "continuous":
+        lower, upper = -3.1416, 3.1416
+    elif moving and it.limit is not None:
+        lower, upper = float(it.limit.lower or 0), float(it.limit.upper or 0)
+    axis = tuple(map(float, it.axis)) if it.axis is not None else (1.0, 0.0, 0.0)
+    mimic = None
+    if it.mimic is not None:
+        factor = 1.0 if it.mimic.multiplier is None else float(it.mimic.multiplier)
+        mimic = it.mimic.joint, factor, float(it.mimic.offset or 0)
+    return Joint(
+        it.name, it.type, it.parent, it.child, _matrix(it.origin), axis, lower, upper, mimic
+    )
+
+
+def three() -> str:
+    """three.js with its trackball controls, as trimesh brings them; raises ViewUnusable.
+
+    Source: trimesh resources/templates/viewer.zip (three.js, MIT).
+    """
+    import zipfile
+
+    try:
+        import trimesh
+    except ImportError:
+        raise ViewUnusable(INSTALL) from None
+    path = os.path.join(os.path.dirname(trimesh.__file__), "resources", "templates", "viewer.zip")
+    with zipfile.ZipFile(path) as archive:
+        text = archive.read("viewer.html.template").decode()
+    scripts = [part.partition("</script>")[0] for part in text.split("<script>")[1:]]
+    # What follows the last part of the library is trimesh's own viewer.
+    library, end, _ = "\n".join(scripts).partition(_LIBRARY_END)
+    return library + end

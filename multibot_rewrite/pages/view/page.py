@@ -1,0 +1,128 @@
+"""A scene -> one HTML file that fetches nothing."""
+
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from html import escape
+from importlib.resources import files
+from typing import Any
+
+from multibot_rewrite.base.plural import plural
+from multibot_rewrite.base.printable import one_line
+from multibot_rewrite.pages.page import Framed, source_hash
+from multibot_rewrite.pages.view.heard import DEGREES, METRES
+from multibot_rewrite.pages.view.models import Mesh, Shape, load_mesh, three
+from multibot_rewrite.pages.view.scene import Scene, ViewedRobot
+
+# Meshes by their files, or why one cannot be shown.
+Meshes = Mapping[str, Mesh | str]
+
+
+def meshes_of(scene: Scene) -> Meshes:
+    """The meshes of all robots, each read once."""
+    shapes = (it for robot in scene.robots for its in robot.model.links.values() for it in its)
+    return {path: load_mesh(path) for path in dict.fromkeys(it.mesh for it in shapes) if path}
+
+
+def to_html(scene: Scene, meshes: Meshes, title: str) -> bytes:
+    """The page; raises ViewUnusable without trimesh."""
+    return to_frame(scene, meshes, title).html.encode()
+
+
+def to_frame(scene: Scene, meshes: Meshes, title: str) -> Framed:
+    """The page, to be put into another; raises ViewUnusable without trimesh."""
+    library, own = three(), _asset("viewer.js") + _asset("heard.js")
+    style = _asset("viewer.css")
+    scripts = f"{source_hash(library)} {source_hash(own)}"
+    policy = (
+        f"default-src 'none'; style-src {source_hash(style)}; img-src data: blob:;"
+        f" script-src {scripts}; base-uri 'none'; form-action 'none'"
+    )
+    head = escape(one_line(title))
+    data = json.dumps(_data(scene, meshes), separators=(",", ":")).replace("<", "\\u003c")
+    page = (
+        '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        f'<meta http-equiv="Content-Security-Policy" content="{policy}">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        '<meta name="color-scheme" content="light dark">\n'
+        f"<title>{head}</title>\n<style>{style}</style>\n</head>\n<body>\n"
+        f"<header><h1>{head}</h1>{_BAR}</header>\n"
+        '<main><nav id="tree"></nav><div id="stage"></div><aside id="about"></aside></main>\n'
+        f'<script type="application/json" id="data">{data}</script>\n'
+        f"<script>{library}</script>\n<script>{own}</script>\n</body>\n</html>\n"
+    )
+    return Framed(page, source_hash(style), scripts)
+
+
+_BAR = (
+    '<span id="bar"><label>left <select id="left"></select></label>'
+    '<label>right <select id="right"></select></label>'
+    '<label><input type="checkbox" id="frames" checked> frames</label>'
+    '<label><input type="checkbox" id="labels"> names</label>'
+    '<label id="ghosts" hidden><input type="checkbox" id="tf" checked> tf as heard</label>'
+    '<button id="fit" type="button">fit</button></span>'
+)
+
+
+def title_of(robots: Sequence[ViewedRobot], layout: str) -> str:
+    """The heading of a page."""
+    return f"{plural(len(robots), 'robot')}, layout {layout}"
+
+
+def _asset(name: str) -> str:
+    return files(__package__).joinpath(name).read_text("utf-8")
+
+
+def _data(scene: Scene, meshes: Meshes) -> dict[str, Any]:
+    numbers = {path: at for at, path in enumerate(meshes)}
+    return {
+        "meshes": [_mesh(it) for it in meshes.values()],
+        "robots": [_robot(it, numbers, meshes) for it in scene.robots],
+        "trees": scene.trees,
+        "same": [METRES, DEGREES],
+    }
+
+
+def _mesh(it: Mesh | str) -> dict[str, str]:
+    if isinstance(it, str):
+        return {"missing": it}
+    return {"v": _base64(it.vertices), "f": _base64(it.faces)}
+
+
+def _base64(data: bytes) -> str:
+    return base64.b64encode(data).decode()
+
+
+def _robot(it: ViewedRobot, numbers: Mapping[str, int], meshes: Meshes) -> Any:
+    names = {one.after: [one.before, one.line] for one in it.names}
+    return {
+        "name": it.name,
+        "file": it.file,
+        "pose": it.pose,
+        "names": names,
+        "links": {
+            link: [_shape(one, numbers, meshes) for one in its]
+            for link, its in it.model.links.items()
+        },
+        "joints": [list(one) for one in it.model.joints],
+        "changes": list(_changes(it.changes)),
+        "plugins": it.plugins,
+        "topic": it.topic,
+        "prefix": it.prefix,
+        "heard": it.heard,
+        "transforms": it.transforms,
+    }
+
+
+def _shape(it: Shape, numbers: Mapping[str, int], meshes: Meshes) -> Any:
+    missing = it.missing
+    if it.mesh and isinstance(bad := meshes[it.mesh], str):
+        missing = bad
+    return [it.kind, it.size, it.pose, it.colour, numbers.get(it.mesh, -1), missing]
+
+
+def _changes(changes: Iterable[Any]) -> Any:
+    for it in changes:
+        yield [it.line, it.kind, it.path, it.old, it.new, it.rule]

@@ -1,0 +1,171 @@
+"""A planned fleet -> the scene: each robot's model at its pose, and what every name was before."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Iterator, Mapping
+
+from multibot_rewrite.base.model import Change
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.names.rename_map import spell
+from multibot_rewrite.description.library import Prepared
+from multibot_rewrite.description.reports.changes import list_changes
+from multibot_rewrite.description.steps.document import Document
+from multibot_rewrite.fleet.file.fleet_file import Sources
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.robots.rewritten_robots import GRAPH_KINDS, RewrittenRobot
+from multibot_rewrite.pages.view.heard import HeardTree, LinkFrames, heard_trees
+from multibot_rewrite.pages.view.models import Model, load_model
+from multibot_rewrite.pages.view.sdf_model import declared, line_of, load_sdf
+from multibot_rewrite.rules.index import tree_topic
+from multibot_rewrite.spelling.plan import tf_topic
+from multibot_rewrite.system.records import Edge, System
+
+HEARD, ELSEWHERE, SILENT = "heard", "elsewhere", "silent"
+# What is changed for a robot, by its name.
+_Changes = Callable[[str], list[Change]]
+
+
+class Name(NamedTuple):
+    """A link's or joint's name for the robot, and before; ``line`` is where the source declares it."""
+
+    after: str
+    before: str
+    line: int
+
+
+class Plugin(NamedTuple):
+    """A ``<plugin>`` of the source: its name, what it loads, the line where it begins."""
+
+    name: str
+    loads: str
+    line: int
+
+
+class ViewedRobot(NamedTuple):
+    """A robot: where it stands (x, y, z, roll, pitch, yaw), its model, its names, what was changed.
+
+    ``heard`` says of each link whether a snapshot of the graph has it on ``topic``; ``transforms`` are
+    those of links that hang there as they do here. ``prefix`` is before a link's name there.
+    """
+
+    name: str
+    file: str
+    pose: tuple[float, ...]
+    model: Model
+    names: tuple[Name, ...]
+    changes: tuple[Change, ...]
+    plugins: tuple[Plugin, ...]
+    topic: str
+    prefix: str
+    heard: Mapping[str, str]
+    transforms: Mapping[str, tuple[float, ...]]
+
+
+class Scene(NamedTuple):
+    """The robots, and what a snapshot has of tf."""
+
+    robots: tuple[ViewedRobot, ...]
+    trees: tuple[HeardTree, ...]
+
+
+def scene_of(plan: FleetPlan, graph: System | None = None) -> Scene:
+    """The robots; raises as ``load_model`` and ``load_sdf``."""
+    changes = {sources: _changes(plan, sources) for sources in plan.jobs}
+    robots = tuple(_robot(it, changes[it.spec.sources], graph) for it in plan.robots)
+    if graph is None:
+        return Scene(robots, ())
+    frames = [
+        LinkFrames(it.name, it.topic, frozenset(f"{it.prefix}{link}" for link in it.model.links))
+        for it in robots
+    ]
+    return Scene(robots, heard_trees(graph.edges, frames, plan.fleet.naming.shared_frames))
+
+
+def _changes(plan: FleetPlan, sources: Sources) -> _Changes:
+    template = Prepared(plan.jobs[sources].description).template
+    return lambda robot: list_changes(template, robot)
+
+
+def _robot(it: RewrittenRobot, changes: _Changes, graph: System | None) -> ViewedRobot:
+    spec = it.spec
+    model = _model(it)
+    # Frames have the tag of a robot, its topics the namespace.
+    made = [*_of(changes(spec.tag), False), *_of(changes(spec.namespace), True)]
+    names = tuple(_names(it, model))
+    prefix, topic = it.frame_prefix, tf_topic(spec.namespace, it.names.naming)
+    sent = graph.edges if graph else ()
+    edges = {one.child: one for one in sent if tree_topic(one.topic) == topic}
+    heard = _heard(model, edges, prefix) if graph else {}
+    links = [one.child for one in model.joints if heard.get(one.child) == HEARD]
+    transforms = {link: edges[f"{prefix}{link}"].transform for link in links}
+    file = (
+        f"{spec.description} (expanded)"
+        if spec.description.endswith(".xacro")
+        else spec.description
+    )
+    return ViewedRobot(
+        spec.name, file, tuple(spec.pose or (0.0,) * 6), model, names,
+        tuple(sorted(made)), tuple(_plugins(it.member.source)), topic, prefix, heard, transforms,
+    )  # fmt: skip
+
+
+def _of(changes: Iterable[Change], graph: bool) -> Iterator[Change]:
+    yield from (it for it in changes if (it.kind in GRAPH_KINDS) == graph)
+
+
+def _model(it: RewrittenRobot) -> Model:
+    root, source = it.member.described.document.root, os.path.abspath(it.spec.description)
+    return load_sdf(root, source) if root.tag == "sdf" else load_model(it.description, source)
+
+
+def _plugins(document: Document) -> Iterator[Plugin]:
+    """In the order of the file."""
+    for it, start in zip(document.elements, document.starts, strict=True):
+        if it.tag == "plugin":
+            line = document.source.count(b"\n", 0, start) + 1
+            text = (it.text or "").strip()
+            yield Plugin(it.get("name", text), it.get("filename", text), line)
+
+
+def _names(it: RewrittenRobot, model: Model) -> Iterator[Name]:
+    before = _before(it, model)
+    for kind, names in (("link", model.links), ("joint", [one.name for one in model.joints])):
+        for name in names:
+            yield Name(name, *before.get((kind, name), (name, 0)))
+
+
+def _before(it: RewrittenRobot, model: Model) -> dict[tuple[str, str], tuple[str, int]]:
+    """What a link or joint was called, and the line that declares it. Names within nested models of an
+    SDF are told by their order, which a rewrite keeps."""
+    root = it.member.source.root
+    if root.tag == it.member.described.document.root.tag == "sdf":
+        old, lines = load_sdf(root, ""), declared(root)
+        both = [("link", *pair) for pair in zip(model.links, old.links, strict=True)]
+        both += [
+            ("joint", new.name, was.name) for new, was in zip(model.joints, old.joints, strict=True)
+        ]
+        return {(kind, new): (was, lines.get(was, 0)) for kind, new, was in both}
+    return {
+        (kind, spell(it.names, kind, name)): (name, line_of(one))
+        for kind in ("link", "joint")
+        for one in root.iterfind(kind)
+        for name in [one.get("name", "")]
+    }
+
+
+def _heard(model: Model, edges: Mapping[str, Edge], prefix: str) -> dict[str, str]:
+    """Each link: is it a frame of the robot's tf, below the parent that it has here?"""
+    parents = {child: edge.parent for child, edge in edges.items()}
+    known = {*parents, *parents.values()}
+    above = {one.child: one.parent for one in model.joints}
+    found = {}
+    for link in model.links:
+        frame = f"{prefix}{link}"
+        if frame not in known:
+            found[link] = SILENT
+        elif link in above and parents.get(frame) != f"{prefix}{above[link]}":
+            found[link] = ELSEWHERE
+        else:
+            found[link] = HEARD
+    return found

@@ -1,0 +1,160 @@
+"""A bag of rosbag2, MCAP or sqlite3 -> what it holds. The only module that imports rosbags.
+
+A bag may be cut off or made by anybody: whatever its reader raises, the bag is at fault.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections import defaultdict
+from collections.abc import Collection, Iterable, Iterator
+from itertools import islice
+from math import inf
+from typing import TYPE_CHECKING, Any
+
+from multibot_rewrite.base.bounded import load_yaml, read_text
+from multibot_rewrite.base.model import InputError, MultibotError
+from multibot_rewrite.base.printable import one_line
+from multibot_rewrite.base.wording import SEVERAL, shorten
+from multibot_rewrite.producers.bags.recording import RECORDER, RecordedTopic, Recording
+from multibot_rewrite.producers.ros.assemble import TF_TYPES, numbers_of
+from multibot_rewrite.producers.zenoh.cdr import read_header_frame, read_tf
+from multibot_rewrite.system.records import Caveat, Edge, Qos
+
+if TYPE_CHECKING:
+    from rosbags.interfaces import Connection
+    from rosbags.rosbag2 import Reader
+
+METADATA = "metadata.yaml"
+# Of a topic with a header, and of tf: a robot that runs for an hour sends no new frames.
+HEADERS, TRANSFORMS = 5, 50_000
+# The first field of a type that has a header, in the definition that the bag holds.
+_HEADER = re.compile(r"\s*(?:#[^\n]*\n\s*)*(?:std_msgs/(?:msg/)?)?Header\s+header\b")
+# Where a bag holds no definitions.
+_HEADED = frozenset(
+    f"{package}/msg/{name}"
+    for package, names in {
+        "sensor_msgs": "LaserScan PointCloud2 Image CompressedImage CameraInfo Imu Range NavSatFix",
+        "nav_msgs": "Odometry Path OccupancyGrid",
+        "geometry_msgs": "PoseStamped PoseWithCovarianceStamped TwistStamped",
+    }.items()
+    for name in names.split()
+)
+_NO_LIMIT_SECONDS = 9_223_372_036
+
+
+class BagsUnusable(MultibotError):
+    """rosbags is not installed; the message says what to do."""
+
+
+def read_bag(path: str) -> Recording:
+    """What a folder, or a file .mcap or .db3, holds; raises InputError, BagsUnusable."""
+    try:
+        from rosbags.rosbag2 import Reader
+    except ImportError as error:
+        hint = "pip install 'multibot_rewrite[bags]'"
+        raise BagsUnusable(f"a bag cannot be read: {error}; {hint}") from None
+    if not os.path.exists(path):
+        raise InputError(f"{path}: there is no such bag; name a folder, or a file .mcap or .db3")
+    try:
+        _check_metadata(path)
+        with Reader(path) as reader:
+            return _recording(reader)
+    except Exception as error:  # a damaged bag fails in sqlite3, zstandard, PyYAML or struct
+        reason = one_line(str(error) or type(error).__name__)[:200].rstrip(".")
+        hint = "is the recording complete? ros2 bag reindex may mend it"
+        raise InputError(f"{path}: not a readable bag: {reason}; {hint}") from None
+
+
+def _check_metadata(path: str) -> None:
+    """Raises yaml.YAMLError for a file that the reader's own parser might not survive."""
+    if os.path.isdir(path) and os.path.exists(os.path.join(path, METADATA)):
+        load_yaml(read_text(os.path.join(path, METADATA)))
+
+
+def _recording(reader: Reader) -> Recording:
+    by_topic: dict[str, list[Connection]] = defaultdict(list)
+    for connection in reader.connections:
+        name = str(connection.topic)
+        by_topic[name if name.startswith("/") else f"/{name}"].append(connection)
+    topics = tuple(_topic(reader, name, by_topic[name]) for name in sorted(by_topic))
+    transforms: list[Edge] = []
+    caveats: list[Caveat] = []
+    for name, connections in sorted(by_topic.items()):
+        if connections[0].msgtype == TF_TYPES[0]:
+            found, unread = _transforms(reader, name, connections)
+            transforms += found
+            caveats += [_unread(name)] * unread
+    empty = [it.name for it in topics if not it.messages]
+    if len(empty) == len(topics):
+        text = (
+            f"no message was recorded ({shorten(empty, SEVERAL)})" if empty else "it has no topics"
+        )
+        caveats.append(Caveat("empty-bag", True, text))
+    return Recording(topics, tuple(transforms), max(0, reader.duration) / 1e9, tuple(caveats))
+
+
+def _unread(topic: str) -> Caveat:
+    text = f"messages on {topic} are no TFMessage, or more than {TRANSFORMS:,}: not all were read"
+    return Caveat("frames-not-read", True, text)
+
+
+def _topic(reader: Reader, name: str, connections: list[Connection]) -> RecordedTopic:
+    first = connections[0]
+    count = sum(it.msgcount for it in connections)
+    frames: dict[str, None] = {}
+    if count and _has_header(first):
+        for data in _first(reader, connections, HEADERS):
+            frame = read_header_frame(data)
+            frames |= {} if frame is None else {frame: None}
+    qos = tuple(_qos(it) for own in connections for it in _profiles(own))
+    return RecordedTopic(name, str(first.msgtype), count, qos, tuple(frames))
+
+
+def _has_header(connection: Connection) -> bool:
+    text = connection.msgdef.data
+    return bool(_HEADER.match(text)) if text else connection.msgtype in _HEADED
+
+
+def _first(reader: Reader, connections: list[Connection], many: int) -> Iterator[bytes]:
+    return (bytes(data) for _, _, data in islice(reader.messages(connections), many))
+
+
+def _transforms(
+    reader: Reader, topic: str, connections: list[Connection]
+) -> tuple[Collection[Edge], bool]:
+    """The transforms on a tf topic as they were at last, and whether some could not be read."""
+    found: dict[tuple[str, str], Edge] = {}
+    static = topic.rpartition("/")[2] == "tf_static" or "/tf_static/" in topic
+    for read, data in enumerate(_first(reader, connections, TRANSFORMS + 1)):
+        message = read_tf(data) if read < TRANSFORMS else None
+        if message is None:
+            return found.values(), True
+        for it in message.transforms:
+            edge = (it.child_frame_id, it.header.frame_id)
+            last = numbers_of(it.transform)
+            found[edge] = Edge(*edge, topic, static, (RECORDER,), transform=last)
+    return found.values(), False
+
+
+def _profiles(connection: Connection) -> Iterable[Any]:
+    return getattr(connection.ext, "offered_qos_profiles", ())
+
+
+def _qos(given: Any) -> Qos:
+    return Qos(
+        given.history.name,
+        int(given.depth),
+        given.reliability.name,
+        given.durability.name,
+        _seconds(given.deadline),
+        _seconds(given.lifespan),
+        given.liveliness.name,
+        _seconds(given.liveliness_lease_duration),
+    )
+
+
+def _seconds(given: Any) -> float:
+    passed = given.sec + given.nsec / 1e9
+    return inf if given.sec >= _NO_LIMIT_SECONDS or passed == 0 else passed

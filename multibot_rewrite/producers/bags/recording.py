@@ -1,0 +1,81 @@
+"""What a recording holds: frozen records. It knows topics and not nodes."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable
+
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.system.records import (
+    PUBLISHES,
+    QUIET,
+    TOPIC,
+    Caveat,
+    Edge,
+    End,
+    Environment,
+    Heard,
+    Qos,
+    System,
+)
+
+# In place of the RMW: such a snapshot has no nodes, so what asks for nodes has no answer.
+ROSBAG = "rosbag2"
+# In place of the nodes that sent what was recorded. A tool by its name.
+RECORDER = "/_recorded"
+
+
+class RecordedTopic(NamedTuple):
+    """A topic of a recording.
+
+    ``qos`` has one profile for each publisher that was recorded; ``frames`` are the ``header.frame_id``
+    of its first messages.
+    """
+
+    name: str
+    type: str
+    messages: int
+    qos: tuple[Qos, ...] = ()
+    frames: tuple[str, ...] = ()
+
+
+class Recording(NamedTuple):
+    """What was recorded in so many seconds, with the transforms of its tf topics."""
+
+    topics: tuple[RecordedTopic, ...]
+    transforms: tuple[Edge, ...]
+    seconds: float
+    caveats: tuple[Caveat, ...] = ()
+
+
+def is_recorded(graph: System) -> bool:
+    """Whether a snapshot is of a recording."""
+    return graph.environment.rmw == ROSBAG
+
+
+def as_snapshot(found: Recording, plan: System | None = None) -> System:
+    """The recording as a snapshot. A transform does not say who sent it:
+    those that publish its topic by the plan."""
+    seconds = round(found.seconds, 2)
+    senders: dict[str, dict[str, None]] = defaultdict(dict)
+    for end in plan.ends if plan else ():
+        if end.role == PUBLISHES:
+            senders[end.name][end.node] = None
+    frames = tuple(
+        it._replace(publishers=tuple(senders.get(it.topic, it.publishers)))
+        for it in found.transforms
+    )
+    around = Environment(0, "OFF", (), ROSBAG, "", False, 0, QUIET, seconds, found.caveats)
+    heard = (Heard(it.name, frame) for it in found.topics for frame in it.frames)
+    return System((), tuple(_publishers(found.topics)), frames, around, tuple(heard))
+
+
+def counted(found: Recording) -> dict[str, int]:
+    """How many messages were recorded of each topic."""
+    return {it.name: it.messages for it in found.topics}
+
+
+def _publishers(topics: Iterable[RecordedTopic]) -> Iterable[End]:
+    for it in topics:
+        for qos in it.qos or (None,):
+            yield End(TOPIC, PUBLISHES, it.name, it.type, "", RECORDER, qos, "")

@@ -1,0 +1,248 @@
+"""A known node and the parameters that it gets -> the node as it runs with them.
+
+Endpoints whose name a parameter sets get that name, conditions are decided, frames get their values.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.rosnames import check_topic_name
+from multibot_rewrite.knowledge.conditions import Values, holds, verdict
+from multibot_rewrite.knowledge.records import Endpoint, FrameParameter, NodeFacts, SentTransform
+from multibot_rewrite.producers.evidence.records import Given, GivenNode
+
+_ID = re.compile(r"<([a-z_ ]+)>")
+# What stands for a number in the name of a parameter: odomN is odom0, odom1 and so on.
+_NUMBER = "N"
+# A type that a list has behind the name is called list/msg/Type and so on.
+OF_LIST = "list/"
+_TYPE = re.compile(r"/(?:msg|srv|action)/")
+Ids = Mapping[str, str]
+
+
+def filled(node: NodeFacts, given: GivenNode, known: NodeFacts | None = None) -> NodeFacts:
+    """``node`` with the names that its parameters set, under the name that it has there.
+
+    ``known`` is the node without what a stack makes of it: where the parameters do not say more, what
+    the stack says stays. Raises InputError for a word of a list that makes no valid name.
+    """
+    values = given.values
+    whole = known or node
+    made = [it for raw in whole.endpoints for it in _endpoint(node, raw, values)]
+    made += [it for it in node.endpoints if _of_stack_alone(it, whole)]
+    with_frames = node._replace(frames=tuple(_frame(it, values) for it in node.frames))
+    return with_frames._replace(
+        name=given.name,
+        endpoints=tuple(dict.fromkeys(made)),
+        sends=tuple(_sent(with_frames, values)),
+        origin=str(given.place),
+    )
+
+
+def _of_stack_alone(endpoint: Endpoint, known: NodeFacts) -> bool:
+    """Does a part that the stack adds have it?"""
+    key = endpoint.role, endpoint.named_from or endpoint.name
+    return all((it.role, it.name) != key for it in known.endpoints)
+
+
+def _sent(node: NodeFacts, values: Mapping[str, Given]) -> Iterator[SentTransform]:
+    """The transforms that it sends with these parameters."""
+    value_of = lookup(node, values)
+    yield from (it._replace(condition="") for it in node.sends if holds(it.condition, value_of))
+
+
+def lookup(node: NodeFacts, values: Mapping[str, Given]) -> Values:
+    """What conditions ask: the value of a parameter, or its default where it names a frame."""
+    defaults = {it.parameter: it.default for it in node.frames}
+    return lambda name: values[name].value if name in values else defaults.get(name)
+
+
+def _frame(frame: FrameParameter, values: Mapping[str, Given]) -> FrameParameter:
+    given = values.get(frame.parameter)
+    if given is None or given.value == "":
+        # <pose_name> stands for the value of another parameter.
+        other = values.get(frame.default.strip("<>")) if "<" in frame.default else None
+        return frame if other is None else frame._replace(default=str(other.value), given=True)
+    return frame._replace(default=str(given.value), given=True)
+
+
+def _endpoint(node: NodeFacts, raw: Endpoint, values: Mapping[str, Given]) -> Iterator[Endpoint]:
+    """The endpoint once for each binding of its ids, with the names that are set."""
+    ids = dict(node.ids)
+    wanted = _wanted(ids, raw.name, raw.parameter, raw.condition)
+    asked = _wanted(ids, raw.when)
+    # What its name has decides how it is called; what only its condition asks may be unknown.
+    if _are_listed([ids[it] for it in asked], values):
+        wanted = [*dict.fromkeys((*wanted, *asked))]
+    is_there = verdict(raw.when, lookup(node, values)) if raw.when and not wanted else None
+    if is_there is False:
+        return
+    of_stack = [_sure(it, is_there) for it in node.endpoints if _is_from(it, raw)]
+    remapped = next((it.remapped for it in of_stack), "")
+    if not _is_decided(raw, [ids[it] for it in wanted], values, of_stack):
+        yield from (_typed(it, lookup(node, values)) for it in of_stack)
+        return
+    for binding in _bindings(ids, wanted, values):
+        bound = _bound(raw._replace(remapped=remapped), binding)
+        is_bound = verdict(bound.when, lookup(node, values)) if bound.when and binding else is_there
+        if is_bound is not False and holds(bound.condition, lookup(node, values)):
+            decided = bool(binding or bound.condition or is_bound)
+            typed = _typed(_sure(bound, decided), lookup(node, values))
+            words = [it for it in _ID.findall(raw.name) if it in ids]
+            listed = values.get(_put(ids[words[-1]], binding)) if words else None
+            typed = _listed_type(typed, listed, binding[words[-1]] if words else "")
+            for it in _named(typed, values, _ending(node, raw)):
+                yield _checked(it, listed)
+
+
+def _sure(endpoint: Endpoint, is_there: bool | None) -> Endpoint:
+    return endpoint._replace(when="") if is_there else endpoint
+
+
+def _checked(endpoint: Endpoint, listed: Given | None) -> Endpoint:
+    """The endpoint, unless a word of a list makes a name that rcl rejects: the node does not start."""
+    fault = check_topic_name(endpoint.name) if listed else None
+    if listed and fault:
+        other = f", or set {endpoint.parameter}" if endpoint.parameter else ""
+        made = f"topic {endpoint.name!r} is made of a word of this list: {fault.reason}"
+        raise InputError(f"{listed.place}: {made}; write another word{other}")
+    return endpoint
+
+
+def _typed(endpoint: Endpoint, value_of: Values) -> Endpoint:
+    """The endpoint with the one type that its parameters choose."""
+    chosen = next((type_ for it, type_ in endpoint.types if holds(it, value_of)), "")
+    return endpoint._replace(type=chosen, also=(), types=()) if chosen else endpoint
+
+
+def _is_from(endpoint: Endpoint, raw: Endpoint) -> bool:
+    return endpoint.role == raw.role and (endpoint.named_from or endpoint.name) == raw.name
+
+
+def _is_decided(
+    raw: Endpoint,
+    lists: Iterable[str],
+    values: Mapping[str, Given],
+    of_stack: Iterable[Endpoint],
+) -> bool:
+    """Do the parameters say whether it exists, or how it is called?"""
+    needed = list(lists)
+    if needed:
+        return _are_listed(needed, values)
+    if raw.condition or any(_set_names(raw.parameter, values)):
+        return True
+    return "<" in raw.name and all("<" in it.name for it in of_stack)
+
+
+def _wanted(ids: Mapping[str, str], *texts: str) -> list[str]:
+    """The ids that texts have, each once."""
+    return [it for it in dict.fromkeys(_ID.findall(" ".join(texts))) if it in ids]
+
+
+def _are_listed(lists: Iterable[str], values: Mapping[str, Given]) -> bool:
+    """Is each of these lists given?"""
+    return all(any(_pattern(it).fullmatch(name) for name in values) for it in lists)
+
+
+def _bindings(
+    ids: Mapping[str, str], wanted: Iterable[str], values: Mapping[str, Given]
+) -> Iterator[Ids]:
+    """Every choice of the wanted ids; a list may depend on another id (``<layer>.sources``)."""
+    found: list[dict[str, str]] = [{}]
+    for name in _in_order(ids, wanted):
+        found = [
+            {**binding, name: word}
+            for binding in found
+            for word in _words(values.get(_put(ids[name], binding)))
+        ]
+    yield from found
+
+
+def _in_order(ids: Mapping[str, str], wanted: Iterable[str]) -> list[str]:
+    """The wanted ids and those that their lists need, the needed ones first."""
+    order: list[str] = []
+    for name in wanted:
+        needed = [it for it in _ID.findall(ids[name]) if it in ids]
+        order += [it for it in (*_in_order(ids, needed), name) if it not in order]
+    return order
+
+
+def _words(given: Given | None) -> list[str]:
+    """The items of a list; a text is a list of its words."""
+    if given is None:
+        return []
+    value = given.value
+    words = [str(it) for it in value] if isinstance(value, list) else str(value).split()
+    return [it for it in words if not _TYPE.search(it)]
+
+
+def _listed_type(endpoint: Endpoint, listed: Given | None, word: str) -> Endpoint:
+    """The endpoint with the type that stands behind its word in a list of names and types."""
+    if (
+        not endpoint.type.startswith(OF_LIST)
+        or listed is None
+        or not isinstance(listed.value, list)
+    ):
+        return endpoint
+    behind = [str(it) for it in listed.value][[str(it) for it in listed.value].index(word) + 1 :]
+    return endpoint._replace(type=next(filter(_TYPE.search, behind[:1]), ""))
+
+
+def _put(text: str, binding: Ids) -> str:
+    return _ID.sub(lambda found: binding.get(found[1], found[0]), text)
+
+
+def _bound(endpoint: Endpoint, binding: Ids) -> Endpoint:
+    name = _put(endpoint.name, binding)
+    # A name that is made at run time is known now, so a rule reaches it.
+    return endpoint._replace(
+        name=name,
+        fixed=endpoint.fixed if name == endpoint.name else "",
+        parameter=_put(endpoint.parameter, binding),
+        condition=_put(endpoint.condition, binding),
+        when=_put(endpoint.when, binding),
+        types=tuple((_put(it, binding), type_) for it, type_ in endpoint.types),
+    )
+
+
+def _ending(node: NodeFacts, raw: Endpoint) -> str:
+    """What the node puts behind the topic of a parameter, as ``_updates``: another endpoint has the
+    topic itself."""
+    alike = (it.named_from or it.name for it in node.endpoints if it.parameter == raw.parameter)
+    bases = [it for it in alike if raw.name.startswith(it)] if raw.parameter else []
+    return raw.name.removeprefix(min(bases, key=len)) if bases else ""
+
+
+def _named(endpoint: Endpoint, values: Mapping[str, Given], ending: str) -> Iterator[Endpoint]:
+    """The endpoint under the names that its parameter sets; under its own where none is set."""
+    names = list(_set_names(endpoint.parameter, values))
+    for parameter, name in names:
+        if name:
+            # The node makes it absolute itself: /scan, or /robot1/scan below robot1.
+            full = f"/{name}" if endpoint.above and name[0] not in "/~" else name
+            full += ending
+            set_ = endpoint._replace(name=full, parameter=parameter)
+            yield set_._replace(fixed="", when="", condition="")
+    if not names and "<" not in endpoint.name:
+        fixed = endpoint.fixed if endpoint.fixed and not endpoint.parameter else ""
+        yield endpoint._replace(condition="", fixed=fixed)
+
+
+def _set_names(parameter: str, values: Mapping[str, Given]) -> Iterator[tuple[str, str]]:
+    """Parameters and the topics in them: of all that match a pattern, of a list each. An empty text
+    is one, too: it stands for no topic."""
+    pattern = _pattern(parameter)
+    for name, given in values.items():
+        if pattern.fullmatch(name):
+            words = _words(given) if isinstance(given.value, list) else [str(given.value)]
+            yield from ((name, it) for it in words if not it or not check_topic_name(it))
+
+
+def _pattern(parameter: str) -> re.Pattern[str]:
+    text = re.escape(parameter).replace(r"\*", r"[^.]+")
+    if parameter.endswith(_NUMBER) and parameter[:-1].islower():
+        text = rf"{text[: -len(_NUMBER)]}\d+"
+    return re.compile(re.sub(r"<[^<>]+>", r"[^.]+", text))

@@ -1,0 +1,252 @@
+"""The nodes of a stack and what a robot's own files say of them -> the nodes that the robot runs.
+
+A file and a stack that disagree: the file wins, and the disagreement is a note.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
+from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.producers.evidence.alternatives import GUESSED, alternatives
+from multibot_rewrite.producers.evidence.claims import claims_of
+from multibot_rewrite.producers.evidence.filling import filled
+from multibot_rewrite.producers.evidence.records import GivenNode
+
+MANAGER = "controller_manager"
+# So many names in one line.
+_SHOWN = 3
+NOT_DECLARED = declare(
+    "MF801",
+    "controller-not-declared",
+    NOTE,
+    what="A stack has a controller that none of the robot's parameter files declares, though they "
+    "declare others; it is left out of the plan.",
+    why="The controller manager loads what its parameters name. A plan with another controller would "
+    "report it as missing.",
+    fix="Nothing, if the files are right. Else declare the controller below controller_manager.",
+    bad="""\
+controller_manager:
+  ros__parameters:
+    update_rate: 100
+    base: {type: diff_drive_controller/DiffDriveController}
+base:
+  ros__parameters: {odom_frame_id: odom, base_frame_id: base_link}
+""",
+    good="""\
+controller_manager:
+  ros__parameters:
+    update_rate: 100
+    joint_state_broadcaster: {type: joint_state_broadcaster/JointStateBroadcaster}
+""",
+    line=4,
+    formats=("params",),
+    options={"stack": "ros2_control"},
+)
+UNKNOWN_TYPE = declare(
+    "MF802",
+    "controller-type-not-known",
+    WARNING,
+    what="A controller is of a type that is not known, or that the release lacks, so its topics, "
+    "frames and interfaces are not in the plan.",
+    why="What it publishes and subscribes to is not remapped and not checked: two robots may share it.",
+    fix="Describe it in a file of nodes (docs/stacks.md), or run multibot learn beside it.",
+    bad="""\
+controller_manager:
+  ros__parameters:
+    arm: {type: acme_controllers/ArmController}
+arm:
+  ros__parameters: {rate: 50}
+""",
+    good="""\
+controller_manager:
+  ros__parameters:
+    arm: {type: joint_trajectory_controller/JointTrajectoryController}
+arm:
+  ros__parameters: {rate: 50}
+""",
+    line=3,
+    formats=("params",),
+)
+
+
+NO_TYPE = declare(
+    "MF825",
+    "spawned-controller-without-type",
+    NOTE,
+    what="A launch file spawns a controller, and no file says its type: the plan has its name, and "
+    "nothing of its topics, frames and interfaces.",
+    why="What it publishes and subscribes to is not remapped and not checked: two robots may share it.",
+    fix="Name the parameter file with its type under `params`, or give it to the spawner.",
+    bad="""\
+launch: system_model.yaml
+robots:
+  - {name: robot1, description: robot.urdf}
+  - {name: robot2, description: robot.urdf}
+""",
+    good="""\
+companions: {params: controllers.yaml}
+launch: system_model.yaml
+robots:
+  - {name: robot1, description: robot.urdf}
+  - {name: robot2, description: robot.urdf}
+""",
+    line=3,
+    formats=("fleet",),
+    beside={
+        "system_model.yaml": "structure:\n  nodes:\n    /spawner:\n      pkg: controller_manager\n"
+        "      exec: spawner\n      args: [drive]\n",
+        "controllers.yaml": "controller_manager:\n  ros__parameters:\n    drive: "
+        "{type: diff_drive_controller/DiffDriveController}\n",
+    },
+)
+ALWAYS: Mapping[str, str] = {}
+
+
+class RobotNodes(NamedTuple):
+    """The nodes that a robot runs, each with its origin, and where files and stacks disagree."""
+
+    nodes: tuple[NodeFacts, ...]
+    findings: tuple[Finding, ...]
+
+
+def nodes_of(
+    stack: Sequence[NodeFacts],
+    given: Sequence[GivenNode],
+    known: Mapping[str, NodeFacts],
+    spawned: Mapping[str, str] = ALWAYS,
+) -> RobotNodes:
+    """The nodes of a robot: those of its stacks as its files have them, and those of its files alone.
+
+    ``known`` are the known nodes by name, ``spawned`` the conditions of controllers of which launch
+    files say whether they run.
+    """
+    sections = {it.name: _section_of(it, given) for it in stack}
+    left, kept = _left_out(stack, given, sections)
+    either = {**alternatives(given, known), **spawned}
+    nodes = [_of_stack(it, sections[it.name], known, either, spawned) for it in kept]
+    names = {it.name for it in filter(None, sections.values())}
+    of_stack = {it.place.file for it in given if it.name in names}
+    sent = {child for node in kept for child in children_of(node)}
+    for it in (it for it in given if it.name not in names and _may_run(it, known)):
+        node = _added(it, known, either.get(it.name, ""))
+        doubtful = not it.manager and (it.place.file in of_stack or sent & {*children_of(node)})
+        nodes.append(node._replace(sends=()) if doubtful else node)
+    doubtful_types = (*_unknown(given), *_of_another_release(given, known))
+    findings = sorted((*left, *doubtful_types), key=lambda it: (it.file, it.line))
+    return RobotNodes(tuple(nodes), tuple(findings))
+
+
+def _section_of(node: NodeFacts, given: Sequence[GivenNode]) -> GivenNode | None:
+    """What the files set for a node of a stack; its section may be below a namespace."""
+    exact = (it for it in given if it.name == node.name)
+    below = (it for it in given if it.name.endswith(f"/{node.name}"))
+    return next(exact, None) or next(below, None)
+
+
+def _left_out(
+    stack: Sequence[NodeFacts],
+    given: Sequence[GivenNode],
+    sections: Mapping[str, GivenNode | None],
+) -> tuple[list[Finding], list[NodeFacts]]:
+    """Notes of the nodes that the files contradict, and the other nodes of the stacks."""
+    controllers = [it for it in given if it.manager]
+    findings: list[Finding] = []
+    kept = []
+    for node in stack:
+        if sections[node.name] is None and node.host == MANAGER and controllers:
+            findings += [] if node.when else [_not_declared(node, controllers[0])]
+        # A file may have it under another name, as ekf_node for ekf_filter_node.
+        elif sections[node.name] or not any(it.known == node.name for it in given):
+            kept.append(node)
+    return findings, kept
+
+
+def children_of(node: NodeFacts) -> Iterator[str]:
+    """The frames that a node sends."""
+    frames = {it.parameter: it.default for it in node.frames}
+    yield from (frames[it.child] for it in node.sends)
+
+
+def _may_run(given: GivenNode, known: Mapping[str, NodeFacts]) -> bool:
+    """Is it a controller that a file declares, or a known node with a process of its own?"""
+    node = known.get(given.known)
+    return bool(given.manager) or (node is not None and not node.host)
+
+
+def _of_stack(
+    node: NodeFacts,
+    section: GivenNode | None,
+    known: Mapping[str, NodeFacts],
+    either: Mapping[str, str],
+    spawned: Mapping[str, str],
+) -> NodeFacts:
+    """A node of a stack as the files have it."""
+    if section is None:
+        return node
+    made = filled(node, section, known.get(node.known))
+    when = spawned.get(section.name, node.when or either.get(section.name, ""))
+    return made._replace(name=node.name, when=when)
+
+
+def _added(given: GivenNode, known: Mapping[str, NodeFacts], either: str) -> NodeFacts:
+    """A controller that a file declares runs, unless ``either`` says which other runs in its place;
+    another node that has parameters may run."""
+    node = known.get(given.known)
+    if node is None:
+        package = given.type.partition("/")[0]
+        found = NodeFacts(given.name, package, (), host=MANAGER, when=either)
+        return found._replace(origin=str(given.place))
+    runs = given.manager or node.name == MANAGER
+    when = either or node.when if runs else f"its parameters are in {given.place.file}"
+    return filled(node, given)._replace(when=when)
+
+
+def _not_declared(node: NodeFacts, beside: GivenNode) -> Finding:
+    file, line, _ = beside.place
+    message = f"{node.name} of the stack is declared in no file; it is left out"
+    hint = f"declare it beside {beside.name}, or name a stack without it"
+    return NOT_DECLARED.finding(message, hint, file=file, line=line, column=1)
+
+
+def _unknown(given: Sequence[GivenNode]) -> Iterator[Finding]:
+    for it in given:
+        if it.manager and not (it.type or it.known):
+            message = f"controller {it.name} is spawned, and no file says its type"
+            hint = "name the file with its type under params, or as --param-file of the spawner"
+            yield NO_TYPE.finding(message, hint, file=it.place.file, line=it.place.line, column=1)
+        if it.manager and it.unknown_type:
+            message = f"controller {it.name} is of type {it.type}, which is not known"
+            described = "describe it in a file of nodes (docs/stacks.md)"
+            taken = (
+                f"the plan takes it for a {it.known}" if it.known else "the plan has its name alone"
+            )
+            hint = f"{described}; {taken}{_guess(it)}"
+            hint = f"did you mean {it.like}?" if it.like else hint
+            yield UNKNOWN_TYPE.finding(
+                message, hint, file=it.place.file, line=it.place.line, column=1
+            )
+
+
+def _of_another_release(
+    given: Sequence[GivenNode], known: Mapping[str, NodeFacts]
+) -> Iterator[Finding]:
+    for it in given:
+        if it.manager and it.known and not it.unknown_type and it.known not in known:
+            message = f"controller {it.name} is of type {it.type}, which this release lacks"
+            hint = "the manager cannot load it; use a type of the release, or name the right distro"
+            yield UNKNOWN_TYPE.finding(
+                message, hint, file=it.place.file, line=it.place.line, column=1
+            )
+
+
+def _guess(controller: GivenNode) -> str:
+    """What a controller of an unknown type claims, if its parameters have their usual names."""
+    names = [it.name for it in claims_of(GUESSED, controller)]
+    if not names:
+        return ""
+    more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
+    return f"; by its parameters it seems to claim {', '.join(names[:_SHOWN])}{more}"

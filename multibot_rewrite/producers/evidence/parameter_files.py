@@ -1,0 +1,164 @@
+"""Parameter files -> the nodes they are for, with all values that each node gets.
+
+Sources: rcl_yaml_param_parser (a later section wins; wildcards count for every node that they match);
+ros2_control controller_manager.cpp (a controller manager's ``NAME.type`` makes a controller NAME),
+controller_manager/spawner.py (``type`` of a controller's own section is set as that).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from contextlib import suppress
+
+import yaml
+
+from multibot_rewrite.base.conventions import PLACEHOLDER
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.nearest import nearest
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.rosnames import check_node_name
+from multibot_rewrite.companions.names.placeholders import of_one_robot, without_robot
+from multibot_rewrite.companions.params.rcl_parameters import Value, value_of
+from multibot_rewrite.companions.params.sections import (
+    ANY,
+    MANAGER,
+    RawSection,
+    identify_node,
+    pattern_of,
+    raw_sections,
+)
+from multibot_rewrite.companions.yaml_text import YamlText, line_of, pairs
+from multibot_rewrite.knowledge.parameters import KnownNodes
+from multibot_rewrite.producers.evidence.records import Given, GivenNode
+from multibot_rewrite.system.records import Place
+
+OWN_TYPE = "type"
+TYPE = f".{OWN_TYPE}"
+
+
+class _Section(NamedTuple):
+    file: str
+    raw: RawSection
+    values: dict[str, Given]
+
+    @property
+    def place(self) -> Place:
+        return Place(self.file, line_of(self.raw.keys[0]))
+
+    @property
+    def name(self) -> str:
+        """The node's name without wildcards in front; "" for a section of every node."""
+        tokens = self.raw.path.strip("/").split("/")
+        while tokens and tokens[0] in ANY:
+            tokens.pop(0)
+        return "/".join(tokens) if not set(tokens) & set(ANY) else ""
+
+
+def given_nodes(
+    documents: Iterable[YamlText], known: KnownNodes, only: Collection[str] = ()
+) -> list[GivenNode]:
+    """The nodes that these files have sections for, and the controllers that they declare; ``only``
+    some of them, by name.
+
+    Raises InputError for a file that is not a parameter file, and for a controller whose name no node
+    can have.
+    """
+    sections = [_section(document, it) for document in documents for it in raw_sections(document)]
+    controllers = {**dict(_typed(sections, known)), **dict(_controllers(sections))}
+    for name, it in controllers.items():
+        _check_name(name.rpartition("/")[2], it.type.place)
+    names = dict.fromkeys((*(it.name for it in sections if it.name), *controllers))
+    wanted = (it for it in names if it in only) if only else names
+    return [_node(name, sections, controllers.get(name), known) for name in wanted]
+
+
+def _check_name(name: str, place: Place) -> None:
+    fault = check_node_name(name)
+    # Launch files fill in placeholders.
+    if fault and not PLACEHOLDER.search(name):
+        hint = "write letters, digits and underscores, a letter first"
+        raise InputError(f"{place}: controller {name!r}: {fault.reason}; {hint}")
+
+
+def named_values(
+    document: YamlText, nodes: Iterable[str]
+) -> Iterator[tuple[str, dict[str, Given]]]:
+    """Of the nodes (full names) that a file has a section of their name for, with all values that each
+    gets from the file.
+
+    Raises InputError for a file that is not a parameter file.
+    """
+    sections = [(_section(document, it), pattern_of(it.path)) for it in raw_sections(document)]
+    for node in nodes:
+        own = [it for it, pattern in sections if re.fullmatch(pattern, node)]
+        if any(it.name for it in own):
+            yield node, {name: value for it in own for name, value in it.values.items()}
+
+
+def _section(document: YamlText, raw: RawSection) -> _Section:
+    return _Section(document.file, raw, dict(_flat(document, raw.body, "")))
+
+
+def _flat(document: YamlText, body: yaml.Node, above: str) -> Iterator[tuple[str, Given]]:
+    for key, node in pairs(body):
+        name = f"{above}{without_robot(str(key.value))}"
+        if isinstance(node, yaml.MappingNode):
+            yield from _flat(document, node, f"{name}.")
+            continue
+        # What rcl rejects is reported where the file is rewritten.
+        with suppress(InputError):
+            yield name, Given(_plain(value_of(document, node)), Place(document.file, line_of(key)))
+
+
+def _plain(value: Value) -> Value:
+    """A value without what stands for the robot in names."""
+    if isinstance(value, list):
+        return [of_one_robot(it) if isinstance(it, str) else it for it in value]
+    return of_one_robot(value) if isinstance(value, str) else value
+
+
+class _Controller(NamedTuple):
+    type: Given
+    manager: str
+
+
+def _controllers(sections: Sequence[_Section]) -> Iterator[tuple[str, _Controller]]:
+    """Controller -> its type, below the name of the manager's namespace."""
+    for section in sections:
+        above, _, last = section.name.rpartition("/")
+        # A renamed one is called controller_manager_robot1, for example.
+        if MANAGER not in last:
+            continue
+        for name, given in section.values.items():
+            if name.endswith(TYPE):
+                controller = name.removesuffix(TYPE)
+                full = f"{above}/{controller}" if above else controller
+                yield full, _Controller(given, section.name)
+
+
+def _typed(sections: Sequence[_Section], known: KnownNodes) -> Iterator[tuple[str, _Controller]]:
+    """Controllers whose own section has their type: a spawner hands it on to the manager."""
+    for section in sections:
+        given = section.values.get(OWN_TYPE)
+        if section.name and given is not None and given.value in known.types:
+            above = section.name.rpartition("/")[0]
+            yield section.name, _Controller(given, f"{above}/{MANAGER}" if above else MANAGER)
+
+
+def _node(
+    name: str, sections: Sequence[_Section], controller: _Controller | None, known: KnownNodes
+) -> GivenNode:
+    own = [it for it in sections if re.fullmatch(pattern_of(it.raw.path), f"/{name}")]
+    values = {key: given for it in own for key, given in it.values.items()}
+    named = [it for it in own if it.name]
+    last = name.rpartition("/")[2]
+    type_ = str(controller.type.value) if controller else ""
+    body = named[-1].raw.body if named else None
+    found = identify_node(last, body, known, {last: type_} if type_ else {})
+    place = controller.type.place if controller else named[0].place
+    manager = controller.manager if controller else ""
+    unknown = bool(type_) and type_ not in known.types
+    like = nearest(type_, known.types) if unknown else ""
+    node = found.name if found else ""
+    return GivenNode(name, node, type_, values, place, manager, unknown, like)

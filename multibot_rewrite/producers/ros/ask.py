@@ -1,0 +1,141 @@
+"""Asking nodes for their states: ``python -m multibot_rewrite.producers.ros.ask``, a child process.
+
+All services are called at once, and all answers are waited for together, so that the time is bounded
+whatever hangs.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import threading
+import time
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from multibot_rewrite.producers.ros import ros
+from multibot_rewrite.producers.ros.worker import Send, run_worker
+from multibot_rewrite.system.answers import Answer
+from multibot_rewrite.system.json import plain_value
+from multibot_rewrite.system.parameters import parameter_text
+from multibot_rewrite.system.questions import GET_PARAMETERS, GET_STATE, Question
+from multibot_rewrite.system.records import Controller, Parameter
+
+POLL_SECONDS = 0.05
+# rcl_interfaces/msg/ParameterType -> the field of ParameterValue; bytes are left out.
+_FIELDS = {
+    1: "bool_value", 2: "integer_value", 3: "double_value", 4: "string_value",
+    6: "bool_array_value", 7: "integer_array_value", 8: "double_array_value", 9: "string_array_value",
+}  # fmt: skip
+
+
+def main(order: str, stop: threading.Event, send: Send) -> int:
+    """Ask as ``order`` says, ``[seconds, questions]``; returns the exit code."""
+    seconds, given = json.loads(order)
+    asked = [Question(node, name, type_, tuple(own)) for node, name, type_, own in given]
+    with ros.opened() as session:
+        node = ros.add_node(session, f"_multibot_ask_{os.getpid()}")
+        found = ask_nodes(session, node, asked, float(seconds), stop)
+    send(json.dumps(plain_value(found)).encode())
+    return 0
+
+
+def ask_nodes(
+    session: ros.Session,
+    node: Any,
+    asked: Iterable[Question],
+    seconds: float,
+    stop: threading.Event,
+) -> tuple[Answer, ...]:
+    """The answers that come within ``seconds``, or until ``stop``, by the names of nodes."""
+    clients: dict[str, Any] = {}
+    try:
+        found = _ask(session, node, asked, clients, time.monotonic() + seconds, stop)
+    finally:
+        for client in clients.values():
+            node.destroy_client(client)
+    return tuple(found[it] for it in sorted(found))
+
+
+def _ask(
+    session: ros.Session,
+    node: Any,
+    asked: Iterable[Question],
+    clients: dict[str, Any],
+    end: float,
+    stop: threading.Event,
+) -> dict[str, Answer]:
+    waiting = [it for it in asked if _client(node, it, clients)]
+    sent: dict[Question, Any] = {}
+    found: dict[str, Answer] = {}
+    while (waiting or sent) and time.monotonic() < end and not stop.is_set():
+        ready = [it for it in waiting if clients[it.service].service_is_ready()]
+        sent |= {it: clients[it.service].call_async(_request(it)) for it in ready}
+        waiting = [it for it in waiting if it not in sent]
+        ros.spin(session, POLL_SECONDS)
+        for it in [it for it, answer in sent.items() if answer.done()]:
+            before = found.get(it.node, Answer(it.node))
+            answer = sent.pop(it).result()
+            found[it.node] = _with_answer(before, it, answer)
+            waiting += halves(it, answer)
+    return found
+
+
+def halves(asked: Question, answer: Any) -> list[Question]:
+    """What is asked again: for a parameter that it does not have, a node of rclcpp gives none."""
+    names = asked.parameters
+    if len(names) < 2 or len(answer.values) == len(names):
+        return []
+    middle = len(names) // 2
+    return [asked._replace(parameters=it) for it in (names[:middle], names[middle:])]
+
+
+def _client(node: Any, asked: Question, clients: dict[str, Any]) -> bool:
+    """Make a client for the question; whether its type is installed."""
+    class_, _ = ros.message_class(asked.type)
+    if class_ and asked.service not in clients:
+        clients[asked.service] = node.create_client(class_, asked.service)
+    return bool(class_)
+
+
+def _request(asked: Question) -> Any:
+    class_, _ = ros.message_class(asked.type)
+    if asked.type == GET_PARAMETERS:
+        return class_.Request(names=list(asked.parameters))
+    return class_.Request()
+
+
+def _with_answer(state: Answer, asked: Question, answer: Any) -> Answer:
+    if asked.type == GET_STATE:
+        return state._replace(lifecycle=str(answer.current_state.label))
+    if asked.type == GET_PARAMETERS:
+        return _with_parameters(state, asked, answer.values)
+    own = (
+        Controller(asked.node, str(it.name), str(it.state), tuple(map(str, it.claimed_interfaces)))
+        for it in answer.controller
+    )
+    return state._replace(controllers=tuple(own))
+
+
+def _with_parameters(state: Answer, asked: Question, values: Sequence[Any]) -> Answer:
+    known = {
+        name: text
+        for name, value in zip(asked.parameters, values, strict=False)
+        if (text := _plain(value)) is not None
+    }
+    found = (Parameter(asked.node, name, text) for name, text in known.items())
+    return state._replace(parameters=tuple(sorted({*state.parameters, *found})))
+
+
+def _plain(value: Any) -> str | None:
+    """The value as the records have it; None for a parameter that is not set."""
+    field = _FIELDS.get(value.type)
+    if field is None:
+        return None
+    found = getattr(value, field)
+    return parameter_text(list(found) if field.endswith("_array_value") else found)
+
+
+if __name__ == "__main__":
+    sys.exit(run_worker(main))

@@ -1,0 +1,218 @@
+"""The pure part of a snapshot: when the graph is settled, what to query, how answers are joined."""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from typing import Any
+
+from multibot_rewrite.base.conventions import SENT_BY_EVERY_NODE
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.system.json_values import FARTHEST
+from multibot_rewrite.system.records import (
+    EXPECTED,
+    PUBLISHES,
+    QUIET,
+    TIMEOUT,
+    TOPIC,
+    Caveat,
+    Edge,
+    End,
+    Node,
+)
+
+# Participants announce themselves every 3 s: a shorter quiet time proves nothing.
+QUIET_SECONDS = 3.5
+# More than this of one delay is a pause: of the process, or of the machine.
+DELAY_SECONDS = 0.5
+# So much of its time a look may wait for a processor.
+STARVED = 1 / 3
+# The endpoints of one participant arrive together; a busy machine may pause in between.
+BURST_SECONDS = 0.5
+# The second replaces the first in a rehearsal on a machine without tf2_msgs.
+TF_TYPES = ("tf2_msgs/msg/TFMessage", "geometry_msgs/msg/TransformStamped")
+NO_ENCLAVES: Mapping[str, str] = {}
+# Of transforms: below a micrometre.
+_DIGITS = 9
+
+
+class ReceivedTransform(NamedTuple):
+    """A transform received on ``topic``; ``latched`` if the subscription is transient local."""
+
+    topic: str
+    latched: bool
+    parent: str
+    child: str
+
+
+NO_TRANSFORMS: Mapping[ReceivedTransform, tuple[float, ...]] = {}
+
+
+class LastChange(NamedTuple):
+    """When the graph last changed, all of it and its expected nodes; in seconds."""
+
+    all: float
+    expected: float
+
+
+class ObservationClock(NamedTuple):
+    """Seconds of observation, and when the last poll was.
+
+    While this process or the machine is paused, or has no processor for it, the graph is not quiet:
+    what arrived meanwhile has not been read yet. So a poll that comes late adds no more to ``observed``
+    than one in time. ``delayed`` are the seconds by which polls were late, of each half a second at
+    most: one long pause is no busy machine.
+    """
+
+    observed: float = 0.0
+    last: float = 0.0
+    delayed: float = 0.0
+
+    def after(self, now: float, planned: float) -> ObservationClock:
+        """The clock at a poll that was planned for ``planned`` seconds after the last one."""
+        passed = now - self.last
+        late = min(max(0.0, passed - planned), DELAY_SECONDS)
+        return ObservationClock(self.observed + min(passed, planned), now, self.delayed + late)
+
+    def starved(self) -> Iterator[Caveat]:
+        """Where a look waited for a processor so long that nodes may have come too late."""
+        part = self.delayed / max(self.observed + self.delayed, DELAY_SECONDS)
+        if part > STARVED:
+            text = (
+                f"this machine was too busy: the look waited for a processor in {part:.0%} of its time,"
+                " so what is missing may only be late; look again when the machine is less busy"
+            )
+            yield Caveat("busy-machine", True, text)
+
+
+def cut_short() -> Iterator[Caveat]:
+    """Where the time was over in the midst of the slow queries."""
+    text = "the timeout was over before the QoS of all topics was read; give a longer --timeout"
+    yield Caveat("cut-short", True, text)
+
+
+def why_settled(
+    now: float,
+    changed: LastChange,
+    seen: Collection[str],
+    expected: Collection[str],
+    timeout: float,
+) -> str:
+    """Why the observation can end, or an empty string; times are seconds since its start.
+
+    ``seen`` are the nodes with endpoints.
+    """
+    complete = expected and set(expected) <= set(seen)
+    if complete and now - changed.expected >= BURST_SECONDS:
+        return EXPECTED
+    if now - changed.all >= QUIET_SECONDS:
+        return QUIET
+    return TIMEOUT if now >= timeout else ""
+
+
+def topics_to_query(
+    names: Sequence[str],
+    endpoints: Iterable[End],
+    topics: Mapping[str, Sequence[str]],
+    requested: Collection[str],
+) -> list[str]:
+    """The topics to query for endpoints with QoS and process, which is slow.
+
+    ``topics`` are all topics of the graph with their types. Two nodes with one name hide each
+    other's topics, so then all topics are queried.
+    """
+    if len(set(names)) < len(names):
+        return sorted(topics)
+    sides = defaultdict(set)
+    for end in endpoints:
+        if end.kind == TOPIC:
+            sides[end.name].add(end.role)
+    # Almost every node publishes one of these, so few queries show which nodes share a process.
+    wanted = {*SENT_BY_EVERY_NODE, *requested}
+    return sorted(
+        topic
+        for topic, types in topics.items()
+        if len(sides[topic]) != 1 or topic in wanted or not set(TF_TYPES).isdisjoint(types)
+    )
+
+
+def merged(by_node: Iterable[End], by_topic: Mapping[str, Iterable[End]]) -> list[End]:
+    """The endpoints by node; those of topics that were queried are replaced by the better answer."""
+    kept = [end for end in by_node if end.kind != TOPIC or end.name not in by_topic]
+    return kept + [end for ends in by_topic.values() for end in ends]
+
+
+def processes_by_node(endpoints: Iterable[End]) -> dict[str, list[str]]:
+    """The processes seen for each node name."""
+    found: dict[str, set[str]] = defaultdict(set)
+    for end in endpoints:
+        if end.process:
+            found[end.node].add(end.process)
+    return {node: sorted(own) for node, own in found.items()}
+
+
+def nodes_with_process(
+    names: Sequence[str],
+    processes: Mapping[str, Sequence[str]],
+    enclaves: Mapping[str, str] = NO_ENCLAVES,
+) -> list[Node]:
+    """One record for each node; nodes with one name are spread over its processes."""
+    result = []
+    for name, times in sorted(Counter(names).items()):
+        own = processes.get(name) or [""]
+        enclave = enclaves.get(name, "")
+        result += [Node(name, own[at % len(own)], enclave) for at in range(times)]
+    return result
+
+
+def endpoints_with_process(
+    endpoints: Iterable[End], processes: Mapping[str, Sequence[str]]
+) -> list[End]:
+    """Sorted, each with the process of its node where the node has only one."""
+    return sorted(
+        (_with_process(end, processes.get(end.node, ())) for end in endpoints), key=_order
+    )
+
+
+def _with_process(end: End, processes: Sequence[str]) -> End:
+    return end._replace(process=processes[0]) if not end.process and len(processes) == 1 else end
+
+
+def _order(end: End) -> tuple[str, ...]:
+    return (end.kind, end.name, end.role, end.node, end.process, end.type, repr(end.qos))
+
+
+def numbers_of(transform: Any) -> tuple[float, ...]:
+    """A geometry_msgs/Transform as a snapshot keeps it; empty where it is no finite transform."""
+    at, turn = transform.translation, transform.rotation
+    numbers = at.x, at.y, at.z, turn.x, turn.y, turn.z, turn.w
+    if not all(abs(it) < FARTHEST for it in numbers):
+        return ()
+    return tuple(round(it, _DIGITS) for it in numbers)
+
+
+def frames(
+    received: Iterable[ReceivedTransform],
+    endpoints: Iterable[End],
+    of_several: Collection[ReceivedTransform] = (),
+    last: Mapping[ReceivedTransform, tuple[float, ...]] = NO_TRANSFORMS,
+) -> Iterator[Edge]:
+    """The transforms received, each once a topic; static if it came from a latched subscription.
+
+    ``of_several`` are those that more than one publisher sends, ``last`` what each was at last.
+    """
+    publishers = defaultdict(set)
+    for end in endpoints:
+        if end.kind == TOPIC and end.role == PUBLISHES:
+            publishers[end.name].add(end.node)
+    latched: dict[tuple[str, str, str], bool] = {}
+    for topic, is_latched, parent, child in received:
+        edge = (topic, parent, child)
+        latched[edge] = is_latched or latched.get(edge, False)
+    several = {(it.topic, it.parent, it.child) for it in of_several}
+    numbers = {(it.topic, it.parent, it.child): own for it, own in last.items()}
+    for edge, static in sorted(latched.items()):
+        topic, parent, child = edge
+        senders = tuple(sorted(publishers[topic]))
+        transform = numbers.get(edge, ())
+        yield Edge(child, parent, topic, static, senders, edge in several, transform)

@@ -1,0 +1,199 @@
+"""The command's side of the child processes that use rclpy.
+
+rcl may end its process, so the command never loads it.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Generator, Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from typing import IO, cast
+
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.producers.ros.request import (
+    ENDED,
+    NO_RCLPY,
+    RMW_MISMATCH,
+    Request,
+    RosUnusable,
+    to_text,
+)
+from multibot_rewrite.system.answers import Answer
+from multibot_rewrite.system.json import from_json, record_from
+from multibot_rewrite.system.questions import Question
+from multibot_rewrite.system.records import UNKNOWN_NODE, ZENOH, Caveat, System
+
+INSTALL = (
+    "source ROS 2 (. /opt/ros/jazzy/setup.bash) or, on Linux, pip install 'multibot_rewrite[ros]'"
+)
+OBSERVE, RUN_STUBS = "multibot_rewrite.producers.ros.observe", "multibot_rewrite.live.stub_nodes"
+ASK = "multibot_rewrite.producers.ros.ask"
+# For import and start, and for an end on a busy machine: the child keeps to the timeout by itself.
+SLACK_SECONDS = 30.0
+NO_SECOND_LOOK = (
+    "two nodes have one name, or a node has none: one of them may be dead, and there was no time for a"
+    " second look; give a longer --timeout"
+)
+_EXIT_SECONDS = 3.0
+
+
+class RosProcess(NamedTuple):
+    """A child process that uses rclpy; ``errors`` is its standard error."""
+
+    process: subprocess.Popen[bytes]
+    errors: IO[bytes]
+    environ: Mapping[str, str]
+
+    def next_message(self) -> bytes | None:
+        """The next message, or None at the end; raises RosUnusable if the process failed."""
+        assert self.process.stdout is not None
+        length = self.process.stdout.readline()
+        data = self.process.stdout.read(int(length)) if length else b""
+        if length and len(data) == int(length):
+            return data
+        code = self.process.wait()
+        if code == 0:
+            return None
+        self.errors.seek(0)
+        output = self.errors.read().decode("utf-8", "replace")
+        raise RosUnusable(_explain(code, output, self.environ))
+
+
+def observe(request: Request, environ: Mapping[str, str]) -> System:
+    """A snapshot of the graph with the variables of ``environ``; raises RosUnusable.
+
+    No process is left running, however this call ends.
+    """
+    began = time.monotonic()
+    seen = _observe_once(request, environ)
+    doubtful = _may_contain_dead_nodes(seen)
+    # On a busy machine the first messages of the discovery may be lost: an empty view is doubted, too.
+    if seen.nodes and not doubtful:
+        return seen
+    # A node that was killed meanwhile stays visible for 20 s, but not for a new participant.
+    left = request.timeout - (time.monotonic() - began)
+    if left >= seen.environment.seconds:
+        return _observe_once(request._replace(timeout=left), environ)
+    return _with_caveat(seen, Caveat("no-second-look", True, NO_SECOND_LOOK)) if doubtful else seen
+
+
+def _with_caveat(seen: System, caveat: Caveat) -> System:
+    around = seen.environment
+    return seen._replace(environment=around._replace(caveats=(*around.caveats, caveat)))
+
+
+def _may_contain_dead_nodes(seen: System) -> bool:
+    """Whether a view may have dead nodes: a node name occurs twice, or one is unknown."""
+    names = [node.name for node in seen.nodes]
+    nameless = any(UNKNOWN_NODE in end.node for end in seen.ends)
+    return nameless or len(set(names)) < len(names)
+
+
+def _observe_once(request: Request, environ: Mapping[str, str]) -> System:
+    limit = request.timeout + SLACK_SECONDS
+    with running(OBSERVE, to_text(request), environ, limit) as child:
+        data = child.next_message()
+        assert data is not None
+        return from_json(data, "the view of the graph")
+
+
+def watch(request: Request, environ: Mapping[str, str]) -> Generator[System, None, None]:
+    """Snapshots of the graph for ``request.timeout`` seconds, one after each change.
+
+    Raises RosUnusable. No process is left running once the iterator is closed.
+    """
+    order = to_text(request._replace(watch=True))
+    with running(OBSERVE, order, environ) as child:
+        seconds = min(request.timeout, threading.TIMEOUT_MAX)
+        end = threading.Timer(seconds, child.process.terminate)
+        end.daemon = True
+        end.start()
+        while (data := child.next_message()) is not None:
+            yield from_json(data, "the view of the graph")
+        end.cancel()
+
+
+def ask(
+    asked: Iterable[Question], seconds: float, environ: Mapping[str, str]
+) -> tuple[Answer, ...]:
+    """What nodes answer within ``seconds``, all asked at once; raises RosUnusable."""
+    order = json.dumps((seconds, list(asked)))
+    with running(ASK, order, environ, seconds + SLACK_SECONDS) as child:
+        data = child.next_message()
+    assert data is not None
+    states = record_from(tuple[Answer, ...], json.loads(data), "the answers of nodes")
+    return cast(tuple[Answer, ...], states)
+
+
+@contextmanager
+def running(
+    module: str, order: str, environ: Mapping[str, str], seconds: float | None = None
+) -> Iterator[RosProcess]:
+    """Run the child with its order; it ends with the block, and after ``seconds`` at the latest."""
+    command = [sys.executable, "-m", module]
+    pipe = subprocess.PIPE
+    with tempfile.TemporaryFile() as errors:
+        process = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=errors, env=environ)
+        limit = threading.Timer(seconds or threading.TIMEOUT_MAX, process.kill)
+        limit.daemon = True
+        limit.start()
+        try:
+            _send(process, order)
+            yield RosProcess(process, errors, environ)
+        finally:
+            limit.cancel()
+            _stop(process)
+
+
+def _send(process: subprocess.Popen[bytes], order: str) -> None:
+    assert process.stdin is not None
+    try:
+        process.stdin.write(f"{order}\n".encode())
+        process.stdin.flush()
+    except BrokenPipeError:
+        # The child ended before it read the order: its exit code says why.
+        return
+
+
+def _stop(process: subprocess.Popen[bytes]) -> None:
+    """Close its input, then terminate, then kill; only a clean exit leaves the graph at once."""
+    assert process.stdin is not None and process.stdout is not None
+    # The process may be gone already.
+    with suppress(BrokenPipeError):
+        process.stdin.close()
+    for force in (process.terminate, process.kill):
+        try:
+            process.wait(_EXIT_SECONDS)
+            break
+        except subprocess.TimeoutExpired:
+            force()
+    process.wait()
+    process.stdout.close()
+
+
+def _explain(code: int, output: str, environ: Mapping[str, str]) -> str:
+    """Why the child ended with ``code``, and what to do, in one line."""
+    lines = [line.strip() for line in output.splitlines() if line.strip()]
+    # rclpy puts lines with source locations after its reason.
+    last = next((line for line in reversed(lines) if not line.startswith(",")), "no output")
+    if code == NO_RCLPY:
+        return f"rclpy cannot be imported ({last}); {INSTALL}"
+    if code == RMW_MISMATCH:
+        wanted = environ.get("RMW_IMPLEMENTATION", "")
+        remedy = "unset it, or install that RMW"
+        if wanted == ZENOH:
+            remedy += ", or ask its router: --zenoh tcp/localhost:7447"
+        return f"RMW_IMPLEMENTATION={wanted!r} is not available to this rclpy; {remedy}"
+    if code == ENDED:
+        return (
+            f"the process that reads the graph was stopped; start the command again. Output: {last}"
+        )
+    if code < 0:
+        return f"rclpy was stopped by signal {-code}, or it took too long; output: {last}"
+    return f"rclpy does not start (exit code {code}): {last}; {INSTALL}"

@@ -1,0 +1,328 @@
+"""Observing the live graph: ``python -m multibot_rewrite.producers.ros.observe``, a child process.
+
+It sends one snapshot when the graph is settled or, when watching, one after each change.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+import time
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from functools import partial
+from typing import Any
+
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.producers.ros import assemble, queries, ros
+from multibot_rewrite.producers.ros.answers import Answers
+from multibot_rewrite.producers.ros.ask import ask_nodes
+from multibot_rewrite.producers.ros.headers import HeaderSamples
+from multibot_rewrite.producers.ros.request import ENDED, Request, from_text
+from multibot_rewrite.producers.ros.tf_subscriptions import Callback, TfSubscriptions
+from multibot_rewrite.producers.ros.worker import Send, run_worker
+from multibot_rewrite.system import environment
+from multibot_rewrite.system.answers import Answer, with_answers
+from multibot_rewrite.system.json import to_json
+from multibot_rewrite.system.questions import ANSWER_SECONDS, Question
+from multibot_rewrite.system.records import (
+    ACTION,
+    CALLS,
+    CHANGING,
+    QUIET,
+    SERVES,
+    UNKNOWN_NODE,
+    Caveat,
+    End,
+    Environment,
+    System,
+)
+
+# The shortest pause between two polls. A pause is also so many times as long as a poll took: a
+# large fleet is polled less often, even less where the graph is not watched.
+POLL_SECONDS, PAUSE_FACTOR, LONG_PAUSE_FACTOR = 0.1, 10, 30
+# The longest pause; a poll may only have been slow because the machine was busy.
+LONGEST_PAUSE_SECONDS = 1.0
+# tf has 10 Hz or more; a shared topic of 100 robots took 1.3 s to be received completely.
+TF_SECONDS = (1.5, 3.0)
+# Sensors have 5 Hz or more; what is sent once a minute is not waited for.
+HEADER_SECONDS = 1.5
+# After so long without a change there will probably be none; tf is received until that is known.
+IDLE_SECONDS = assemble.QUIET_SECONDS - TF_SECONDS[0]
+# What a look may take beyond its timeout, for the last queries.
+GRACE_SECONDS = 1.0
+# When watching, a snapshot comes so long after the last change, because changes come in groups,
+SETTLE_SECONDS = 0.15
+# but it waits no longer than this while the graph goes on changing.
+LONGEST_SETTLE_SECONDS = 1.0
+
+
+class GraphSession(NamedTuple):
+    """A node that observes the graph; ``stop`` is set when the observation has to end."""
+
+    ros: ros.Session
+    node: Any
+    request: Request
+    stop: threading.Event
+    started: float
+
+    def now(self) -> float:
+        """Seconds since the observation began."""
+        return time.monotonic() - self.started
+
+    def over(self) -> bool:
+        """Whether it has to end, also in the midst of queries."""
+        return self.stop.is_set() or self.now() >= self.request.timeout + GRACE_SECONDS
+
+
+def main(order: str, stop: threading.Event, send: Send) -> int:
+    """Observe as ``order`` says; returns the exit code."""
+    request = from_text(order)
+    with _open_session(request, stop) as session:
+        if request.watch:
+            for snapshot in watch(session):
+                send(to_json(snapshot))
+            return 0
+        snapshot = take_snapshot(session)
+        if stop.is_set():
+            return ENDED
+        # Read while this node leaves the graph.
+        send(to_json(snapshot))
+    return 0
+
+
+@contextmanager
+def _open_session(request: Request, stop: threading.Event) -> Iterator[GraphSession]:
+    with ros.opened() as opened:
+        node = ros.add_node(opened, f"_multibot_snapshot_{os.getpid()}")
+        yield GraphSession(opened, node, request, stop, time.monotonic())
+
+
+def take_snapshot(session: GraphSession) -> System:
+    """A snapshot, once the graph is settled; not usable if ``stop`` was set meanwhile."""
+    cache: queries.TopicCache = {}
+    ears = _Ears(session)
+    why, clock = _wait_until_settled(session, cache, ears)
+    seconds = session.now()
+    names, endpoints = _complete_view(session, cache)
+    more = [*clock.starved(), *(assemble.cut_short() if session.over() else ())]
+    ears.update(endpoints)
+    while not session.over() and ears.keep_waiting():
+        ros.spin(session.ros, POLL_SECONDS)
+    return _snapshot(session, names, endpoints, ears, (why, seconds), more)
+
+
+class _Ears:
+    """What is received while the graph is looked at: transforms, and headers if they are asked for."""
+
+    def __init__(self, session: GraphSession) -> None:
+        self._request = session.request
+        self.tf = TfSubscriptions(partial(_subscribe, session))
+        self.headers = HeaderSamples(partial(_subscribe_to_headers, session))
+
+    def update(self, endpoints: Sequence[End]) -> None:
+        """Subscribe to what is published now."""
+        self.tf.update(endpoints, self._request.substitutes)
+        if self._request.headers:
+            self.headers.update(endpoints)
+
+    def keep_waiting(self) -> bool:
+        """Whether something may still come."""
+        return self.tf.keep_waiting(*TF_SECONDS) or self.headers.keep_waiting(HEADER_SECONDS)
+
+
+def watch(session: GraphSession) -> Iterator[System]:
+    """A snapshot after each change, and one when nothing has changed for a while."""
+    ears = _Ears(session)
+    cache: queries.TopicCache = {}
+    before: object = None
+    sent: object = None
+    changed = sent_at = 0.0
+    answers = Answers(partial(_ask, session), session.request.asks)
+    pause, spent, clock = POLL_SECONDS, 0.0, assemble.ObservationClock()
+    while not session.stop.is_set():
+        ros.spin(session.ros, pause)
+        clock = clock.after(session.now(), pause + spent)
+        now, began = clock.observed, time.thread_time()
+        state = (*_overview(session), ears.tf.transforms())
+        pause = _pause_after(time.thread_time() - began, PAUSE_FACTOR)
+        if state != before:
+            before, changed = state, now
+        quiet = now - changed >= assemble.QUIET_SECONDS
+        due = now - changed >= SETTLE_SECONDS or now - sent_at >= LONGEST_SETTLE_SECONDS
+        new, again = sent != (state, quiet), quiet and answers.old(session.now())
+        if due and (new or again):
+            sent, sent_at = (state, quiet), now
+            if quiet:
+                cache.clear()
+            names, endpoints = _view(session, cache)
+            ears.tf.update(endpoints, session.request.substitutes)
+            why = QUIET if quiet else CHANGING
+            seen = _snapshot(session, names, endpoints, ears, (why, session.now()))
+            other = answers.update(seen, quiet, session.now())
+            if new or other:
+                yield with_answers(seen, answers.states)
+        spent = time.thread_time() - began
+
+
+def _ask(session: GraphSession, asked: Iterable[Question]) -> Iterable[Answer]:
+    return ask_nodes(session.ros, session.node, asked, ANSWER_SECONDS, session.stop)
+
+
+def _overview(session: GraphSession) -> tuple[list[str], list[End]]:
+    """The nodes and their endpoints: enough to see whether anything changed."""
+    names = queries.node_names(session.node)
+    found = queries.endpoints_by_node(
+        session.node, names, queries.NODE_QUERIES, ros.node_gone_error()
+    )
+    return names, sorted(found)
+
+
+def _wait_until_settled(
+    session: GraphSession, cache: queries.TopicCache, ears: _Ears
+) -> tuple[str, assemble.ObservationClock]:
+    """Wait until the graph is settled; returns why it is, empty if the observation was stopped.
+
+    The slow queries are made while there is only waiting to do, and tf is received; the cache grows.
+    """
+    request = session.request
+    times = _ChangeTimes()
+    queried: object = None
+    pause, spent, clock = POLL_SECONDS, 0.0, assemble.ObservationClock(last=session.now())
+    while not session.stop.is_set():
+        ros.spin(session.ros, pause)
+        clock = clock.after(session.now(), pause + spent)
+        now, began = clock.observed, time.thread_time()
+        view = _overview(session)
+        changed = times.update(now, view, request.expected)
+        # While it changes the moment of the last change is wanted.
+        factor = PAUSE_FACTOR if changed.all == now else LONG_PAUSE_FACTOR
+        pause = _pause_after(time.thread_time() - began, factor)
+        # Not later than the moment at which it is quiet.
+        pause = min(pause, max(POLL_SECONDS, changed.all + assemble.QUIET_SECONDS - now))
+        seen = {end.node for end in view[1]}
+        # Its timeout is of real time.
+        timeout = request.timeout - (session.now() - now)
+        why = assemble.why_settled(now, changed, seen, request.expected, timeout)
+        if why:
+            return why, clock
+        idle = now - changed.all >= IDLE_SECONDS or now >= timeout - TF_SECONDS[1]
+        if idle and queried != view:
+            queried = view
+            ears.update(_view(session, cache)[1])
+        spent = time.thread_time() - began
+    return "", clock
+
+
+class _ChangeTimes:
+    """When the graph last changed, all of it and its expected nodes."""
+
+    def __init__(self) -> None:
+        self._before: tuple[object, object] = (None, None)
+        self._changed = assemble.LastChange(0.0, 0.0)
+
+    def update(
+        self, now: float, view: tuple[list[str], list[End]], expected: Collection[str]
+    ) -> assemble.LastChange:
+        """The times after a poll at ``now``."""
+        parts = (view, [end for end in view[1] if end.node in expected])
+        times = zip(self._changed, self._before, parts, strict=True)
+        self._changed = assemble.LastChange(
+            *(old if was == is_ else now for old, was, is_ in times)
+        )
+        self._before = parts
+        return self._changed
+
+
+def _pause_after(took: float, factor: int) -> float:
+    """How long to wait after a poll that took so many seconds."""
+    return min(max(POLL_SECONDS, factor * took), LONGEST_PAUSE_SECONDS)
+
+
+def _complete_view(session: GraphSession, cache: queries.TopicCache) -> tuple[list[str], list[End]]:
+    """Names and endpoints; repeated for a while if nodes have no endpoints or no name yet."""
+    limit = min(session.request.timeout, session.now() + assemble.QUIET_SECONDS)
+    while True:
+        names, endpoints = _view(session, cache)
+        owners = {end.node for end in endpoints}
+        complete = owners.issuperset(names) and f"/{UNKNOWN_NODE}" not in owners
+        if complete or session.now() >= limit or session.stop.wait(POLL_SECONDS):
+            return names, endpoints
+
+
+def _view(session: GraphSession, cache: queries.TopicCache) -> tuple[list[str], list[End]]:
+    """Names and endpoints, with QoS and process for the topics that are worth a query."""
+    node = session.node
+    names = queries.node_names(node)
+    all_queries = (*queries.NODE_QUERIES, *_ACTION_QUERIES)
+    found = list(queries.endpoints_by_node(node, names, all_queries, ros.node_gone_error()))
+    details = queries.TopicQueries(session.request.topics, cache, session.over)
+    return names, queries.with_topic_details(node, names, found, details)
+
+
+_ACTION_QUERIES: tuple[queries.NodeQuery, ...] = (
+    (ACTION, SERVES, ros.action_servers),
+    (ACTION, CALLS, ros.action_clients),
+)
+
+
+def _subscribe(
+    session: GraphSession, topic: str, type_: str, latched: bool, callback: Callback
+) -> Callable[[], None] | str:
+    """Subscribe to a tf topic: what ends the subscription, or why its type is not usable."""
+    class_, reason = ros.message_class(type_)
+    return ros.subscribe(session.node, class_, topic, latched, callback) if class_ else reason
+
+
+def _subscribe_to_headers(
+    session: GraphSession, topic: str, type_: str, latched: bool, callback: Callable[[bytes], None]
+) -> Callable[[], None] | None:
+    class_, _ = ros.message_class(type_)
+    return class_ and ros.subscribe_to_headers(session.node, class_, topic, latched, callback)
+
+
+def _snapshot(
+    session: GraphSession,
+    names: list[str],
+    endpoints: list[End],
+    ears: _Ears,
+    settled: tuple[str, float],
+    more: Iterable[Caveat] = (),
+) -> System:
+    processes = assemble.processes_by_node(endpoints)
+    enclaves = queries.enclaves(session.node)
+    nodes = assemble.nodes_with_process(names, processes, enclaves)
+    placed = tuple(assemble.endpoints_with_process(endpoints, processes))
+    asked = environment.settings(os.environ)
+    why, seconds = settled
+    caveats = [
+        *environment.setting_caveats(os.environ),
+        *environment.view_caveats(nodes, placed, asked, why, session.request.expected),
+        *ears.tf.caveats(),
+        *ears.headers.caveats(),
+        *more,
+    ]
+    around = Environment(
+        session.ros.context.get_domain_id(),
+        asked.range,
+        asked.static_peers,
+        ros.middleware(),
+        asked.discovery_server,
+        asked.super_client,
+        environment.participants(placed),
+        why,
+        round(seconds, 2),
+        tuple(caveats),
+    )
+    return System(
+        tuple(nodes),
+        placed,
+        tuple(assemble.frames(ears.tf.transforms(), placed, ears.tf.of_several(), ears.tf.last)),
+        around,
+        ears.headers.heard(),
+    )
+
+
+if __name__ == "__main__":
+    sys.exit(run_worker(main))

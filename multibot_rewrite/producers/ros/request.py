@@ -1,0 +1,55 @@
+"""The request to a child process that uses rclpy, and the messages between it and the command."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Collection, Mapping
+from typing import Any
+
+from multibot_rewrite.base.model import MultibotError
+from multibot_rewrite.base.record import NamedTuple
+
+# The child's exit codes besides 0; rcl itself ends a process with 102.
+NO_RCLPY, ENDED = 4, 130
+RMW_MISMATCH = 102
+_LINE = b"\n"
+
+
+class RosUnusable(MultibotError):
+    """rclpy (or zenoh, to ask a router) is missing or does not start; the message says what to do."""
+
+
+class Request(NamedTuple):
+    """What a snapshot is asked for.
+
+    The observation ends when the nodes of ``expected`` (full names) are in the graph, and after
+    ``timeout`` seconds at the latest. The snapshot has QoS and process of ``topics``. With
+    ``watch`` it does not end, and there is a snapshot after each change. With ``substitutes``
+    transforms are also read from the messages that a rehearsal has without tf2_msgs. With
+    ``headers`` one message a sensor topic is received, for its frame; not when watching. With
+    ``asks`` nodes of a watched graph are asked for their states, each for these parameters besides.
+    """
+
+    timeout: float
+    expected: tuple[str, ...] = ()
+    topics: tuple[str, ...] = ()
+    watch: bool = False
+    substitutes: bool = False
+    headers: bool = False
+    asks: Mapping[str, Collection[str]] | None = None
+
+
+def to_text(order: tuple[Any, ...]) -> str:
+    """An order, a record of plain values, as one line."""
+    return json.dumps(order)
+
+
+def from_text(text: str) -> Request:
+    """Read what ``to_text`` made of a Request."""
+    timeout, expected, topics, *others = json.loads(text)
+    return Request(float(timeout), tuple(expected), tuple(topics), *others)
+
+
+def framed(data: bytes) -> bytes:
+    """A message with its length before it, so that several can follow one another in a pipe."""
+    return b"%d" % len(data) + _LINE + data

@@ -1,0 +1,219 @@
+"""The only module that imports rclpy, with the functions that the others need.
+
+It runs in child processes (``live.observe``, ``live.stub_nodes``), since rcl may end its process.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from multibot_rewrite.base.record import NamedTuple
+
+if TYPE_CHECKING:
+    from rclpy.context import Context
+    from rclpy.executors import SingleThreadedExecutor
+    from rclpy.node import Node
+
+_BROKEN = (ImportError, AttributeError, OSError)
+
+
+class Session(NamedTuple):
+    """An own rclpy context, without arguments or remap rules from the process's command line."""
+
+    context: Context
+    executor: SingleThreadedExecutor
+
+
+def missing() -> str:
+    """Why rclpy cannot be imported, or an empty string."""
+    try:
+        import rclpy  # noqa: F401
+    except (ImportError, OSError) as error:  # OSError: a shared library that does not load
+        return f"{type(error).__name__}: {error}"
+    return ""
+
+
+@contextmanager
+def opened() -> Iterator[Session]:
+    """A session; at the end of the block its nodes leave the graph at once."""
+    import rclpy
+    from rclpy.context import Context
+    from rclpy.executors import SingleThreadedExecutor
+    from rclpy.signals import SignalHandlerOptions
+
+    context = Context()
+    rclpy.init(args=[], context=context, signal_handler_options=SignalHandlerOptions.NO)
+    executor = SingleThreadedExecutor(context=context)
+    try:
+        yield Session(context, executor)
+    finally:
+        nodes = executor.get_nodes()
+        executor.shutdown()
+        for node in nodes:
+            node.destroy_node()
+        context.try_shutdown()
+
+
+def add_node(
+    session: Session, name: str, namespace: str = "/", arguments: Sequence[str] = ()
+) -> Node:
+    """Add a node without services; ``arguments`` are those of its command line."""
+    from rclpy.node import Node
+    from rclpy.parameter import Parameter
+
+    node = Node(
+        name,
+        context=session.context,
+        namespace=namespace,
+        cli_args=list(arguments),
+        use_global_arguments=False,
+        start_parameter_services=False,
+        enable_rosout=False,
+        # Its types need numpy, which takes longer to import than all of rclpy.
+        parameter_overrides=[Parameter("start_type_description_service", value=False)],
+    )
+    session.executor.add_node(node)
+    return node
+
+
+def spin(session: Session, seconds: float) -> None:
+    """Run callbacks for ``seconds``."""
+    end = time.monotonic() + seconds
+    while (left := end - time.monotonic()) > 0:
+        session.executor.spin_once(timeout_sec=left)
+
+
+def node_gone_error() -> type[Exception]:
+    """The exception for a query about a node that is not in the graph."""
+    from rclpy.node import NodeNameNonExistentError
+
+    error: type[Exception] = NodeNameNonExistentError
+    return error
+
+
+def action_servers(node: Node, name: str, namespace: str) -> Any:
+    """Names and types of the actions that a node serves."""
+    return _actions(node, node.handle.get_action_server_names_and_types_by_node, name, namespace)
+
+
+def action_clients(node: Node, name: str, namespace: str) -> Any:
+    """Names and types of the actions that a node calls."""
+    return _actions(node, node.handle.get_action_client_names_and_types_by_node, name, namespace)
+
+
+# rclpy.action.graph asks the same, and imports all of rclpy.action, which needs numpy.
+def _actions(node: Node, query: Callable[..., Any], name: str, namespace: str) -> Any:
+    """Queries for actions raise a plain RCLError for a node that left the graph."""
+    from rclpy.impl.implementation_singleton import rclpy_implementation
+
+    try:
+        with node.handle:
+            return query(name, namespace)
+    except rclpy_implementation.RCLError as error:
+        if (name, namespace) in node.get_node_names_and_namespaces():
+            raise
+        raise node_gone_error()(f"{namespace.rstrip('/')}/{name} left the graph") from error
+
+
+def message_class(type_: str) -> tuple[Any, str]:
+    """The class of a type such as ``std_msgs/msg/String``, or None and why there is none."""
+    from rclpy.exceptions import NoTypeSupportImportedException
+    from rosidl_generator_py.import_type_support_impl import UnsupportedTypeSupport
+
+    package, kind, name = type_.split("/")
+    try:
+        found = getattr(import_module(f"{package}.{kind}"), name)
+        # A type whose support library is missing fails only where it is used.
+        _check_support(kind, found)
+    except (*_BROKEN, NoTypeSupportImportedException, UnsupportedTypeSupport) as error:
+        return None, str(error)
+    return found, ""
+
+
+def _check_support(kind: str, type_: Any) -> None:
+    from rclpy.type_support import check_for_type_support
+
+    if kind == "action":
+        check_for_type_support(type_.Impl.FeedbackMessage)
+        return
+    check_for_type_support(type_)
+
+
+def subscribe(
+    node: Node, type_: Any, topic: str, latched: bool, callback: Callable[[Any, int | None], None]
+) -> Callable[[], None]:
+    """Subscribe; returns what ends it. With ``latched`` earlier messages are received too.
+
+    The callback gets a message and its number, by which its publisher counts; None if that is unknown.
+    """
+
+    def numbered(message: Any, info: Any) -> None:
+        name = "publication_sequence_number"
+        # A dictionary in Jazzy.
+        number = info.get(name) if isinstance(info, dict) else getattr(info, name, None)
+        callback(message, number)
+
+    # Best effort works with reliable publishers too, but latched samples need a reliable reader.
+    subscription = node.create_subscription(type_, topic, numbered, _qos(latched, latched))
+    return lambda: node.destroy_subscription(subscription)
+
+
+def subscribe_to_headers(
+    node: Node, type_: Any, topic: str, latched: bool, callback: Callable[[bytes], None]
+) -> Callable[[], None] | None:
+    """Subscribe to serialized messages; returns what ends it, None for a type without a header first.
+
+    Only the last message waits to be taken: there may be large images.
+    """
+    fields = list(type_.get_fields_and_field_types().values())
+    if fields[:1] != ["std_msgs/Header"]:
+        return None
+    qos = _qos(latched, latched)
+    qos.depth = 1
+    subscription = node.create_subscription(type_, topic, callback, qos, raw=True)
+    return lambda: node.destroy_subscription(subscription)
+
+
+def publish(node: Node, type_: Any, topic: str, latched: bool) -> Any:
+    """A reliable publisher; with ``latched`` later subscribers receive its messages too."""
+    return node.create_publisher(type_, topic, _qos(latched, True))
+
+
+def subscribe_and_drop(node: Node, type_: Any, topic: str) -> None:
+    """A subscription with the usual QoS that ignores its messages."""
+    node.create_subscription(type_, topic, lambda _: None, _qos(False, True))
+
+
+def serve_action(node: Node, type_: Any, name: str) -> None:
+    """An action server whose goals never succeed."""
+    from rclpy.action import ActionServer
+
+    ActionServer(node, type_, name, lambda goal: type_.Result())
+
+
+def call_action(node: Node, type_: Any, name: str) -> None:
+    """A client of an action."""
+    from rclpy.action import ActionClient
+
+    ActionClient(node, type_, name)
+
+
+def _qos(latched: bool, reliable: bool) -> Any:
+    from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+
+    durability = DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE
+    reliability = ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT
+    # A stand-in without tf2_msgs sends each fixed transform in a message of its own.
+    depth = 1000 if latched else 100
+    return QoSProfile(depth=depth, durability=durability, reliability=reliability)
+
+
+def middleware() -> str:
+    """The name of the RMW in use."""
+    from rclpy.utilities import get_rmw_implementation_identifier
+
+    return str(get_rmw_implementation_identifier())

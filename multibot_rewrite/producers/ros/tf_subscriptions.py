@@ -1,0 +1,98 @@
+"""Subscriptions to the tf topics of a graph; the function that subscribes is passed in."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any
+
+from multibot_rewrite.base.wording import SEVERAL, shorten
+from multibot_rewrite.producers.ros.assemble import TF_TYPES, ReceivedTransform, numbers_of
+from multibot_rewrite.producers.ros.voices import Mark, Voices
+from multibot_rewrite.system.records import PUBLISHES, Caveat, End
+
+# As long as tf2 keeps a transform.
+FORGET_SECONDS = 10.0
+# Name, type, and whether it is latched (transient local).
+Topic = tuple[str, str, bool]
+Callback = Callable[[Any, Mark], None]
+# (topic, type, latched, callback) -> what ends the subscription, or why there is none.
+Subscribe = Callable[[str, str, bool, Callback], "Callable[[], None] | str"]
+
+
+class TfSubscriptions:
+    """Subscriptions to all tf topics, and the transforms received on them; ``last`` is the last message
+    of each."""
+
+    def __init__(self, subscribe: Subscribe) -> None:
+        self._subscribe = subscribe
+        self._open: dict[Topic, Callable[[], None]] = {}
+        self._failed: dict[str, str] = {}
+        self._received: dict[ReceivedTransform, float] = {}
+        self._voices: dict[ReceivedTransform, Voices] = {}
+        self.last: dict[ReceivedTransform, tuple[float, ...]] = {}
+        self._began = time.monotonic()
+
+    def update(self, endpoints: Iterable[End], substitutes: bool) -> None:
+        """Subscribe to every tf topic that is published, and to no other."""
+        types = TF_TYPES if substitutes else TF_TYPES[:1]
+        topics = {
+            (end.name, end.type, end.qos.durability == "TRANSIENT_LOCAL")
+            for end in endpoints
+            if end.type in types and end.role == PUBLISHES and end.qos
+        }
+        for topic in self._open.keys() - topics:
+            self._remove(topic)
+        for topic in sorted(topics - self._open.keys()):
+            self._add(topic)
+
+    def _add(self, topic: Topic) -> None:
+        name, type_, latched = topic
+        end = self._subscribe(name, type_, latched, lambda *it: self._receive(name, latched, *it))
+        if isinstance(end, str):
+            self._failed[name] = end
+        else:
+            self._open[topic] = end
+            self._began = time.monotonic()
+
+    def _remove(self, topic: Topic) -> None:
+        self._open.pop(topic)()
+        name, _, latched = topic
+        self._received = {
+            it: at for it, at in self._received.items() if (it.topic, it.latched) != (name, latched)
+        }
+
+    def _receive(self, topic: str, latched: bool, message: Any, mark: Mark) -> None:
+        now = time.monotonic()
+        # In a rehearsal without tf2_msgs each message is a single transform.
+        for transform in getattr(message, "transforms", (message,)):
+            parent, child = transform.header.frame_id, transform.child_frame_id
+            edge = ReceivedTransform(topic, latched, parent, child)
+            self._received[edge] = now
+            self.last[edge] = numbers_of(transform.transform)
+            self._voices[edge] = self._voices.get(edge, Voices()).after(mark)
+
+    def transforms(self) -> tuple[ReceivedTransform, ...]:
+        """The transforms that are still valid; latched ones always are."""
+        limit = time.monotonic() - FORGET_SECONDS
+        return tuple(sorted(it for it, at in self._received.items() if it.latched or at >= limit))
+
+    def of_several(self) -> frozenset[ReceivedTransform]:
+        """The transforms that more than one publisher sends."""
+        return frozenset(it for it, heard in self._voices.items() if heard.several(it.latched))
+
+    def keep_waiting(self, first: float, last: float) -> bool:
+        """Whether to wait longer: ``first`` seconds always, ``last`` while a topic is silent."""
+        passed = time.monotonic() - self._began
+        received = {(it.topic, it.latched) for it in self._received}
+        silent = any((name, latched) not in received for name, _, latched in self._open)
+        return bool(self._open) and passed < (last if silent else first)
+
+    def caveats(self) -> Iterator[Caveat]:
+        """The topics that it could not subscribe to."""
+        if self._failed:
+            topics = shorten(sorted(self._failed), SEVERAL)
+            reason = next(iter(self._failed.values()))
+            remedy = "install tf2_msgs or source ROS 2"
+            text = f"the frames on {topics} were not read: {reason}; {remedy}"
+            yield Caveat("frames-not-read", False, text)

@@ -1,0 +1,184 @@
+"""A message of the type ``rosgraph_msgs/Graph`` -> a snapshot."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator
+from typing import Any, cast
+
+from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.producers.rosgraph.messages import (
+    DURABILITY,
+    HISTORY,
+    LIVELINESS,
+    RELIABILITY,
+    SEND_GOAL,
+    UNKNOWN,
+    Action,
+    Duration,
+    Graph,
+    Service,
+    Topic,
+)
+from multibot_rewrite.producers.rosgraph.messages import (
+    Node as NodeMessage,
+)
+from multibot_rewrite.system.json import record_from
+from multibot_rewrite.system.records import (
+    ACTION,
+    CALLS,
+    PUBLISHES,
+    QUIET,
+    SERVES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+    Caveat,
+    End,
+    Environment,
+    Node,
+    Qos,
+    System,
+)
+
+# nodl_observe writes no limit as the largest int32, rosgraph_monitor as 0.
+_NO_LIMIT = 2**31 - 1
+_CUT_SHORT = re.compile(r"^\s*- '?\.\.\.'?$", re.MULTILINE)
+_REQUEST = "_Request"
+NO_FRAMES = Caveat(
+    "frames-not-read", False, "a rosgraph_msgs/Graph has no transforms: they are not compared"
+)
+ONLY_TOPICS = Caveat(
+    "topics-only",
+    True,
+    "no service is in this rosgraph_msgs/Graph: its monitor reports topics only",
+)
+
+
+def is_message(value: object) -> bool:
+    """Is it a message and not a snapshot of ours, which has a schema?"""
+    return (
+        isinstance(value, dict) and "nodes" in value and not value.keys() & {"schema", "endpoints"}
+    )
+
+
+def from_message(value: dict[str, Any], file: str) -> System:
+    """The snapshot that a message describes; raises InputError with file and key."""
+    graph = cast(Graph, record_from(Graph, _without_parameters(value), file))
+    nodes, ends = [], []
+    for node in graph.nodes:
+        nodes.append(Node(_full(node.name, file), ""))
+        ends += [end._replace(name=_full(end.name, file)) for end in _endpoints(node, file)]
+    caveats = [NO_FRAMES]
+    if not any(end.kind == SERVICE for end in ends):
+        caveats.append(ONLY_TOPICS)
+    around = Environment(0, "", (), "", "", False, 0, QUIET, 0.0, tuple(caveats))
+    return System(tuple(nodes), tuple(ends), (), around)
+
+
+def from_yaml(text: str, file: str) -> System:
+    """Read what ``ros2 topic echo --once --full-length`` printed; raises InputError."""
+    import yaml
+
+    if _CUT_SHORT.search(text):
+        hint = "print it with ros2 topic echo --once --full-length"
+        raise InputError(f"{file}: the message is cut short by '...'; {hint}")
+    last = [part for part in re.split(r"^---\s*$", text, flags=re.MULTILINE) if part.strip()][-1]
+    try:
+        value = load_yaml(last)
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        place = f"{file}:{mark.line + 1}" if mark else file
+        reason = getattr(error, "problem", None) or " ".join(str(error).split())
+        raise InputError(f"{place}: not valid YAML: {reason}") from None
+    if not is_message(value):
+        raise InputError(f"{file}: not a rosgraph_msgs/Graph; it has no list of nodes")
+    return from_message(value, file)
+
+
+def _without_parameters(value: dict[str, Any]) -> dict[str, Any]:
+    nodes = value["nodes"]
+    if not isinstance(nodes, list):
+        return value
+    left = ("parameters", "parameter_values")
+    kept = [
+        {key: it for key, it in node.items() if key not in left} if isinstance(node, dict) else node
+        for node in nodes
+    ]
+    return {**value, "nodes": kept}
+
+
+def _full(name: str, file: str) -> str:
+    if not name.startswith("/"):
+        raise InputError(f"{file}: {name!r} is not a full name that starts with /")
+    return name
+
+
+def _endpoints(node: NodeMessage, file: str) -> Iterator[End]:
+    for role, topics in ((PUBLISHES, node.publishers), (SUBSCRIBES, node.subscriptions)):
+        yield from (_topic(it, role, node.name, file) for it in topics)
+    for role, services in ((SERVES, node.service_servers), (CALLS, node.service_clients)):
+        yield from (_service(it, role, node.name) for it in services)
+    for role, actions in ((SERVES, node.action_servers), (CALLS, node.action_clients)):
+        for action in actions:
+            yield from _action(action, role, node.name, file)
+
+
+def _topic(topic: Topic, role: str, node: str, file: str) -> End:
+    version, value = topic.type.hash
+    if not all(0 <= it < 256 for it in (version, *value)):
+        raise InputError(f"{file}: {topic.name}: a byte of the type's hash is not 0 to 255")
+    hash_ = f"RIHS{version:02d}_{bytes(value).hex()}" if any(value) else ""
+    qos = _qos(topic, file)
+    return End(TOPIC, role, topic.name, topic.type.name, hash_, node, qos, "")
+
+
+def _service(service: Service, role: str, node: str) -> End:
+    type_ = service.request_type.name.removesuffix(_REQUEST)
+    return End(SERVICE, role, service.name, type_, "", node, None, "")
+
+
+def _action(action: Action, role: str, node: str, file: str) -> Iterator[End]:
+    """The action, and the services and topics that it is made of, as a snapshot has them."""
+    parts = [_service(it, role, node) for it in action[1:4] if isinstance(it, Service) and it.name]
+    sent = PUBLISHES if role == SERVES else SUBSCRIBES
+    parts += [
+        _topic(it, sent, node, file) for it in action[4:] if isinstance(it, Topic) and it.name
+    ]
+    type_ = action.send_goal.request_type.name.removesuffix(_REQUEST).removesuffix(SEND_GOAL)
+    yield End(ACTION, role, action.name, type_, "", node, None, "")
+    yield from parts
+
+
+def _qos(topic: Topic, file: str) -> Qos | None:
+    qos = topic.qos
+    given = (
+        (HISTORY, qos.history),
+        (RELIABILITY, qos.reliability),
+        (DURABILITY, qos.durability),
+        (LIVELINESS, qos.liveliness),
+    )
+    for known, number in given:
+        if not 0 <= number < len(known):
+            raise InputError(f"{file}: {topic.name}: qos: there is no policy {number}")
+    history, reliability, durability, liveliness = (known[number] for known, number in given)
+    if {reliability, durability} == {UNKNOWN}:
+        return None
+    return Qos(
+        history,
+        qos.depth,
+        reliability,
+        durability,
+        _seconds(qos.deadline),
+        _seconds(qos.lifespan),
+        liveliness,
+        _seconds(qos.liveliness_lease_duration),
+    )
+
+
+def _seconds(duration: Duration) -> float:
+    if duration.sec == _NO_LIMIT or duration == (0, 0):
+        return math.inf
+    return duration.sec + duration.nanosec / 1e9

@@ -1,0 +1,40 @@
+"""A file with a snapshot, in one of its forms: our own JSON, or a message of rosgraph_msgs/Graph."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from multibot_rewrite.base.bounded import MAX_FLEET_BYTES
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.producers.rosgraph.reading import from_message, from_yaml, is_message
+from multibot_rewrite.system.json import from_value, json_value
+from multibot_rewrite.system.merging import Look, merged
+from multibot_rewrite.system.records import System
+
+# A message in YAML starts with its only field; JSON has the name in quotes.
+_MESSAGE = re.compile(rb"\A(?:\xef\xbb\xbf)?(?:\s|#[^\n]*\n|---\s*\n)*nodes:")
+
+
+def read_snapshot(path: str) -> System:
+    """The snapshot in a file; raises InputError with file, what is wrong and what to do."""
+    data = read_file(path, MAX_FLEET_BYTES)
+    if _MESSAGE.match(data):
+        return from_yaml(_text(data, path), path)
+    value = json_value(data, path)
+    if isinstance(value, dict) and is_message(value):
+        return from_message(value, path)
+    return from_value(value, path)
+
+
+def read_snapshots(paths: Sequence[str]) -> System:
+    """What any of these files has seen; raises InputError, and UsageError for two domains."""
+    return merged([Look(path, read_snapshot(path)) for path in paths])
+
+
+def _text(data: bytes, path: str) -> str:
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise InputError(f"{path}: cannot be read: it is not UTF-8; save it as UTF-8") from None

@@ -1,0 +1,124 @@
+"""The frames in a serialized ``tf2_msgs/msg/TFMessage``. Pure.
+
+Source: the plain CDR of DDS, which rmw_zenoh serializes with (``cdr.cpp``): four bytes of
+encapsulation, then each number at a multiple of its size. TFMessage is a list of TransformStamped:
+stamp (int32, uint32), frame_id, child_frame_id, and seven doubles, translation and rotation.
+"""
+
+from __future__ import annotations
+
+import struct
+
+from multibot_rewrite.base.record import NamedTuple
+
+_HEADER = 4
+# CDR_BE and CDR_LE; other encapsulations have other alignment.
+_ENDS = {b"\x00\x00": ">", b"\x00\x01": "<"}
+_STAMP = 8
+
+
+class _Header(NamedTuple):
+    frame_id: str
+
+
+class _Vector(NamedTuple):
+    x: float
+    y: float
+    z: float
+
+
+class _Quaternion(NamedTuple):
+    x: float
+    y: float
+    z: float
+    w: float
+
+
+class _Transform(NamedTuple):
+    translation: _Vector
+    rotation: _Quaternion
+
+
+class _Stamped(NamedTuple):
+    header: _Header
+    child_frame_id: str
+    transform: _Transform
+
+
+class TfMessage(NamedTuple):
+    """A TFMessage without its times; fields as in tf2_msgs."""
+
+    transforms: tuple[_Stamped, ...]
+
+
+def read_tf(data: bytes) -> TfMessage | None:
+    """The message in these bytes, or None if it is cut short or no plain CDR."""
+    mark = _ENDS.get(data[:2])
+    if mark is None:
+        return None
+    try:
+        return _read(_Reader(data[_HEADER:], mark))
+    except (struct.error, UnicodeDecodeError, IndexError):
+        return None
+
+
+def read_header_frame(data: bytes) -> str | None:
+    """The ``header.frame_id`` of a message that begins with a header, or None as above."""
+    mark = _ENDS.get(data[:2])
+    if mark is None:
+        return None
+    try:
+        reader = _Reader(data[_HEADER:], mark)
+        reader.skip(_STAMP)
+        return reader.text()
+    except (struct.error, UnicodeDecodeError, IndexError):
+        return None
+
+
+def _read(reader: _Reader) -> TfMessage:
+    found = []
+    for _ in range(reader.number()):
+        reader.align(4)
+        reader.skip(_STAMP)
+        parent, child = reader.text(), reader.text()
+        reader.align(8)
+        transform = _Transform(_Vector(*reader.doubles(3)), _Quaternion(*reader.doubles(4)))
+        found.append(_Stamped(_Header(parent), child, transform))
+    return TfMessage(tuple(found))
+
+
+class _Reader:
+    """A place in the bytes behind the encapsulation."""
+
+    def __init__(self, data: bytes, mark: str) -> None:
+        self._data = data
+        self._mark, self._number = mark, struct.Struct(f"{mark}I")
+        self._at = 0
+
+    def align(self, size: int) -> None:
+        self._at += -self._at % size
+
+    def skip(self, size: int) -> None:
+        """Raises IndexError behind the end."""
+        self._at += size
+        if self._at > len(self._data):
+            raise IndexError
+
+    def doubles(self, many: int) -> tuple[float, ...]:
+        """So many doubles; raises struct.error behind the end."""
+        values = struct.unpack_from(f"{self._mark}{many}d", self._data, self._at)
+        self._at += 8 * many
+        return values
+
+    def number(self) -> int:
+        """The next uint32; raises struct.error behind the end."""
+        self.align(4)
+        (value,) = self._number.unpack_from(self._data, self._at)
+        self._at += 4
+        return int(value)
+
+    def text(self) -> str:
+        """The next string; its length counts the zero at its end."""
+        length, start = self.number(), self._at
+        self.skip(length)
+        return self._data[start : self._at].removesuffix(b"\x00").decode()

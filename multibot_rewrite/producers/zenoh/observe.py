@@ -1,0 +1,210 @@
+"""A Zenoh router's view of the graph: its liveliness tokens, and the tf that it hears meanwhile.
+
+The tokens are all there at once, so there is nothing to wait for but samples of tf.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from collections.abc import Generator, Iterable, Iterator
+
+from multibot_rewrite.base.plural import plural
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.wording import FEW, SEVERAL, shorten
+from multibot_rewrite.producers.ros.assemble import frames
+from multibot_rewrite.producers.ros.request import Request
+from multibot_rewrite.producers.ros.tf_subscriptions import TfSubscriptions
+from multibot_rewrite.producers.zenoh import tokens
+from multibot_rewrite.producers.zenoh.session import NoRouter, RouterSession, opened
+from multibot_rewrite.producers.zenoh.tf import ZenohTf
+from multibot_rewrite.producers.zenoh.tokens import SPACE, Token, read_token
+from multibot_rewrite.system.records import (
+    CHANGING,
+    EXPECTED,
+    QUIET,
+    TIMEOUT,
+    ZENOH,
+    Caveat,
+    Environment,
+    System,
+)
+
+POLL_SECONDS = 0.05
+# A watched graph is shown so long after a change, because changes come in groups, but not later.
+SETTLE_SECONDS, LONGEST_SETTLE_SECONDS = 0.15, 1.0
+
+
+class Router(NamedTuple):
+    """Where to ask: an endpoint or a session configuration, and the ROS_DOMAIN_ID to look in."""
+
+    address: str
+    domain: int
+
+    def key(self) -> str:
+        """What the tokens of the domain match: rmw_zenoh ``subscription_token``."""
+        return f"{SPACE}/{self.domain}/**"
+
+
+def look(request: Request, router: Router) -> System:
+    """A snapshot of what the router knows now, or once the nodes of ``request.expected`` are there.
+
+    Raises RosUnusable without zenoh, InputError for a bad configuration. Where no router answers the
+    snapshot is empty and says so.
+    """
+    started = time.monotonic()
+    try:
+        with opened(router.address, request.timeout) as session:
+            return _look(session, request, router, started)
+    except NoRouter as error:
+        return _snapshot(router, _Seen(), time.monotonic() - started, [_no_router(router, error)])
+
+
+def watch(request: Request, router: Router) -> Generator[System, None, None]:
+    """Snapshots for ``request.timeout`` seconds, one after each change; raises as ``look``."""
+    started = time.monotonic()
+    try:
+        with opened(router.address, request.timeout) as session:
+            yield from _watch(session, request, router, started)
+    except NoRouter as error:
+        yield _snapshot(router, _Seen(), time.monotonic() - started, [_no_router(router, error)])
+
+
+class _Seen(NamedTuple):
+    """What was read: the tokens, the keys that are none, and the tf heard."""
+
+    tokens: tuple[Token, ...] = ()
+    strange: tuple[str, ...] = ()
+    tf: TfSubscriptions | None = None
+    settled: str = QUIET
+
+
+def _look(session: RouterSession, request: Request, router: Router, started: float) -> System:
+    keys, complete = session.tokens(router.key())
+    while not _all_there(keys, request.expected) and time.monotonic() - started < request.timeout:
+        time.sleep(POLL_SECONDS)
+        keys, complete = session.tokens(router.key())
+    seen = _read(keys)
+    tf = ZenohTf(session, router.domain)
+    tf.listen(tokens.endpoints(seen.tokens), request.timeout - (time.monotonic() - started))
+    settled = _settled(keys, request.expected)
+    caveats = [*_strays(session, seen.tokens, router)] if complete else [_cut_short(router)]
+    seconds = time.monotonic() - started
+    seen = seen._replace(tf=tf.subscriptions, settled=settled)
+    return _snapshot(router, seen, seconds, [*caveats, *tf.caveats(), *_absent(seen, request)])
+
+
+def _read(keys: Iterable[str]) -> _Seen:
+    read = {key: read_token(key) for key in sorted(set(keys))}
+    found = tuple(token for token in read.values() if token)
+    return _Seen(found, tuple(key for key, token in read.items() if token is None))
+
+
+def _all_there(keys: Iterable[str], expected: Iterable[str]) -> bool:
+    return set(expected) <= {token.node for token in _read(keys).tokens}
+
+
+def _settled(keys: Iterable[str], expected: tuple[str, ...]) -> str:
+    if not expected:
+        return QUIET
+    return EXPECTED if _all_there(keys, expected) else TIMEOUT
+
+
+def _absent(seen: _Seen, request: Request) -> Iterator[Caveat]:
+    absent = sorted(set(request.expected) - {token.node for token in seen.tokens})
+    if absent and seen.tokens:
+        text = f"expected nodes not in the graph: {shorten(absent, SEVERAL)}"
+        yield Caveat("expected-not-seen", True, f"{text}; are they started, are the names right?")
+
+
+def _strays(session: RouterSession, found: Iterable[Token], router: Router) -> Iterator[Caveat]:
+    """Where nothing is seen: which domains the router has nodes of."""
+    if any(found):
+        return
+    keys, _ = session.tokens(f"{SPACE}/**")
+    domains = Counter(token.domain for token in _read(keys).tokens)
+    where = ", ".join(map(str, sorted(domains)))
+    remedy = "do the robots use RMW_IMPLEMENTATION=rmw_zenoh_cpp and connect to this router?"
+    if domains:
+        remedy = f"it has nodes of domain {where}; give one with --domain"
+    text = f"the router at {router.address} knows no node of domain {router.domain}; {remedy}"
+    yield Caveat("nothing-seen", True, text)
+
+
+def _no_router(router: Router, error: NoRouter) -> Caveat:
+    remedy = "is one running there (ros2 run rmw_zenoh_cpp rmw_zenohd), and does it let us in?"
+    why = "" if "Unable to connect" in str(error) else f" ({error})"
+    text = f"no Zenoh router answers at {router.address}{why}; {remedy}"
+    return Caveat("no-router", True, text)
+
+
+def _cut_short(router: Router) -> Caveat:
+    text = f"the router at {router.address} did not answer in full; look again"
+    return Caveat("not-settled", True, text)
+
+
+def _watch(
+    session: RouterSession, request: Request, router: Router, started: float
+) -> Iterator[System]:
+    there: set[str] = set()
+    tf = ZenohTf(session, router.domain)
+    before: object = None
+    changed = sent = 0.0
+    end = session.follow_tokens(
+        router.key(), lambda key, up: there.add(key) if up else there.discard(key)
+    )
+    # At once, so that the first view is whole.
+    there.update(session.tokens(router.key())[0])
+    shown: object = None
+    while (now := time.monotonic() - started) < request.timeout:
+        session.deliver()
+        connected = session.connected()
+        state = (frozenset(there), connected, tf.subscriptions.transforms())
+        if state != before:
+            before, changed = state, now
+        quiet = now - changed >= SETTLE_SECONDS
+        if (quiet or now - sent >= LONGEST_SETTLE_SECONDS) and shown != (state, quiet):
+            shown, sent = (state, quiet), now
+            seen = _read(there)
+            tf.update(tokens.endpoints(seen.tokens))
+            seen = seen._replace(tf=tf.subscriptions, settled=QUIET if quiet else CHANGING)
+            caveats = list(tf.caveats()) if connected else [_lost(router)]
+            yield _snapshot(router, seen, now, caveats)
+        time.sleep(POLL_SECONDS)
+    end()
+
+
+def _lost(router: Router) -> Caveat:
+    text = f"the connection to the router at {router.address} is lost; is it still running?"
+    return Caveat("no-router", True, text)
+
+
+def _snapshot(router: Router, seen: _Seen, seconds: float, caveats: Iterable[Caveat]) -> System:
+    nodes = tuple(tokens.nodes(seen.tokens))
+    ends = tuple(tokens.endpoints(seen.tokens))
+    heard = frames(seen.tf.transforms(), ends, last=seen.tf.last) if seen.tf else ()
+    around = Environment(
+        router.domain,
+        "",
+        (),
+        ZENOH,
+        router.address,
+        False,
+        len({token.session for token in seen.tokens}),
+        seen.settled,
+        round(seconds, 2),
+        (*caveats, *_not_tokens(seen.strange), *_twins(node.name for node in nodes)),
+    )
+    return System(nodes, ends, tuple(heard), around)
+
+
+def _not_tokens(keys: tuple[str, ...]) -> Iterator[Caveat]:
+    if keys:
+        text = f"{plural(len(keys), 'token')} left out, not as rmw_zenoh writes them"
+        yield Caveat("strange-token", False, f"{text}: {shorten(keys, FEW)}")
+
+
+def _twins(names: Iterable[str]) -> Iterator[Caveat]:
+    twins = [name for name, times in Counter(names).items() if times > 1]
+    if twins:
+        yield Caveat("same-name", False, f"several nodes have the name {shorten(twins, SEVERAL)}")

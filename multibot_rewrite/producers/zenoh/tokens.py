@@ -1,0 +1,195 @@
+"""Liveliness tokens of rmw_zenoh -> the nodes and endpoints that they announce. Pure.
+
+Source: rmw_zenoh ``rmw_zenoh_cpp/src/detail/liveliness_utils.cpp`` at 3411fde: ``KeyexprIndex`` (the
+parts and their order, lines 98 to 113), ``entity_to_str`` (the kinds), ``qos_to_keyexpr`` and
+``keyexpr_to_qos`` (a field is empty where it has its default), ``mangle_name`` (``/`` is ``%``),
+``Entity::make`` (what is refused); ``qos.cpp`` has the defaults, rmw ``types.h`` the numbers. The
+format is one for all releases: what differs is the session id, whose bytes had no leading zeros at
+first, and the hash, which is ``TypeHashNotSupported`` in Humble. Neither is taken apart here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from functools import lru_cache
+from math import inf
+
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.system.records import (
+    ACTION,
+    CALLS,
+    PUBLISHES,
+    SERVES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+    End,
+    Node,
+    Qos,
+)
+
+SPACE = "@ros2_lv"
+NODE = "NN"
+_ENDS = {
+    "MP": (TOPIC, PUBLISHES),
+    "MS": (TOPIC, SUBSCRIBES),
+    "SS": (SERVICE, SERVES),
+    "SC": (SERVICE, CALLS),
+}
+_NODE_PARTS, _END_PARTS = 9, 13
+_HASH = "RIHS"
+# rmw types.h, by number; qos.cpp has the first default of each.
+_RELIABILITY = ("SYSTEM_DEFAULT", "RELIABLE", "BEST_EFFORT", "UNKNOWN", "BEST_AVAILABLE")
+_DURABILITY = ("SYSTEM_DEFAULT", "TRANSIENT_LOCAL", "VOLATILE", "UNKNOWN", "BEST_AVAILABLE")
+_HISTORY = ("SYSTEM_DEFAULT", "KEEP_LAST", "KEEP_ALL", "UNKNOWN")
+_LIVELINESS = (
+    "SYSTEM_DEFAULT",
+    "AUTOMATIC",
+    "MANUAL_BY_NODE",
+    "MANUAL_BY_TOPIC",
+    "UNKNOWN",
+    "BEST_AVAILABLE",
+)
+_DEFAULT_DEPTH = 42
+# RMW_DURATION_INFINITE: the seconds and nanoseconds of the largest int64.
+_INFINITE_SECONDS = 9223372036
+_INFINITE_NANOSECONDS = 854775807
+# rcl_action names.c and graph.c: who publishes the feedback of an action serves it.
+_FEEDBACK, _FEEDBACK_TYPE = "/_action/feedback", "_FeedbackMessage"
+_ACTION_ROLES = {PUBLISHES: SERVES, SUBSCRIBES: CALLS}
+
+
+class Token(NamedTuple):
+    """What one token announces; ``end`` is None for a node itself.
+
+    ``session`` and ``node_id`` together identify a node, since two may have one name.
+    """
+
+    domain: int
+    session: str
+    node_id: str
+    node: str
+    enclave: str
+    end: End | None
+
+
+class _Malformed(Exception):
+    """A token that rmw_zenoh would not take either."""
+
+
+def read_token(key: str) -> Token | None:
+    """The token with this key expression; None for what rmw_zenoh would not take either."""
+    try:
+        return _token(key)
+    except _Malformed:
+        return None
+
+
+def _token(key: str) -> Token:
+    parts = key.split("/")
+    if len(parts) < _NODE_PARTS or parts[0] != SPACE or "" in parts:
+        raise _Malformed
+    domain, session, node_id, _, kind, enclave, namespace, name = parts[1:_NODE_PARTS]
+    space = _plain(namespace)
+    node = f"{'' if space == '/' else space}/{_plain(name)}"
+    if not node.startswith("/"):
+        raise _Malformed
+    end = None if kind == NODE else _end(kind, node, session, parts[_NODE_PARTS:])
+    return Token(_number(domain), session, node_id, node, _plain(enclave), end)
+
+
+def _end(kind: str, node: str, session: str, rest: Sequence[str]) -> End:
+    if kind not in _ENDS or len(rest) < _END_PARTS - _NODE_PARTS:
+        raise _Malformed
+    name, type_, hash_ = (_plain(part) for part in rest[:3])
+    if not name.startswith("/"):
+        raise _Malformed
+    role = _ENDS[kind]
+    known = hash_ if hash_.startswith(_HASH) else ""
+    return End(*role, name, ros_type(type_), known, node, read_qos(rest[3]), session)
+
+
+def _plain(part: str) -> str:
+    return part.replace("%", "/")
+
+
+def ros_type(name: str) -> str:
+    """``std_msgs::msg::dds_::String_`` as ``std_msgs/msg/String``; any other name as it is.
+
+    Source: rmw_zenoh ``graph_cache.cpp``, ``_demangle_if_ros_type``.
+    """
+    package, found, own = name.partition("dds_::")
+    if not found or not own.endswith("_"):
+        return name
+    return f"{package.replace('::', '/')}{own[:-1]}"
+
+
+# A fleet has thousands of endpoints and a handful of profiles.
+@lru_cache(maxsize=256)
+def read_qos(text: str) -> Qos:
+    """The QoS that a token ends in.
+
+    It is ``reliability:durability:history,depth:deadline:lifespan:liveliness,lease``; the times are
+    ``seconds,nanoseconds``.
+    """
+    parts = [part.split(",") for part in text.split(":")]
+    if [len(part) for part in parts[2:6]] != [2, 2, 2, 3]:
+        raise _Malformed
+    reliability, durability, history, deadline, lifespan, liveliness = parts[:6]
+    return Qos(
+        _word(_HISTORY, history[0], "KEEP_LAST"),
+        _number(history[1], _DEFAULT_DEPTH),
+        _word(_RELIABILITY, reliability[0], "RELIABLE"),
+        _word(_DURABILITY, durability[0], "VOLATILE"),
+        _seconds(*deadline),
+        _seconds(*lifespan),
+        _word(_LIVELINESS, liveliness[0], "AUTOMATIC"),
+        _seconds(*liveliness[1:]),
+    )
+
+
+def _word(known: Sequence[str], text: str, default: str) -> str:
+    number = _number(text, known.index(default))
+    if number >= len(known):
+        raise _Malformed
+    return known[number]
+
+
+def _number(text: str, default: int | None = None) -> int:
+    if not text and default is not None:
+        return default
+    # strtoul takes digits alone here; a longer number overflows there.
+    if not (text.isascii() and text.isdigit()) or len(text) > 19:
+        raise _Malformed
+    return int(text)
+
+
+def _seconds(whole: str, rest: str) -> float:
+    seconds = _number(whole, _INFINITE_SECONDS)
+    nanoseconds = _number(rest, _INFINITE_NANOSECONDS)
+    if seconds >= _INFINITE_SECONDS or seconds == nanoseconds == 0:
+        return inf
+    return seconds + nanoseconds / 1e9
+
+
+def nodes(tokens: Iterable[Token]) -> list[Node]:
+    """One record a node, by name; its process is its session.
+
+    A node is there once one of its endpoints is: rmw_zenoh ``graph_cache.cpp``, ``parse_put``.
+    """
+    found = {(it.node, it.session, it.node_id, it.enclave.rstrip("/")) for it in tokens}
+    return [Node(name, session, enclave) for name, session, _, enclave in sorted(found)]
+
+
+def endpoints(tokens: Iterable[Token]) -> list[End]:
+    """The endpoints in order, with the actions that topics of theirs belong to."""
+    ends = [it.end for it in tokens if it.end]
+    return sorted([*ends, *_actions(ends)], key=repr)
+
+
+def _actions(ends: Iterable[End]) -> Iterator[End]:
+    for end in ends:
+        if end.kind == TOPIC and end.name.endswith(_FEEDBACK) and end.type.endswith(_FEEDBACK_TYPE):
+            role, name = _ACTION_ROLES[end.role], end.name.removesuffix(_FEEDBACK)
+            type_ = end.type.removesuffix(_FEEDBACK_TYPE)
+            yield End(ACTION, role, name, type_, "", end.node, None, end.process)

@@ -1,0 +1,51 @@
+"""xacro arguments that are given and that nothing takes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from multibot_rewrite.base.findings.finding import WARNING
+from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.nearest import did_you_mean_one_of
+from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.rules.settings import EVERY_FILE, ArgumentSet
+from multibot_rewrite.rules.subject import Subject
+
+_HEAD = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
+_BODY = """\
+  <xacro:arg name="{}" default=""/>
+  <link name="$(arg {})base_link"/>
+</robot>
+"""
+
+
+@rule(
+    "MB144",
+    "argument-not-read",
+    WARNING,
+    what="A xacro argument is given (NAME:=VALUE, xacro_args, arguments of a fleet file) that neither "
+    "the file nor one that it includes declares or reads. An argument that is only read, by "
+    "$(arg NAME), is known. Of several files that urdf-lint looks at together, one has to know it; "
+    "if none does, it is told at those that have an argument of a similar name.",
+    why="xacro ignores it without a word: the description is as if it were not given, and a prefix or "
+    "a namespace that was meant for one robot is missing from all its names.",
+    fix="Correct the name; the message says what may be meant. Where the file should take it, declare "
+    'it: <xacro:arg name="NAME" default=""/>.',
+    bad=_HEAD + _BODY.format("tf_prefx", "tf_prefx"),
+    good=_HEAD + _BODY.format("tf_prefix", "tf_prefix"),
+    options={"arguments": (ArgumentSet(EVERY_FILE, (("tf_prefix", "left_"),)),)},
+)
+def argument_not_read(subject: Subject) -> Iterator[Problem]:
+    """Arguments of one expansion; one that is for many files need not be for each."""
+    if not subject.given:
+        return
+    from multibot_rewrite.description.checks.arguments import unread_arguments
+    from multibot_rewrite.description.sources.known_arguments import known_arguments
+
+    known = known_arguments(subject.sources.values())
+    lacking = known.lacks(subject.given) if known else ()
+    others = subject.settings.elsewhere
+    if known and others is not None:
+        lacking = others.lacks(it for it in lacking if did_you_mean_one_of(it, known.names))
+    if known and lacking:
+        yield from unread_arguments(subject.document.root, lacking, known.names)

@@ -1,0 +1,130 @@
+"""Materials of visuals."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from lxml import etree
+
+from multibot_rewrite.base.findings.finding import WARNING
+from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.nearest import Guesses
+from multibot_rewrite.description.checks.numbers import numbers
+from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.rules.facts.elements import Elements
+from multibot_rewrite.rules.facts.memo import memoized
+from multibot_rewrite.rules.subject import Subject
+
+Look = tuple[tuple[float, ...] | str, str]
+
+
+@rule(
+    "MB131",
+    "undefined-material",
+    WARNING,
+    what="A visual refers to a material that neither the robot nor an earlier visual defines, or a "
+    "material of the robot has neither a color nor a texture.",
+    why="urdfdom warns \"material 'm' undefined\" and leaves the visual without a material: "
+    "viewers and Gazebo draw it in their default colour.",
+    fix="Define it once as a child of <robot>, with a <color> or <texture>.",
+    bad='<link name="a">\n'
+    '  <visual><geometry><sphere radius="1"/></geometry><material name="m"/></visual>\n'
+    "</link>\n",
+    good='<link name="a">\n'
+    '  <visual><geometry><sphere radius="1"/></geometry><material name="m"/></visual>\n'
+    "</link>\n"
+    '<material name="m"><color rgba="1 0 0 1"/></material>\n',
+    line=2,
+)
+def undefined_material(subject: Subject) -> Iterator[Problem]:
+    """Read in urdfdom's order: the robot's own materials first, then those of visuals."""
+    tops = _materials(subject.elements)
+    bare = [it for it in tops if not _defines(it)]
+    misspelled = _misspelled(subject) if bare else set()
+    for material in bare:
+        if material not in misspelled:
+            name = material.get("name", "")
+            yield Problem(material, f"material {name!r} has neither colour nor texture", "name")
+    defined = dict.fromkeys(it.get("name", "") for it in tops)
+    guesses = Guesses()
+    for look in _looks(subject):
+        name = look.get("name", "")
+        if name in defined or not name:
+            continue
+        if len(look) and _defines(look):
+            defined[name] = None
+            continue
+        hint = guesses.hint(name, filter(None, defined))
+        yield Problem(look, f"material {name!r} is not defined", "name", hint)
+
+
+def _materials(elements: Elements) -> Sequence[etree._Element]:
+    return elements.tops("material") if elements.root.tag == "robot" else ()
+
+
+@memoized
+def _looks(subject: Subject) -> list[etree._Element]:
+    """The named materials of visuals."""
+    root = subject.document.root
+    links = set(subject.elements.tops("link")) if root.tag == "robot" else set()
+    visuals = {it for it in subject.elements.every("visual") if it.getparent() in links}
+    materials = subject.elements.every("material")
+    return [it for it in materials if it.getparent() in visuals and it.get("name") is not None]
+
+
+def _misspelled(subject: Subject) -> set[etree._Element | None]:
+    """Elements that another rule reports, for themselves or for a child."""
+    elements = [it.element for it in subject.faults]
+    return {*elements, *(it.getparent() for it in elements)}
+
+
+def _defines(material: etree._Element) -> bool:
+    return any(it.get("rgba") or it.get("filename") for it in material.iterchildren("*"))
+
+
+@rule(
+    "MB132",
+    "material-differs",
+    WARNING,
+    what="A visual defines a material whose name is already defined with another colour or "
+    "texture.",
+    why="urdfdom keeps the first definition of a name for the whole robot: the visual gets that "
+    "colour, not its own.",
+    fix="Give the material its own name.",
+    bad='<material name="m"><color rgba="1 0 0 1"/></material>\n'
+    '<link name="a">\n'
+    "  <visual>\n"
+    '    <geometry><sphere radius="1"/></geometry>\n'
+    '    <material name="m"><color rgba="0 1 0 1"/></material>\n'
+    "  </visual>\n"
+    "</link>\n",
+    good='<material name="m"><color rgba="1 0 0 1"/></material>\n'
+    '<link name="a">\n'
+    "  <visual>\n"
+    '    <geometry><sphere radius="1"/></geometry>\n'
+    '    <material name="m"><color rgba="1.0 0 0 1"/></material>\n'
+    "  </visual>\n"
+    "</link>\n",
+    line=5,
+)
+def material_differs(subject: Subject) -> Iterator[Problem]:
+    """Each visual whose own definition is ignored."""
+    looks = [it for it in _looks(subject) if len(it) and it.get("name") and _defines(it)]
+    tops = _materials(subject.elements) if looks else []
+    first = {it.get("name", ""): _look(it) for it in reversed(tops)}
+    for material in looks:
+        name, look = material.get("name", ""), _look(material)
+        if first.setdefault(name, look) != look:
+            hint = "the first definition of the name is used"
+            message = f"material {name!r} has another colour or texture than its first definition"
+            yield Problem(material, message, "name", hint)
+
+
+def _look(material: etree._Element) -> Look:
+    """The colour and the texture of a material."""
+    parts = {it.tag: it for it in reversed(material)}
+    color, texture = parts.get("color"), parts.get("texture")
+    rgba = "" if color is None else color.get("rgba", "")
+    colour = numbers(rgba)
+    image = "" if texture is None else texture.get("filename", "")
+    return rgba if colour is None else colour, image

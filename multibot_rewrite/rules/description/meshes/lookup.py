@@ -1,0 +1,221 @@
+"""Files and packages that do not exist."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from functools import cache
+
+from multibot_rewrite.base.findings.finding import ERROR, NOTE
+from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.description.sources.packages import (
+    entries,
+    find_in,
+    package_folders,
+    package_of,
+)
+from multibot_rewrite.rules.description.meshes.shared import MESH, Used, problem, used_files
+from multibot_rewrite.rules.facts.memo import memoized
+from multibot_rewrite.rules.subject import EXPANDED, Subject
+
+
+class Lookup(NamedTuple):
+    """A file that was looked for: the folders it may be below, its path there, and the path as it
+    is on the disk, empty where it does not exist."""
+
+    used: Used
+    folders: tuple[str, ...]
+    path: str
+    found: str
+
+
+@memoized
+def lookups(subject: Subject) -> tuple[Lookup, ...]:
+    """Each file that can be looked for once, by the first element that names it."""
+    file, roots = subject.document.file.removesuffix(EXPANDED), subject.settings.roots
+    first = {it.name: it for it in reversed(used_files(subject)) if it.scheme in ("package", "")}
+    asked = (it for it in reversed(first.values()) if "$" not in it.name and "\\" not in it.name)
+    folders_of = cache(lambda name, first: _packages(name, first, file, roots))
+    return tuple(_looked_up(it, *_where(it, file, folders_of)) for it in asked)
+
+
+def _looked_up(it: Used, folders: tuple[str, ...], path: str) -> Lookup:
+    if not folders:
+        return Lookup(it, folders, path, "")
+    found = [find_in(folder, path) for folder in folders]
+    exact = os.path.normpath(path)
+    return Lookup(it, folders, path, exact if exact in found else next(filter(None, found), ""))
+
+
+def _where(
+    it: Used, file: str, folders_of: Callable[[str, str], tuple[str, ...]]
+) -> tuple[tuple[str, ...], str]:
+    """The folders in which a file may be, and its path below them."""
+    if it.scheme == "":
+        here = os.path.dirname(os.path.abspath(file))
+        return (here, os.path.dirname(here)), it.path
+    package, _, path = _unquoted(it.path).partition("/")
+    if not package or not path:
+        return (), ""
+    path = path.lstrip("/")
+    return folders_of(package, path.partition("/")[0].lower()), path
+
+
+def _unquoted(path: str) -> str:
+    if "%" not in path:
+        return path
+    from urllib.parse import unquote  # slow to import, and few names need it
+
+    return unquote(path)
+
+
+def _packages(name: str, first: str, file: str, roots: tuple[str, ...]) -> tuple[str, ...]:
+    """The folders that may be a package; ``first`` is the first folder of a path below it."""
+    # A folder without a manifest must at least have that.
+    found = package_folders(name, file, roots)
+    return tuple(it for it in found if _may_be_the_package(entries(it), first))
+
+
+def _may_be_the_package(names: frozenset[str], first: str) -> bool:
+    return "package.xml" in names or any(name.lower() == first for name in names)
+
+
+@rule(
+    "MB701",
+    "mesh-missing",
+    ERROR,
+    what="A mesh or texture file does not exist, though its package does.",
+    why="RViz shows the link without a shape and marks the robot as faulty; Gazebo spawns it "
+    "without that visual or collision, so a wheel falls through the ground.",
+    fix="Correct the path, or add the file to the package and to its install rules.",
+    bad=MESH % "package://arm_description/meshes/base.stl",
+    good=MESH % "package://arm_description/meshes/link.stl",
+    beside={
+        "arm_description/package.xml": "<package><name>arm_description</name></package>",
+        "arm_description/meshes/link.stl": "solid",
+    },
+)
+def mesh_missing(subject: Subject) -> Iterator[Problem]:
+    """Files of packages that were found, and relative ones."""
+    lost: dict[tuple[str, ...], list[Lookup]] = {}
+    for it in lookups(subject):
+        if it.folders and not it.found and not _elsewhere(subject, it):
+            lost.setdefault(_missing_folder(it) or (it.path,), []).append(it)
+    for first, *others in lost.values():
+        near = _nearest(first)
+        hint = f"did you mean {near!r}?" if near else f"looked in {first.folders[0]}"
+        more = f", nor do {len(others)} more in its folder" if others else ""
+        yield problem(first.used, f"{first.used.name!r} does not exist{more}", hint)
+
+
+def _missing_folder(it: Lookup) -> tuple[str, ...]:
+    """The folder that a file should be in, wherever it was looked for; empty if one of them exists."""
+    inner = os.path.dirname(it.path)
+    there = any(not inner or find_in(folder, inner) for folder in it.folders)
+    return () if there else (*it.folders, inner)
+
+
+@rule(
+    "MB713",
+    "mesh-elsewhere",
+    NOTE,
+    what="A relative path does not lead to the file from the folder of the description, and the "
+    "package has it elsewhere.",
+    why="Who reads relative paths starts at a folder of its own: that of the description (yourdfpy, "
+    "MuJoCo, gz), or of the process. robot_state_publisher and RViz get the text of the description, "
+    "not its folder, and show the link without a shape.",
+    fix="Name it from its package: package://PACKAGE/meshes/base.stl.",
+    bad=MESH % "base.stl",
+    good=MESH % "meshes/base.stl",
+    beside={
+        "package.xml": "<package><name>arm_description</name></package>",
+        "meshes/base.stl": "solid",
+    },
+)
+def mesh_elsewhere(subject: Subject) -> Iterator[Problem]:
+    """Relative files that are in the package, but not where the path says."""
+    for it in lookups(subject):
+        found = _elsewhere(subject, it) if it.folders and not it.found else ""
+        if found:
+            yield problem(it.used, f"{it.used.name!r} is not there from here", f"use {found}")
+
+
+def _elsewhere(subject: Subject, it: Lookup) -> str:
+    """A relative file in the description's package, below a folder above it or in meshes."""
+    file = os.path.abspath(subject.document.file.removesuffix(EXPANDED))
+    own = package_of(file) if it.used.scheme == "" else None
+    if own is None:
+        return ""
+    package, root = own
+    tail = os.path.normpath(it.path).replace("../", "")
+    here = os.path.dirname(file)
+    above = [here[: len(here) - len(rest)] for rest in _ends(here[len(root) :])]
+    places = [*((folder, tail) for folder in above), (root, f"meshes/{os.path.basename(tail)}")]
+    for folder, path in places:
+        found = find_in(folder, path)
+        if found:
+            return f"package://{package}/{os.path.relpath(os.path.join(folder, found), root)}"
+    return ""
+
+
+def _ends(path: str) -> list[str]:
+    """The ends of a path that start with a slash, the shortest first, and with it the empty one."""
+    return ["", *(path[at:] for at in range(len(path) - 1, -1, -1) if path[at] == os.sep)]
+
+
+def _nearest(it: Lookup) -> str:
+    from multibot_rewrite.base.nearest import nearest
+
+    folder = os.path.join(it.folders[0], os.path.dirname(it.path))
+    return nearest(os.path.basename(it.path), sorted(entries(folder)))
+
+
+@rule(
+    "MB702",
+    "package-not-found",
+    NOTE,
+    what="A package that holds meshes was not found in the searched folders.",
+    why="Its files were not checked; at run time they are looked up in the packages of the sourced "
+    "workspace.",
+    fix="Give the source folder of the workspace as a root (--roots), or source the workspace.",
+    bad=MESH % "package://arm_description/meshes/base.stl",
+    good=MESH % "package://hand_description/meshes/base.stl",
+    beside={
+        "hand_description/package.xml": "<package><name>hand_description</name></package>",
+        "hand_description/meshes/base.stl": "solid",
+    },
+)
+def package_not_found(subject: Subject) -> Iterator[Problem]:
+    """Once for each package."""
+    lost = [it for it in lookups(subject) if it.path and not it.folders]
+    for package, it in {_package(it): it for it in reversed(lost)}.items():
+        yield problem(it.used, f"package {package!r} was not found", "give its folder with --roots")
+
+
+def _package(it: Lookup) -> str:
+    return it.used.path.partition("/")[0]
+
+
+@rule(
+    "MB703",
+    "mesh-name-case",
+    ERROR,
+    what="The name of a mesh file differs from the file on the disk in upper and lower case.",
+    why="macOS and Windows find it anyway, Linux does not: on the robot and in CI the link has no "
+    "shape.",
+    fix="Use the name of the file as it is on the disk.",
+    bad=MESH % "package://arm_description/meshes/base.stl",
+    good=MESH % "package://arm_description/meshes/Base.STL",
+    beside={
+        "arm_description/package.xml": "<package><name>arm_description</name></package>",
+        "arm_description/meshes/Base.STL": "solid",
+    },
+)
+def mesh_name_case(subject: Subject) -> Iterator[Problem]:
+    """Paths that differ from the file only in upper and lower case."""
+    for it in lookups(subject):
+        if it.found and it.found != os.path.normpath(it.path):
+            message = f"{it.path!r} is {it.found!r} on the disk"
+            yield problem(it.used, message, f"use {it.found!r}")

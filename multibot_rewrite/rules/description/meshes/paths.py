@@ -1,0 +1,173 @@
+"""How files are named: absolute paths, schemes, backslashes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.rules.description.meshes.shared import (
+    MESH,
+    Used,
+    and_more,
+    problem,
+    used_files,
+)
+from multibot_rewrite.rules.facts.source_values import is_fixed, starts_of
+from multibot_rewrite.rules.subject import Subject
+
+
+def _with_scheme(subject: Subject, *schemes: str) -> list[Used]:
+    return [it for it in used_files(subject) if it.scheme in schemes]
+
+
+@rule(
+    "MB704",
+    "path-of-one-machine",
+    WARNING,
+    what="A mesh is named by an absolute path of one machine.",
+    why="On every other machine, in CI and in a container the file does not exist: the link has no "
+    "shape in RViz and none in Gazebo.",
+    fix="Use package://NAME/..., or file://$(find NAME)/... in xacro.",
+    bad=MESH % "file:///home/me/ws/src/arm/meshes/base.stl",
+    good=MESH % "package://arm/meshes/base.stl",
+)
+def path_of_one_machine(subject: Subject) -> Iterator[Problem]:
+    """The first absolute path that is written out in the source, and how many there are."""
+    found = [it for it in _with_scheme(subject, "file") if "$" not in it.name]
+    starts = starts_of(subject, [it.element for it in found])
+    found = [it for it in found if _is_literal(subject, starts[it.element])]
+    if found:
+        message = f"{found[0].name!r} is a path of one machine{and_more(len(found))}"
+        yield problem(found[0], message, "write package://NAME/...")
+
+
+def _is_literal(subject: Subject, start: int) -> bool:
+    return is_fixed(subject, start, "filename", constants=False)
+
+
+@rule(
+    "MB705",
+    "backslash-in-path",
+    WARNING,
+    what="The path of a mesh contains backslashes.",
+    why="On Linux a backslash is an ordinary character of a file name, so no program finds the "
+    "file.",
+    fix="Use slashes.",
+    bad=MESH % r"package://arm\meshes\base.stl",
+    good=MESH % "package://arm/meshes/base.stl",
+)
+def backslash_in_path(subject: Subject) -> Iterator[Problem]:
+    """File names with a backslash."""
+    for it in used_files(subject):
+        if "\\" in it.name:
+            right = it.name.replace("\\", "/")
+            yield problem(it, f"{it.name!r} has backslashes", f"write {right!r}")
+
+
+@rule(
+    "MB706",
+    "mesh-without-file",
+    ERROR,
+    what="A mesh has no file name.",
+    why="Without the attribute urdfdom rejects the robot (urdf_parser link.cpp); if it is empty, "
+    "RViz and Gazebo find nothing to load.",
+    fix="Add the file name, or remove the visual or collision.",
+    bad='<link name="a"><visual><geometry><mesh filename=""/></geometry></visual></link>',
+    good=MESH % "package://arm/meshes/base.stl",
+)
+def mesh_without_file(subject: Subject) -> Iterator[Problem]:
+    """Meshes of a link's shapes with an empty name or none; SDF's have a ``<uri>``."""
+    for mesh in subject.elements.every("mesh"):
+        name = mesh.get("filename")
+        if (name is None or not name.strip()) and _is_shape(mesh):
+            fault = "no file" if name is None else "an empty file name"
+            yield Problem(mesh, f"<mesh> has {fault}", None if name is None else "filename")
+
+
+def _is_shape(mesh: _Element) -> bool:
+    """Is it the shape of a visual or collision of a link?"""
+    above = [str(it.tag) for it in mesh.iterancestors()][:4]
+    return above[:1] + above[2:] == ["geometry", "link", "robot"] and mesh.find("uri") is None
+
+
+@rule(
+    "MB709",
+    "mixed-schemes",
+    NOTE,
+    what="The meshes of one robot are named in different ways: package://, model://, paths.",
+    why="Each program resolves only some of them, so some links have a shape and others none.",
+    fix="Use package:// for all of them.",
+    bad=(MESH % "package://arm/meshes/a.stl")
+    + '<link name="b"><visual><geometry><mesh filename="meshes/b.stl"/></geometry></visual></link>',
+    good=(MESH % "package://arm/meshes/a.stl"),
+    line=2,
+)
+def mixed_schemes(subject: Subject) -> Iterator[Problem]:
+    """The first file that is named in another way than the first."""
+    used = [it for it in used_files(subject) if "$" not in it.name]
+    other = next((it for it in used if it.scheme != used[0].scheme), None)
+    if other is not None:
+        message = f"{other.name!r} and {used[0].name!r}: two ways to name meshes"
+        yield problem(other, message, "use package:// for all")
+
+
+@rule(
+    "MB710",
+    "model-uri",
+    WARNING,
+    what="A mesh is named with model://.",
+    why="Gazebo finds it through its resource path; RViz's resource_retriever supports only "
+    "package://, file:// and http://, and shows the link without a shape.",
+    fix="Use package://NAME/...; both Gazebos convert it to model:// when they load a URDF.",
+    bad=MESH % "model://arm/meshes/base.stl",
+    good=MESH % "package://arm/meshes/base.stl",
+)
+def model_uri(subject: Subject) -> Iterator[Problem]:
+    """The first of them, and how many there are."""
+    found = _with_scheme(subject, "model")
+    if found:
+        message = f"RViz cannot load {found[0].name!r}{and_more(len(found))}"
+        yield problem(found[0], message, "write package://")
+
+
+@rule(
+    "MB711",
+    "mesh-from-the-net",
+    NOTE,
+    what="A mesh is loaded from the network.",
+    why="RViz downloads it at every start, Gazebo supports only URLs of Fuel: without a network, "
+    "or when the page moves, the link has no shape.",
+    fix="Put the file into a package.",
+    bad=MESH % "https://example.org/base.stl",
+    good=MESH % "package://arm/meshes/base.stl",
+)
+def mesh_from_the_net(subject: Subject) -> Iterator[Problem]:
+    """The first of them, and how many there are."""
+    found = _with_scheme(subject, "http", "https")
+    if found:
+        message = f"{found[0].name!r} needs the network{and_more(len(found))}"
+        yield problem(found[0], message, "put it into a package")
+
+
+@rule(
+    "MB712",
+    "find-left-over",
+    ERROR,
+    what="The path of a mesh holds $(find ...), which only xacro understands.",
+    why="In a plain URDF nothing replaces it: no program finds the file.",
+    fix="Name the file .xacro and expand it, or use package://NAME/....",
+    bad=MESH % "file://$(find arm)/meshes/base.stl",
+    good=MESH % "package://arm/meshes/base.stl",
+)
+def find_left_over(subject: Subject) -> Iterator[Problem]:
+    """The first of them, and how many there are; MB105 reports xacro files with a wrong name."""
+    if any("xacro" in str(uri) for uri in subject.document.root.nsmap.values()):
+        return
+    found = [it for it in used_files(subject) if "$(find" in it.name]
+    if found:
+        message = f"{found[0].name!r} holds a xacro substitution{and_more(len(found))}"
+        yield problem(found[0], message, "write package://NAME/...")

@@ -1,0 +1,133 @@
+"""Files, devices, sensors and systems of the world that exist only once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from multibot_rewrite.base.findings.finding import NOTE, WARNING
+from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.description.checks import hazards
+from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.rules.description.multirobot.shared import AS_WRITTEN, process_wide_plugins
+from multibot_rewrite.rules.facts.source_values import claim_is_fixed, is_fixed, starts_of
+from multibot_rewrite.rules.subject import Subject
+
+DEVICE = lazy_compile(
+    r"/dev/\S+|v?can\d+|COM\d+|(?!127\.|0\.0\.0\.0|255\.)\d{1,3}\.\d{1,3}\.\d{1,3}\.\d{1,3}(:\d+)?"
+)
+
+
+@rule(
+    "MB411",
+    "one-controller-file",
+    NOTE,
+    what="A control plugin has a fixed file of controller parameters.",
+    why="Every robot's controller manager reads it. Its keys match only nodes with the names in "
+    "it: in another namespace, without /**, no controller has a type, and its joints are the first "
+    "robot's.",
+    fix="Write the keys as /**/controller_manager; where joints are renamed, give each robot its "
+    "own file through a xacro argument.",
+    bad="<gazebo>\n"
+    '  <plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" filename="gz_ros2_control-system">\n'
+    "    <parameters>/opt/c.yaml</parameters>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    good="<gazebo>\n"
+    '  <plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" filename="gz_ros2_control-system"/>\n'
+    "</gazebo>\n",
+    line=3,
+)
+def one_controller_file(subject: Subject) -> Iterator[Problem]:
+    """Literal ``<parameters>`` of plugins that load a controller manager."""
+    plugins = process_wide_plugins(subject)
+    found = [it for plugin in plugins for it in plugin.iterchildren("parameters")]
+    starts = starts_of(subject, found)
+    for element in found:
+        text = (element.text or "").strip()
+        if text and is_fixed(subject, starts[element], ""):
+            message = f"every robot's controllers read {text.rpartition('/')[2]!r}"
+            yield Problem(element, message, "", "give each robot its own file")
+
+
+@rule(
+    "MB412",
+    "one-device",
+    NOTE,
+    what="A ros2_control hardware component has a fixed serial port, CAN interface or IP address.",
+    why="Two robots would open one device: the second driver fails to connect, or both command the "
+    "same motors.",
+    fix="Make it a xacro argument that each robot's launch sets.",
+    bad='<ros2_control name="h" type="system">\n'
+    '  <hardware><plugin>a/B</plugin><param name="device">/dev/ttyUSB0</param></hardware>\n'
+    "</ros2_control>\n",
+    good='<ros2_control name="h" type="system">\n'
+    '  <hardware><plugin>a/B</plugin><param name="rate">100</param></hardware>\n'
+    "</ros2_control>\n",
+    line=2,
+)
+def one_device(subject: Subject) -> Iterator[Problem]:
+    """Literal parameters that name a device or an address of another machine."""
+    params = subject.document.root.iterfind("ros2_control/hardware/param")
+    found = [it for it in params if DEVICE.fullmatch((it.text or "").strip())]
+    starts = starts_of(subject, found)
+    for element in found:
+        if is_fixed(subject, starts[element], ""):
+            text = (element.text or "").strip()
+            message = f"parameter {element.get('name', '')!r} is {text!r} for every robot"
+            yield Problem(element, message, "", "make it a xacro argument")
+
+
+@rule(
+    "MB415",
+    "sensor-found-by-bare-name",
+    NOTE,
+    what="A plugin looks sensors up by their bare name in the whole world.",
+    why="gz_ros2_control takes the first IMU with that name; the realsense and kobuki plugins find "
+    "none if two have it: the second robot reads the first one's data, or nothing.",
+    fix="Make sensor names differ between robots: a xacro prefix, or urdf-postfix with the layout "
+    "both.",
+    bad='<link name="a"/>\n'
+    '<gazebo reference="a"><sensor name="imu" type="imu"/></gazebo>\n'
+    '<ros2_control name="h" type="system">\n'
+    "  <hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin></hardware>\n"
+    '  <sensor name="imu"/>\n'
+    "</ros2_control>\n",
+    good='<link name="a"/>\n'
+    '<ros2_control name="h" type="system">\n'
+    "  <hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin></hardware>\n"
+    "</ros2_control>\n",
+    line=3,
+)
+def sensor_found_by_bare_name(subject: Subject) -> Iterator[Problem]:
+    """Only if no robots are named: otherwise MB425 knows whether their names differ."""
+    if subject.settings.robots or not _has_fixed_sensor(subject):
+        return
+    for it in hazards.bare_lookups(subject.inventory, AS_WRITTEN):
+        yield it._replace(hint="give sensors a prefix for each robot")
+
+
+def _has_fixed_sensor(subject: Subject) -> bool:
+    declared = subject.inventory.declared["sensor"].values()
+    return any(claim_is_fixed(subject, it) for it in declared)
+
+
+@rule(
+    "MB416",
+    "world-system-in-robot",
+    WARNING,
+    what="The robot loads a gz system that acts on the whole world.",
+    why="gz-sim loads it again with every copy: two Sensors systems crash it (gz-sensors issue "
+    "497), and two Imu systems each publish every IMU of the world (gz-sim Imu.cc).",
+    fix="Load it in the world's SDF and remove it from the robot.",
+    bad="<gazebo>\n"
+    '  <plugin filename="gz-sim-sensors-system" name="gz::sim::systems::Sensors"/>\n'
+    "</gazebo>\n",
+    good="<gazebo>\n"
+    '  <plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive"/>\n'
+    "</gazebo>\n",
+    line=2,
+)
+def world_system_in_robot(subject: Subject) -> Iterator[Problem]:
+    """Plugins whose library is one of the world's systems."""
+    yield from hazards.world_systems(subject.inventory)

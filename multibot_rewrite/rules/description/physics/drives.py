@@ -1,0 +1,160 @@
+"""Drives against the robot: where their wheels are, how large, and which way they turn."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import pi
+
+from multibot_rewrite.base.findings.finding import ERROR, WARNING
+from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.description.checks.links_and_joints import Joint
+from multibot_rewrite.description.checks.numbers import number
+from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.rules.description.physics.shared import LEFT, RIGHT, a_rover, a_wheel
+from multibot_rewrite.rules.facts.drives import (
+    Drive,
+    are_opposite,
+    are_swapped,
+    drives,
+    radius,
+    separation,
+    size_of,
+    wheel_joints,
+)
+from multibot_rewrite.rules.subject import Subject
+
+# A wheel with limits so far apart is not meant to stop, in radians.
+ENDLESS = 20 * pi
+
+
+@rule(
+    "MB620",
+    "wheel-separation",
+    WARNING,
+    what="The wheel separation of a drive is not the distance of its wheels. Where several wheels "
+    "of a side skid in a turn it may be up to twice the distance.",
+    why="The plugin computes the speed of each wheel from it: the robot turns too fast or too "
+    "slowly, and its odometry has a wrong angle after each turn, so maps bend.",
+    fix="Write the distance of the wheels, in metres.",
+    bad=a_rover(LEFT, RIGHT, separation="0.8"),
+    good=a_rover(),
+    line=28,
+)
+def wheel_separation(subject: Subject) -> Iterator[Problem]:
+    """The distance along the axis of the first pair, of joints or of shapes."""
+    for drive in drives(subject):
+        value = size_of(drive, drive.tags.separation, drive.tags.defaults[0])
+        found = separation(subject.robot, *drive.pairs[0], bool(drive.left[1:]))
+        if value is not None and value > 0 and found and not found.holds(value):
+            yield _size(drive, drive.tags.separation, value, "the wheels are", found.best)
+
+
+@rule(
+    "MB621",
+    "wheel-radius",
+    WARNING,
+    what="The wheel radius or diameter of a drive is not that of its wheels.",
+    why="The plugin computes the speed of the wheels from it: the robot drives faster or slower "
+    "than it is told, and its odometry is wrong by the same factor.",
+    fix="Write the size of the wheel's collision shape, in metres.",
+    bad=a_rover(LEFT, RIGHT, radius="0.05"),
+    good=a_rover(),
+    line=29,
+)
+def wheel_radius(subject: Subject) -> Iterator[Problem]:
+    """The radii of round shapes of all wheels of a drive; of other wheels it is unknown."""
+    for drive in drives(subject):
+        value = size_of(drive, drive.tags.radius, drive.tags.defaults[1])
+        found = radius(subject.robot, (*drive.left, *drive.right))
+        unit = drive.tags.radius_of
+        if value is not None and value > 0 and found and not found.holds(value * unit):
+            yield _size(drive, drive.tags.radius, value, "the wheels have", found.best / unit)
+
+
+def _size(drive: Drive, name: str, value: float, words: str, measured: float) -> Problem:
+    element = drive.sizes[name]
+    said = (
+        f"{name} is {value:g} m" if element is not None else f"{name} is not said, and {value:g} m"
+    )
+    message = f"{said}, but {words} {measured:.4g} m" + (" apart" if "sep" in name.lower() else "")
+    place = (drive.plugin, None) if element is None else (element, "")
+    return Problem(place[0], message, place[1], f"write {measured:.4g}")
+
+
+@rule(
+    "MB622",
+    "wheels-swapped",
+    WARNING,
+    what="The left wheel of a drive is on the right, seen in the direction in which a positive "
+    "speed turns the wheels: the joints are swapped, or the axes of both point the wrong way.",
+    why="A command to turn left turns the robot right, and its odometry says left: it drives away from "
+    "its path, and localization is lost at the first turn.",
+    fix="Swap the joints, or turn the axes around, so that they point from the right wheel to the "
+    "left one.",
+    bad=a_rover(a_wheel("left", "-0.2"), a_wheel("right", "0.2")),
+    good=a_rover(),
+    line=26,
+)
+def wheels_swapped(subject: Subject) -> Iterator[Problem]:
+    """The first pair of each drive whose plugin turns left with slower left wheels."""
+    for drive in drives(subject):
+        left, right = drive.pairs[0]
+        way = are_swapped(left, right) if drive.tags.turns_left else 0.0
+        if way:
+            names = f"{left.joint.name!r} is {way:.3g} m right of {right.joint.name!r}"
+            hint = "swap left and right, or turn the axes of both joints around"
+            yield Problem(left.named, f"left wheel {names}", "", hint)
+
+
+@rule(
+    "MB623",
+    "wheel-axes-opposite",
+    WARNING,
+    what="The axes of the left and the right wheel of a drive point in opposite directions.",
+    why="The plugin gives both the same speed to drive straight on: the robot turns on the spot "
+    "instead, and its odometry says that it drives.",
+    fix="Turn one of the axes around: with x forward both are 0 1 0 in the frame of the base.",
+    bad=a_rover(LEFT, a_wheel("right", "-0.2", axis="0 -1 0")),
+    good=a_rover(),
+    line=27,
+)
+def wheel_axes_opposite(subject: Subject) -> Iterator[Problem]:
+    """Pairs whose axes are against each other in the robot's frame."""
+    for drive in drives(subject):
+        for left, right in drive.pairs:
+            if are_opposite(left, right):
+                names = f"{left.joint.name!r} and {right.joint.name!r}"
+                message = f"the axes of wheels {names} point in opposite directions"
+                yield Problem(right.named, message, "", "turn one of them around")
+
+
+@rule(
+    "MB624",
+    "wheel-cannot-turn",
+    ERROR,
+    what="A joint that a drive turns as a wheel is fixed, slides, or stops after less than ten turns.",
+    why="The plugin sets its speed all the same: the robot stands still, or stops after a part of "
+    "a turn. Gazebo removes a fixed joint, and the plugin does not find it.",
+    fix="Make the joint continuous.",
+    bad=a_rover(a_wheel("left", "0.2", "fixed"), RIGHT),
+    good=a_rover(),
+    line=26,
+)
+def wheel_cannot_turn(subject: Subject) -> Iterator[Problem]:
+    """Each such joint that a drive names."""
+    for element, joint in wheel_joints(subject):
+        fault = _fault_of(joint)
+        if fault:
+            yield Problem(element, f"wheel joint {joint.name!r} {fault}", "", "make it continuous")
+
+
+def _fault_of(joint: Joint) -> str:
+    if joint.type in ("fixed", "prismatic"):
+        return f"is {joint.type}: it cannot turn"
+    limit = joint.parts.get("limit")
+    if joint.type != "revolute" or limit is None:
+        return ""
+    lower, upper = number(limit.get("lower", "0")), number(limit.get("upper", "0"))
+    if lower is None or upper is None or upper - lower >= ENDLESS:
+        return ""
+    return f"turns from {lower:g} to {upper:g} radians only"

@@ -1,0 +1,200 @@
+"""The inertia of links: missing, impossible, or in the wrong unit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import hypot, sqrt
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.findings.finding import ERROR, WARNING
+from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.description.checks.links_and_joints import MOMENTS
+from multibot_rewrite.description.checks.numbers import vector
+from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.rules.description.physics.moments import fault_of, impossible, is_negative
+from multibot_rewrite.rules.description.physics.shared import (
+    NOTHING,
+    SHAPES,
+    an_inertial,
+    diagonal,
+    inertials,
+    moves,
+    moving_link,
+    one_link,
+    part_of,
+    parts_with_mass,
+    sizes_of,
+)
+from multibot_rewrite.rules.subject import Subject
+
+# Limits of the radius of gyration: no robot under HEAVY kg is LONG, no part as compact as SHORT; nor
+# is it LARGER or SMALLER times the size of the shapes. A mass below LIGHT is a placeholder.
+LONG, SHORT, HEAVY, LIGHT = 5.0, 1e-4, 500.0, 0.01
+LARGER, SMALLER, SMALL_SHAPE = 50.0, 0.01, 0.01
+
+
+@rule(
+    "MB604",
+    "inertia-missing",
+    ERROR,
+    what="An <inertial> has no inertia, or not all six values of it.",
+    why="urdfdom reports 'Inertial element must have inertia element' and stops reading the link: "
+    "it has no visual and no collision; MuJoCo rejects the file.",
+    fix="Write ixx, ixy, ixz, iyy, iyz and izz, or delete the <inertial>.",
+    bad=one_link(an_inertial(inertia="")),
+    good=one_link(an_inertial()),
+    line=2,
+)
+def inertia_missing(subject: Subject) -> Iterator[Problem]:
+    """Inertials without <inertia>, or with a part of it."""
+    for link, inertial in inertials(subject.robot):
+        if inertial.moments is not None:
+            continue
+        inertia = inertial.element.find("inertia")
+        missing = [] if inertia is None else [it for it in MOMENTS if inertia.get(it) is None]
+        if inertia is None:
+            yield Problem(inertial.element, f"<inertial> of link {link.name!r} has no <inertia>")
+        elif missing:
+            yield Problem(inertia, f"<inertia> of link {link.name!r} has no {', '.join(missing)}")
+
+
+@rule(
+    "MB605",
+    "inertia-zero",
+    WARNING,
+    what="The inertia of a link that moves on its own is 0.",
+    why="MuJoCo rejects the file ('mass and inertia of moving bodies must be larger than "
+    "mjMINVAL'); sdformat accepts it, and the physics engine divides a torque by 0.",
+    fix="Use the inertia of a box or a cylinder with that mass and size.",
+    bad=moving_link(an_inertial(inertia=diagonal("0", "0", "0"))),
+    good=moving_link(an_inertial()),
+    line=10,
+)
+def inertia_zero(subject: Subject) -> Iterator[Problem]:
+    """Bodies with mass and no inertia, also not from a link that is fixed to them."""
+    robot = subject.robot
+    parts: dict[str, int] | None = None
+    for link, inertial in inertials(robot):
+        if not inertial.mass or inertial.mass < 0 or inertial.moments is None:
+            continue
+        if any(abs(it) >= NOTHING for it in inertial.moments) or not moves(robot, link.name):
+            continue
+        parts = parts_with_mass(robot) if parts is None else parts
+        if parts.get(link.name) == 1:
+            message = f"the inertia of link {link.name!r} ({inertial.mass:g} kg) is 0"
+            yield Problem(part_of(inertial, "inertia"), message)
+
+
+@rule(
+    "MB606",
+    "inertia-not-positive",
+    ERROR,
+    what="The inertia of a link is not positive definite: about some axis it is negative.",
+    why="This is physically impossible: sdformat rejects the file ('has invalid inertia'), and so "
+    "does MuJoCo ('inertia must have positive eigenvalues').",
+    fix="Look for a wrong sign, or for off-diagonal values in another unit; CAD programs differ in "
+    "the sign of ixy, ixz and iyz.",
+    bad=one_link(an_inertial(inertia=diagonal("0.1", "0.1", "0.1", ixy="0.2"))),
+    good=one_link(an_inertial(inertia=diagonal("0.1", "0.1", "0.1", ixy="0.02"))),
+    line=4,
+)
+def inertia_not_positive(subject: Subject) -> Iterator[Problem]:
+    """Inertias of bodies with a negative principal moment."""
+    for link, inertial, moments in impossible(subject.robot, merged=False):
+        if is_negative(moments):
+            message = f"inertia of link {link.name!r} {fault_of(moments)}"
+            yield Problem(part_of(inertial, "inertia"), message)
+
+
+@rule(
+    "MB607",
+    "inertia-triangle",
+    ERROR,
+    what="One principal moment of a link's inertia is larger than the sum of the two others.",
+    why="This is physically impossible: sdformat rejects the file ('has invalid inertia'), and so "
+    "does MuJoCo ('inertia must satisfy A + B >= C').",
+    fix="Export the values from the CAD program again: in kg m2, about the centre of mass.",
+    bad=one_link(an_inertial(inertia=diagonal("0.1", "0.1", "0.3"))),
+    good=one_link(an_inertial(inertia=diagonal("0.1", "0.1", "0.2"))),
+    line=4,
+)
+def inertia_triangle(subject: Subject) -> Iterator[Problem]:
+    """Inertias that no distribution of mass has, by more than rounding."""
+    for link, inertial, moments in impossible(subject.robot, merged=False):
+        if not is_negative(moments):
+            message = f"inertia of link {link.name!r} {fault_of(moments)}"
+            yield Problem(part_of(inertial, "inertia"), message)
+
+
+@rule(
+    "MB608",
+    "inertia-scale",
+    WARNING,
+    what="An inertia does not fit the link's mass and size.",
+    why="The simulator uses it as it is: such a link hardly turns, or spins at a touch.",
+    fix="Use kg for the mass and kg m2 for the inertia; 1 kg mm2 is 1e-6 kg m2.",
+    bad=one_link(an_inertial(inertia=diagonal("1000", "1000", "1000"))),
+    good=one_link(an_inertial(inertia=diagonal("0.001", "0.001", "0.001"))),
+    line=4,
+)
+def inertia_scale(subject: Subject) -> Iterator[Problem]:
+    """Radii of gyration that no robot has, or that do not fit the size of the link's shapes."""
+    for link, inertial in inertials(subject.robot):
+        mass, moments = inertial.mass, inertial.moments
+        if mass is None or moments is None or not LIGHT <= mass < HEAVY:
+            continue
+        largest = max(moments[0], moments[3], moments[5])
+        if largest < NOTHING:
+            continue
+        radius = sqrt(largest / mass)
+        if SHORT <= radius <= LONG and 0.1 <= radius <= LARGER * SMALL_SHAPE:
+            continue
+        message = (
+            f"inertia of link {link.name!r}: {mass:g} kg would be {radius:.3g} m from the centre"
+        )
+        if radius > LONG or radius < SHORT:
+            yield Problem(part_of(inertial, "inertia"), message, None, "is the unit right?")
+            continue
+        size = _size(link.element)
+        if size > SMALL_SHAPE and not SMALLER <= radius / size <= LARGER:
+            message += f", its shapes reach {size:.3g} m from the origin"
+            yield Problem(part_of(inertial, "inertia"), message, None, "is the unit right?")
+
+
+@rule(
+    "MB619",
+    "merged-inertia",
+    WARNING,
+    what="A link with a fixed joint, or with links fixed to it, has a physically impossible "
+    "inertia: a principal moment is negative or larger than the sum of the two others.",
+    why="MuJoCo rejects the file. Gazebo merges the links first and rejects the sum if that is "
+    "impossible as well.",
+    fix="Export the values from the CAD program again: in kg m2, about the centre of mass.",
+    bad=moving_link(an_inertial(inertia=diagonal("0.1", "0.1", "0.3"))).replace(
+        "continuous", "fixed"
+    ),
+    good=moving_link(an_inertial()).replace("continuous", "fixed"),
+    line=10,
+)
+def merged_inertia(subject: Subject) -> Iterator[Problem]:
+    """Impossible inertias of links that simulators merge with others."""
+    for link, inertial, moments in impossible(subject.robot, merged=True):
+        message = f"inertia of link {link.name!r} {fault_of(moments)}"
+        yield Problem(part_of(inertial, "inertia"), message)
+
+
+def _size(link: _Element) -> float:
+    """How far a link's shapes reach from its origin; 0 if it has a mesh, whose size is not known."""
+    far = 0.0
+    for geometry in link.iter("geometry"):
+        shape = next(geometry.iterchildren("*"), None)
+        holder = geometry.getparent()
+        if shape is None or holder is None or shape.tag not in SHAPES:
+            return 0.0
+        origin = holder.find("origin")
+        xyz = vector(None if origin is None else origin.get("xyz")) or (0.0, 0.0, 0.0)
+        sizes = sizes_of(shape) or (0.0,)
+        reach = hypot(*sizes) / 2 if shape.tag == "box" else max(sizes)
+        far = max(far, hypot(*xyz) + reach)
+    return far

@@ -1,0 +1,147 @@
+"""What gravity does to a robot: torques beyond a motor's effort, and wheels that do not carry it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import dist
+
+from multibot_rewrite.base.findings.finding import NOTE, WARNING
+from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.description.checks.links_and_joints import Joint, roots
+from multibot_rewrite.description.checks.numbers import value_of
+from multibot_rewrite.description.checks.poses import axis_of, cross, dot, minus
+from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.description.checks.rotation import turned
+from multibot_rewrite.rules.description.examples import a_joint, block
+from multibot_rewrite.rules.description.physics.shared import INERTIA, a_rover, one_link
+from multibot_rewrite.rules.facts.driven import driven_joints
+from multibot_rewrite.rules.facts.drives import drives
+from multibot_rewrite.rules.facts.poses import link_poses
+from multibot_rewrite.rules.facts.support import beyond, contacts, hull
+from multibot_rewrite.rules.facts.weights import NO_WEIGHT, carried
+from multibot_rewrite.rules.subject import Subject
+
+GRAVITY = 9.81
+# A motor that lacks less than this part is a matter of rounding.
+SPARE = 1.02
+# Metres; a support that is missed by less is one of rounding.
+STANDS = 0.003
+DRIVEN = ("revolute", "continuous", "prismatic")
+
+
+def _arm(effort: str) -> str:
+    """An example: 2 kg, 0.5 m beside a joint, whose limit is in line 9."""
+    mass = block("<inertial>", '<origin xyz="0.5 0 0"/>', '<mass value="2"/>', INERTIA)
+    limit = f'<limit lower="-1" upper="1" effort="{effort}" velocity="1"/>'
+    joint = a_joint("j", "revolute", "a", "b", '<axis xyz="0 1 0"/>', limit)
+    return '<link name="a"/>\n' + one_link(mass, name="b") + joint
+
+
+@rule(
+    "MB633",
+    "too-weak-for-gravity",
+    NOTE,
+    what="The weight of what a joint carries is more than its <limit effort>, with all joints at "
+    "0 and the root upright.",
+    why="Gazebo, MuJoCo and ros2_control keep to the effort: the arm sinks as soon as it is "
+    "spawned, and no controller gets it up.",
+    fix="Write the effort of the motor in Nm or N; the hint has the least that holds the pose.",
+    bad=_arm("5"),
+    good=_arm("20"),
+    line=12,
+)
+def too_weak_for_gravity(subject: Subject) -> Iterator[Problem]:
+    """Driven joints with an effort that are not balanced at 0, if 0 is within their limits.
+
+    Where nothing says what is driven, all are.
+    """
+    driven = driven_joints(subject)
+    for joint in subject.robot.joints:
+        if driven and joint.name not in driven:
+            continue
+        limit = joint.parts.get("limit")
+        effort = None if limit is None else value_of(limit, "effort")
+        if limit is None or not effort or effort < 0 or _most(subject, joint) <= effort:
+            continue
+        load = _load(subject, joint) if _holds(joint) else 0.0
+        if load > effort * SPARE:
+            unit = "N" if joint.type == "prismatic" else "Nm"
+            message = (
+                f"joint {joint.name!r} carries {load:.3g} {unit} at 0, its effort is {effort:g}"
+            )
+            yield Problem(limit, message, "effort", f"{load:.3g} {unit} would hold it")
+
+
+def _most(subject: Subject, joint: Joint) -> float:
+    """More than gravity can do at a joint whatever its axis: one quick look, enough for most."""
+    pose, weight = (
+        link_poses(subject).get(joint.child),
+        carried(subject).get(joint.child, NO_WEIGHT),
+    )
+    if pose is None or not weight.mass:
+        return 0.0
+    arm = 1.0 if joint.type == "prismatic" else dist(weight.centre, pose.at)
+    return GRAVITY * weight.mass * arm
+
+
+def _holds(joint: Joint) -> bool:
+    """Does a motor hold this joint, at 0?"""
+    if joint.type not in DRIVEN or "mimic" in joint.parts or joint.type == "continuous":
+        return joint.type == "continuous" and "mimic" not in joint.parts
+    limit = joint.parts["limit"]
+    lower, upper = value_of(limit, "lower", 0.0), value_of(limit, "upper", 0.0)
+    return lower is not None and upper is not None and lower < upper and lower <= 0 <= upper
+
+
+def _load(subject: Subject, joint: Joint) -> float:
+    """The torque or force of gravity at a joint, all joints at 0."""
+    pose, axis = link_poses(subject).get(joint.child), axis_of(joint)
+    weight = carried(subject).get(joint.child, NO_WEIGHT)
+    if pose is None or axis is None or not weight.mass:
+        return 0.0
+    along = turned(pose.matrix, axis)
+    force = (0.0, 0.0, -GRAVITY * weight.mass)
+    if joint.type == "prismatic":
+        return abs(dot(along, force))
+    return abs(dot(along, cross(minus(weight.centre, pose.at), force)))
+
+
+def _cart(xyz: str) -> str:
+    """An example: a rover with a caster, and a load at some place."""
+    ball = block("<collision>", '<geometry><sphere radius="0.1"/></geometry>')
+    caster = one_link(ball, name="ball") + a_joint(
+        "caster", "fixed", "base", "ball", '<origin xyz="-0.3 0 0"/>'
+    )
+    mass = block("<inertial>", f'<origin xyz="{xyz}"/>', '<mass value="9"/>', INERTIA)
+    load = one_link(mass, name="load") + a_joint("on", "fixed", "base", "load")
+    return a_rover() + caster + load
+
+
+@rule(
+    "MB634",
+    "tips-over",
+    WARNING,
+    what="The centre of mass of a robot on wheels is not above the area between its wheels and "
+    "casters.",
+    why="It tips over in the simulator, until its body lies on the ground: wheels lose contact, "
+    "and cameras and lidars look at the floor.",
+    fix="Correct the centres of mass, move a wheel or caster, or add one; the message has the "
+    "distance.",
+    bad=_cart("0.2 0 0"),
+    good=_cart("-0.1 0 0"),
+    line=1,
+)
+def tips_over(subject: Subject) -> Iterator[Problem]:
+    """Robots with a drive whose collisions are all simple, and which stand on more than one point."""
+    points = contacts(subject) if drives(subject) else None
+    corners = hull(points) if points else []
+    if len(corners) < 2:
+        return
+    for root in roots(subject.robot):
+        weight = carried(subject).get(root.name, NO_WEIGHT)
+        way = beyond(corners, weight.centre[:2]) if weight.mass else 0.0
+        if way > STANDS:
+            message = f"the centre of mass is {way:.3g} m outside of the wheels' area: it tips over"
+            x, y, _ = weight.centre
+            hint = f"it is at {x:.3g} {y:.3g} from {root.name!r}; move it or a wheel by {way:.3g} m"
+            yield Problem(root.element, message, None, hint)

@@ -1,0 +1,178 @@
+"""The mass of links, with and without what is fixed to them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.description.checks.links_and_joints import WORLD, Link, Robot, reached
+from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.rules.description.examples import a_joint, a_link, block
+from multibot_rewrite.rules.description.physics.shared import (
+    INERTIA,
+    an_inertial,
+    inertials,
+    moves,
+    moving_link,
+    one_link,
+    part_of,
+)
+from multibot_rewrite.rules.subject import Subject
+
+TINY_MASS = 1e-6
+
+
+@rule(
+    "MB601",
+    "mass-missing",
+    ERROR,
+    what="An <inertial> has no mass.",
+    why="urdfdom reports 'Inertial element must have a mass element' and stops reading the link: "
+    "it has no visual and no collision; MuJoCo rejects the file.",
+    fix='Add <mass value="..."/>, or delete the <inertial>.',
+    bad=one_link(block("<inertial>", INERTIA)),
+    good=one_link(an_inertial()),
+    line=2,
+)
+def mass_missing(subject: Subject) -> Iterator[Problem]:
+    """Inertials without <mass value>."""
+    for link, inertial in inertials(subject.robot):
+        if inertial.mass is None:
+            mass = inertial.element.find("mass")
+            if mass is None:
+                yield Problem(inertial.element, f"<inertial> of link {link.name!r} has no <mass>")
+            elif mass.get("value") is None:
+                yield Problem(mass, f"<mass> of link {link.name!r} has no value", "value")
+
+
+@rule(
+    "MB602",
+    "mass-negative",
+    ERROR,
+    what="A mass is negative.",
+    why="sdformat rejects the file ('has invalid inertia'); MuJoCo rejects a moving body.",
+    fix="Write the mass in kg.",
+    bad=one_link(an_inertial("-1")),
+    good=one_link(an_inertial("1")),
+    line=3,
+)
+def mass_negative(subject: Subject) -> Iterator[Problem]:
+    """Masses below 0."""
+    for link, inertial in inertials(subject.robot):
+        if inertial.mass is not None and inertial.mass < 0:
+            message = f"the mass of link {link.name!r} is {inertial.mass:g} kg"
+            yield Problem(part_of(inertial, "mass"), message, "value")
+
+
+@rule(
+    "MB603",
+    "link-without-mass",
+    WARNING,
+    what="A link has no mass, and neither has any link that is fixed to it, but other links of the "
+    "robot have.",
+    why="Gazebo leaves out the link and everything below it (sdformat: 'is not modeled in sdf'; "
+    "its joint and child joints are 'ignored'); MuJoCo rejects the file.",
+    fix="Add <inertial> with mass and inertia, or make the joint above it fixed.",
+    bad=moving_link(),
+    good=moving_link(an_inertial()),
+    line=7,
+)
+def link_without_mass(subject: Subject) -> Iterator[Problem]:
+    """The uppermost bodies without mass, if the robot has several bodies and some mass."""
+    robot = subject.robot
+    mass = _masses(robot)
+    if len(mass) < 2 or not any(it > 0 for it in mass.values()):
+        return
+    lost: set[str] = set()
+    for name, sum_ in mass.items():
+        link = robot.link.get(name)
+        if link is None or sum_ > 0 or name in lost or name == WORLD or _negative(link):
+            continue
+        if name not in robot.above and name not in robot.below:
+            continue  # no joint has it: MB501
+        below = len(reached(robot, [name], lost)) - 1
+        tail = f", with {below} links below it" if below else ""
+        message = (
+            f"link {name!r} and the links fixed to it have no mass: Gazebo leaves it out{tail}"
+        )
+        yield Problem(link.element, message, "name")
+
+
+@rule(
+    "MB609",
+    "root-inertia",
+    NOTE,
+    what="The root link has an inertia.",
+    why="KDL drops it, and robot_state_publisher warns at every start ('KDL does not support a "
+    "root link with an inertia').",
+    fix="Add a link without inertia above it, connected by a fixed joint.",
+    bad=one_link(an_inertial()),
+    good=a_link("base") + one_link(an_inertial()) + a_joint("j", "fixed", "base", "a"),
+    line=2,
+)
+def root_inertia(subject: Subject) -> Iterator[Problem]:
+    """A root with <inertial>."""
+    robot = subject.robot
+    for link, inertial in inertials(robot):
+        if link.name not in robot.above:
+            yield Problem(inertial.element, f"root link {link.name!r} has an inertia: KDL drops it")
+
+
+@rule(
+    "MB610",
+    "no-inertia",
+    NOTE,
+    what="No link has a mass: the robot cannot be simulated.",
+    why="Gazebo spawns nothing of it; MuJoCo rejects a moving body without mass. RViz and MoveIt "
+    "do not need it.",
+    fix="Add <inertial> to the links, if the robot is to be simulated.",
+    bad='<link name="a"/>\n'
+    '<link name="b"/>\n'
+    '<joint name="j" type="continuous"><parent link="a"/><child link="b"/></joint>\n',
+    good=moving_link(an_inertial()),
+)
+def no_inertia(subject: Subject) -> Iterator[Problem]:
+    """A robot with joints that move and without mass."""
+    robot = subject.robot
+    if any(it.inertial for it in robot.links) or not any(it.type != "fixed" for it in robot.joints):
+        return
+    yield Problem(subject.document.root, "no link has an <inertial>: the robot cannot be simulated")
+
+
+@rule(
+    "MB612",
+    "mass-tiny",
+    NOTE,
+    what="A link that moves on its own weighs less than a milligram.",
+    why="Iterative solvers need many more steps if such a link carries or drives kilograms; MuJoCo "
+    "rejects a body below 1e-15 kg.",
+    fix="Write the real mass, or make the joint fixed.",
+    bad=moving_link(an_inertial("1e-8")),
+    good=moving_link(an_inertial("0.01")),
+    line=8,
+)
+def mass_tiny(subject: Subject) -> Iterator[Problem]:
+    """Bodies of nearly no mass."""
+    robot = subject.robot
+    if not any(it.mass is not None and 0 < it.mass < TINY_MASS for _, it in inertials(robot)):
+        return
+    for name, mass in _masses(robot).items():
+        inertial = robot.link[name].inertial if name in robot.link else None
+        if 0 < mass < TINY_MASS and moves(robot, name) and inertial is not None:
+            message = f"link {name!r} moves and weighs {mass:g} kg"
+            yield Problem(inertial.element, message)
+
+
+def _negative(link: Link) -> bool:
+    return link.inertial is not None and (link.inertial.mass or 0) < 0
+
+
+def _masses(robot: Robot) -> dict[str, float]:
+    """Body -> its mass with all that is fixed to it; what is not a number counts as 1 kg."""
+    mass = dict.fromkeys(robot.body.values(), 0.0)
+    for link, inertial in inertials(robot):
+        body = robot.body.get(link.name)
+        if body is not None:
+            mass[body] += 1.0 if inertial.mass is None else max(inertial.mass, 0.0)
+    return mass

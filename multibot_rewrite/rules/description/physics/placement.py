@@ -1,0 +1,218 @@
+"""Where the parts of a link are: its collision, its visual and its centre of mass."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from math import inf
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.findings.finding import WARNING
+from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.description.checks.links_and_joints import Link
+from multibot_rewrite.description.checks.numbers import Vector, vector
+from multibot_rewrite.description.checks.pose import Pose
+from multibot_rewrite.description.checks.poses import length, minus, pose_in
+from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.description.checks.rotation import is_same
+from multibot_rewrite.description.checks.shapes import Extent, around, extent_of, placed_box
+from multibot_rewrite.rules.description.examples import block
+from multibot_rewrite.rules.description.meshes.boxes import box_of
+from multibot_rewrite.rules.description.physics.shared import (
+    BOX,
+    INERTIA,
+    inertials,
+    one_link,
+    part_of,
+)
+from multibot_rewrite.rules.facts.memo import memoized
+from multibot_rewrite.rules.facts.parts import parts
+from multibot_rewrite.rules.subject import Subject
+
+# Metres between shapes that should be in one place, and between two places of one mesh; smaller shapes
+# mark a point.
+AWAY, MOVED, MARKER = 0.01, 0.05, 0.02
+# A centre of mass outside of its link by more than the link's own size; of one with meshes, by
+# metres. A smaller mass, in kg, is a placeholder.
+FAR, FAR_OF_MESH, LIGHT = 1.0, 3.0, 0.01
+
+
+def _placed(tag: str, xyz: str, shape: str = BOX) -> str:
+    return block(f"<{tag}>", f'<origin xyz="{xyz}"/>', shape)
+
+
+@rule(
+    "MB631",
+    "collision-away",
+    WARNING,
+    what="The collision of a link is not where its visual is: the two do not touch, or are one "
+    "mesh at two places. Of meshes, STL, OBJ and Collada files of up to 4 MB are measured.",
+    why="The robot bumps into what is not there, and drives and reaches through what is; planners keep "
+    "a distance from empty space.",
+    fix="Give <collision> and <visual> the same <origin>.",
+    bad=one_link(_placed("visual", "0 0 0"), _placed("collision", "0 0 3")),
+    good=one_link(_placed("visual", "0 0 0"), _placed("collision", "0 0 0.5")),
+    line=6,
+)
+def collision_away(subject: Subject) -> Iterator[Problem]:
+    """Links with shapes of known size, and links with one mesh for both."""
+    for link in subject.robot.links:
+        seen, hard = _shapes(subject)[link.element]
+        if not seen or not hard or _alike(subject, seen[0], hard[0]):
+            continue
+        box = _around(subject, seen)
+        gap = 0.0 if box is None else _gap(box, _around(subject, hard))
+        gap = 0.0 if gap and _covers_next(subject, link, hard) else gap
+        gap = gap or _moved(subject, seen, hard)
+        if gap:
+            message = f"the collision of link {link.name!r} is {gap:.3g} m away from its visual"
+            yield Problem(hard[0][0], message)
+
+
+_Shapes = list[tuple[_Element, _Element]]
+
+
+@memoized
+def _shapes(subject: Subject) -> Mapping[_Element, tuple[_Shapes, _Shapes]]:
+    """The shapes of each link: those that are seen, and those that bump."""
+    found: dict[_Element, tuple[_Shapes, _Shapes]]
+    found = {it.element: ([], []) for it in subject.robot.links}
+    for link, element, _, shape in parts(subject):
+        if shape is not None and link in found:
+            found[link][element.tag == "collision"].append((element, shape))
+    return found
+
+
+def _alike(
+    subject: Subject, one: tuple[_Element, _Element], other: tuple[_Element, _Element]
+) -> bool:
+    """Are two shapes written alike, at one place? Most are, and nothing has to be computed."""
+    (here, shape), (there, same) = one, other
+    if shape.tag != same.tag or shape.items() != same.items():
+        return False
+    origins = [subject.elements.first("origin").get(it) for it in (here, there)]
+    written = [[] if it is None else it.items() for it in origins]
+    return written[0] == written[1]
+
+
+def _pose(subject: Subject, element: _Element) -> Pose | None:
+    return pose_in(subject.elements.first("origin").get(element))
+
+
+def _around(subject: Subject, shapes: _Shapes) -> Extent | None:
+    """The box around some shapes; None if one of them has no known size."""
+    found = []
+    for element, shape in shapes:
+        own = _pose(subject, element)
+        extent = None if own is None else _extent(subject, shape, own)
+        if extent is None:
+            return None
+        found.append(extent)
+    return around(found)
+
+
+def _extent(subject: Subject, shape: _Element, pose: Pose) -> Extent | None:
+    if shape.tag != "mesh":
+        return extent_of(shape, pose)
+    box = box_of(subject, shape)
+    return placed_box(box, pose) if box else None
+
+
+def _gap(one: Extent, other: Extent | None) -> float:
+    """How far two boxes are apart; 0 where they touch or the other is not known."""
+    if other is None:
+        return 0.0
+    if min(max(minus(it.high, it.low)) for it in (one, other)) < MARKER:
+        return 0.0
+    gap = _apart(one, other)
+    return gap if gap > AWAY else 0.0
+
+
+def _apart(one: Extent, other: Extent) -> float:
+    """How far two boxes are apart; below 0 where one is in the other."""
+    ways = zip(one.low, one.high, other.low, other.high, strict=True)
+    return max(max(low - b, a - high) for low, high, a, b in ways)
+
+
+def _covers_next(subject: Subject, link: Link, hard: _Shapes) -> bool:
+    """Is the collision where a link below is seen? A cylinder of a leg's hip is around the motor that
+    the thigh shows."""
+    own = _around(subject, hard)
+    for joint in subject.robot.below.get(link.name, ()):
+        child, pose = subject.robot.link.get(joint.child), _pose(subject, joint.element)
+        box = _around(subject, _shapes(subject)[child.element][0]) if child else None
+        if box and own and pose and _apart(placed_box(box, pose), own) <= 0:
+            return True
+    return False
+
+
+def _moved(subject: Subject, seen: _Shapes, hard: _Shapes) -> float:
+    """How far the one collision is from the one visual of the same mesh."""
+    if len(seen) != 1 or len(hard) != 1:
+        return 0.0
+    (one, visual), (other, collision) = seen[0], hard[0]
+    if visual.tag != "mesh" or visual.items() != collision.items():
+        return 0.0
+    here, there = _pose(subject, one), _pose(subject, other)
+    # Of a mesh that is turned as well it is unknown where it ends up.
+    if here is None or there is None or not is_same(here.matrix, there.matrix):
+        return 0.0
+    way = length(minus(here.at, there.at))
+    return way if way > MOVED else 0.0
+
+
+def _weighs(xyz: str) -> str:
+    return block("<inertial>", f'<origin xyz="{xyz}"/>', '<mass value="1"/>', INERTIA)
+
+
+@rule(
+    "MB632",
+    "centre-of-mass-outside",
+    WARNING,
+    what="The centre of mass of a link is far outside of it.",
+    why="Gazebo applies its weight there: the robot tips over, swings or shakes when it is "
+    "spawned, and an arm's controller sees torques that the real one does not have.",
+    fix="Write the centre in metres, in the frame of the link; CAD programs may export "
+    "millimetres or the frame of the whole robot.",
+    bad=one_link(_placed("collision", "0 0 0"), _weighs("0 0 3")),
+    good=one_link(_placed("collision", "0 0 0"), _weighs("0 0 0.4")),
+    line=7,
+)
+def centre_of_mass_outside(subject: Subject) -> Iterator[Problem]:
+    """Links whose shapes have a known size; others only where the centre is metres away from all."""
+    for link, inertial in inertials(subject.robot):
+        if (inertial.mass or 0) < LIGHT:
+            continue
+        origin = subject.elements.first("origin").get(inertial.element)
+        centre = None if origin is None else vector(origin.get("xyz"))
+        if centre is None or not any(centre):
+            continue
+        way = _outside(subject, link, centre)
+        if way:
+            message = f"the centre of mass of link {link.name!r} is {way:.3g} m outside of it"
+            yield Problem(part_of(inertial, "origin"), message, "xyz")
+
+
+def _outside(subject: Subject, link: Link, centre: Vector) -> float:
+    """How far a centre is from the shapes of its link, if that is too far."""
+    seen, hard = _shapes(subject)[link.element]
+    shapes = seen + hard
+    # A mesh may show less than what weighs: the shafts of an arm's wrist are within the link before.
+    box = None if any(it.tag == "mesh" for _, it in shapes) else _around(subject, shapes)
+    if box is None:
+        return _far_from_mesh(subject, link, shapes, centre)
+    size = max(minus(box.high, box.low))
+    ways = zip(box.low, box.high, centre, strict=True)
+    way = max(max(low - at, at - high) for low, high, at in ways)
+    return way if way > FAR * size + MOVED else 0.0
+
+
+def _far_from_mesh(subject: Subject, link: Link, shapes: _Shapes, centre: Vector) -> float:
+    """How far it is from all that is known of the link: its joints and the places of its shapes."""
+    if length(centre) < FAR_OF_MESH:
+        return 0.0
+    below = [it.element for it in subject.robot.below.get(link.name, ())]
+    places = [_pose(subject, it) for it in (*below, *(element for element, _ in shapes))]
+    known = [(0.0, 0.0, 0.0), *(it.at for it in places if it is not None)]
+    way = min((length(minus(centre, it)) for it in known), default=inf)
+    return way if way > FAR_OF_MESH else 0.0

@@ -1,0 +1,223 @@
+"""Shapes of visuals and collisions, and the scales of their meshes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.findings.finding import NOTE, WARNING
+from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.description.checks.numbers import Vector, vector
+from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.rules.description.physics.shared import (
+    BOX,
+    SHAPES,
+    an_inertial,
+    moves,
+    moving_link,
+    one_link,
+    sizes_of,
+    visual,
+)
+from multibot_rewrite.rules.facts.elements import Elements
+from multibot_rewrite.rules.facts.memo import memoized
+from multibot_rewrite.rules.facts.parts import parts
+from multibot_rewrite.rules.schema.versions import KNOWN, version_of
+from multibot_rewrite.rules.subject import Subject
+
+REFUSING = KNOWN[2]
+LONG_SHAPE = 50.0
+LARGE_SCALE, SMALL_SCALE, UNEVEN = 50.0, 1e-5, 100.0
+
+
+@rule(
+    "MB611",
+    "visual-without-collision",
+    NOTE,
+    what="A link that moves has <visual> but no <collision>, and no link fixed to it has one.",
+    why="MoveIt plans through it, and in Gazebo it passes through everything.",
+    fix="Add <collision>, with a simpler shape.",
+    bad=moving_link(an_inertial(), f"<visual>{BOX}</visual>"),
+    good=moving_link(an_inertial(), f"<visual>{BOX}</visual>", f"<collision>{BOX}</collision>"),
+    line=7,
+)
+def visual_without_collision(subject: Subject) -> Iterator[Problem]:
+    """Bodies; one finding for the robot where no link has a collision."""
+    robot, root = subject.robot, subject.document.root
+    if root.tag != "robot" or not robot.joints:
+        return
+    touch, seen = _bodies_with(subject, "collision"), _bodies_with(subject, "visual")
+    bare = [it for it in seen if it not in touch and moves(robot, it) and it in robot.link]
+    if not touch and bare[1:]:
+        yield Problem(root, "no link has a <collision>: the robot cannot touch anything")
+        return
+    for name in bare:
+        message = f"link {name!r} has <visual> but no <collision>"
+        yield Problem(robot.link[name].element, message, "name")
+
+
+def _bodies_with(subject: Subject, tag: str) -> dict[str, None]:
+    """The bodies whose links have such an element."""
+    parents = {it.getparent(): None for it in subject.elements.every(tag)}
+    names = [it.get("name", "") for it in parents if it is not None and it.tag == "link"]
+    return {subject.robot.body.get(name, name): None for name in names}
+
+
+@rule(
+    "MB613",
+    "shape-size",
+    WARNING,
+    what="A box, cylinder or sphere has a size of 0 or less.",
+    why="sdformat warns and uses its default of half a metre or a metre; MuJoCo rejects the file "
+    "('size must be positive').",
+    fix="Write the size in metres, or delete the shape.",
+    bad=visual('<box size="0 0 0"/>'),
+    good=visual('<box size="0.1 0.1 0.1"/>'),
+    line=3,
+)
+def shape_size(subject: Subject) -> Iterator[Problem]:
+    """Shapes with a size of 0 or less; from URDF 1.2 on they are refused, which MB125 reports."""
+    if version_of(subject.document.root) >= REFUSING:
+        return
+    for shape, sizes in _shapes(subject):
+        if min(sizes) <= 0:
+            words = " x ".join(f"{it:g}" for it in sizes)
+            message = f"{shape.tag} of link {_owner(shape)!r} has the size {words}"
+            yield Problem(shape, message)
+
+
+@rule(
+    "MB614",
+    "shape-units",
+    WARNING,
+    what="A box, cylinder or sphere is larger than a house.",
+    why="URDF uses metres: the robot is inside of the shape, in collision with itself.",
+    fix="Divide millimetres by 1000.",
+    bad=visual('<box size="300 200 100"/>'),
+    good=visual('<box size="0.3 0.2 0.1"/>'),
+    line=3,
+)
+def shape_units(subject: Subject) -> Iterator[Problem]:
+    """Shapes longer than LONG_SHAPE metres; a long and thin one may be a rail."""
+    for shape, sizes in _shapes(subject):
+        if min(sizes) >= LONG_SHAPE / 5 and max(sizes) >= LONG_SHAPE:
+            words = " x ".join(f"{it:g}" for it in sizes)
+            message = f"{shape.tag} of link {_owner(shape)!r} has the size {words} m"
+            yield Problem(shape, message, None, "are these millimetres?")
+
+
+@rule(
+    "MB615",
+    "shape-missing",
+    WARNING,
+    what="A <visual> or <collision> has no geometry, or a shape that URDF does not have.",
+    why="urdfdom reports 'Could not parse visual element' and stops reading the link: the visuals "
+    "and collisions after it are missing.",
+    fix="Add <geometry> with a box, cylinder, sphere or mesh, or delete the element.",
+    bad=one_link("<visual/>"),
+    good=one_link(f"<visual>{BOX}</visual>"),
+    line=2,
+)
+def shape_missing(subject: Subject) -> Iterator[Problem]:
+    """Elements without a shape that urdfdom reads."""
+    # MB128 reports a capsule in a file of URDF 1.0.
+    known = {*SHAPES, "mesh", "capsule"}
+    for link, element, geometry, shape in (
+        parts(subject) if subject.document.root.tag == "robot" else ()
+    ):
+        if shape is None:
+            lack = "<geometry>" if geometry is None else "shape in its <geometry>"
+            message = f"<{element.tag}> of link {link.get('name')!r} has no {lack}"
+            yield Problem(element, message)
+        elif shape.tag not in known:
+            tag = str(shape.tag).rpartition("}")[2]
+            message = f"<{element.tag}> of link {link.get('name')!r}: unknown shape <{tag}>"
+            yield Problem(shape, message)
+
+
+@rule(
+    "MB616",
+    "mesh-flat",
+    WARNING,
+    what="A mesh is scaled by 0.",
+    why="It becomes flat or a point: it cannot be seen, and as a collision it has no volume.",
+    fix="Use three scales that are not 0.",
+    bad=visual('<mesh filename="a.stl" scale="1 1 0"/>'),
+    good=visual('<mesh filename="a.stl" scale="1 1 1"/>'),
+    line=3,
+)
+def mesh_flat(subject: Subject) -> Iterator[Problem]:
+    """Scales with a 0."""
+    for mesh, scale in _scales(subject):
+        if 0 in scale:
+            words = mesh.get("scale")
+            yield Problem(mesh, f"mesh of link {_owner(mesh)!r} is scaled by {words}", "scale")
+
+
+@rule(
+    "MB617",
+    "mesh-mirrored",
+    NOTE,
+    what="A mesh is scaled by a negative number.",
+    why="A mirror image turns the faces inside out: their normals point inwards, unless the "
+    "program corrects them.",
+    fix="Export the mirrored mesh if that matters.",
+    bad=visual('<mesh filename="a.stl" scale="1 -1 1"/>'),
+    good=visual('<mesh filename="a.stl" scale="1 1 1"/>'),
+    line=3,
+)
+def mesh_mirrored(subject: Subject) -> Iterator[Problem]:
+    """An odd number of negative scales: two of them are a rotation."""
+    for mesh, scale in _scales(subject):
+        if scale[0] * scale[1] * scale[2] < 0:
+            words = mesh.get("scale")
+            yield Problem(mesh, f"mesh of link {_owner(mesh)!r} is mirrored: {words}", "scale")
+
+
+@rule(
+    "MB618",
+    "mesh-scale-units",
+    NOTE,
+    what="The scale of a mesh does not fit any unit.",
+    why="Meshes are in millimetres (0.001), centimetres, inches (0.0254) or metres: the part will "
+    "be much too large, too small or stretched.",
+    fix="Use the same scale three times: 0.001 for a mesh in millimetres.",
+    bad=visual('<mesh filename="a.stl" scale="1000 1000 1000"/>'),
+    good=visual('<mesh filename="a.stl" scale="0.001 0.001 0.001"/>'),
+    line=3,
+)
+def mesh_scale_units(subject: Subject) -> Iterator[Problem]:
+    """Very large, very small, or very different scales."""
+    for mesh, scale in _scales(subject):
+        low, high = min(map(abs, scale)), max(map(abs, scale))
+        if low > 0 and (high >= LARGE_SCALE or low < SMALL_SCALE or high >= UNEVEN * low):
+            words = mesh.get("scale")
+            yield Problem(mesh, f"mesh of link {_owner(mesh)!r} is scaled by {words}", "scale")
+
+
+@memoized
+def _shapes(subject: Subject) -> list[tuple[_Element, tuple[float, ...]]]:
+    """The boxes, cylinders and spheres of a URDF whose sizes are numbers, and those."""
+    read = ((it, sizes_of(it)) for it in _geometries(subject.elements, *SHAPES))
+    return [(shape, sizes) for shape, sizes in read if sizes]
+
+
+def _geometries(elements: Elements, *tags: str) -> Iterator[_Element]:
+    for shape in elements.every(*tags) if elements.root.tag == "robot" else ():
+        parent = shape.getparent()
+        if parent is not None and parent.tag == "geometry":
+            yield shape
+
+
+@memoized
+def _scales(subject: Subject) -> list[tuple[_Element, Vector]]:
+    """The meshes of a URDF that are scaled, and how."""
+    read = ((it, vector(it.get("scale"))) for it in _geometries(subject.elements, "mesh"))
+    return [(mesh, scale) for mesh, scale in read if scale is not None]
+
+
+def _owner(shape: _Element) -> str:
+    """The name of the link that has a shape."""
+    link = next(shape.iterancestors("link"), None)
+    return "" if link is None else link.get("name", "")

@@ -1,0 +1,191 @@
+"""Joints that <ros2_control> and transmissions drive, or should."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.description.checks.links_and_joints import Joint
+from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.rules.description.examples import block
+from multibot_rewrite.rules.description.references.shared import (
+    ARM,
+    FIXED,
+    a_pair,
+    a_system,
+    name_of,
+)
+from multibot_rewrite.rules.facts.driven import driven_joints
+from multibot_rewrite.rules.subject import Subject
+
+# Types that a motor cannot move.
+UNDRIVEN = ("fixed", "floating", "planar", "")
+
+
+@rule(
+    "MB223",
+    "transmission-without-joint",
+    WARNING,
+    what="A <transmission> has no joint.",
+    why="transmission_interface and gazebo_ros_control of ROS 1 skip it ('has no associated "
+    "joints'), so it has no effect.",
+    fix="Add the joint, or delete the transmission.",
+    bad='<transmission name="t"><actuator name="m"/></transmission>',
+    good=ARM + block('<transmission name="t">', '<joint name="j"/>', '<actuator name="m"/>'),
+)
+def transmission_without_joint(subject: Subject) -> Iterator[Problem]:
+    """Transmissions of the robot; those of the PR2 name joints by other tags."""
+    with_joint = subject.elements.first("joint")
+    for it in subject.elements.tops("transmission"):
+        if it in with_joint:
+            continue
+        if not any("joint" in str(child.tag).lower() for child in it.iterchildren("*")):
+            message = f"transmission {it.get('name', '')!r} has no joint"
+            yield Problem(it, message, None, "name its joint")
+
+
+@rule(
+    "MB224",
+    "driven-fixed-joint",
+    ERROR,
+    what="A joint in a <ros2_control> is fixed.",
+    why="From Jazzy on the controller manager rejects the description ('Fixed joints do not make "
+    "sense in ros2_control'); Gazebo removes fixed joints before it looks for them.",
+    fix="Remove the joint, or give it a type that moves.",
+    bad=FIXED + a_system('<joint name="j"/>'),
+    good=ARM + a_system('<joint name="j"/>'),
+    line=7,
+)
+def driven_fixed_joint(subject: Subject) -> Iterator[Problem]:
+    """Joints that ros2_control is to move and that cannot."""
+    for it in _components(subject.document.root):
+        joint = subject.robot.joint.get(it.get("name", ""))
+        if joint is not None and joint.type == "fixed":
+            yield Problem(it, f"joint {joint.name!r} is fixed", "name", "remove it")
+
+
+@rule(
+    "MB225",
+    "fixed-transmission",
+    WARNING,
+    what="A transmission drives a fixed joint.",
+    why="Gazebo removes fixed joints, so gazebo_ros_control does not find the joint and loads no "
+    "hardware at all.",
+    fix="Delete the transmission, or give the joint a type that moves.",
+    bad=FIXED + '<transmission name="t"><joint name="j"/></transmission>\n',
+    good=f'{ARM}<transmission name="t"><joint name="j"/></transmission>',
+    line=6,
+)
+def fixed_transmission(subject: Subject) -> Iterator[Problem]:
+    """Joints of transmissions that cannot move."""
+    if all(it.type != "fixed" for it in subject.robot.joints):
+        return
+    for transmission in subject.elements.tops("transmission"):
+        for it in transmission.iterchildren("joint"):
+            joint = subject.robot.joint.get(it.get("name", ""))
+            if joint is not None and joint.type == "fixed":
+                yield Problem(it, f"joint {joint.name!r} is fixed", "name", "nothing moves it")
+
+
+@rule(
+    "MB226",
+    "commanded-mimic",
+    WARNING,
+    what="A joint that mimics another one has a command interface in <ros2_control>.",
+    why="From Jazzy on the controller manager rejects the description ('Activated mimic joints "
+    'cannot have command interfaces\'), unless the joint has mimic="false".',
+    fix='Delete the command interface; set mimic="false" if the hardware drives both.',
+    bad=a_pair('<mimic joint="j"/>')
+    + a_system(
+        '<joint name="j"/>',
+        block('<joint name="k">', '<command_interface name="position"/>'),
+    ),
+    good=a_pair('<mimic joint="j"/>')
+    + a_system(
+        '<joint name="j"/>',
+        block('<joint name="k">', '<state_interface name="position"/>'),
+    ),
+    line=13,
+)
+def commanded_mimic(subject: Subject) -> Iterator[Problem]:
+    """Mimicking joints with a command interface of their own."""
+    for it, other in _mimicking(subject):
+        if it.find("command_interface") is not None:
+            message = f"joint {it.get('name')!r} mimics {other!r} and has a command interface"
+            yield Problem(it, message, "name", 'delete the interface, or set mimic="false"')
+
+
+@rule(
+    "MB227",
+    "mimic-without-its-joint",
+    WARNING,
+    what="A joint in <ros2_control> mimics one that is not in the same <ros2_control>.",
+    why="From Jazzy on the controller manager rejects the description ('Mimic joint ... not found "
+    "in <ros2_control> tag').",
+    fix='Put both joints in one <ros2_control>, or set mimic="false".',
+    bad=a_pair('<mimic joint="j"/>') + a_system('<joint name="k"/>'),
+    good=a_pair('<mimic joint="j"/>') + a_system('<joint name="j"/>', '<joint name="k"/>'),
+    line=12,
+)
+def mimic_without_its_joint(subject: Subject) -> Iterator[Problem]:
+    """Mimicking joints whose leader is not in the same <ros2_control>."""
+    beside: dict[_Element, set[str]] = {}
+    for it, other in _mimicking(subject):
+        system = it.getparent()
+        assert system is not None
+        if system not in beside:
+            beside[system] = {name_of(joint) for joint in system.iterchildren("joint")}
+        if other not in beside[system]:
+            message = (
+                f"joint {it.get('name')!r} mimics {other!r}, which is not in this <ros2_control>"
+            )
+            yield Problem(it, message, "name", "put both in one <ros2_control>")
+
+
+@rule(
+    "MB228",
+    "undriven-joint",
+    NOTE,
+    what="Other joints are driven by <ros2_control>, transmissions or plugins, but this one is "
+    "not.",
+    why="Nothing moves it. Unless a node publishes its state, robot_state_publisher does not send "
+    "its transform and the links below it have no frame in tf.",
+    fix="Add it to <ros2_control>; if it is passive, publish its state in joint_states.",
+    bad=a_pair() + a_system('<joint name="j"/>'),
+    good=a_pair() + a_system('<joint name="j"/>', '<joint name="k"/>'),
+    line=7,
+)
+def undriven_joint(subject: Subject) -> Iterator[Problem]:
+    """One finding per robot: the joints that were forgotten, or are passive."""
+    if not subject.elements.tops("ros2_control", "transmission"):
+        return
+    named = driven_joints(subject)
+    left = [it for it in subject.robot.joints if it.name not in named and _needs_a_drive(it)]
+    if left and len(left) < sum(map(_needs_a_drive, subject.robot.joints)):
+        names = ", ".join(it.name for it in left[:5]) + (", ..." if len(left) > 5 else "")
+        message = f"nothing drives {len(left)} joints that move: {names}"
+        yield Problem(
+            left[0].element, message, "name", "passive joints need a published state as well"
+        )
+
+
+def _needs_a_drive(joint: Joint) -> bool:
+    return joint.type not in UNDRIVEN and joint.element.find("mimic") is None
+
+
+def _mimicking(subject: Subject) -> Iterator[tuple[_Element, str]]:
+    """Joints in <ros2_control> that follow another one, and which."""
+    for it in _components(subject.document.root):
+        joint = subject.robot.joint.get(it.get("name", ""))
+        mimic = None if joint is None else joint.element.find("mimic")
+        if mimic is not None and it.get("mimic", "").strip().lower() not in ("false", "0"):
+            yield it, mimic.get("joint", "")
+
+
+def _components(root: _Element) -> Iterator[_Element]:
+    """The joints in <ros2_control>."""
+    for system in root.iterchildren("ros2_control"):
+        yield from system.iterchildren("joint")

@@ -1,0 +1,175 @@
+"""Interfaces that controllers claim, in the file of their parameters that belongs to a description."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.findings.finding import WARNING
+from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.outside import is_file
+from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.description.rewriters.text import text_of
+from multibot_rewrite.description.sources.packages import entries, find_in, package_folder
+from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.rules.description.examples import block
+from multibot_rewrite.rules.description.references.shared import (
+    ARM,
+    COMMAND,
+    STATE,
+    a_system,
+    name_of,
+    owners,
+)
+from multibot_rewrite.rules.facts.source_values import is_fixed, starts_of
+from multibot_rewrite.rules.subject import Subject
+
+if TYPE_CHECKING:
+    from multibot_rewrite.rules.system.interfaces import Missing
+    from multibot_rewrite.system.records import Interface
+
+_IN_PACKAGE = lazy_compile(r"(?:\$\(find(?:-pkg-share)?\s+([^)\s]+)\)|package://([^/]+))/(.+)")
+_YAML = (".yaml", ".yml")
+_BESIDE = "controllers"
+_LOADS = block(
+    "<gazebo>",
+    block(
+        '<plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" '
+        'filename="gz_ros2_control-system">',
+        "<parameters>controllers.yaml</parameters>",
+    ),
+)
+_VELOCITY = block('<joint name="j">', '<command_interface name="velocity"/>')
+_POSITION = block('<joint name="j">', '<command_interface name="position"/>')
+
+
+@rule(
+    "MB229",
+    "claimed-interface",
+    WARNING,
+    what="A controller claims an interface that no <ros2_control> exports, or the same one twice. Its "
+    "parameters are in the file that the description loads, or, if it loads none, in the one file "
+    "called *controllers*.yaml in its folder. Of a joint whose interface an argument of xacro chooses "
+    "nothing is said.",
+    why="The controller manager does not activate a controller whose interfaces do not exist.",
+    fix="Name an interface that the description has, or add it to the <ros2_control>.",
+    bad=ARM + a_system(_VELOCITY) + _LOADS,
+    good=ARM + a_system(_POSITION) + _LOADS,
+    line=13,
+    beside={
+        "controllers.yaml": "controller_manager:\n  ros__parameters:\n    forward: "
+        "{type: forward_command_controller/ForwardCommandController}\nforward:\n  ros__parameters: "
+        "{joints: [j], interface_name: position}\n"
+    },
+)
+def claimed_interface(subject: Subject) -> Iterator[Problem]:
+    """Controllers of each file that belongs to a description with a ``<ros2_control>``."""
+    systems = subject.elements.tops("ros2_control")
+    if not systems:
+        return
+    for element, path, is_sure in _files(subject, systems[0]):
+        at = "" if element.tag == "parameters" else None
+        for message, hint in _found_in(subject, path, is_sure):
+            yield Problem(element, message, at, hint)
+
+
+def _chosen(subject: Subject) -> tuple[str, ...]:
+    """How the interfaces begin whose names are chosen by an argument of xacro: the controllers that
+    claim another one are for another choice."""
+    if not subject.origins:
+        return ()
+    interfaces = {
+        it: owner for owner in owners(subject) for it in owner.iterchildren(COMMAND, STATE)
+    }
+    return tuple(
+        f"{str(it.tag).removesuffix('_interface')} interface {name_of(interfaces[it])}/"
+        for it, start in starts_of(subject, interfaces).items()
+        if not is_fixed(subject, start, "name")
+    )
+
+
+def _said(it: Interface) -> str:
+    return f"{it.kind} interface {it.name}"
+
+
+def _at(it: Interface) -> str:
+    return f"{os.path.basename(it.place.file)}:{it.place.line}"
+
+
+def _missing(found: Missing, expanded: bool) -> tuple[str, str]:
+    first, *more = found.claims
+    names = f"{_said(first)} and {len(more)} more" if more else _said(first)
+    # Lines of an expanded xacro are in no file.
+    line = f" (line {found.near.place.line})" if found.near and not expanded else ""
+    near = f"did you mean {found.meant}{line}?" if found.meant else ""
+    message = f"{_at(first)}: {first.node} claims {names}, which no <ros2_control> exports"
+    return message, near or f"name an interface that is there{line}, or add it"
+
+
+def _files(subject: Subject, system: _Element) -> Iterator[tuple[_Element, str, bool]]:
+    """Each file of controllers, where it is named, and whether it is surely this robot's."""
+    named = [
+        element
+        for host in subject.inventory.hosts
+        if host.node.section and host.node.section.process_wide
+        for element in host.element.iterchildren("parameters")
+    ]
+    starts = starts_of(subject, named) if subject.origins else {}
+    for element in named:
+        path = _found(subject, text_of(element))
+        # What an argument of xacro names by default may be the file of another robot.
+        own = element not in starts or is_fixed(subject, starts[element], "")
+        if path.endswith(_YAML) and is_file(path):
+            yield element, path, own
+    if not named:
+        folder = os.path.dirname(os.path.abspath(subject.document.file))
+        beside = [it for it in entries(folder) if _BESIDE in it and it.endswith(_YAML)]
+        if len(beside) == 1:
+            yield system, os.path.join(folder, beside[0]), False
+
+
+def _found(subject: Subject, text: str) -> str:
+    """The path of a file as it is named; empty if its package is not there."""
+    file = subject.document.file
+    named = _IN_PACKAGE.fullmatch(text)
+    if not named:
+        return os.path.join(os.path.dirname(file), text.removeprefix("file://"))
+    folder = package_folder(named[1] or named[2], file, subject.settings.roots)
+    below = find_in(folder, named[3]) if folder else ""
+    return os.path.join(folder, below) if below else ""
+
+
+def _found_in(subject: Subject, path: str, is_sure: bool) -> Iterator[tuple[str, str]]:
+    """Message and hint for what controllers claim and the description lacks."""
+    # Most descriptions have no such file, and a lint of them loads nothing of this.
+    from multibot_rewrite.companions.yaml_text import read_yaml
+    from multibot_rewrite.knowledge.parameters import load_known_nodes
+    from multibot_rewrite.knowledge.stacks import load_nodes
+    from multibot_rewrite.producers.evidence.hardware import exported
+    from multibot_rewrite.producers.evidence.parameter_files import given_nodes
+    from multibot_rewrite.producers.interfaces import control_system
+    from multibot_rewrite.rules.system.interfaces import claimed_twice, claims_any, missing
+    from multibot_rewrite.system.records import EXPORTS
+
+    release, document = subject.settings.distro, subject.document
+    try:
+        given = given_nodes([read_yaml(read_file(path), path)], load_known_nodes("", release))
+    except InputError:
+        # It is said where the file itself is read.
+        return
+    exports = exported(document.root, document.file)
+    interfaces = control_system(given, load_nodes(release), exports).interfaces
+    if not is_sure and not claims_any(interfaces):
+        return
+    chosen = _chosen(subject) if any(missing(interfaces)) else ()
+    rest = [it for it in interfaces if it.role == EXPORTS or not _said(it).startswith(chosen)]
+    for it in missing(rest):
+        yield _missing(it, bool(subject.origins))
+    for _, twice in claimed_twice(interfaces):
+        message = f"{_at(twice)}: {twice.node} claims {twice.name} twice"
+        yield message, "name another joint in one of them"

@@ -1,0 +1,89 @@
+"""Frames that are not links of the robot."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from multibot_rewrite.base.conventions import SENT_FRAMES
+from multibot_rewrite.base.findings.finding import NOTE, WARNING
+from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.model import Claim
+from multibot_rewrite.base.naming import FRAME_KINDS
+from multibot_rewrite.base.nearest import HINTED, meant_name
+from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.description.checks.references import where
+from multibot_rewrite.description.rewriters.spelling import must_be_declared, names_in
+from multibot_rewrite.rules.description.examples import a_link
+from multibot_rewrite.rules.description.references.lookup import references
+from multibot_rewrite.rules.description.references.shared import a_plugin
+from multibot_rewrite.rules.subject import Subject
+
+
+@rule(
+    "MB217",
+    "misspelled-frame",
+    WARNING,
+    what="A frame is not declared, and a link has almost the same name.",
+    why="The messages have a frame_id that tf does not have: every subscriber drops them ('frame "
+    "does not exist').",
+    fix="Correct the name; if another node publishes that frame, suppress the finding.",
+    bad=a_link("base_link")
+    + a_plugin("gazebo_ros_p3d", "p", "<ros/>", "<frame_name>base_lnik</frame_name>"),
+    good=a_link("base_link")
+    + a_plugin("gazebo_ros_p3d", "p", "<ros/>", "<frame_name>base_link</frame_name>"),
+    line=5,
+)
+def misspelled_frame(subject: Subject) -> Iterator[Problem]:
+    """Frames that differ from a link by one typing mistake."""
+    for claim, name, near in _frames(subject):
+        if near:
+            message = f"{where(claim)} names the frame {name!r}, which is not a link"
+            yield Problem(claim.element, message, claim.attribute, f"did you mean {near!r}?")
+
+
+@rule(
+    "MB218",
+    "frame-not-a-link",
+    NOTE,
+    what="The frame of a sensor or plugin is not a link of the robot.",
+    why="Unless another node publishes that frame, tf does not have it and every subscriber drops "
+    "the messages.",
+    fix="Use the name of a link, or make sure that another node publishes the frame.",
+    bad='<link name="a"/>\n'
+    '<gazebo reference="a">\n'
+    '  <sensor name="s" type="imu"><frame_id>imu_frame</frame_id></sensor>\n'
+    "</gazebo>\n",
+    good='<link name="a"/>\n'
+    '<gazebo reference="a">\n'
+    '  <sensor name="s" type="imu"><frame_id>a</frame_id></sensor>\n'
+    "</gazebo>\n",
+    line=3,
+)
+def frame_not_a_link(subject: Subject) -> Iterator[Problem]:
+    """Frames that the robot does not have, and that no localisation publishes."""
+    for claim, name, near in _frames(subject):
+        if not near and not claim.site.default and not name.endswith(SENT_FRAMES):
+            message = f"{where(claim)} names the frame {name!r}, which is not a link"
+            yield Problem(claim.element, message, claim.attribute, "another node must publish it")
+
+
+def _frames(subject: Subject) -> Iterator[tuple[Claim, str, str]]:
+    """Frames that nothing declares, and the link that was meant, if one is near enough."""
+    declared = subject.inventory.declared
+    links = declared["link"]
+    meant: dict[str, str] = {}
+    for claim in references(subject).doubtful if links else ():
+        site = claim.site
+        if FRAME_KINDS.isdisjoint(site.kinds) or "frame" not in site.kinds:
+            continue
+        if must_be_declared(site) or site.form != "whole":
+            continue
+        for name in (part.text for part in names_in(claim, declared)):
+            # A frame_prefix or namespace may come before the link's name at run time.
+            own = name.rpartition("/")[2]
+            known = (it in declared[kind] for it in (own, name) for kind in ("link", *site.kinds))
+            if own in SENT_FRAMES or f"/{own}" in links or any(known):
+                continue
+            if name not in meant:
+                meant[name] = meant_name(own, links) if len(meant) < HINTED else ""
+            yield claim, name, meant[name]

@@ -1,0 +1,98 @@
+"""<gazebo> blocks that contradict each other, or whose reference has two meanings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from multibot_rewrite.base.findings.finding import NOTE, WARNING
+from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.description.checks.references import ambiguous
+from multibot_rewrite.rules.subject import Subject
+
+# The values of a <gazebo> block of which a link has one each (libsdformat parser_urdf.cc); some have
+# two tags.
+SINGLE = {
+    "material": "material",
+    "mu1": "mu1",
+    "mu2": "mu2",
+    "kp": "kp",
+    "kd": "kd",
+    "maxVel": "max_vel",
+    "max_vel": "max_vel",
+    "minDepth": "min_depth",
+    "min_depth": "min_depth",
+    "maxContacts": "max_contacts",
+    "max_contacts": "max_contacts",
+    "laserRetro": "laser_retro",
+    "laser_retro": "laser_retro",
+    "selfCollide": "self_collide",
+    "self_collide": "self_collide",
+    "gravity": "gravity",
+    "dampingFactor": "dampingFactor",
+    "stopCfm": "stop_cfm",
+    "stop_cfm": "stop_cfm",
+    "stopErp": "stop_erp",
+    "stop_erp": "stop_erp",
+    "fudgeFactor": "fudge_factor",
+    "fudge_factor": "fudge_factor",
+    "implicitSpringDamper": "implicit_spring_damper",
+    "implicit_spring_damper": "implicit_spring_damper",
+    "provideFeedback": "provide_feedback",
+    "provide_feedback": "provide_feedback",
+}
+
+
+@rule(
+    "MB203",
+    "link-and-joint",
+    WARNING,
+    what="A <gazebo reference> is the name of both a link and a joint.",
+    why="Both get the block where they can use it, and libsdformat rejects a model in which a link "
+    "and a joint share a name: Gazebo does not spawn the robot.",
+    fix="Rename the joint.",
+    bad='<link name="a"/>\n'
+    '<link name="b"/>\n'
+    '<joint name="b" type="fixed"><parent link="a"/><child link="b"/></joint>\n'
+    '<gazebo reference="b"/>\n',
+    good='<link name="a"/>\n'
+    '<link name="b"/>\n'
+    '<joint name="b_joint" type="fixed"><parent link="a"/><child link="b"/></joint>\n'
+    '<gazebo reference="b"/>\n',
+    line=4,
+)
+def link_and_joint(subject: Subject) -> Iterator[Problem]:
+    """Every such reference."""
+    for it in ambiguous(subject.inventory):
+        yield it._replace(message=it.message.partition(";")[0])
+
+
+@rule(
+    "MB210",
+    "contradicting-blocks",
+    NOTE,
+    what="Two <gazebo> blocks for one link or joint give a property different values.",
+    why="Gazebo uses the later one, with a warning at most: the result depends on the order of the "
+    "blocks.",
+    fix="Keep the right one.",
+    bad='<link name="a"/>\n'
+    '<gazebo reference="a"><mu1>1</mu1></gazebo>\n'
+    '<gazebo reference="a"><mu1>0.2</mu1></gazebo>\n',
+    good='<link name="a"/>\n'
+    '<gazebo reference="a"><mu1>1</mu1></gazebo>\n'
+    '<gazebo reference="a"><mu2>0.2</mu2></gazebo>\n',
+    line=3,
+)
+def contradicting_blocks(subject: Subject) -> Iterator[Problem]:
+    """Properties of which a link or joint has one."""
+    values: dict[tuple[str, str], str] = {}
+    for block in subject.elements.tops("gazebo"):
+        target = block.get("reference", "")
+        for it in block if target else ():
+            if it.tag not in SINGLE:
+                continue
+            text = " ".join((it.text or "").split())
+            earlier = values.setdefault((target, SINGLE[it.tag]), text)
+            if earlier != text:
+                message = f"{it.tag} of {target!r} is {text!r} here and was {earlier!r} before"
+                yield Problem(it, message, "", "keep one")

@@ -1,0 +1,142 @@
+"""Interfaces of ros2_control systems: twice, misspelt, without a state."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import lru_cache
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.nearest import slip_of
+from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.rules.description.examples import block
+from multibot_rewrite.rules.description.references.shared import (
+    ARM,
+    COMMAND,
+    OWNERS,
+    STANDARD,
+    STATE,
+    VELOCITY,
+    driven,
+    hardware_system,
+    name_of,
+    owners,
+)
+from multibot_rewrite.rules.subject import Subject
+
+
+@rule(
+    "MB231",
+    "repeated-interface",
+    ERROR,
+    what="A joint, sensor or gpio of a <ros2_control> has one command or state interface twice.",
+    why="From Jazzy on the resource manager throws 'Tried to insert ... with already existing key' and "
+    "has no hardware; in Humble a handle of the first is lost.",
+    fix="Delete one.",
+    bad=ARM + hardware_system("p/P", block('<joint name="j">', VELOCITY, VELOCITY)),
+    good=ARM + hardware_system("p/P", driven()),
+    line=10,
+)
+def repeated_interface(subject: Subject) -> Iterator[Problem]:
+    """Interfaces of one component."""
+    for owner in owners(subject):
+        seen: set[tuple[str, str]] = set()
+        for it in owner.iterchildren(COMMAND, STATE):
+            key = str(it.tag), name_of(it)
+            if key in seen and key[1]:
+                where = f"{owner.tag} {name_of(owner)!r}"
+                yield Problem(it, f"{where} has {it.tag} {key[1]!r} twice", "name", "delete one")
+            seen.add(key)
+
+
+@rule(
+    "MB232",
+    "interface-of-two-systems",
+    ERROR,
+    what="Two <ros2_control> elements export the same interface of a joint, sensor or gpio.",
+    why="From Jazzy on the resource manager throws 'Tried to insert ... with already existing key'. A "
+    "mock or simulated system beside the real one is the usual case.",
+    fix="Leave the joint to one of them: choose the system by a xacro argument.",
+    bad=ARM + hardware_system("p/P", driven()) + hardware_system("q/Q", driven(), name="t"),
+    good=ARM + hardware_system("p/P", driven()),
+    line=14,
+)
+def interface_of_two_systems(subject: Subject) -> Iterator[Problem]:
+    """One finding for two systems: the first of what both export."""
+    first: dict[str, _Element] = {}
+    both: dict[tuple[_Element, _Element], list[tuple[_Element, str]]] = {}
+    for system in subject.elements.tops("ros2_control"):
+        for owner in system.iterchildren(*OWNERS):
+            for it in owner.iterchildren(COMMAND, STATE):
+                name = f"{it.tag} {name_of(owner)}/{name_of(it)}"
+                there = first.setdefault(name, system)
+                if there is not system:
+                    both.setdefault((there, system), []).append((owner, name))
+    for (there, _), ((owner, name), *others) in both.items():
+        more = f" and {len(others)} more" if others else ""
+        message = f"{name}{more} is in <ros2_control> {name_of(there)!r} as well"
+        yield Problem(owner, message, "name", "leave it to one system")
+
+
+@rule(
+    "MB237",
+    "misspelt-interface",
+    WARNING,
+    what="An interface of a joint has almost the name of one of ros2_control: position, velocity, "
+    "effort, acceleration.",
+    why="Controllers ask for the name as it is: 'positon' is claimed by none, and the controller is "
+    "not activated.",
+    fix="Correct the name.",
+    bad=ARM
+    + hardware_system("p/P", block('<joint name="j">', '<command_interface name="velocty"/>')),
+    good=ARM
+    + hardware_system("p/P", block('<joint name="j">', '<command_interface name="torque"/>')),
+    line=9,
+)
+def misspelt_interface(subject: Subject) -> Iterator[Problem]:
+    """Interfaces of joints."""
+    for owner in owners(subject):
+        for it in owner.iterchildren(COMMAND, STATE) if owner.tag == "joint" else ():
+            name = name_of(it)
+            near = "" if name in STANDARD else _meant(name)
+            if near:
+                message = f"no controller asks for {name!r} of a joint"
+                yield Problem(it, message, "name", f"did you mean {near!r}?")
+
+
+@rule(
+    "MB239",
+    "commanded-joint-without-state",
+    NOTE,
+    what="A joint of a <ros2_control> has command interfaces and no state interface.",
+    why="joint_state_broadcaster has nothing to publish for it, so robot_state_publisher sends no "
+    "transform for the links below; joint_trajectory_controller and diff_drive_controller need its "
+    "position or velocity unless they run open loop.",
+    fix="Add state interfaces, position at least.",
+    bad=ARM + hardware_system("p/P", driven()),
+    good=ARM
+    + hardware_system(
+        "p/P", block('<joint name="j">', VELOCITY, '<state_interface name="position"/>')
+    ),
+    line=8,
+)
+def commanded_joint_without_state(subject: Subject) -> Iterator[Problem]:
+    """One finding a robot: the first of such joints; another system may have the state."""
+    systems = [
+        it for it in subject.elements.tops("ros2_control") if it.find("hardware") is not None
+    ]
+    joints = [joint for system in systems for joint in system.iterchildren("joint")]
+    known = {name_of(it) for it in joints if it.find(STATE) is not None}
+    found = [it for it in joints if it.find(COMMAND) is not None and name_of(it) not in known]
+    if found:
+        more = f" and {len(found) - 1} more" if len(found) > 1 else ""
+        message = f"joint {name_of(found[0])!r}{more} has commands and no state"
+        yield Problem(found[0], message, "name", 'add <state_interface name="position"/>')
+
+
+@lru_cache(maxsize=256)
+def _meant(name: str) -> str:
+    """The interface of ros2_control that is almost called like that."""
+    return slip_of(name, STANDARD)

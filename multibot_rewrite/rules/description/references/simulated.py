@@ -1,0 +1,198 @@
+"""ros2_control in a simulator: what loads it, whose hardware it is, and who else drives its joints."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.findings.finding import ERROR, WARNING
+from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.nearest import slip_of
+from multibot_rewrite.base.outside import is_folder, is_there
+from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.description.rewriters.text import text_of
+from multibot_rewrite.description.sources.packages import in_sources
+from multibot_rewrite.rules.description.examples import block
+from multibot_rewrite.rules.description.references.shared import (
+    ARM,
+    COMMAND,
+    STANDARD,
+    driven,
+    hardware_system,
+    name_of,
+)
+from multibot_rewrite.rules.facts.simulators import (
+    GAZEBO,
+    SIMULATORS,
+    driving,
+    library_of,
+    manager_plugins,
+    simulated,
+    simulator_of,
+)
+from multibot_rewrite.rules.subject import Subject
+
+_GZ = "gz_ros2_control/GazeboSimSystem"
+_CLASSIC = "gazebo_ros2_control/GazeboSystem"
+
+
+def _plugin(library: str, class_: str, *inside: str) -> str:
+    return block("<gazebo>", block(f'<plugin filename="{library}" name="{class_}">', *inside))
+
+
+_FILE = "<parameters>controllers.yaml</parameters>"
+_LOADS = _plugin("gz_ros2_control-system", "gz_ros2_control::GazeboSimROS2ControlPlugin", _FILE)
+_DRIVE = _plugin(
+    *("gz-sim-diff-drive-system", "gz::sim::systems::DiffDrive"),
+    *("<left_joint>j</left_joint>", "<right_joint>j</right_joint>"),
+)
+
+
+@rule(
+    "MB233",
+    "simulated-hardware-not-loaded",
+    WARNING,
+    what="A <ros2_control> has the hardware of a simulator, and no <plugin> of the description loads "
+    "it.",
+    why="Only the simulator's plugin makes a controller manager for this hardware: no joint moves, and "
+    "spawners wait for /controller_manager in vain.",
+    fix="Add the plugin in a <gazebo>, with its file of parameters.",
+    bad=ARM + hardware_system(_GZ, driven()),
+    good=ARM + hardware_system(_GZ, driven()) + _LOADS,
+    line=7,
+)
+def simulated_hardware_not_loaded(subject: Subject) -> Iterator[Problem]:
+    """Systems of simulators in a whole description without any plugin that makes a manager."""
+    if not subject.robot.links or manager_plugins(subject):
+        return
+    for _, it, simulator in simulated(subject):
+        message = (
+            f"nothing loads {text_of(it)}: the description has no plugin of {simulator.name} for it"
+        )
+        yield Problem(it, message, "", f"add a <plugin> with {simulator.plugins[0]}")
+
+
+@rule(
+    "MB234",
+    "no-controllers-file",
+    ERROR,
+    what="The plugin that makes the controller manager in Gazebo has no <parameters>, or a file that "
+    "its package does not have.",
+    why="gz_ros2_control reports 'found an empty parameters file. Failed to initialize': there is no "
+    "controller manager. With a file that does not exist rcl throws.",
+    fix="Name the file of the controllers.",
+    bad=ARM
+    + hardware_system(_GZ, driven())
+    + _LOADS.replace(_FILE, "<hold_joints>true</hold_joints>"),
+    good=ARM + hardware_system(_GZ, driven()) + _LOADS,
+    line=13,
+    beside={"controllers.yaml": "controller_manager: {ros__parameters: {update_rate: 100}}\n"},
+)
+def no_controllers_file(subject: Subject) -> Iterator[Problem]:
+    """Plugins of gz_ros2_control; that of Classic goes on without a file."""
+    for plugin in manager_plugins(subject):
+        library = library_of(plugin)
+        given = [it for it in plugin.iterchildren("parameters") if text_of(it)]
+        if not given and library in GAZEBO.plugins:
+            yield Problem(
+                plugin, f"{library} has no <parameters>", None, "name the controllers' file"
+            )
+        for it in given:
+            path = text_of(it)
+            # Where xacro has expanded $(find), the folder of the package is there.
+            home = os.path.dirname(os.path.dirname(path))
+            is_here = subject.origins and os.path.isabs(path) and is_folder(home)
+            if is_here and not is_there(path) and not in_sources(path):
+                yield Problem(it, f"there is no file {path}", "", "correct the path")
+
+
+@rule(
+    "MB235",
+    "hardware-of-other-simulator",
+    ERROR,
+    what="The hardware class of a <ros2_control> is for another simulator than the plugin that makes "
+    "the controller manager.",
+    why="The plugin looks for the class among those of its own simulator and reports that it failed to "
+    "load: no joint has an interface.",
+    fix="Write the class of the plugin's simulator; the hint has it.",
+    bad=ARM + hardware_system(_CLASSIC, driven()) + _LOADS,
+    good=ARM + hardware_system(_GZ, driven()) + _LOADS,
+    line=7,
+)
+def hardware_of_other_simulator(subject: Subject) -> Iterator[Problem]:
+    """Systems of one simulator where there are plugins of the other alone."""
+    libraries = {library_of(it) for it in manager_plugins(subject)}
+    there = [it for it in SIMULATORS if libraries & set(it.plugins)]
+    for _, it, simulator in simulated(subject):
+        if there and simulator not in there:
+            message = f"{text_of(it)} is for {simulator.name}, the plugin is of {there[0].name}"
+            yield Problem(it, message, "", f"did you mean {there[0].hardware[0]}?")
+
+
+@rule(
+    "MB236",
+    "joint-with-two-drivers",
+    WARNING,
+    what="A plugin of the simulator drives a joint that the simulated <ros2_control> commands, too, or "
+    "that another plugin drives.",
+    why="Both set its velocity in every step and the last one wins: the robot ignores one of its "
+    "commands, or twitches.",
+    fix="Keep the plugin or the controller.",
+    bad=ARM + hardware_system(_GZ, driven()) + _LOADS + _DRIVE,
+    good=ARM
+    + hardware_system(_GZ, block('<joint name="j">', '<state_interface name="velocity"/>'))
+    + _LOADS
+    + _DRIVE,
+    line=19,
+    beside={"controllers.yaml": "controller_manager: {ros__parameters: {update_rate: 100}}\n"},
+)
+def joint_with_two_drivers(subject: Subject) -> Iterator[Problem]:
+    """Joints that plugins drive, against command interfaces and each other: once a joint.
+
+    Whoever has a command interface of a joint holds it while no controller claims it (``hold_joints``).
+    """
+    rivals = {
+        (name_of(joint), simulator.name): "<ros2_control>"
+        for system, _, simulator in simulated(subject)
+        for joint in system.iterchildren("joint")
+        if joint.find(COMMAND) is not None
+    }
+    by: dict[tuple[str, str], _Element] = {}
+    told: set[tuple[str, str]] = set()
+    for it, plugin in driving(subject):
+        # A file may have plugins for both simulators; each loads its own.
+        key = text_of(it), simulator_of(plugin).name
+        other = by.setdefault(key, plugin)
+        rival = rivals.get(key) or (library_of(other) if other is not plugin else "")
+        if rival and key not in told:
+            told.add(key)
+            yield Problem(it, f"{rival} commands joint {key[0]!r} as well", "", "keep one of them")
+
+
+@rule(
+    "MB238",
+    "interface-not-simulated",
+    WARNING,
+    what="A joint has a command interface that the hardware of its simulator does not export.",
+    why="GazeboSimSystem and GazeboSystem know position, velocity and effort and pass over the rest: "
+    "controllers that claim it are not activated in simulation.",
+    fix="Leave it out in simulation, or use one that is simulated.",
+    bad=ARM
+    + hardware_system(_GZ, block('<joint name="j">', '<command_interface name="acceleration"/>'))
+    + _LOADS,
+    good=ARM + hardware_system(_GZ, driven()) + _LOADS,
+    line=9,
+    beside={"controllers.yaml": "controller_manager: {ros__parameters: {update_rate: 100}}\n"},
+)
+def interface_not_simulated(subject: Subject) -> Iterator[Problem]:
+    """Command interfaces of joints in systems of simulators; misspelt ones are MB237's."""
+    for system, plugin, simulator in simulated(subject):
+        for joint in system.iterchildren("joint"):
+            for it in joint.iterchildren(COMMAND):
+                name = name_of(it)
+                known = name in simulator.takes or not name or slip_of(name, STANDARD) != ""
+                if not known or name == "acceleration":
+                    message = f"{text_of(plugin)} exports no command interface {name!r}"
+                    yield Problem(it, message, "name", f"it knows {', '.join(simulator.takes)}")

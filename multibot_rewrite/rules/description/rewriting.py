@@ -1,0 +1,145 @@
+"""MB9: what a rewrite for several robots leaves as it is, because its meaning is not known."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import partial
+
+from multibot_rewrite.base.findings.finding import NOTE, WARNING
+from multibot_rewrite.base.findings.rule import SRDF, URDF, rule
+from multibot_rewrite.description.checks.audit import (
+    included_models,
+    other_releases,
+    other_ros,
+    unknown_hardware,
+    unknown_plugins,
+)
+from multibot_rewrite.description.checks.mentions import MENTIONED, as_problem, unclaimed_mentions
+from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.description.rewriters.tree import Tree
+from multibot_rewrite.description.steps.collect import Inventory
+from multibot_rewrite.description.steps.document import slot_values
+from multibot_rewrite.rules.subject import Subject
+
+
+@rule(
+    "MB901",
+    "unclaimed-mention",
+    WARNING,
+    what="A value holds the name of a link, joint or light, and the vocabulary does not say what the "
+    "value means.",
+    why="Where these are renamed for each robot, this value keeps the old name: the plugin that "
+    "reads it looks for a link, joint or light that no longer exists.",
+    fix="Add a line to a vocabulary file that says it is a name, or that it must stay as it is.",
+    bad='<link name="gripper_left"/><custom><grasp part="gripper_left"/></custom>',
+    good='<link name="gripper_left"/><custom><grasp part="left"/></custom>',
+    formats=(URDF, SRDF),
+)
+def unclaimed_mention(subject: Subject) -> Iterator[Problem]:
+    """Values that no site claims and that hold a declared name."""
+    inventory = subject.inventory
+    names = {name for kind in MENTIONED for name in inventory.declared[kind]}
+    if not names:
+        return
+    values = slot_values(subject.document.root)
+    mentions = unclaimed_mentions(inventory, values, names, subject.tree)
+    yield from map(as_problem, mentions)
+
+
+Audit = Callable[[Inventory, Tree], Iterator[Problem]]
+
+
+def _audit(audit: Audit, subject: Subject) -> Iterator[Problem]:
+    """What an audit of the vocabulary finds in a document."""
+    return audit(subject.inventory, subject.tree)
+
+
+unknown_plugin = rule(
+    "MB902",
+    "unknown-plugin",
+    NOTE,
+    what="A plugin is not in the vocabulary.",
+    why="Its parameters that name links, joints, frames or topics stay as they are for every "
+    "robot, unless other plugins have parameters with the same names.",
+    fix="Add a section for it to a vocabulary file.",
+    bad='<gazebo><plugin name="p" filename="libmy_company_thing.so"/></gazebo>',
+    good='<gazebo><plugin name="p" filename="libgazebo_ros_p3d.so"/></gazebo>',
+)(partial(_audit, unknown_plugins))
+
+unknown_hardware_class = rule(
+    "MB903",
+    "unknown-hardware",
+    NOTE,
+    what="A ros2_control hardware class with parameters is not in the vocabulary.",
+    why="One of its parameters may be a name, or a prefix that the driver puts in front of names: "
+    "it stays as it is for every robot.",
+    fix="Add a section for it to a vocabulary file.",
+    bad='<ros2_control name="h" type="system">\n'
+    "  <hardware>\n"
+    "    <plugin>my_company/Arm</plugin>\n"
+    '    <param name="side">left</param>\n'
+    "  </hardware>\n"
+    "</ros2_control>\n",
+    good='<ros2_control name="h" type="system">\n'
+    "  <hardware><plugin>my_company/Arm</plugin></hardware>\n"
+    "</ros2_control>\n",
+)(partial(_audit, unknown_hardware))
+
+parameter_of_ros_1 = rule(
+    "MB904",
+    "parameter-of-ros-1",
+    NOTE,
+    what="A Gazebo Classic plugin of ROS 2 has parameters that only its ROS 1 version reads.",
+    why="A plugin with a <ros> is one of ROS 2, which takes its topics from there: a topic, frame or "
+    "joint in such a parameter has no effect, with one robot or several.",
+    fix="Delete it, or say it with <ros> and the parameters of the ROS 2 plugin.",
+    bad="<gazebo>\n"
+    '  <plugin name="move" filename="libgazebo_ros_planar_move.so">\n'
+    "    <ros><namespace>/demo</namespace></ros>\n"
+    "    <commandTopic>cmd_vel</commandTopic>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    good="<gazebo>\n"
+    '  <plugin name="move" filename="libgazebo_ros_planar_move.so">\n'
+    "    <ros><namespace>/demo</namespace></ros>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    line=2,
+)(partial(_audit, other_ros))
+
+row_of_another_release = rule(
+    "MB905",
+    "row-of-another-release",
+    NOTE,
+    what="A plugin has a parameter that the vocabulary knows, and its release does not read it.",
+    why="A row of the vocabulary may hold in some releases only (releases=). In the others the "
+    "parameter has no effect, so no name in it is renamed.",
+    fix="Delete the parameter, or name the release that the description is for: --distro, or distro: "
+    "in a fleet file.",
+    bad='<gazebo><plugin name="p" filename="libmy_lamp.so"><lamp_link>a</lamp_link></plugin></gazebo>',
+    good='<gazebo><plugin name="p" filename="libmy_lamp.so"><link>a</link></plugin></gazebo>',
+    beside={
+        "my.vocab": "[plugin my_lamp]\nlamp_link uses link releases=<=jazzy\n"
+        "link uses link releases=kilted+\n"
+    },
+    options={"vocabulary": ["my.vocab"], "distro": "lyrical"},
+)(partial(_audit, other_releases))
+
+included_model = rule(
+    "MB906",
+    "included-model",
+    NOTE,
+    what="A model of an SDF includes a model of another file.",
+    why="That file is not read with this one: its sensors and plugins have the same topics, nodes and "
+    "frames for all robots, unless they are made of the model's name.",
+    fix="Rewrite its model.sdf for each robot, and write the model in place of its <include>.",
+    bad='<?xml version="1.0"?><sdf version="1.9"><model name="rover">\n'
+    '  <link name="base"/>\n'
+    "  <include><uri>model://lidar</uri><name>front</name></include>\n"
+    "</model></sdf>\n",
+    good='<?xml version="1.0"?><sdf version="1.9"><model name="rover">\n'
+    '  <link name="base"/>\n'
+    '  <model name="front"><link name="l"/></model>\n'
+    "</model></sdf>\n",
+    line=3,
+)(partial(_audit, included_models))

@@ -1,0 +1,102 @@
+"""Links, joints and groups of an SRDF that its URDF, or the SRDF itself, does not have."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.description.checks.references import repeated
+from multibot_rewrite.rules.description.references.lookup import undeclared
+from multibot_rewrite.rules.description.srdf.shared import ARM, srdf_rule
+from multibot_rewrite.rules.subject import Subject
+
+
+@srdf_rule(
+    "MB801",
+    "srdf-without-urdf",
+    NOTE,
+    what="No URDF was found that has the SRDF's robot name and most of its links and joints, so "
+    "they could not be checked.",
+    why="An SRDF has no meaning by itself; MoveIt ignores everything that its URDF does not have.",
+    fix="Lint it together with its URDF (found by the robot's name), or give the URDF with --urdf.",
+    bad=f'<robot name="other">{ARM}</robot>',
+    good=ARM,
+)
+def srdf_without_urdf(subject: Subject) -> Iterator[Problem]:
+    """One finding per file."""
+    root = subject.document.root
+    if subject.beside is None:
+        message = f"no URDF of a robot {root.get('name', '')!r} with its links was found"
+        yield Problem(root, message, "name", "give it with --urdf")
+
+
+other_robot = srdf_rule(
+    "MB802",
+    "other-robot",
+    WARNING,
+    what="The SRDF and its URDF have different robot names.",
+    why="srdfdom logs 'Semantic description is not specified for the same robot as the URDF': the "
+    "file may belong to another robot.",
+    fix="Use the same name in both.",
+    options={"urdf": "r.urdf"},
+    bad=f'<robot name="other">{ARM}</robot>',
+    good=ARM,
+)(partial(undeclared, "MB802"))
+
+srdf_link = srdf_rule(
+    "MB803",
+    "srdf-link",
+    ERROR,
+    what="A group, chain, end effector or virtual joint names a link that the URDF does not have.",
+    why="srdfdom leaves the link, chain, end effector or virtual joint out ('is not known to the "
+    "URDF'): the group is too small, or does not exist.",
+    fix="Correct the name.",
+    bad='<group name="arm"><joint name="j"/><link name="bb"/></group>',
+    good='<group name="arm"><joint name="j"/><link name="b"/></group>',
+)(partial(undeclared, "MB803"))
+
+srdf_joint = srdf_rule(
+    "MB804",
+    "srdf-joint",
+    ERROR,
+    what="A group, state or passive joint names a joint that the URDF does not have.",
+    why="srdfdom leaves the joint out ('is not known to the URDF'): the group does not move it, "
+    "the state has no value for it.",
+    fix="Correct the name.",
+    bad=ARM + '<passive_joint name="jj"/>',
+    good=ARM + '<passive_joint name="j"/>',
+    line=2,
+)(partial(undeclared, "MB804"))
+
+srdf_group = srdf_rule(
+    "MB805",
+    "srdf-group",
+    ERROR,
+    what="A state, end effector or group names a group that the SRDF does not have.",
+    why="srdfdom leaves out the state or end effector, and a group with such a subgroup as a whole "
+    "('has unsatisfied subgroups').",
+    fix="Correct the name.",
+    bad=ARM + '<group name="all"><group name="amr"/></group>',
+    good=ARM + '<group name="all"><group name="arm"/></group>',
+    line=2,
+)(partial(undeclared, "MB805"))
+
+
+@srdf_rule(
+    "MB806",
+    "srdf-duplicate",
+    ERROR,
+    what="Two groups, two end effectors or two virtual joints have the same name.",
+    why="MoveIt does not add the second ('A group named ... already exists'): its content is lost.",
+    fix="Rename one, or merge them.",
+    bad=ARM * 2,
+    good=ARM,
+    line=2,
+)
+def srdf_duplicate(subject: Subject) -> Iterator[Problem]:
+    """Every declaration but the first."""
+    for claim, _ in repeated(subject.inventory):
+        message = f"there is another {claim.element.tag} {claim.value.strip()!r}"
+        yield Problem(claim.element, message, claim.attribute, "rename one")

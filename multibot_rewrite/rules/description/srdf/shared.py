@@ -1,0 +1,45 @@
+"""What rules about an SRDF share: what srdfdom reads, and the robot of the examples."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import partial
+
+from multibot_rewrite.base.findings.rule import SRDF, rule
+
+# What srdfdom (model.cpp) reads: element -> required attributes, other attributes, children.
+_PAIR = (("link1", "link2"), ("reason",), ())
+ELEMENTS: Mapping[str, tuple[tuple[str, ...], tuple[str, ...], tuple[str, ...]]] = {
+    "group": (("name",), (), ("link", "joint", "passive_joint", "chain", "group")),
+    "group/link": (("name",), (), ()),
+    "group/joint": (("name",), (), ()),
+    "group/passive_joint": (("name",), (), ()),
+    "group/chain": (("base_link", "tip_link"), (), ()),
+    "group/group": (("name",), (), ()),
+    "group_state": (("name", "group"), (), ("joint",)),
+    "group_state/joint": (("name", "value"), (), ()),
+    "end_effector": (("name", "group", "parent_link"), ("parent_group",), ()),
+    "virtual_joint": (("name", "child_link", "parent_frame", "type"), (), ()),
+    "passive_joint": (("name",), (), ()),
+    "disable_collisions": _PAIR,
+    "enable_collisions": _PAIR,
+    "disable_default_collisions": (("link",), (), ()),
+    "link_sphere_approximation": (("link",), (), ("sphere",)),
+    "link_sphere_approximation/sphere": (("center", "radius"), (), ()),
+    "joint_property": (("joint_name", "property_name", "value"), (), ()),
+}
+TOP = tuple(it for it in ELEMENTS if "/" not in it)
+SHOWN = 5
+# The robot of the examples.
+URDF = """<robot name="r"><link name="a"><collision/></link><link name="b"><collision/></link>
+<link name="c"/><joint name="j" type="revolute"><parent link="a"/><child link="b"/>
+<limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+<joint name="k" type="fixed"><parent link="b"/><child link="c"/></joint></robot>"""
+BESIDE = {"r.urdf": URDF}
+# A complete SRDF for it.
+ARM = '<group name="arm"><joint name="j"/></group>\n'
+STATE = ARM + '<group_state name="home" group="arm">{}</group_state>\n'
+VIRTUAL = '<virtual_joint name="v" type="{}" parent_frame="world" child_link="{}"/>'
+APART = '<disable_collisions link1="a" link2="b" reason="Adjacent"/>\n'
+# A rule about an SRDF: its examples have the URDF above beside them.
+srdf_rule = partial(rule, formats=(SRDF,), beside=BESIDE)

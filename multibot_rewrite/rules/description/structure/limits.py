@@ -1,0 +1,308 @@
+"""Limits of joints: missing, inverted, empty, or in the wrong unit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import pi
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.description.checks.links_and_joints import Joint, Robot
+from multibot_rewrite.description.checks.numbers import number, value_of
+from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.rules.description.examples import block
+from multibot_rewrite.rules.description.structure.shared import (
+    BOUNDED,
+    LIMIT,
+    ONE_AXIS,
+    TYPES,
+    joints_with,
+    one_joint,
+)
+from multibot_rewrite.rules.facts.memo import memoized
+from multibot_rewrite.rules.schema.versions import KNOWN, version_of
+from multibot_rewrite.rules.subject import Subject
+
+# Above DEGREES[0] radians (more than two turns) and up to DEGREES[1] degrees (two turns); ENDLESS are
+# numbers that people write for "no limit".
+DEGREES = (4.5 * pi, 720.0)
+ENDLESS = frozenset((50.0, 100.0, 200.0, 500.0, 999.0))
+# Metres; a gripper moves so many millimetres.
+LONG_WAY = 25.0
+# From this version on bounds are needed, effort and velocity are not, and a negative limit is refused.
+STRICT = KNOWN[2]
+
+
+def _newest(limit: str) -> str:
+    """An example: a joint of a robot of URDF 1.2, with its limit in line 6."""
+    return block(f'<robot name="r" version="{STRICT}">', one_joint("revolute", limit))
+
+
+@rule(
+    "MB509",
+    "limit-missing",
+    ERROR,
+    what="A revolute or prismatic joint has no <limit>.",
+    why="urdfdom rejects the file ('is of type REVOLUTE but it does not specify limits').",
+    fix="Add <limit> with lower, upper, effort and velocity; a wheel's joint is continuous.",
+    bad=one_joint("revolute"),
+    good=one_joint("revolute", LIMIT),
+    line=3,
+)
+def limit_missing(subject: Subject) -> Iterator[Problem]:
+    """Joints that need a <limit>."""
+    for joint in subject.robot.joints:
+        if joint.type in BOUNDED and "limit" not in joint.parts:
+            yield Problem(joint.element, f"{joint.type} joint {joint.name!r} has no <limit>")
+
+
+@rule(
+    "MB510",
+    "limit-incomplete",
+    ERROR,
+    what="A <limit> has no effort or no velocity, in a file of URDF 1.0 or 1.1.",
+    why="urdfdom rejects the whole file ('joint limit: no effort'), whatever the joint's type.",
+    fix="Add the attribute, or delete a <limit> that the type does not need. In URDF 1.2 both may be "
+    "left out: without them there is no limit.",
+    bad=one_joint("revolute", '<limit lower="-1" upper="1" velocity="1"/>'),
+    good=one_joint("revolute", LIMIT),
+    line=5,
+)
+def limit_incomplete(subject: Subject) -> Iterator[Problem]:
+    """Limits without the attributes that urdfdom requires."""
+    if _is_strict(subject):
+        return
+    for joint, limit in joints_with(subject.robot, "limit"):
+        missing = [it for it in ("effort", "velocity") if limit.get(it) is None]
+        if missing:
+            yield Problem(
+                limit, f"<limit> of joint {joint.name!r} has no {' and no '.join(missing)}"
+            )
+
+
+@rule(
+    "MB511",
+    "limits-inverted",
+    ERROR,
+    what="A joint's lower limit is above its upper one.",
+    why="No position is inside: MoveIt finds every state out of bounds, MuJoCo drops the limits, "
+    "sdformat swaps them. In a file of URDF 1.2 urdfdom rejects it, whatever the joint's type.",
+    fix="Swap them, or correct the sign.",
+    bad=one_joint("revolute", '<limit lower="1" upper="-1" effort="1" velocity="1"/>'),
+    good=one_joint("revolute", LIMIT),
+    line=5,
+)
+def limits_inverted(subject: Subject) -> Iterator[Problem]:
+    """Lower limits above the upper one; in URDF 1.2 of any joint."""
+    types = TYPES if _is_strict(subject) else BOUNDED
+    for joint, limit, lower, upper in _bounds(subject):
+        if lower > upper and joint.type in types:
+            message = f"joint {joint.name!r}: lower {lower:g} is above upper {upper:g}"
+            yield Problem(limit, message, "lower")
+
+
+@rule(
+    "MB512",
+    "limits-zero-range",
+    NOTE,
+    what="A joint's limits leave it no range.",
+    why="robot_state_publisher still waits for its position in joint_states and sends no transform "
+    "without it; MuJoCo treats equal limits as none and lets the joint turn freely.",
+    fix="Write the real limits, or make the joint fixed (<preserveFixedJoint> keeps its link in "
+    "Gazebo).",
+    bad=one_joint("revolute", '<limit lower="0" upper="0" effort="1" velocity="1"/>'),
+    good=one_joint("revolute", LIMIT),
+    line=5,
+)
+def limits_zero_range(subject: Subject) -> Iterator[Problem]:
+    """Equal limits: an exporter's mistake, or a frame that Gazebo should not merge."""
+    for joint, limit, lower, upper in _bounds(subject):
+        if lower == upper and joint.type in BOUNDED:
+            message = (
+                f"{joint.type} joint {joint.name!r} cannot move: lower and upper are {lower:g}"
+            )
+            yield Problem(limit, message)
+
+
+@rule(
+    "MB513",
+    "limit-without-bounds",
+    WARNING,
+    what="A revolute or prismatic joint's <limit> has no lower or no upper.",
+    why="urdfdom reads 0; joint_state_publisher rejects the description and publishes no joint at "
+    "all ('\"lower\" limit must be specified').",
+    fix="Write both.",
+    bad=one_joint("revolute", '<limit upper="1" effort="1" velocity="1"/>'),
+    good=one_joint("revolute", LIMIT),
+    line=5,
+)
+def limit_without_bounds(subject: Subject) -> Iterator[Problem]:
+    """Missing bounds, which are read as 0."""
+    return iter(()) if _is_strict(subject) else _unbounded(subject.robot)
+
+
+@rule(
+    "MB535",
+    "bounds-required",
+    ERROR,
+    what="A revolute or prismatic joint's <limit> has no lower or no upper, in a file of URDF 1.2.",
+    why="urdfdom rejects the file ('revolute and prismatic joints must have both lower and upper "
+    "position limits').",
+    fix="Write both.",
+    bad=_newest('<limit upper="1"/>'),
+    good=_newest('<limit lower="0" upper="1"/>'),
+    line=6,
+)
+def bounds_required(subject: Subject) -> Iterator[Problem]:
+    """Missing bounds, where urdfdom takes none for granted."""
+    return _unbounded(subject.robot) if _is_strict(subject) else iter(())
+
+
+def _unbounded(robot: Robot) -> Iterator[Problem]:
+    for joint, limit in joints_with(robot, "limit"):
+        if joint.type not in BOUNDED:
+            continue
+        missing = [it for it in ("lower", "upper") if limit.get(it) is None]
+        if missing:
+            words = " and no ".join(missing)
+            yield Problem(limit, f"<limit> of {joint.type} joint {joint.name!r} has no {words}")
+
+
+@rule(
+    "MB514",
+    "negative-limit",
+    WARNING,
+    what="The greatest effort or velocity of a joint is negative.",
+    why="pinocchio rejects the file ('Some components of min_effort are greater than max_effort'), "
+    "sdformat documents a negative effort as not enforced, ros2_control and MoveIt drop the sign "
+    "of a velocity.",
+    fix="Write the greatest absolute value.",
+    bad=one_joint("revolute", '<limit lower="-1" upper="1" effort="-5" velocity="1"/>'),
+    good=one_joint("revolute", LIMIT),
+    line=5,
+)
+def negative_limit(subject: Subject) -> Iterator[Problem]:
+    """Each such attribute; from URDF 1.2 on they are refused, which MB125 reports."""
+    if _is_strict(subject):
+        return
+    for joint, limit in joints_with(subject.robot, "limit"):
+        for name in ("effort", "velocity"):
+            if limit.get(name, "").lstrip().startswith("-") and (value_of(limit, name) or 0) < 0:
+                message = f"joint {joint.name!r}: {name} {limit.get(name)} is negative"
+                yield Problem(limit, message, name)
+
+
+@rule(
+    "MB515",
+    "zero-limit",
+    NOTE,
+    what="The greatest effort or velocity of a joint that moves is 0.",
+    why="ros2_control's joint limits use the 0 as it is: no velocity is allowed; MoveIt treats a "
+    "velocity of 0 as no limit.",
+    fix="Write what the motor can do.",
+    bad=one_joint("revolute", '<limit lower="-1" upper="1" effort="0" velocity="1"/>'),
+    good=one_joint("revolute", LIMIT),
+    line=5,
+)
+def zero_limit(subject: Subject) -> Iterator[Problem]:
+    """One finding per joint; joints that mimic another one or cannot move need no effort."""
+    for joint, limit in joints_with(subject.robot, "limit"):
+        if joint.type not in ONE_AXIS or "mimic" in joint.parts:
+            continue
+        zero = [it for it in ("effort", "velocity") if value_of(limit, it) == 0]
+        if zero and not _cannot_move(joint, limit):
+            verb = "are" if zero[1:] else "is"
+            message = f"joint {joint.name!r}: {' and '.join(zero)} {verb} 0"
+            yield Problem(limit, message, zero[0])
+
+
+@rule(
+    "MB516",
+    "continuous-limits",
+    WARNING,
+    what="A continuous joint has limits of less than a turn, which are ignored.",
+    why="sdformat, MoveIt and ros2_control read no limits of a continuous joint: it turns without "
+    "end.",
+    fix="Make it revolute, or prismatic if it slides; delete lower and upper if it does turn "
+    "without end.",
+    bad=one_joint("continuous", LIMIT),
+    good=one_joint("revolute", LIMIT),
+    line=5,
+)
+def continuous_limits(subject: Subject) -> Iterator[Problem]:
+    """Bounds of less than a turn: a whole turn means the same as continuous."""
+    for joint, limit in joints_with(subject.robot, "limit"):
+        if joint.type != "continuous" or limit.get("lower") is None:
+            continue
+        lower, upper = value_of(limit, "lower"), value_of(limit, "upper", 0.0)
+        if lower is not None and upper is not None and 0 < upper - lower < 1.99 * pi:
+            message = f"continuous joint {joint.name!r} ignores its limits {lower:g} to {upper:g}"
+            yield Problem(limit, message, "lower")
+
+
+@rule(
+    "MB517",
+    "prismatic-units",
+    WARNING,
+    what="The limits of a prismatic joint look like millimetres.",
+    why="URDF uses metres: planners and simulators let the joint move out of the room.",
+    fix="Divide by 1000.",
+    bad=one_joint("prismatic", '<limit lower="0" upper="40" effort="1" velocity="1"/>'),
+    good=one_joint("prismatic", '<limit lower="0" upper="0.04" effort="1" velocity="1"/>'),
+    line=5,
+)
+def prismatic_units(subject: Subject) -> Iterator[Problem]:
+    """Long ranges; one that is the same to both sides is mostly a virtual joint without real limits."""
+    for joint, limit, lower, upper in _bounds(subject):
+        far = max(abs(lower), abs(upper))
+        if joint.type == "prismatic" and LONG_WAY <= far < 1e4 and lower != -upper:
+            message = f"prismatic joint {joint.name!r} goes from {lower:g} m to {upper:g} m"
+            name = "upper" if abs(upper) == far else "lower"
+            yield Problem(limit, message, name, "are these millimetres?")
+
+
+@rule(
+    "MB518",
+    "revolute-degrees",
+    WARNING,
+    what="A limit of a revolute joint looks like degrees.",
+    why="URDF uses radians: the joint turns many times before it reaches the limit.",
+    fix="Multiply by pi/180; xacro has radians().",
+    bad=one_joint("revolute", '<limit lower="-90" upper="90" effort="1" velocity="1"/>'),
+    good=one_joint("revolute", '<limit lower="-1.5708" upper="1.5708" effort="1" velocity="1"/>'),
+    line=5,
+)
+def revolute_degrees(subject: Subject) -> Iterator[Problem]:
+    """Round numbers that are many turns in radians, and an angle in degrees."""
+    for joint, limit, lower, upper in _bounds(subject):
+        if joint.type == "revolute" and (_is_degrees(lower) or _is_degrees(upper)):
+            message = f"revolute joint {joint.name!r} turns from {lower:g} to {upper:g} radians"
+            name = "upper" if _is_degrees(upper) else "lower"
+            yield Problem(limit, message, name, "are these degrees?")
+
+
+def _is_degrees(angle: float) -> bool:
+    size = abs(angle)
+    return DEGREES[0] < size <= DEGREES[1] and size % 0.5 == 0 and size not in ENDLESS
+
+
+def _is_strict(subject: Subject) -> bool:
+    return version_of(subject.document.root) >= STRICT
+
+
+@memoized
+def _bounds(subject: Subject) -> list[tuple[Joint, _Element, float, float]]:
+    """The joints of the known types that have both bounds."""
+    found = []
+    for joint, limit in joints_with(subject.robot, "limit"):
+        if joint.type in TYPES:
+            lower, upper = number(limit.get("lower")), number(limit.get("upper"))
+            if lower is not None and upper is not None:
+                found.append((joint, limit, lower, upper))
+    return found
+
+
+def _cannot_move(joint: Joint, limit: _Element) -> bool:
+    return joint.type in BOUNDED and value_of(limit, "lower", 0.0) == value_of(limit, "upper", 0.0)

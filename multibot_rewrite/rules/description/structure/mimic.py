@@ -1,0 +1,175 @@
+"""Joints that mimic others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.description.checks.links_and_joints import Robot
+from multibot_rewrite.description.checks.numbers import value_of
+from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.rules.description.examples import a_joint, a_link
+from multibot_rewrite.rules.description.structure.shared import (
+    LIMIT,
+    ONE_AXIS,
+    TYPES,
+    first_names,
+    joints_with,
+    two_joints,
+)
+from multibot_rewrite.rules.subject import Subject
+
+
+@rule(
+    "MB525",
+    "mimic-without-joint",
+    ERROR,
+    what="A <mimic> does not name the joint that it follows.",
+    why="urdfdom rejects the file ('joint mimic: no mimic joint specified').",
+    fix='Add joint="...".',
+    bad=two_joints("<mimic/>"),
+    good=two_joints('<mimic joint="j"/>'),
+    line=11,
+)
+def mimic_without_joint(subject: Subject) -> Iterator[Problem]:
+    """Mimics that name no joint."""
+    for joint, mimic in joints_with(subject.robot, "mimic"):
+        if not mimic.get("joint"):
+            yield Problem(mimic, f"<mimic> of joint {joint.name!r} names no joint", "joint")
+
+
+@rule(
+    "MB526",
+    "mimic-of-itself",
+    ERROR,
+    what="A joint mimics itself.",
+    why="Current sdformat rejects the joint ('cannot mimic itself'), MoveIt ignores every mimic of "
+    "the robot, joint_state_publisher stops ('Found an infinite recursive mimic chain').",
+    fix="Use the joint that it follows.",
+    bad=two_joints('<mimic joint="k"/>'),
+    good=two_joints('<mimic joint="j"/>'),
+    line=11,
+)
+def mimic_of_itself(subject: Subject) -> Iterator[Problem]:
+    """Mimics of the joint they are in."""
+    for joint, mimic in joints_with(subject.robot, "mimic"):
+        if mimic.get("joint") == joint.name and joint.name:
+            yield Problem(mimic, f"joint {joint.name!r} mimics itself", "joint")
+
+
+@rule(
+    "MB527",
+    "mimic-loop",
+    ERROR,
+    what="Joints mimic each other in a loop.",
+    why="MoveIt ignores every mimic of the robot ('Cycle found in joint that mimic each other') "
+    "and joint_state_publisher stops ('Found an infinite recursive mimic chain').",
+    fix="Delete the <mimic> of the joint that is driven.",
+    bad=two_joints('<mimic joint="j"/>', '<mimic joint="k"/>'),
+    good=two_joints('<mimic joint="j"/>'),
+    line=6,
+)
+def mimic_loop(subject: Subject) -> Iterator[Problem]:
+    """Each loop, at its first mimic."""
+    for loop in _loops(_leaders(subject.robot)):
+        if len(loop) > 1:
+            mimic = subject.robot.joint[loop[0]].parts["mimic"]
+            yield Problem(mimic, f"joints mimic each other in a loop: {first_names(loop)}", "joint")
+
+
+@rule(
+    "MB528",
+    "mimic-chain",
+    NOTE,
+    what="A joint mimics a joint that mimics another one.",
+    why="MoveIt and joint_state_publisher follow the chain. robot_state_publisher goes through the "
+    "mimics once, by name: it sends no transform for one whose leader comes later in the alphabet, "
+    "unless joint_states has the leader.",
+    fix="Use the first joint of the chain, and multiply the multipliers.",
+    bad=two_joints('<mimic joint="j"/>')
+    + a_link("d")
+    + a_joint("l", "revolute", "c", "d", LIMIT, '<mimic joint="k"/>'),
+    good=two_joints('<mimic joint="j"/>'),
+    line=17,
+)
+def mimic_chain(subject: Subject) -> Iterator[Problem]:
+    """Mimics of mimics; a loop is MB527."""
+    leader = _leaders(subject.robot)
+    chained = {name: follows for name, follows in leader.items() if follows in leader}
+    round_ = {name for loop in _loops(chained) for name in loop}
+    for name, follows in chained.items():
+        if name not in round_:
+            late = "; robot_state_publisher sends no transform for it" if name < follows else ""
+            message = f"joint {name!r} mimics {follows!r}, which mimics {leader[follows]!r}{late}"
+            yield Problem(subject.robot.joint[name].parts["mimic"], message, "joint")
+
+
+@rule(
+    "MB529",
+    "mimic-of-fixed",
+    ERROR,
+    what="A joint mimics one that does not have a single position: fixed, floating or planar.",
+    why="joint_state_publisher stops with a KeyError, MoveIt ignores the mimic ('different number "
+    "of DOF'), and no joint_states message ever has the leader.",
+    fix="Use a joint that moves, or make this one fixed.",
+    bad=two_joints('<mimic joint="j"/>').replace("revolute", "fixed", 1),
+    good=two_joints('<mimic joint="j"/>'),
+    line=11,
+)
+def mimic_of_fixed(subject: Subject) -> Iterator[Problem]:
+    """Mimics of joints without one position; the mimic of a fixed joint does not matter."""
+    for joint, mimic in joints_with(subject.robot, "mimic"):
+        leader = subject.robot.joint.get(mimic.get("joint", ""))
+        if (
+            leader
+            and leader.type in TYPES
+            and leader.type not in ONE_AXIS
+            and joint.type in ONE_AXIS
+        ):
+            message = f"joint {joint.name!r} mimics {leader.name!r}, which is {leader.type}"
+            yield Problem(mimic, message, "joint")
+
+
+@rule(
+    "MB530",
+    "mimic-multiplier-zero",
+    WARNING,
+    what="The multiplier of a <mimic> is 0.",
+    why="The joint does not move, whatever the other one does.",
+    fix="Write the ratio, or make the joint fixed.",
+    bad=two_joints('<mimic joint="j" multiplier="0"/>'),
+    good=two_joints('<mimic joint="j" multiplier="0.5"/>'),
+    line=11,
+)
+def mimic_multiplier_zero(subject: Subject) -> Iterator[Problem]:
+    """Mimics whose joint never moves."""
+    for joint, mimic in joints_with(subject.robot, "mimic"):
+        if value_of(mimic, "multiplier", 1.0) == 0 and joint.type in ONE_AXIS:
+            message = f"joint {joint.name!r} never moves: the multiplier of its mimic is 0"
+            yield Problem(mimic, message, "multiplier")
+
+
+def _leaders(robot: Robot) -> dict[str, str]:
+    """Mimicking joint -> the joint it follows."""
+    return {
+        joint.name: mimic.get("joint", "")
+        for joint, mimic in joints_with(robot, "mimic")
+        if robot.joint[joint.name] is joint
+    }
+
+
+def _loops(leader: Mapping[str, str]) -> list[list[str]]:
+    """The joints that follow each other in a loop."""
+    done: set[str] = set()
+    found = []
+    for start in leader:
+        way: dict[str, None] = {}
+        name = start
+        while name in leader and name not in done:
+            done.add(name)
+            way[name] = None
+            name = leader[name]
+        if name in way:
+            found.append(list(way)[list(way).index(name) :])
+    return found

@@ -1,0 +1,221 @@
+"""The kinematic tree: one root, no loops, every link reached."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.findings.finding import ERROR, WARNING
+from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.nearest import nearest
+from multibot_rewrite.description.checks.links_and_joints import is_tree, loops, reached, roots
+from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.rules.description.examples import a_link
+from multibot_rewrite.rules.description.structure.shared import (
+    SHOWN,
+    TWO_LINKS,
+    first_names,
+    fixed_joint,
+    one_joint,
+)
+from multibot_rewrite.rules.subject import Subject
+
+# With more than this many pairs of names a search for the nearest one takes too long.
+MANY = 50
+# Files of nothing else are not for urdfdom.
+WITHOUT_LINKS = frozenset(("material", "webots"))
+
+
+@rule(
+    "MB501",
+    "several-roots",
+    ERROR,
+    what="More than one link has no parent: the robot is in several pieces.",
+    why="urdfdom rejects the file ('Two root links found'): no robot_state_publisher, no tf.",
+    fix="Add the joint that connects the pieces.",
+    bad=TWO_LINKS,
+    good=one_joint("fixed"),
+    line=2,
+)
+def several_roots(subject: Subject) -> Iterator[Problem]:
+    """Every root except the one with the most links below it; a misspelled child link is MB202."""
+    robot = subject.robot
+    found = roots(robot)
+    if len(found) < 2:
+        return
+    seen: set[str] = set()
+    sizes = [len(reached(robot, [it.name], seen)) for it in found]
+    main = found[sizes.index(max(sizes))]
+    lost = [it for it in robot.above if it not in robot.link]
+    search = lost if len(found) * len(lost) <= MANY else ()
+    for link in found:
+        if link is main or nearest(link.name, search):
+            continue
+        message = f"link {link.name!r} has no parent joint, like the root {main.name!r}"
+        yield Problem(link.element, message, "name", "add a joint that connects it")
+
+
+@rule(
+    "MB502",
+    "no-link",
+    WARNING,
+    what="The robot has no link. Files with only materials, or for Webots, need none.",
+    why="urdfdom rejects the file ('No link elements found in urdf file').",
+    fix="Add the links, directly below <robot>.",
+    bad='<robot name="r"/>',
+    good='<link name="a"/>',
+)
+def no_link(subject: Subject) -> Iterator[Problem]:
+    """A robot without links that is no expansion: files of macros have no links of their own."""
+    root = subject.document.root
+    if root.tag != "robot" or subject.robot.links or subject.origins:
+        return
+    tags = [str(it.tag) for it in root.iterchildren("*")]
+    if not any("xacro}" in it for it in tags) and (not tags or not WITHOUT_LINKS.issuperset(tags)):
+        yield Problem(root, "the robot has no link")
+
+
+@rule(
+    "MB503",
+    "kinematic-loop",
+    ERROR,
+    what="Joints close a loop: a link is below itself.",
+    why="urdfdom accepts a loop beside the tree: its links get no frame in tf, and pinocchio "
+    "leaves them out; if all links are in loops it rejects the file ('No root link found').",
+    fix="Reverse or delete one joint; close a real loop in the simulator.",
+    bad=a_link("a")
+    + a_link("b")
+    + a_link("c")
+    + fixed_joint("j", "b", "c")
+    + fixed_joint("k", "c", "b"),
+    good=a_link("a")
+    + a_link("b")
+    + a_link("c")
+    + fixed_joint("j", "a", "b")
+    + fixed_joint("k", "b", "c"),
+    line=7,
+)
+def kinematic_loop(subject: Subject) -> Iterator[Problem]:
+    """Each loop, at the last of its joints in the file."""
+    order: dict[_Element, int] = {}
+    for joints in [] if is_tree(subject.robot) else loops(subject.robot):
+        order = order or {it.element: at for at, it in enumerate(subject.robot.joints)}
+        last = max(joints, key=lambda it: order[it.element])
+        at = joints.index(last) + 1
+        names = [it.child for it in joints[at:] + joints[:at]]
+        path = " -> ".join(repr(it) for it in names[:SHOWN]) + (" -> ..." if names[SHOWN:] else "")
+        yield Problem(
+            last.element,
+            f"joint {last.name!r} closes a loop of {len(joints)} joints: {last.child!r} is below "
+            f"itself ({names[-1]!r} -> {path})",
+        )
+
+
+@rule(
+    "MB504",
+    "several-parents",
+    ERROR,
+    what="A link is the child of two joints.",
+    why="urdfdom keeps one of the joints, by name; sdformat rejects the file (two links with one "
+    "name), and so does MuJoCo ('body has multiple parents').",
+    fix="Delete one of the joints, or add another link for it.",
+    bad=a_link("a") + a_link("b") + fixed_joint("j", "a", "b") + fixed_joint("k", "a", "b"),
+    good=a_link("a")
+    + a_link("b")
+    + a_link("c")
+    + fixed_joint("j", "a", "b")
+    + fixed_joint("k", "a", "c"),
+    line=7,
+)
+def several_parents(subject: Subject) -> Iterator[Problem]:
+    """Every joint but the first that has the link as its child; copies of a joint are MB201."""
+    for name, joints in subject.robot.above.items():
+        if len(joints) == 1:
+            continue
+        for joint in joints[1:]:
+            if joint.name != joints[0].name and joint.parent != name:
+                yield Problem(
+                    joint.parts["child"],
+                    f"link {name!r} is the child of {joint.name!r} and of {joints[0].name!r}",
+                    "link",
+                )
+
+
+@rule(
+    "MB505",
+    "unreachable-link",
+    ERROR,
+    what="Links are below a loop, or below a joint from a link to itself: they are not connected "
+    "to the root.",
+    why="urdfdom accepts the file, but the links are lost: they get no frame in tf, and Gazebo and "
+    "pinocchio leave them out.",
+    fix="Correct the loop above them.",
+    bad=a_link("a")
+    + a_link("b")
+    + a_link("c")
+    + a_link("d")
+    + fixed_joint("j", "b", "c")
+    + fixed_joint("k", "c", "b")
+    + fixed_joint("l", "c", "d"),
+    good=a_link("a") + a_link("b") + fixed_joint("j", "a", "b"),
+    line=4,
+)
+def unreachable_link(subject: Subject) -> Iterator[Problem]:
+    """One finding, at the first link; links in the loop itself are MB503."""
+    robot = subject.robot
+    if is_tree(robot):
+        return
+    seen: set[str] = set()
+    reached(robot, (it for it in (*robot.link, *robot.below) if it not in robot.above), seen)
+    if not seen or all(it in seen for it in robot.link):
+        return
+    seen.update(it.child for joints in loops(robot) for it in joints)
+    seen.update(it.child for it in robot.joints if it.child == it.parent)
+    lost = [it for name, it in robot.link.items() if name not in seen]
+    if lost:
+        names = first_names(it.name for it in lost)
+        yield Problem(lost[0].element, f"not connected to the root: {names}", "name")
+
+
+@rule(
+    "MB506",
+    "joint-to-itself",
+    ERROR,
+    what="A joint's parent and child are the same link.",
+    why="For urdfdom the link has a parent and is not a root: if it should be the root, urdfdom "
+    "rejects the file ('No root link found'); any other link is left out of tf and Gazebo.",
+    fix="Correct the parent link.",
+    bad=a_link("a") + fixed_joint("j", "a", "a"),
+    good=one_joint("fixed"),
+    line=3,
+)
+def joint_to_itself(subject: Subject) -> Iterator[Problem]:
+    """Joints from a link to itself."""
+    for joint in subject.robot.joints:
+        if joint.parent == joint.child and joint.parent:
+            message = f"joint {joint.name!r} has {joint.child!r} as its parent and as its child"
+            yield Problem(joint.parts["child"], message, "link")
+
+
+@rule(
+    "MB507",
+    "joint-without-ends",
+    ERROR,
+    what="A joint has no parent link or no child link.",
+    why="urdfdom rejects the file ('missing a parent and/or child link specification').",
+    fix='Add <parent link="..."/> and <child link="..."/>.',
+    bad='<link name="a"/><joint name="j" type="fixed"><parent link="a"/></joint>',
+    good=one_joint("fixed"),
+)
+def joint_without_ends(subject: Subject) -> Iterator[Problem]:
+    """Joints without an end, each at the element that lacks it."""
+    for joint in subject.robot.joints:
+        if joint.parent and joint.child:
+            continue
+        for tag, name in (("parent", joint.parent), ("child", joint.child)):
+            part = joint.parts.get(tag)
+            if not name and part is None:
+                yield Problem(joint.element, f"joint {joint.name!r} has no <{tag}>")
+            elif not name and part is not None:
+                yield Problem(part, f"<{tag}> of joint {joint.name!r} names no link", "link")

@@ -1,0 +1,261 @@
+"""The wheels of a plugin that drives a robot on two rows of them, and where they are.
+
+Sources: gz-sim src/systems/diff_drive/DiffDrive.cc (the speed of a left wheel is (v - w *
+separation / 2) / radius, that of a right one has the plus), gazebo_ros_pkgs
+gazebo_plugins/src/gazebo_ros_diff_drive.cpp (ros2: the same), gazebo_ros_skid_steer_drive.cpp
+(noetic-devel).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.checks.links_and_joints import Joint, Robot
+from multibot_rewrite.description.checks.numbers import Vector, number
+from multibot_rewrite.description.checks.pose import Pose
+from multibot_rewrite.description.checks.poses import axis_of, dot, minus, origin_of, placed
+from multibot_rewrite.description.checks.rotation import turned
+from multibot_rewrite.description.checks.shapes import Extent, around, extent_of, shapes_of
+from multibot_rewrite.description.rewriters.text import text_of
+from multibot_rewrite.rules.facts.memo import memoized
+from multibot_rewrite.rules.facts.poses import link_poses
+from multibot_rewrite.rules.subject import Subject
+
+# Axes that point the same way, as a cosine.
+ALONG = 0.99
+# Relative. A wheel of a mesh may stand beside its joint, and wheels that skid turn a robot as if they
+# were further apart than they are.
+TOLERANCE, UNSEEN, SKIDDING = 0.1, 0.25, 2.0
+# A robot that is more than a few millimetres off: CAD programs round.
+ROUNDING = 0.003
+
+
+class Tags(NamedTuple):
+    """How a plugin calls its wheels and their sizes. ``radius_of`` is the radius in its unit: 0.5 for a
+    diameter. ``turns_left`` says that the left wheels are slower in a turn to the left."""
+
+    left: Sequence[str]
+    right: Sequence[str]
+    separation: str
+    radius: str
+    radius_of: float
+    defaults: tuple[float, float]
+    turns_left: bool = True
+
+
+_GZ = Tags(("left_joint",), ("right_joint",), "wheel_separation", "wheel_radius", 1, (1.0, 0.2))
+_ROS_2 = Tags(
+    ("left_joint",), ("right_joint",), "wheel_separation", "wheel_diameter", 0.5, (0.34, 0.15)
+)
+_ROS_1 = Tags(
+    ("leftJoint",), ("rightJoint",), "wheelSeparation", "wheelDiameter", 0.5, (0.34, 0.15), False
+)
+_SKID = Tags(
+    ("leftFrontJoint", "leftRearJoint"),
+    ("rightFrontJoint", "rightRearJoint"),
+    "wheelSeparation",
+    "wheelDiameter",
+    0.5,
+    (0.4, 0.15),
+    False,
+)
+TAGS: Mapping[str, tuple[Tags, ...]] = {
+    "gz-sim-diff-drive-system": (_GZ,),
+    "gazebo_ros_diff_drive": (_ROS_2, _ROS_1),
+    "gazebo_ros_skid_steer_drive": (_SKID,),
+}
+
+
+class Wheel(NamedTuple):
+    """A driven wheel in the root's frame: its joint, the pose of its link, the axis it turns
+    about, and the element that names it."""
+
+    named: Any
+    joint: Joint
+    pose: Pose
+    axis: Vector
+
+
+class Drive(NamedTuple):
+    """A plugin, its wheels, and the elements of its sizes, None where it takes its default."""
+
+    plugin: _Element
+    tags: Tags
+    left: tuple[Wheel, ...]
+    right: tuple[Wheel, ...]
+    sizes: Mapping[str, _Element | None]
+
+    @property
+    def pairs(self) -> list[tuple[Wheel, Wheel]]:
+        """The wheels of the two sides, in the order they are named in."""
+        return list(zip(self.left, self.right, strict=False))
+
+
+@memoized
+def drives(subject: Subject) -> list[Drive]:
+    """The drives of a robot that name wheels on both sides."""
+    found = (
+        _drive(subject, plugin, TAGS[name])
+        for plugin, section in subject.inventory.served
+        for name in section.names
+        if name in TAGS
+    )
+    return [it for it in found if it is not None]
+
+
+def wheel_joints(subject: Subject) -> Iterator[tuple[_Element, Joint]]:
+    """Each joint that a drive names as a wheel's, and the element that names it."""
+    for plugin, section in subject.inventory.served:
+        kinds = next((TAGS[it] for it in section.names if it in TAGS), ())
+        names = {tag for it in kinds for tag in (*it.left, *it.right)}
+        for element in plugin.iterchildren(*names) if names else ():
+            joint = subject.robot.joint.get(text_of(element))
+            if joint is not None:
+                yield element, joint
+
+
+def _drive(subject: Subject, plugin: _Element, kinds: Sequence[Tags]) -> Drive | None:
+    for tags in kinds:
+        left, right = (tuple(_wheels(subject, plugin, it)) for it in (tags.left, tags.right))
+        if left and right:
+            sizes = {it: plugin.find(it) for it in (tags.separation, tags.radius)}
+            return Drive(plugin, tags, left, right, sizes)
+    return None
+
+
+def _wheels(subject: Subject, plugin: _Element, tags: Sequence[str]) -> Iterator[Wheel]:
+    found = (wheel_of(subject, text_of(it), it) for it in plugin.iterchildren(*tags))
+    return (it for it in found if it is not None)
+
+
+def wheel_of(subject: Subject, name: str, named: object) -> Wheel | None:
+    """The wheel on a joint; None where it is not known where that is, or about which axis it turns."""
+    joint = subject.robot.joint.get(name)
+    axis = None if joint is None else axis_of(joint)
+    pose = None if joint is None else link_poses(subject).get(joint.child)
+    if joint is None or axis is None or pose is None:
+        return None
+    return Wheel(named, joint, pose, turned(pose.matrix, axis))
+
+
+def size_of(drive: Drive, name: str, default: float) -> float | None:
+    """A size as the plugin reads it; None where it is no number."""
+    element = drive.sizes[name]
+    return default if element is None else number(text_of(element))
+
+
+class Measured(NamedTuple):
+    """What a size may be, and what it is best."""
+
+    low: float
+    high: float
+    best: float
+
+    def holds(self, value: float) -> bool:
+        """Is a size one of these?"""
+        return self.low <= value <= self.high
+
+
+def separation(robot: Robot, left: Wheel, right: Wheel, several: bool) -> Measured | None:
+    """How far two wheels are apart, by their joints or shapes; None where their axes are not parallel.
+
+    ``several`` wheels of a side skid in a turn.
+    """
+    if abs(dot(left.axis, right.axis)) < ALONG:
+        return None
+    slack = TOLERANCE if radii(robot, left) else UNSEEN
+    found = [
+        abs(apart(one, other, left.axis))
+        for one in middles(robot, left)
+        for other in middles(robot, right)
+    ]
+    most = SKIDDING if several else 1 + slack
+    low, high = min(found) * (1 - slack) - ROUNDING, max(found) * most + ROUNDING
+    return Measured(low, high, found[0]) if found[0] > 0 else None
+
+
+def radius(robot: Robot, wheels: Iterable[Wheel]) -> Measured | None:
+    """The radius of round shapes of all wheels; None where none has a round shape."""
+    found = [it for wheel in wheels for it in radii(robot, wheel)]
+    if not found:
+        return None
+    low, high = min(found) * (1 - TOLERANCE) - ROUNDING, max(found) * (1 + TOLERANCE) + ROUNDING
+    return Measured(low, high, max(found))
+
+
+def are_swapped(left: Wheel, right: Wheel) -> float:
+    """How far the left wheel is on the right, seen in the direction in which a positive speed
+    turns them; 0 where it is on the left, or that is not known.
+
+    A wheel that turns about an axis to the left rolls forward.
+    """
+    if dot(left.axis, right.axis) < ALONG or abs(left.axis[2]) > 1 - ALONG:
+        return 0.0
+    across = apart(left.pose.at, right.pose.at, left.axis)
+    return -across if across < -ROUNDING else 0.0
+
+
+def are_opposite(left: Wheel, right: Wheel) -> bool:
+    """Do the axes of two wheels point in opposite directions?"""
+    return dot(left.axis, right.axis) < -ALONG
+
+
+def radii(robot: Robot, wheel: Wheel) -> list[float]:
+    """The radii of the round shapes that turn with a wheel about its axis: of those that touch the
+    ground, else of those that are seen."""
+    for tag in ("collision", "visual"):
+        found = [it for at in _parts(robot, wheel) for it in _round(robot, at, tag, wheel.axis)]
+        if found:
+            return found
+    return []
+
+
+def _parts(robot: Robot, wheel: Wheel) -> list[tuple[str, Pose]]:
+    """The links fixed to a wheel, itself first, with their poses in the root."""
+    found = [(wheel.joint.child, wheel.pose)]
+    for name, pose in found:  # grows
+        for joint in robot.below.get(name, ()):
+            own = origin_of(joint.element) if joint.type == "fixed" else None
+            if own is not None and len(found) < len(robot.links):
+                found.append((joint.child, placed(pose, own)))
+    return found
+
+
+def _round(robot: Robot, part: tuple[str, Pose], tag: str, axis: Vector) -> Iterator[float]:
+    link = robot.link.get(part[0])
+    for element, shape in shapes_of(link.element, tag) if link else ():
+        radius, own = number(shape.get("radius")), origin_of(element)
+        if radius is None or own is None:
+            continue
+        along = turned(placed(part[1], own).matrix, (0.0, 0.0, 1.0))
+        if shape.tag == "sphere" or abs(dot(along, axis)) > ALONG:
+            yield radius
+
+
+def middles(robot: Robot, wheel: Wheel) -> list[Vector]:
+    """Where a wheel may be said to stand: at its joint, in the middle of its shapes."""
+    found = [wheel.pose.at]
+    for tag in ("collision", "visual"):
+        shapes = [it for at in _parts(robot, wheel) for it in _extents(robot, at, tag)]
+        box = around(shapes)
+        found += [] if box is None else [box.middle]
+    return found
+
+
+def _extents(robot: Robot, part: tuple[str, Pose], tag: str) -> Iterator[Extent]:
+    link = robot.link.get(part[0])
+    for element, shape in shapes_of(link.element, tag) if link else ():
+        own = origin_of(element)
+        pose = None if own is None else placed(part[1], own)
+        found = None if pose is None else extent_of(shape, pose)
+        if found is not None:
+            yield found
+
+
+def apart(one: Vector, other: Vector, axis: Vector) -> float:
+    """How far two points are from each other along an axis; signed."""
+    return dot(minus(one, other), axis)

@@ -1,0 +1,53 @@
+"""The elements of a document by their tags: found once for all rules."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+
+from lxml.etree import _Element
+
+from multibot_rewrite.description.steps.document import Document
+
+_ByTag = Mapping[str, Sequence[_Element]]
+
+
+class Elements:
+    """The elements of one document."""
+
+    __slots__ = ("_every", "_first", "_tops", "root")
+
+    def __init__(self, document: Document) -> None:
+        self.root = document.root
+        self._every = _by_tag(document.elements)
+        self._tops = _by_tag(document.root.iterchildren("*"))
+        self._first: dict[str, Mapping[_Element | None, _Element]] = {}
+
+    def every(self, *tags: str) -> Sequence[_Element]:
+        """All of these tags, tag by tag in document order."""
+        return _of(self._every, tags)
+
+    def tops(self, *tags: str) -> Sequence[_Element]:
+        """The same, only of the root's children."""
+        return _of(self._tops, tags)
+
+    def first(self, tag: str) -> Mapping[_Element | None, _Element]:
+        """The first child of that tag, by its parent: for rules that ask every element for one."""
+        found = self._first.get(tag)
+        if found is None:
+            below = self._every.get(tag, ())
+            found = self._first[tag] = {it.getparent(): it for it in reversed(below)}
+        return found
+
+
+def _of(found: _ByTag, tags: tuple[str, ...]) -> Sequence[_Element]:
+    if len(tags) == 1:
+        return found.get(tags[0], ())
+    return [it for tag in tags for it in found.get(tag, ())]
+
+
+def _by_tag(elements: Iterable[_Element]) -> _ByTag:
+    found: dict[str, list[_Element]] = defaultdict(list)
+    for it in elements:
+        found[it.tag].append(it)
+    return found

@@ -1,0 +1,110 @@
+"""What a description has for a simulator: hardware, plugins that load it, plugins that drive joints.
+
+Sources: gz_hardware_plugins.xml and gz_system.cpp:326 of gz_ros2_control (jazzy), the same of
+ign_ros2_control (humble), gazebo_hardware_plugins.xml and gazebo_system.cpp of gazebo_ros2_control; for
+the plugins ``rules/schema/plugins.schema``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.rewriters.text import text_of
+from multibot_rewrite.description.rewriters.tree import library_key
+from multibot_rewrite.rules.facts.memo import memoized
+from multibot_rewrite.rules.subject import Subject
+
+
+class Simulator(NamedTuple):
+    """A simulator: the hardware classes that its plugins load, and the plugins.
+
+    ``takes`` are the interfaces of a joint that its hardware exports, the others it leaves out.
+    """
+
+    name: str
+    hardware: tuple[str, ...]
+    plugins: tuple[str, ...]
+    takes: tuple[str, ...]
+
+
+_TAKES = ("position", "velocity", "effort")
+GAZEBO = Simulator(
+    "Gazebo",
+    ("gz_ros2_control/GazeboSimSystem", "ign_ros2_control/IgnitionSystem"),
+    ("gz_ros2_control-system", "ign_ros2_control-system"),
+    _TAKES,
+)
+CLASSIC = Simulator(
+    "Gazebo Classic", ("gazebo_ros2_control/GazeboSystem",), ("gazebo_ros2_control",), _TAKES
+)
+SIMULATORS = (GAZEBO, CLASSIC)
+# Parameters of systems of Gazebo and plugins of Classic that command a joint.
+DRIVES = {
+    "gz-sim-diff-drive-system": ("left_joint", "right_joint"),
+    "gz-sim-ackermann-steering-system": (
+        *("left_joint", "right_joint", "left_steering_joint", "right_steering_joint"),
+    ),
+    "gz-sim-mecanum-drive-system": (
+        *("front_left_joint", "front_right_joint", "back_left_joint", "back_right_joint"),
+    ),
+    "gz-sim-joint-controller-system": ("joint_name",),
+    "gz-sim-joint-position-controller-system": ("joint_name",),
+    "gz-sim-joint-trajectory-controller-system": ("joint_name",),
+    "gazebo_ros_diff_drive": ("left_joint", "right_joint"),
+    "gazebo_ros_ackermann_drive": (
+        *("front_left_joint", "front_right_joint", "rear_left_joint", "rear_right_joint"),
+        *("left_steering_joint", "right_steering_joint"),
+    ),
+    "gazebo_ros_tricycle_drive": ("steering_joint", "actuated_wheel_joint"),
+}
+
+
+@memoized
+def simulator_plugins(subject: Subject) -> list[_Element]:
+    """The plugins of Gazebo: in blocks of a robot that it reads, or anywhere in an SDF."""
+    if subject.document.root.tag == "sdf":
+        # A model may have its <ros2_control> in it, where <plugin> is a class.
+        plugins = subject.elements.every("plugin")
+        return [it for it in plugins if next(it.iterancestors("ros2_control"), None) is None]
+    if not subject.elements.every("plugin"):
+        return []
+    blocks = subject.elements.tops("gazebo")
+    return [plugin for block in blocks for plugin in block.iter("plugin")]
+
+
+@memoized
+def manager_plugins(subject: Subject) -> list[_Element]:
+    """The plugins that make a controller manager in a simulator, those of vendors too."""
+    return [it for it in simulator_plugins(subject) if "ros2_control" in library_of(it)]
+
+
+@memoized
+def simulated(subject: Subject) -> list[tuple[_Element, _Element, Simulator]]:
+    """The systems of simulators: the element, the ``<plugin>`` of its hardware, which simulator."""
+    return [
+        (system, it, simulator)
+        for system in subject.elements.tops("ros2_control")
+        for it in system.iterfind("hardware/plugin")
+        for simulator in SIMULATORS
+        if text_of(it) in simulator.hardware
+    ]
+
+
+def driving(subject: Subject) -> Iterator[tuple[_Element, _Element]]:
+    """The parameters that name a joint which a plugin commands, and the plugin."""
+    for plugin in simulator_plugins(subject):
+        for tag in DRIVES.get(library_of(plugin), ()):
+            yield from ((it, plugin) for it in plugin.iterchildren(tag) if text_of(it))
+
+
+def simulator_of(plugin: _Element) -> Simulator:
+    """The simulator that loads a plugin of ``DRIVES``."""
+    return GAZEBO if library_of(plugin).startswith("gz-sim-") else CLASSIC
+
+
+def library_of(plugin: _Element) -> str:
+    """The library of a plugin without version and ending."""
+    return library_key(plugin.get("filename", "").strip().rpartition("/")[2])

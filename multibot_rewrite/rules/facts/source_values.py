@@ -1,0 +1,79 @@
+"""How a value was written before xacro expanded it: can a caller set another one for each robot?"""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from collections.abc import Collection, Mapping
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.model import Claim
+from multibot_rewrite.description.steps.document import tag_end
+from multibot_rewrite.rules.subject import Subject
+
+Starts = Mapping[_Element, int]
+_ATTRIBUTE = lazy_compile(rb"\s([\w:.-]+)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
+# What is the same text for every caller.
+_CONSTANT = lazy_compile(rb"\$\((?:find [^)]*|dirname|env [^)]*)\)|\$\$")
+_EXPRESSION = lazy_compile(rb"\$\{([^}]*)\}")
+_LITERAL = lazy_compile(rb"'[^']*'|\"[^\"]*\"|&quot;.*?&quot;")
+_NAME = lazy_compile(rb"[A-Za-z_]\w*")
+
+
+def claim_is_fixed(subject: Subject, claim: Claim) -> bool:
+    """Is a claimed value the same for every robot, whatever xacro is given?"""
+    return is_fixed(subject, claim.start, claim.attribute)
+
+
+def starts_of(subject: Subject, elements: Collection[_Element]) -> Starts:
+    """Where the tags of some elements start."""
+    wanted = set(elements)
+    every = zip(subject.document.elements, subject.document.starts, strict=True)
+    return {element: start for element, start in every if element in wanted} if wanted else {}
+
+
+def is_fixed(subject: Subject, start: int, attribute: str, *, constants: bool = True) -> bool:
+    """The same for a value by the start of its element's tag; ``attribute`` is empty for text.
+
+    False where that cannot be known. With ``constants`` $(find ...) and the like, which are the same
+    for every robot on a machine, count as text.
+    """
+    if not subject.origins:
+        return True
+    origin = subject.origins.of(bisect_left(subject.document.starts, start))
+    if origin is None:
+        return False
+    raw = _raw(subject.sources[origin.file], origin.start, attribute)
+    if raw is not None and constants:
+        raw = _CONSTANT.sub(b"", raw)
+    for call in origin.calls:
+        if raw is None or b"$" not in raw:
+            break
+        raw = _given(raw, _attributes(subject.sources[call.file], call.start))
+    return raw is not None and b"$" not in raw
+
+
+def _raw(source: bytes, start: int, attribute: str) -> bytes | None:
+    if attribute:
+        raw = _attributes(source, start).get(attribute.encode())
+    else:
+        end = tag_end(source, start)
+        raw = source[end : source.find(b"<", end)]
+    return raw
+
+
+def _given(raw: bytes, call: Mapping[bytes, bytes]) -> bytes | None:
+    """What a macro's call passes for the names in ``raw``; None if it does not pass one of them."""
+    if b"$(" in raw:
+        return None
+    words = [_LITERAL.sub(b"", it) for it in _EXPRESSION.findall(raw)]
+    names = [name for word in words for name in _NAME.findall(word)]
+    if not names or any(name not in call for name in names):
+        return None
+    return _CONSTANT.sub(b"", b" ".join(call[name] for name in names))
+
+
+def _attributes(source: bytes, start: int) -> dict[bytes, bytes]:
+    tag = source[start : tag_end(source, start)]
+    return {it[1]: it[2] if it[2] is not None else it[3] for it in _ATTRIBUTE.finditer(tag)}

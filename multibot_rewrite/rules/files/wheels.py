@@ -1,0 +1,99 @@
+"""The wheels of a diff_drive_controller against the descriptions of its package.
+
+Source: ros2_controllers diff_drive_controller/src/diff_drive_controller.cpp
+(update_and_write_commands: the left wheels get (linear - angular * separation / 2) / radius, with
+the multipliers on both).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+import yaml
+
+from multibot_rewrite.companions.sites import NamedFile
+from multibot_rewrite.rules.facts.drives import (
+    Wheel,
+    are_opposite,
+    are_swapped,
+    radius,
+    separation,
+    wheel_of,
+)
+from multibot_rewrite.rules.files.declared import Given, Section, sections
+from multibot_rewrite.rules.files.records import Remark, remark_at
+from multibot_rewrite.rules.subject import Robots, Subject
+
+CONTROLLER = "diff_drive_controller"
+_LEFT, _RIGHT = "left_wheel_names", "right_wheel_names"
+_SEPARATION, _RADIUS = "wheel_separation", "wheel_radius"
+_Values = Mapping[str, Given]
+
+
+def faulty_wheels(file: NamedFile) -> Iterator[Remark]:
+    """What no description of the package with these wheels fits."""
+    for section in sections(file):
+        if section.node is None or section.node.name != CONTROLLER:
+            continue
+        robots: Robots | None = file.memo.get(Robots)
+        subjects = robots.subjects if robots else ()
+        faults = [it for subject in subjects if (it := _faults(subject, section)) is not None]
+        if faults and all(faults):
+            yield from faults[0]
+
+
+def _faults(subject: Subject, section: Section) -> list[Remark] | None:
+    """What one description does not fit; None if it has not all of the wheels."""
+    values = {it.name: it for it in section.given}
+    left, right = (_wheels(subject, values.get(it)) for it in (_LEFT, _RIGHT))
+    if not left or not right:
+        return None
+    return [*_sizes(subject, values, left, right), *_ways(values[_RIGHT].node, left, right)]
+
+
+def _wheels(subject: Subject, given: Given | None) -> list[Wheel]:
+    names = given.value if given and isinstance(given.value, list) else []
+    found = [wheel_of(subject, str(it), None) for it in names]
+    known = [it for it in found if it is not None]
+    return known if len(known) == len(names) else []
+
+
+def _sizes(
+    subject: Subject, values: _Values, left: Sequence[Wheel], right: Sequence[Wheel]
+) -> Iterator[Remark]:
+    many = bool(left[1:])
+    apart = separation(subject.robot, left[0], right[0], many)
+    round_ = radius(subject.robot, (*left, *right))
+    for name, measured, words in (
+        (_SEPARATION, apart, "wheels are {:.4g} m apart"),
+        (_RADIUS, round_, "wheels have {:.4g} m"),
+    ):
+        given = values.get(name)
+        value = given.value if given else None
+        if given is None or not isinstance(value, float) or value <= 0 or measured is None:
+            continue
+        # Who corrects a size by its multiplier may correct a wrong one.
+        if not measured.holds(value) and not measured.holds(value * _multiplier(values, name)):
+            robot = subject.document.root.get("name", "")
+            message = f"{name} is {value:g} m, but the {words.format(measured.best)} in {robot!r}"
+            yield remark_at(given.node, message, f"write {measured.best:.4g}")
+
+
+def _multiplier(values: _Values, name: str) -> float:
+    names = (f"{name}_multiplier", f"left_{name}_multiplier")
+    found = (values[it].value for it in names if it in values)
+    return next((it for it in found if isinstance(it, float)), 1.0)
+
+
+def _ways(node: yaml.Node, left: Sequence[Wheel], right: Sequence[Wheel]) -> Iterator[Remark]:
+    one, other = left[0], right[0]
+    names = f"{one.joint.name!r} and {other.joint.name!r}"
+    if are_opposite(one, other):
+        message = f"the axes of wheels {names} point in opposite directions"
+        yield remark_at(node, message, "turn one of them around: the robot would turn on the spot")
+    way = are_swapped(one, other)
+    if way:
+        message = f"left wheel {one.joint.name!r} is {way:.3g} m right of {other.joint.name!r}"
+        yield remark_at(
+            node, message, "swap left and right, or turn the axes of both joints around"
+        )

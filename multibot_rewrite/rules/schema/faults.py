@@ -1,0 +1,325 @@
+"""A URDF against the schema of what parsers look for: one pass, every fault of its structure."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections import Counter, defaultdict
+from collections.abc import Collection, Iterable, Iterator, Sequence
+
+from lxml import etree
+
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.nearest import MISTYPED, nearest
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.steps.document import Document, tag_end
+from multibot_rewrite.rules.schema.sections import (
+    ROBOT,
+    Kind,
+    Schema,
+    Section,
+    is_own,
+    schema,
+    section_of,
+    sections_below,
+    sections_once,
+    typed_attributes,
+)
+from multibot_rewrite.rules.schema.values import COUNTS, is_fine, shortened, wrong_numbers
+from multibot_rewrite.rules.schema.versions import is_known, version_of
+
+# What a child of <robot> can be a misspelling of: anything else there is an extension.
+_CORE = ("link", "joint", "material", "transmission", "ros2_control", "gazebo")
+# The parts of a robot with text in them, found quickly, and where the text is.
+_TOPS = etree.XPath(
+    "/robot[text()[normalize-space()]] | /robot/link[normalize-space()]"
+    " | /robot/joint[normalize-space()] | /robot/material[normalize-space()]"
+)
+_TEXTS = etree.XPath("descendant-or-self::*[text()[normalize-space()]]")
+# A number with a line break or tab right after it; that there is none at all is quick to see.
+_BROKEN = {
+    b"\n": lazy_compile(rb"\n(?<=[\d.]\n)"),
+    b"\t": lazy_compile(rb"\t(?<=[\d.]\t)"),
+    b"\r": lazy_compile(rb"\r(?<=[\d.]\r)"),
+}
+_ASSIGNED = lazy_compile(rb"([\w.-]+)\s*=\s*[\"'][^\"'=]*$")
+# Joints of these types have no axis that urdfdom reads.
+_AXIS_FREE = ("fixed", "floating")
+
+
+class Fault(NamedTuple):
+    """A fault of the document's structure; ``kind`` is the name of the rule that reports it.
+
+    ``attribute`` is as in ``Problem``.
+    """
+
+    kind: str
+    element: etree._Element
+    attribute: str | None
+    message: str
+    hint: str = ""
+
+
+def read_faults(document: Document) -> tuple[Fault, ...]:
+    """Every fault of a URDF; what is not a ``<robot>`` has none."""
+    root = document.root
+    if root.tag != ROBOT:
+        return ()
+    known = schema(version_of(root))
+    faults = [*_stray_texts(root, known), *_broken_numbers(document, known)]
+    level = {ROBOT: [root]}
+    while level:
+        below: dict[str, list[etree._Element]] = defaultdict(list)
+        for name, elements in level.items():
+            for element in _to_check(known, name, elements):
+                faults += _attributes(element, known.sections[name])
+            faults += _sorted_children(known, name, elements, below)
+        level = below
+    return tuple(faults)
+
+
+def _sorted_children(
+    known: Schema,
+    name: str,
+    parents: Iterable[etree._Element],
+    below: dict[str, list[etree._Element]],
+) -> Iterator[Fault]:
+    """Sorts the children of elements into their sections; yields what is wrong with the children."""
+    families: dict[tuple[str, ...], list[list[etree._Element]]] = defaultdict(list)
+    for parent in parents if name in known.parents else filter(len, parents):
+        family = [parent, *parent]
+        families[tuple([it.tag for it in family])].append(family)
+    for (_, *found), alike in families.items():
+        tags = tuple(found)
+        sections = sections_below(known.version, name, tags)
+        above, *columns = zip(*alike, strict=True)
+        if sections is None:
+            for parent in above:
+                yield from _children(parent, known.sections[name], known)
+            sections = sections_once(known.version, name, tags)
+        for section, children in zip(sections, columns, strict=True):
+            if section:
+                below[section] += children
+
+
+def _to_check(
+    known: Schema, name: str, elements: Iterable[etree._Element]
+) -> Iterable[etree._Element]:
+    """The elements whose attributes may have a fault."""
+    kinds: dict[tuple[str, ...], list[etree._Element]] = defaultdict(list)
+    for element in elements:
+        kinds[tuple(element.keys())].append(element)  # type: ignore[arg-type]
+    found: list[etree._Element] = []
+    for keys, alike in kinds.items():
+        typed = typed_attributes(known.version, name, keys)
+        if typed is None:
+            found += alike
+        elif typed:
+            found += _with_odd_values(alike, typed)
+    return found
+
+
+def _with_odd_values(
+    alike: Sequence[etree._Element], typed: Iterable[tuple[int, str]]
+) -> Iterable[etree._Element]:
+    """Elements of the same attributes, looked at by columns: most values come again and again."""
+    columns = list(zip(*[it.values() for it in alike], strict=True))
+    found: dict[etree._Element, None] = {}
+    for at, kind in typed:
+        odd = {value for value in set(columns[at]) if not is_fine(kind, value)}
+        if odd:
+            pairs = zip(alike, columns[at], strict=True)
+            found |= {element: None for element, value in pairs if value in odd}
+    return found
+
+
+def _attributes(element: etree._Element, section: Section) -> Iterator[Fault]:
+    """All faults of an element's attributes."""
+    keys = [str(key) for key in element.attrib]
+    yield from _unknown_attributes(element, section, keys)
+    for key in keys:
+        kind = section.attributes.get(key)
+        if kind is not None and kind.type:
+            yield from _value(element, kind, key, element.get(key, ""))
+        if kind is not None and kind.instead_of in keys:
+            message = f"<{element.tag}> has both {kind.instead_of} and {key}"
+            yield Fault("rotation-twice", element, key, message)
+        since = section.later.get(f"@{key}")
+        if since and section.name != "limit":  # MB129 reports those of a limit together
+            message = f"{key} of <{element.tag}> is not read: it needs URDF {since}"
+            yield Fault("needs-later-version", element, key, message)
+
+
+def _unknown_attributes(
+    element: etree._Element, section: Section, keys: Sequence[str]
+) -> Iterator[Fault]:
+    """Attributes that are missing, and those that no parser knows."""
+    known = section.attributes
+    there = frozenset(keys)
+    free = [it for it in known if it not in there]
+    # A file of macros has neither a name nor links.
+    empty = section.name == ROBOT and element.find("link") is None
+    missing = [key for key in known if known[key].required and key not in there and not empty]
+    for key in keys:
+        if key in known or key == "name" or not is_own(key):
+            continue
+        meant = _near(key, free)
+        hint = f"did you mean {meant!r}?" if meant else ""
+        where = f"<{element.tag}> has an attribute {key!r}, which no URDF parser reads"
+        if meant in missing:
+            missing.remove(meant)
+            yield Fault("missing", element, key, f"<{element.tag}> has no {meant!r}", hint)
+        elif meant:
+            yield Fault("misspelled-attribute", element, key, where, hint)
+        else:
+            yield Fault("ignored-attribute", element, key, where)
+    for key in missing:
+        yield Fault("missing", element, None, f"<{element.tag}> has no {key!r}")
+
+
+def _children(element: etree._Element, section: Section, schema: Schema) -> Iterator[Fault]:
+    """Children that are missing, repeated, or that no parser knows, or not yet."""
+    known = section.children
+    tags = [child.tag for child in element.iterchildren("*")]
+    count = Counter(tags)
+    missing = [tag for tag in known if known[tag].times == "required" and tag not in count]
+    for child in element.iterchildren("*"):
+        if child.tag in section.later:
+            message = f"<{child.tag}> is not read: it needs URDF {section.later[str(child.tag)]}"
+            yield Fault("needs-later-version", child, None, message)
+        if child.tag in known or not is_own(child.tag):
+            continue
+        meant = _near(str(child.tag), _CORE if section.name == ROBOT else known)
+        if meant in missing:
+            missing.remove(meant)
+            message = f"<{element.tag}> has no <{meant}>"
+            yield Fault("missing", child, None, message, f"is <{child.tag}> misspelled?")
+        else:
+            yield from _unknown_child(element, child, section, schema, meant)
+    for tag in missing:
+        yield Fault("missing", element, None, f"<{element.tag}> has no <{tag}>")
+    yield from _repeated(element, section, count)
+    yield from _shapes(element, section)
+
+
+def _unknown_child(
+    element: etree._Element,
+    child: etree._Element,
+    section: Section,
+    schema: Schema,
+    meant: str,
+) -> Iterator[Fault]:
+    """A child that the schema does not have in its parent."""
+    message = f"no parser reads <{child.tag}> inside <{element.tag}>"
+    hint = f"did you mean <{meant}>?" if meant else ""
+    if section.name == "ros2_control":
+        yield Fault("unknown-component", child, None, f"<{child.tag}> in <ros2_control>", hint)
+    elif section.name == "geometry":
+        return  # MB615 reports it
+    elif meant:
+        yield Fault("misspelled-element", child, None, message, hint)
+    elif child.tag in schema.tags:
+        homes = [it.name for it in schema.sections.values() if child.tag in it.children]
+        tags = sorted({home.rpartition("_")[2] for home in homes})
+        hint = f"it belongs in {' or '.join(f'<{tag}>' for tag in tags)}"
+        yield Fault("misplaced-element", child, None, message, hint)
+    elif section.name != ROBOT:
+        yield Fault("ignored-element", child, None, message)
+
+
+def _repeated(element: etree._Element, section: Section, count: Counter[str]) -> Iterator[Fault]:
+    """Children that are read once and come again with other content."""
+    for tag, times in count.items():
+        child = section.children.get(tag)
+        if times < 2 or child is None or child.times not in ("once", "required"):
+            continue
+        first, *others = element.findall(tag)
+        other = next((it for it in others if _canonical(it) != _canonical(first)), None)
+        if other is not None:
+            message = f"<{element.tag}> has {times} <{tag}>: urdfdom reads only the first"
+            yield Fault("repeated-element", other, None, message)
+
+
+def _canonical(element: etree._Element) -> bytes:
+    return etree.tostring(element, method="c14n", with_tail=False)
+
+
+def _shapes(element: etree._Element, section: Section) -> Iterator[Fault]:
+    """Shapes after the first one of a geometry."""
+    known = [tag for tag, child in section.children.items() if child.times == "either"]
+    shapes = list(element.iterchildren(*known)) if known else []
+    if len(shapes) > 1:
+        message = f"<{element.tag}> has {len(shapes)} shapes: urdfdom reads only the first"
+        yield Fault("repeated-element", shapes[1], None, message)
+
+
+def _near(name: str, known: Collection[str]) -> str:
+    """The known name that is most like another: the same letters, or nearly all of them."""
+    low = name.lower()
+    letters = sorted(low)
+    same = next((it for it in known if sorted(it.lower()) == letters), "")
+    return same or nearest(low, known, MISTYPED)
+
+
+def _value(element: etree._Element, kind: Kind, attribute: str, value: str) -> Iterator[Fault]:
+    """What is wrong with a value."""
+    where = f"{element.tag}@{attribute} is {shortened(value)!r}"
+    if kind.type == "one":
+        if value not in kind.choices:
+            meant = _near(value.strip(), kind.choices)
+            hint = f"did you mean {meant!r}?" if meant else ""
+            message = f"{where}, not one of {', '.join(kind.choices)}"
+            yield Fault("bad-choice", element, attribute, message, hint)
+    elif kind.type == "version":
+        if not is_known(value):
+            message = f"{where}, urdfdom reads 1.0, 1.1 and 1.2"
+            yield Fault("bad-choice", element, attribute, message, "leave it out for 1.0")
+    elif not _is_unread(element):
+        named, problem, hint = wrong_numbers(value, kind.type)
+        if named:
+            rule = "bad-colour" if kind.type == "rgba" else named
+            yield Fault(rule, element, attribute, f"{where}{problem}", hint)
+
+
+def _is_unread(element: etree._Element) -> bool:
+    """Is it the axis of a joint whose axis is not read?"""
+    joint = element.getparent()
+    return element.tag == "axis" and joint is not None and joint.get("type") in _AXIS_FREE
+
+
+def _stray_texts(root: etree._Element, known: Schema) -> Iterator[Fault]:
+    """Text where no parser expects any, mostly a stray ``>``."""
+    for element in (it for top in _found(_TOPS, root) for it in _elements_with_text(top)):
+        section = section_of(element, known)
+        if section is None or section.text:
+            continue
+        pieces = [element.text, *(child.tail for child in element)]
+        found = next(" ".join(it.split()) for it in pieces if it and it.strip())
+        inside = "" if element.text and element.text.strip() else None
+        message = f"text {shortened(found)!r} in <{element.tag}>, which no parser reads"
+        yield Fault("stray-text", element, inside, message)
+
+
+def _elements_with_text(top: etree._Element) -> list[etree._Element]:
+    return [top] if top.tag == ROBOT else _found(_TEXTS, top)
+
+
+def _found(path: etree.XPath, element: etree._Element) -> list[etree._Element]:
+    return path(element)  # type: ignore[return-value]
+
+
+def _broken_numbers(document: Document, known: Schema) -> Iterator[Fault]:
+    """Line breaks and tabs after a number: white space for XML, but not for urdfdom."""
+    source, elements, starts = document.source, document.elements, document.starts
+    seen: set[int] = set()
+    patterns = [pattern for blank, pattern in _BROKEN.items() if blank in source]
+    for at in (it.start() for pattern in patterns for it in pattern.finditer(source)):
+        number = bisect_right(starts, at) - 1
+        if number < 0 or number in seen or tag_end(source, starts[number]) <= at:
+            continue
+        seen.add(number)
+        section = section_of(elements[number], known)
+        found = _ASSIGNED.search(source, starts[number], at)
+        key = found[1].decode() if found else ""
+        if section and key in section.attributes and section.attributes[key].type in COUNTS:
+            message = f"{elements[number].tag}@{key} has a tab or a line break after a number"
+            yield Fault("space-after-number", elements[number], key, message, "write one space")

@@ -1,0 +1,294 @@
+"""What Gazebo reads below ``<gazebo>`` against the specification of SDF: one pass, every fault.
+
+Sources: ``sdf.schema``; parser_urdf.cc of sdformat (ParseSDFExtension, InsertSDFExtensionLink and
+the like): a ``<gazebo>`` with the name of a link is put into that link, one with the name of a
+joint into that joint, one without a name into the model; some tags are taken out and mean something
+else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
+from math import radians, tau
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.nearest import MISTYPED, nearest, slip_of
+from multibot_rewrite.description.checks.links_and_joints import Robot
+from multibot_rewrite.description.rewriters.text import text_of
+from multibot_rewrite.rules.schema.described import SDF, Described, Row, chunks, described
+from multibot_rewrite.rules.schema.faults import Fault
+from multibot_rewrite.rules.schema.readers import SDFORMAT, reader_of
+from multibot_rewrite.rules.schema.sdf_values import TURN, misread, number_in
+from multibot_rewrite.rules.schema.sections import is_own
+from multibot_rewrite.rules.schema.values import shortened
+from multibot_rewrite.rules.schema.versions import read_version
+
+# What the converter takes out of the block of a joint; the others are for links, and static for
+# neither.
+OF_JOINTS = frozenset(
+    {
+        *("stopCfm", "stopErp", "fudgeFactor", "provideFeedback", "springReference"),
+        *("springStiffness", "implicitSpringDamper", "cfmDamping"),
+    }
+)
+OF_BOTH = frozenset({"disableFixedJointLumping", "preserveFixedJoint", "dampingFactor"})
+OF_MODELS = frozenset({"static", "canonicalBody"})
+# Merged into the shapes that the link has already, or a name in the old style.
+_MERGED = ("visual", "collision", "material")
+# What gz-sensors reads of a <sensor> although SDF does not have it: gz-sensors8_8.2.2
+# src/Sensor.cc:188, and ignition-sensors6 for the second.
+READ_BESIDES = frozenset({"gz_frame_id", "ignition_frame_id"})
+# Angles that SDF has no range for.
+ANGLES = frozenset({"min_angle", "max_angle"})
+_WORDS = "words"
+Version = tuple[int, ...]
+# What the last release with Gazebo Classic reads.
+CLASSIC = (1, 9)
+SENSOR_TYPE = "sensor/@type"
+
+
+def version_of_release(release: str) -> Version:
+    """The version of SDF that Gazebo reads in a release."""
+    found = read_version(reader_of(release, SDFORMAT).reads)
+    assert found
+    return tuple(found)
+
+
+def block_faults(blocks: Sequence[_Element], robot: Robot, release: str) -> tuple[Fault, ...]:
+    """Every fault in these ``<gazebo>`` elements."""
+    version, taken = version_of_release(release), described(SDF, "urdf")
+    assert taken
+    filled = (it for it in blocks if len(it))
+    return tuple(fault for block in filled for fault in _block(block, robot, version, taken))
+
+
+def model_faults(root: _Element, release: str) -> tuple[Fault, ...]:
+    """Every fault in the models of an ``<sdf>``."""
+    version = version_of_release(release)
+    models = root.iterchildren("model")
+    return tuple(fault for model in models for fault in _element(model, "model", version))
+
+
+def _block(block: _Element, robot: Robot, version: Version, taken: Described) -> Iterator[Fault]:
+    name = block.get("reference", "")
+    if name and name not in robot.link and name not in robot.joint:
+        return  # MB212 reports it
+    home = "model" if not name else "link" if name in robot.link else "joint"
+    for child in block.iterchildren("*"):
+        tag = str(child.tag)
+        if tag in taken.rows:
+            yield from _taken(child, taken.rows[tag][0], home)
+        elif tag not in _MERGED:
+            known = described(SDF, home)
+            assert known
+            yield from _child(child, home, known, version, taken.rows)
+
+
+def _taken(child: _Element, row: Row, home: str) -> Iterator[Fault]:
+    """A tag that the converter itself reads."""
+    text = child.get("value") or text_of(child)
+    if not text or "$" in text:
+        return
+    belongs = _belongs(row.name)
+    if home not in belongs:
+        message = f"<{row.name}> in the <gazebo> of a {home} has no effect"
+        hint = f"it is read in that of a {' or '.join(belongs)}: name it with reference="
+        yield Fault("misplaced", child, None, message, hint)
+        return
+    wrong = misread(row.type, text)
+    if wrong:
+        kind = "unreadable" if row.type == "double" and wrong.fails else "misread"
+        yield Fault(kind, child, "", f"{row.name} {shortened(text)!r} {wrong.problem}")
+
+
+def _belongs(tag: str) -> tuple[str, ...]:
+    if tag in OF_MODELS:
+        return ("model", "link", "joint")
+    if tag in OF_BOTH:
+        return ("link", "joint")
+    return ("joint",) if tag in OF_JOINTS else ("link",)
+
+
+def _child(
+    child: _Element, home: str, known: Described, version: Version, also: Mapping[str, object]
+) -> Iterator[Fault]:
+    """One child of an element whose section is ``known``; ``also`` are further tags it may have."""
+    tag = str(child.tag)
+    rows = known.rows.get(tag)
+    if rows is None:
+        if is_own(tag):
+            yield from _unknown(child, known, home, also)
+        return
+    row = _of_version(rows, version)
+    if row.first > version:
+        message = f"<{tag}> in <{home}> is of SDF {_text(row.first)}"
+        hint = f"Gazebo of this release reads up to SDF {_text(version)}"
+        yield Fault("later", child, None, message, hint)
+        return
+    yield from _value(child, "", row, text_of(child), known, version)
+    if row.section:
+        yield from _element(child, row.section, version)
+
+
+def _element(element: _Element, section: str, version: Version) -> Iterator[Fault]:
+    """Attributes and children of an element that has a section."""
+    known = described(SDF, section)
+    if known is None:
+        return
+    for key, text in zip(map(str, element.keys()), map(str, element.values()), strict=True):
+        rows = known.rows.get(f"@{key}")
+        if rows is not None:
+            row = _of_version(rows, version)
+            yield from _value(element, key, row, text, known, version)
+        elif is_own(key):
+            yield from _unknown_attribute(element, key, known)
+    yield from _missing(element, known, version)
+    if "*" in known.rows or not len(element):
+        return
+    for child in element.iterchildren("*"):
+        yield from _child(child, str(element.tag), known, version, {})
+
+
+def _missing(element: _Element, known: Described, version: Version) -> Iterator[Fault]:
+    """Attributes without which sdformat refuses the model; MB158 reports those of plugins."""
+    for name in known.needed:
+        if name[0] == "@" and not element.get(name[1:], "").strip():
+            row = _of_version(known.rows[name], version)
+            if row.required and row.first <= version and element.tag != "plugin":
+                yield Fault("missing", element, None, f"<{element.tag}> has no {name[1:]!r}")
+
+
+def _of_version(rows: tuple[Row, ...], version: Version) -> Row:
+    """The row of a version; one of an older version that is converted; else the first later one."""
+    if len(rows) == 1:
+        return rows[0]
+    older = [it for it in rows if it.first <= version]
+    return older[-1] if older else rows[0]
+
+
+def _value(
+    element: _Element, at: str, row: Row, text: str, known: Described, version: Version
+) -> Iterator[Fault]:
+    """What is wrong with a value: of the attribute ``at``, or the text."""
+    text = text.strip()
+    if not text or "$" in text:
+        return
+    if row.type == "string":
+        yield from _word(element, at, f"{known.names[0]}/{row.name}", text, version)
+        return
+    wrong = misread(row.type, text)
+    if wrong:
+        kind = "unreadable" if wrong.fails else "misread"
+        yield Fault(kind, element, at, f"{_where(element, at, text)} {wrong.problem}")
+    elif row.low is not None or row.high is not None:
+        yield from _range(element, at, row, text)
+    elif row.type == "pose" or row.name in ANGLES:
+        yield from _degrees(element, at, row, text)
+
+
+def _where(element: _Element, at: str, text: str) -> str:
+    """How a message names a value."""
+    return f"{_named(element, at)} {shortened(text)!r}"
+
+
+def _named(element: _Element, at: str) -> str:
+    return f"{element.tag}@{at}" if at else f"<{element.tag}>"
+
+
+def _degrees(element: _Element, at: str, row: Row, text: str) -> Iterator[Fault]:
+    """An angle of more than a turn; a pose may say that its are in degrees, or be a quaternion."""
+    if element.get("degrees", "").lower() in ("true", "1") or element.get("rotation_format"):
+        return
+    angles = [number_in(it) or 0.0 for it in (text.split()[3:] if row.type == "pose" else [text])]
+    worst = max(angles, key=abs, default=0.0)
+    if abs(worst) > TURN:
+        message = f"{_where(element, at, text)} is more than a turn: it is in radians"
+        yield Fault("degrees", element, at, message, f"{worst:g} degrees are {radians(worst):.4g}")
+
+
+def _range(element: _Element, at: str, row: Row, text: str) -> Iterator[Fault]:
+    value = number_in(text)
+    if value is None:
+        return
+    if row.low is not None and value < row.low:
+        message = f"is below {row.low:.10g}, the least that SDF allows"
+        yield Fault("range", element, at, f"{_where(element, at, text)} {message}")
+    elif row.high is not None and value > row.high:
+        message = f"is above {row.high:.10g}, the most that SDF allows"
+        hint = _in_radians(row, value)
+        yield Fault("range", element, at, f"{_where(element, at, text)} {message}", hint)
+
+
+def _in_radians(row: Row, value: float) -> str:
+    """The hint for an angle that was written in degrees."""
+    is_angle = ("fov" in row.name or "angle" in row.name) and value > tau
+    return f"{value:g} degrees are {radians(value):.4g} radians" if is_angle else ""
+
+
+def _word(element: _Element, at: str, name: str, text: str, version: Version) -> Iterator[Fault]:
+    """A word that has to be one of those that the library knows."""
+    known = words(name)
+    if not known or text in known or (text.lower() in known and _is_folded(name)):
+        return
+    near = nearest(text, known)
+    if not near and version <= CLASSIC and name == SENSOR_TYPE:
+        return  # Gazebo Classic lets plugins add types of sensors
+    hint = f"did you mean {near!r}?" if near else ""
+    message = f"{_named(element, at)} is {shortened(text)!r}, which SDF does not know"
+    yield Fault("word", element, at, message, hint)
+
+
+@lru_cache
+def words(name: str) -> tuple[str, ...]:
+    """The words that the library knows for a value, ``sensor/@type``; none where it takes any."""
+    found = described(SDF, f"{_WORDS} {name}")
+    return tuple(found.rows) if found else ()
+
+
+def _is_folded(name: str) -> bool:
+    found = described(SDF, f"{_WORDS} {name}")
+    return found is not None and "folded" in found.about
+
+
+def _unknown(
+    child: _Element, known: Described, home: str, also: Mapping[str, object]
+) -> Iterator[Fault]:
+    tag = str(child.tag)
+    if tag in READ_BESIDES:
+        return
+    free = [it for it in (*known.rows, *also) if it[0] not in "@*"]
+    parent, near = child.getparent(), slip_of(tag, free) or nearest(tag, free, MISTYPED)
+    if parent is not None and near and parent.find(near) is not None:
+        near = ""  # that one is there already
+    message = f"Gazebo reads no <{tag}> in <{home}>"
+    if near:
+        yield Fault("misspelt", child, None, message, f"did you mean <{near}>?")
+    else:
+        homes = _homes(tag)
+        hint = f"it belongs in <{'> or <'.join(homes)}>" if homes else ""
+        yield Fault("misplaced" if homes else "unknown", child, None, message, hint)
+
+
+@lru_cache
+def _homes(tag: str) -> tuple[str, ...]:
+    """The elements of SDF that have such a child, where there are few."""
+    found = {
+        part.partition("]")[0].rpartition(".")[2].partition("_shape")[0]
+        for part in chunks(SDF).values()
+        if f"\n{tag} " in part and not part.startswith((_WORDS, "urdf"))
+    }
+    return tuple(sorted(found)) if 0 < len(found) <= 3 else ()
+
+
+def _unknown_attribute(element: _Element, key: str, known: Described) -> Iterator[Fault]:
+    free = [it[1:] for it in known.rows if it[0] == "@" and it[1:] not in element.attrib]
+    near = nearest(key, free)
+    if near:
+        message = f"Gazebo reads no attribute {key!r} of <{element.tag}>"
+        yield Fault("misspelt", element, key, message, f"did you mean {near!r}?")
+
+
+def _text(version: Version) -> str:
+    return ".".join(map(str, version))

@@ -1,0 +1,139 @@
+"""What libsdformat makes of a text, by the type that is asked for.
+
+Source: gazebosim/sdformat sdformat14_14.9.0 src/Param.cc (ValueFromStringImpl,
+ParsePoseUsingStringStream, ParseColorUsingStringStream): numbers are read by stod, stoi and stoul,
+which stop at what is none, vectors by a stream. What cannot be read ends the loading of the model;
+in a plugin it counts as 0 or false.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from functools import lru_cache, partial
+from math import isinf, tau
+
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.record import NamedTuple
+
+# No digits but 0 to 9; inf and nan in capitals, too.
+_ASCII = re.ASCII | re.IGNORECASE
+_REAL = lazy_compile(
+    r"[-+]?(?:0[xX][\da-fA-F]+|(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|inf|nan)", _ASCII
+)
+_WHOLE = lazy_compile(r"[-+]?(?:0[xX][\da-fA-F]+|\d+)", _ASCII)
+_ZEROS = lazy_compile(r"\.0*")
+_DIGITS = 20
+# No angle is as large; a little more than a turn is one that was rounded.
+TURN = tau * 1.001
+_TRUTHS = ("true", "false", "1", "0")
+
+
+class Misread(NamedTuple):
+    """What is wrong with a value; ``fails``: nothing of it can be read."""
+
+    problem: str
+    fails: bool
+
+
+@lru_cache(maxsize=4096)  # values come again
+def misread(type_: str, text: str) -> Misread | None:
+    """What is wrong with a text for that type, None where it is read as it stands.
+
+    Nothing is said of an empty text, which counts as the default, or of a type without a rule.
+    """
+    check = CHECKS.get(type_)
+    return check(text) if check and text else None
+
+
+def _number(text: str, *, whole: bool = False) -> Misread | None:
+    if text.lower() in ("true", "false"):
+        return None
+    found = (_WHOLE if whole else _REAL).match(text)
+    if found is None:
+        return Misread("is not a number", True)
+    if _is_too_large(found[0], whole):
+        return Misread("is too large a number", True)
+    rest = text[found.end() :]
+    if not rest or (whole and _ZEROS.fullmatch(rest)):
+        return None
+    return Misread(f"is read as {found[0]}", False)
+
+
+def _is_too_large(digits: str, whole: bool) -> bool:
+    """Do stod, stoi and stoul throw out_of_range? For whole numbers it is only asked roughly."""
+    if "x" in digits.lower() or not digits[-1].isdigit():
+        return False
+    return len(digits) > _DIGITS if whole else isinf(float(digits))
+
+
+def _unsigned(text: str) -> Misread | None:
+    if text.startswith("-") and text != "-1":
+        return Misread("is below 0, and is read as a number above 4 billion", False)
+    return _number(text, whole=True)
+
+
+def _boolean(text: str) -> Misread | None:
+    return None if text.lower() in _TRUTHS else Misread("is neither true nor false", True)
+
+
+def _truth(text: str) -> Misread | None:
+    known = text.lower() in (*_TRUTHS, "yes", "no")
+    return None if known else Misread("is neither true nor false", False)
+
+
+def _numbers(text: str, *, count: int) -> Misread | None:
+    """A stream stops at the first word that is no number."""
+    read = 0
+    for word in text.split():
+        found = _REAL.match(word)
+        if found is None or read == count:
+            break
+        read += 1
+        if found.end() < len(word):
+            break
+    if read < count:
+        return Misread(f"is not {count} numbers", True)
+    return None
+
+
+def _pose(text: str) -> Misread | None:
+    words = text.split()
+    if not all(map(_REAL.match, words)):
+        return Misread("is not six numbers", True)
+    return None if len(words) in (6, 7) else Misread(f"has {len(words)} numbers of 6", True)
+
+
+def _color(text: str) -> Misread | None:
+    found = [_REAL.match(word) for word in text.split()]
+    if len(found) not in (3, 4) or not all(found):
+        return Misread("is not three or four numbers", True)
+    inside = all(it and 0 <= float(it[0]) <= 1 for it in found)
+    return None if inside else Misread("has a number outside of 0 to 1", True)
+
+
+_whole = partial(_number, whole=True)
+CHECKS: dict[str, Callable[[str], Misread | None]] = {
+    "double": _number,
+    "float": _number,
+    "number": _number,
+    "int": _whole,
+    "integer": _whole,
+    "unsigned_int": _unsigned,
+    "bool": _boolean,
+    "boolean": _boolean,
+    "truth": _truth,
+    "vector2d": partial(_numbers, count=2),
+    "vector3": partial(_numbers, count=3),
+    "vector": partial(_numbers, count=3),
+    "pose": _pose,
+    "color": _color,
+}
+
+
+def number_in(text: str) -> float | None:
+    """The number that a text begins with, as stod reads it."""
+    found = _REAL.match(text)
+    if found is None or "x" in found[0].lower():
+        return None
+    return float(found[0])

@@ -1,0 +1,61 @@
+"""The subject of lint rules: one document and what is known about it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.checks.links_and_joints import Robot
+from multibot_rewrite.description.rewriters.forms import Declared
+from multibot_rewrite.description.rewriters.tree import Tree
+from multibot_rewrite.description.steps.collect import Inventory
+from multibot_rewrite.description.steps.document import Document
+from multibot_rewrite.rules.facts.elements import Elements
+from multibot_rewrite.rules.schema.faults import Fault
+from multibot_rewrite.rules.settings import Settings
+
+if TYPE_CHECKING:
+    from multibot_rewrite.description.sources.trace import Origins
+
+
+# How the file of a document that xacro made is called.
+EXPANDED = " (expanded)"
+
+
+class Subject(NamedTuple):
+    """One document to lint.
+
+    ``format`` is ``urdf``, ``srdf`` or ``xacro`` (the source as it is written). ``beside`` is the
+    robot of an SRDF's URDF, if it was found. Where the document was expanded, ``origins``
+    says where its elements were written, in document order, and ``sources`` has those files;
+    ``arguments`` are the ones it was expanded with, ``given`` their names. ``faults`` are
+    those of a URDF's structure.
+    ``memo`` is each subject's own, and filled while rules look at it (``facts.memo``).
+    """
+
+    format: str
+    document: Document
+    elements: Elements
+    inventory: Inventory
+    tree: Tree
+    robot: Robot
+    settings: Settings
+    memo: dict[object, Any]
+    beside: Robot | None = None
+    origins: Origins | None = None
+    sources: Mapping[str, bytes] = {}
+    arguments: str = ""
+    given: tuple[str, ...] = ()
+    faults: tuple[Fault, ...] = ()
+
+
+class Robots(NamedTuple):
+    """The names of all descriptions by kind, and each description; ``is_whole``: all could be read."""
+
+    declared: Declared
+    subjects: tuple[Subject, ...]
+    is_whole: bool
+
+
+NO_ROBOTS = Robots({}, (), False)

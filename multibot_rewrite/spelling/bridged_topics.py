@@ -1,0 +1,200 @@
+"""The topics that ros_gz_bridge must bridge for each robot, read from rewritten descriptions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache
+from typing import Any, cast
+
+from lxml import etree
+
+from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS, Naming, spelled
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.readback.model_namespaces import scoped_namespace
+from multibot_rewrite.description.rewriters.model_namespaces import is_model_namespace
+from multibot_rewrite.description.rewriters.text import text_at
+from multibot_rewrite.description.rewriters.tree import library_key
+from multibot_rewrite.description.steps.collect import Inventory
+
+# How libraries for gz-sim are called; those for Gazebo Classic that are ROS nodes have the other word.
+GZ_LIBRARIES, CLASSIC_LIBRARY = ("gz-", "gz_", "ign_", "ignition-"), "gazebo_ros"
+# Types of sensors that Gazebo Classic has, too; it calls the others otherwise (``gpu_ray``).
+OF_BOTH = frozenset({"camera", "imu", "magnetometer", "altimeter", "force_torque"})
+DIRECTIONS = {"in": "GZ_TO_ROS", "out": "ROS_TO_GZ"}
+TF_TYPE = "tf2_msgs/msg/TFMessage"
+
+
+class BridgedTopic(NamedTuple):
+    """One topic of the bridge; ``robot`` is empty if it is bridged once for all robots."""
+
+    robot: str
+    ros: str
+    gz: str
+    ros_type: str
+    gz_type: str
+    direction: str
+
+
+class UnbridgedTopic(NamedTuple):
+    """A topic that cannot be bridged: its gz name depends on the world or the spawner. ``part`` is what
+    that name holds all the same, ``type`` its type where that tells it from others."""
+
+    robot: str
+    line: int
+    what: str
+    part: str = ""
+    type: str = ""
+
+
+@lru_cache(maxsize=1)
+def bridge_data() -> Mapping[str, Any]:
+    """The data of ``bridge.yaml``."""
+    from importlib.resources import files  # slow to load, and the lint asks only for libraries
+
+    text = files("multibot_rewrite.knowledge").joinpath("bridge.yaml").read_text()
+    data: Mapping[str, Any] = load_yaml(text)
+    return data
+
+
+def bridged_topics(
+    inventories: Mapping[str, Inventory], naming: Naming
+) -> tuple[list[BridgedTopic], list[UnbridgedTopic]]:
+    """The bridged topics of a fleet, and those that cannot be bridged.
+
+    ``inventories`` are those of the rewritten descriptions.
+    """
+    bridged = [
+        BridgedTopic("", name, name, ros_type, gz_type, DIRECTIONS[way])
+        for name, ros_type, gz_type, way in bridge_data()["shared"]
+    ]
+    left: list[UnbridgedTopic] = []
+    for robot, inventory in inventories.items():
+        for item in _robot_topics(inventory, robot, naming):
+            (bridged if isinstance(item, BridgedTopic) else left).append(item)  # type: ignore[arg-type]
+    return list(dict.fromkeys(bridged)), left
+
+
+def plugin_libraries(inventory: Inventory) -> list[str]:
+    """The libraries of a description's plugins, as ``library_key`` has them."""
+    hosts = (it.element for it in inventory.hosts)
+    return [library_key(it.get("filename", "")) for it in hosts if it.tag == "plugin"]
+
+
+def is_for_classic(inventory: Inventory) -> bool:
+    """Is a description for Gazebo Classic, whose topics no bridge can reach?"""
+    known = plugin_libraries(inventory)
+    return any(CLASSIC_LIBRARY in it for it in known) and not any(
+        it.startswith(GZ_LIBRARIES) for it in known
+    )
+
+
+def _robot_topics(
+    inventory: Inventory, robot: str, naming: Naming
+) -> Iterator[BridgedTopic | UnbridgedTopic]:
+    elsewhere = OF_BOTH if is_for_classic(inventory) else ()
+    for sensor in inventory.document.root.iter("sensor"):
+        if sensor.get("type") not in elsewhere:
+            yield from _sensor(sensor, robot)
+    # With bare frames the spawner must give the model the robot's name, or two models collide.
+    model = inventory.document.root.get("name", "") if "model" in naming.separators else robot
+    read = any(is_model_namespace(claim.site) for claim in inventory.claims)
+    for host in inventory.hosts:
+        section = host.node.section
+        below = read and section is not None and bool(section.model_namespace)
+        space = scoped_namespace(host.element) if below else ""
+        topics = bridge_data()["plugins"].get(section.names[0] if section else "", ())
+        yield from _plugin(host.element, topics, robot, model, naming, space)
+
+
+def _sensor(sensor: etree._Element, robot: str) -> Iterator[BridgedTopic | UnbridgedTopic]:
+    kind = sensor.get("type", "")
+    topics = bridge_data()["sensors"].get(kind, ())
+    if not topics or sensor.find("plugin[@filename]") is not None:
+        return  # a Gazebo Classic sensor, whose plugin is a ROS node, or an unknown type
+    base = text_at(sensor, "topic")
+    if not base:
+        name = sensor.get("name")
+        yield UnbridgedTopic(robot, _line(sensor), f"sensor {name}", f"/sensor/{name}/")
+        return
+    for ending, ros_type, gz_type, way in topics:
+        name = f"{base}{ending}"
+        yield BridgedTopic(robot, _ros_name(name), name, ros_type, gz_type, DIRECTIONS[way])
+    yield from _camera_info(sensor, robot, base)
+
+
+def _camera_info(sensor: etree._Element, robot: str, base: str) -> Iterator[BridgedTopic]:
+    if "camera" in sensor.get("type", ""):
+        beside = f"{base.rpartition('/')[0]}/camera_info".lstrip("/")
+        name = text_at(sensor, "camera/camera_info_topic") or beside
+        if sensor.get("type") == "rgbd_camera":  # its code uses no other name
+            name = f"{base}/camera_info"
+        types = ("sensor_msgs/msg/CameraInfo", "gz.msgs.CameraInfo")
+        yield BridgedTopic(robot, _ros_name(name), name, *types, DIRECTIONS["in"])
+
+
+def _plugin(
+    plugin: etree._Element,
+    topics: Iterable[Sequence[str]],
+    robot: str,
+    model: str,
+    naming: Naming,
+    space: str | None,
+) -> Iterator[BridgedTopic | UnbridgedTopic]:
+    for element, default, ros_type, gz_type, way in topics:
+        given = text_at(plugin, element)
+        name = (
+            _below(space, given, default) if space != "" else given or default.format(model=model)
+        )
+        if not name:
+            what = f"<{element}> of {plugin.get('filename')}"
+            yield UnbridgedTopic(robot, _line(plugin), what, type=gz_type)
+            continue
+        ros = _tf_name(robot, naming) if ros_type == TF_TYPE else _ros_name(name)
+        if not given and ros_type != TF_TYPE:
+            ros = _robot_name(default.rpartition("/")[2], robot, naming)
+        # A shared /tf is bridged once, or each transform would arrive once for every robot.
+        whose = "" if ros == _ros_name(name) == f"/{TF_TOPICS[0]}" else robot
+        yield BridgedTopic(whose, ros, name, ros_type, gz_type, DIRECTIONS[way])
+
+
+def _below(space: str | None, given: str, default: str) -> str:
+    """A topic of a model with a namespace; empty where that is made of the name it is spawned by."""
+    if space is None or given.startswith("/"):
+        return given if given.startswith("/") else ""
+    return f"{space.rstrip('/')}/{given or default.rpartition('/')[2]}"
+
+
+def _line(element: etree._Element) -> int:
+    return cast("int", element.sourceline)
+
+
+def _ros_name(name: str) -> str:
+    """A gz topic has no namespace: the name in the description is the full name."""
+    return f"/{name.lstrip('/')}"
+
+
+def _tf_name(robot: str, naming: Naming) -> str:
+    tf = TF_TOPICS[0]
+    return _robot_name(tf, robot, naming) if naming.layout.tf_per_robot else f"/{tf}"
+
+
+def _robot_name(name: str, robot: str, naming: Naming) -> str:
+    """A name as the robot's own topic."""
+    if naming.topics == NAMESPACE:
+        return f"/{robot}/{name}"
+    return spelled(naming, robot, "topic", f"/{name}")
+
+
+def as_yaml(bridged: Iterable[BridgedTopic]) -> str:
+    """The configuration file of ``ros_gz_bridge parameter_bridge``."""
+    rows = []
+    for item in bridged:
+        rows += [
+            f'- ros_topic_name: "{item.ros}"\n',
+            f'  gz_topic_name: "{_ros_name(item.gz)}"\n',
+            f'  ros_type_name: "{item.ros_type}"\n',
+            f'  gz_type_name: "{item.gz_type}"\n',
+            f"  direction: {item.direction}\n",
+        ]
+    return "".join(rows)

@@ -1,0 +1,133 @@
+"""SROS2 policies that follow from a plan: an enclave a robot, so that DDS refuses what crosses them.
+
+Source: sros2 ``policy/schemas/policy.xsd`` (the elements), ``policy/templates/dds/permissions.xsl`` (an
+enclave may do what any of its profiles allows, a name may be a pattern of ``fnmatch``, an action brings
+its hidden topics and services) and ``test/policies/common/node.xml`` (what every node needs).
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping
+
+from multibot_rewrite.base.conventions import (
+    READ_BY_EVERY_NODE,
+    SENT_BY_EVERY_NODE,
+    tool_patterns,
+)
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.system.records import (
+    ACTION,
+    CALLS,
+    PUBLISHES,
+    SERVES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+    End,
+    System,
+    nodes_by_robot,
+)
+
+TOOLS, SHARED = "/tools", "/shared"
+VERSION = "0.2.0"
+# Kind and role of an endpoint -> element, attribute, element of a name.
+_ELEMENTS = {
+    (TOPIC, PUBLISHES): ("topics", "publish", "topic"),
+    (TOPIC, SUBSCRIBES): ("topics", "subscribe", "topic"),
+    (SERVICE, SERVES): ("services", "reply", "service"),
+    (SERVICE, CALLS): ("services", "request", "service"),
+    (ACTION, SERVES): ("actions", "execute", "action"),
+    (ACTION, CALLS): ("actions", "call", "action"),
+}
+# What rcl and rclcpp open for every node; ~ is the node.
+_PARAMETERS = (
+    *("describe_parameters", "get_parameter_types", "get_parameters", "list_parameters"),
+    *("set_parameters", "set_parameters_atomically"),
+)
+_OF_EVERY_NODE = (
+    *((TOPIC, PUBLISHES, name) for name in SENT_BY_EVERY_NODE),
+    *((TOPIC, SUBSCRIBES, name) for name in READ_BY_EVERY_NODE),
+    *((SERVICE, SERVES, f"~/{name}") for name in (*_PARAMETERS, "get_type_description")),
+    *((SERVICE, CALLS, f"~/{name}") for name in _PARAMETERS),
+)
+_HEAD = """\
+<?xml version="1.0" encoding="UTF-8"?>
+<!-- Who may do what in this fleet: an enclave for each robot, {shared} for nodes that all use,
+     {tools} for what people look and drive with. What is not here is refused. -->
+"""
+# Kind, role and name.
+Allowed = tuple[str, str, str]
+
+
+class Profile(NamedTuple):
+    """What a node of an enclave may do; ``node`` is a full name or a pattern."""
+
+    node: str
+    allowed: tuple[Allowed, ...]
+
+
+def enclave_of(robot: str) -> str:
+    """The path of a robot's enclave."""
+    return f"/{robot}"
+
+
+def to_policy(plan: System, more: Iterable[End] = ()) -> str:
+    """The policy file of a fleet. ``more`` are endpoints that nodes may have besides those of the plan,
+    by parameter: a policy that lacks them would stop these nodes."""
+    enclaves = profiles(plan, more)
+    lines = [line for path, found in enclaves.items() for line in _enclave(path, found)]
+    head = _HEAD.format(shared=SHARED, tools=TOOLS)
+    body = [f'<policy version="{VERSION}">', "  <enclaves>", *lines, "  </enclaves>", "</policy>"]
+    return head + "\n".join(body) + "\n"
+
+
+def profiles(plan: System, more: Iterable[End] = ()) -> Mapping[str, tuple[Profile, ...]]:
+    """Each enclave with what its nodes may do."""
+    ends = (*plan.ends, *more)
+    allowed: dict[str, dict[Allowed, None]] = defaultdict(dict)
+    for end in ends:
+        allowed[end.node][end.kind, end.role, end.name] = None
+    result, nodes = {}, nodes_by_robot(plan)
+    for robot in plan.robots:
+        tf = [(TOPIC, SUBSCRIBES, f"{robot.tf_topic}{end}") for end in ("", "_static")]
+        listener = Profile(f"/{robot.name}/*", tuple(tf))
+        own = (_profile(node, allowed[node]) for node in nodes[robot.name])
+        result[enclave_of(robot.name)] = (*own, listener)
+    shared = tuple(_profile(node, allowed[node]) for node in nodes[""])
+    return {**result, **({SHARED: shared} if shared else {}), TOOLS: tuple(_tools(ends))}
+
+
+def _profile(node: str, own: Iterable[Allowed]) -> Profile:
+    return Profile(node, tuple(sorted({*_OF_EVERY_NODE, *own})))
+
+
+def _tools(ends: Iterable[End]) -> Iterator[Profile]:
+    """Tools read and call everything; they send what robots read and no planned node sends."""
+    sides = defaultdict(set)
+    for end in ends:
+        if end.kind == TOPIC:
+            sides[end.role].add(end.name)
+    open_ = sorted(sides[SUBSCRIBES] - sides[PUBLISHES])
+    every = ((TOPIC, SUBSCRIBES, "/*"), (SERVICE, CALLS, "/*"), (ACTION, CALLS, "/*"))
+    yield Profile("/tools", (*every, *((TOPIC, PUBLISHES, name) for name in open_)))
+    yield from (_profile(f"/{pattern}", ()) for pattern in tool_patterns())
+
+
+def _enclave(path: str, found: Iterable[Profile]) -> Iterator[str]:
+    from xml.sax.saxutils import escape, quoteattr  # takes half as long to import as a check does
+
+    yield f"    <enclave path={quoteattr(path)}>"
+    yield "      <profiles>"
+    for profile in found:
+        space, _, node = profile.node.rpartition("/")
+        yield f"        <profile ns={quoteattr(space or '/')} node={quoteattr(node)}>"
+        for key, (plural, attribute, single) in _ELEMENTS.items():
+            names = [name for kind, role, name in profile.allowed if (kind, role) == key]
+            if names:
+                yield f'          <{plural} {attribute}="ALLOW">'
+                yield from (f"            <{single}>{escape(it)}</{single}>" for it in names)
+                yield f"          </{plural}>"
+        yield "        </profile>"
+    yield "      </profiles>"
+    yield "    </enclave>"

@@ -1,0 +1,68 @@
+"""The states of a plan's nodes as the value of its key ``states``, and back."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.knowledge.yaml_with_lines import unknown
+from multibot_rewrite.system.parameters import parameter_text, parameter_value
+from multibot_rewrite.system.records import Node, Parameter
+
+KEYS = ("lifecycle", "host", "parameters")
+# lifecycle_msgs/msg/State, the primary ones.
+LIFECYCLE = ("unconfigured", "inactive", "active", "finalized")
+
+
+class NodeDemand(NamedTuple):
+    """What is planned of a node besides its ends."""
+
+    node: str
+    lifecycle: str
+    host: str
+    parameters: tuple[Parameter, ...]
+
+
+def state_value(node: Node, parameters: Iterable[Parameter]) -> dict[str, object]:
+    """A mapping; a parameter that is from a file is not the plan's own."""
+    own = {it.name: parameter_value(it.value) for it in parameters if not it.place.file}
+    given = {"lifecycle": node.lifecycle, "host": node.host, "parameters": own}
+    return {key: value for key, value in given.items() if value}
+
+
+def read_states(value: object, file: str) -> Iterator[NodeDemand]:
+    """The states by node; raises InputError with the place and what to write there."""
+    for node, given in _mapping(value or {}, f"{file}: states").items():
+        place = f"{file}: states.{node}"
+        if not node.startswith("/"):
+            raise InputError(f"{place}: {node!r} is not a full name; write it with a / in front")
+        yield _read(node, _mapping(given, place), place)
+
+
+def _read(node: str, given: Mapping[str, Any], place: str) -> NodeDemand:
+    for key in given:
+        if key not in KEYS:
+            raise InputError(f"{place}: {unknown('key', key, KEYS)}")
+    lifecycle, host = (given.get(key, "") for key in KEYS[:2])
+    if lifecycle and lifecycle not in LIFECYCLE:
+        raise InputError(f"{place}: lifecycle: {unknown('state', str(lifecycle), LIFECYCLE)}")
+    if not isinstance(host, str):
+        raise InputError(f"{place}: host: write a word in quotes")
+    parameters = _mapping(given.get("parameters") or {}, f"{place}.parameters")
+    own = (_parameter(node, name, it, f"{place}.parameters") for name, it in parameters.items())
+    return NodeDemand(node, lifecycle, host, tuple(own))
+
+
+def _parameter(node: str, name: str, value: object, place: str) -> Parameter:
+    items = value if isinstance(value, list) else [value]
+    if not all(isinstance(it, bool | int | float | str) for it in items):
+        raise InputError(f"{place}.{name}: write a text, a number, true or false, or a list of one")
+    return Parameter(node, name, parameter_text(value))
+
+
+def _mapping(value: object, place: str) -> Mapping[str, Any]:
+    if not isinstance(value, dict) or not all(isinstance(it, str) for it in value):
+        raise InputError(f"{place} is not a mapping with names as keys")
+    return value

@@ -1,0 +1,269 @@
+"""Robots, nodes and a naming policy -> the remap table: each node's rules and resolved names.
+
+A rule is made only for a name that would otherwise be the same for every robot. The table is checked
+by resolving every name with its rules as rcl does (``rosnames``), not by trusting the rules.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TypeAlias
+
+from multibot_rewrite.base.gc_pause import gc_paused
+from multibot_rewrite.base.naming import NAMESPACE, Naming
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.rosnames import RemapRule, bind, expand, parse_remap, resolve_bound
+from multibot_rewrite.knowledge.controller_ways import controller_way
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
+from multibot_rewrite.spelling.applied_rules import is_stand_in
+from multibot_rewrite.spelling.records import EndpointName, Home, NodeRule, NodeTable, Pairs, Table
+from multibot_rewrite.spelling.table_checks import (
+    PROBE,
+    SHARED_NODE,
+    asked_for,
+    collisions,
+    shared_nodes,
+    unreachable,
+    useless_rules,
+)
+from multibot_rewrite.spelling.targets import expanded, placed, target_of
+from multibot_rewrite.spelling.way_checks import NOT_TAKEN, not_taken
+from multibot_rewrite.system.records import ACTION, TOPIC
+
+SAME = "all robots would share this name otherwise"
+TOGETHER = "all robots share this name; each would have its own otherwise"
+NOTHING: Mapping[str, Pairs] = {}
+# The full name of a robot's node, by its name in the stack.
+Places: TypeAlias = Mapping[str, str]
+NOWHERE: Places = {}
+
+
+def build_table(
+    robots: Sequence[str],
+    nodes: Sequence[NodeFacts],
+    naming: Naming,
+    plugins: Mapping[str, Pairs] = NOTHING,
+    *,
+    release: str,
+) -> Table:
+    """The remap table of a fleet with its problems; nodes for all robots are in it once.
+
+    ``nodes`` run once for each robot; ``plugins`` are those of each robot's rewritten description.
+    """
+    with gc_paused():
+        made = _build(robots, nodes, naming, plugins, release)
+        return made._replace(problems=(*made.problems, *not_taken(made)))
+
+
+def _build(
+    robots: Sequence[str],
+    nodes: Sequence[NodeFacts],
+    naming: Naming,
+    plugins: Mapping[str, Pairs],
+    release: str,
+) -> Table:
+    shared = [(node, node_table("", node, naming)) for node in nodes if node.shared]
+    # Made once: another robot's table differs only in the robot's name.
+    others, once = places_of(PROBE, nodes, naming), frozenset(node.name for node, _ in shared)
+    own = [
+        (node, node_table(PROBE, node, naming, others, once)) for node in nodes if not node.shared
+    ]
+    meant = list(names_of(own))
+    apart = {robot: _without_stand_ins(pairs, nodes) for robot, pairs in plugins.items()}
+    names = {
+        robot: [*_renamed(meant, robot), *names_of(apart.get(robot, ()))]
+        for robot in ([*robots, PROBE] if len(robots) == 1 else robots)
+    }
+    problems = [
+        *unreachable([node for node, _ in own], naming),
+        *useless_rules(own, release),
+        *collisions(names, naming),
+    ]
+    for robot in robots:
+        controllers = _given_by_plugins(own, robot, release)
+        problems += useless_rules(plugins.get(robot, ()), release, controllers)
+    twin = _copies(own, PROBE) if len(robots) == 1 else ()
+    kept = [*names_of(shared), *(name for robot in robots for name in names[robot])]
+    tables = [table for _, table in shared]
+    for robot in robots:
+        tables += [*_copies(own, robot), *(table for _, table in plugins.get(robot, ()))]
+    problems += shared_nodes((*tables, *twin))
+    return Table(naming.layout.name, tuple(tables), tuple(kept), tuple(problems), release)
+
+
+def _given_by_plugins(own: Pairs, robot: str, release: str) -> Pairs | None:
+    """The controllers that get the rules of their plugin; None where no stack names them."""
+    if not controller_way(release).of_manager:
+        return ()
+    found = [pair for pair in own if pair[0].is_controller]
+    facts = [node for node, _ in found]
+    return list(zip(facts, _copies(found, robot), strict=True)) or None
+
+
+def _without_stand_ins(pairs: Pairs, nodes: Iterable[NodeFacts]) -> Pairs:
+    """The plugins of a description, without what their controllers publish if a stack names those."""
+    if not any(node.is_controller for node in nodes):
+        return pairs
+    return [(_without_controllers(facts, table), table) for facts, table in pairs]
+
+
+def _without_controllers(facts: NodeFacts, table: NodeTable) -> NodeFacts:
+    kept = (it for it in facts.endpoints if not is_stand_in(table, it))
+    return facts._replace(endpoints=tuple(kept))
+
+
+def joined(table: Table, other: Table, naming: Naming) -> Table:
+    """Two tables of different robots as one; nodes for all robots are in it once."""
+    names = tuple(dict.fromkeys((*table.names, *other.names)))
+    by_robot: dict[str, list[EndpointName]] = {}
+    for name in names:
+        if name.robot:
+            by_robot.setdefault(name.robot, []).append(name)
+    known = {(it.code, it.message) for it in (*table.problems, *other.problems)}
+    met = (it for it in collisions(by_robot, naming) if (it.code, it.message) not in known)
+    nodes = tuple(dict.fromkeys((*table.nodes, *other.nodes)))
+    made = Table(table.layout, nodes, names, (), table.release)
+    # The first robot of all is another one than the first of each.
+    whole = (NOT_TAKEN.code, SHARED_NODE.code)
+    each = (it for it in (*table.problems, *other.problems) if it.code not in whole)
+    found = (*each, *met, *shared_nodes(nodes), *not_taken(made))
+    return made._replace(problems=tuple(dict.fromkeys(found)))
+
+
+def _renamed(names: Sequence[EndpointName], robot: str) -> list[EndpointName]:
+    """The probe's names, renamed for another robot."""
+    nodes = {node: node.replace(PROBE, robot) for node in {it.node for it in names}}
+    return [
+        EndpointName(robot, nodes[node], endpoint, name.replace(PROBE, robot))
+        for _, node, endpoint, name in names
+    ]
+
+
+def _copies(pairs: Pairs, robot: str) -> Iterator[NodeTable]:
+    """The probe's nodes, renamed for another robot."""
+    for _, (_, node, namespace, name, rules, home) in pairs:
+        own = tuple(
+            NodeRule(
+                robot,
+                node,
+                rule.source.replace(PROBE, robot),
+                rule.target.replace(PROBE, robot),
+                rule.kind,
+                rule.why,
+            )
+            for rule in rules
+        )
+        yield NodeTable(
+            robot, node, namespace.replace(PROBE, robot), name.replace(PROBE, robot), own, home
+        )
+
+
+def node_table(
+    robot: str,
+    node: NodeFacts,
+    naming: Naming,
+    others: Places = NOWHERE,
+    once: frozenset[str] = frozenset(),
+) -> NodeTable:
+    """Namespace, name and rules of one robot's node; a node for all robots stays as it is.
+
+    ``others`` are the places of the robot's nodes: a name below one of them is renamed with it.
+    ``once`` are the nodes for all robots: a name below one of them is that node's own.
+    """
+    if node.shared:
+        above, _, own = node.name.strip("/").rpartition("/")
+        return NodeTable("", node.name, f"/{above}", own, ())
+    namespace, name = placed(robot, node.name, naming, node.apart)
+    place = _Place(robot, naming, namespace, _root(namespace, robot, node, naming), others, once)
+    rules: dict[str, NodeRule] = {}
+    for endpoint in (it for it in node.endpoints if not it.fixed):
+        for source, target, moved in _targets(endpoint, place):
+            why = f"{SAME}; the stack calls it {moved}" if moved else SAME
+            why = TOGETHER if target == f"/{source}" else why
+            match = expand(source, namespace, name)
+            rules.setdefault(match, NodeRule(robot, node.name, source, target, "", why))
+    home = Home(
+        node.host, node.container, node.plugin, apart=node.apart, of_hardware=node.of_hardware
+    )
+    return NodeTable(robot, node.name, namespace, name, tuple(rules.values()), home)
+
+
+class _Place(NamedTuple):
+    """Where a node runs; ``root`` is what a relative target needs before it, since it would stay in the
+    node's own namespace."""
+
+    robot: str
+    naming: Naming
+    namespace: str
+    root: str
+    others: Places
+    once: frozenset[str]
+
+
+def _targets(endpoint: Endpoint, place: _Place) -> Iterator[tuple[str, str, str]]:
+    """The names of an endpoint that need a rule, its target, and what the stack calls them if that is
+    another name."""
+    robot, naming, namespace, root, others, once = place
+    meant = expanded(endpoint._replace(name=endpoint.remapped or endpoint.name))
+    for (kind, source), (_, wanted) in zip(expanded(endpoint), meant, strict=True):
+        moved = wanted if wanted != source else ""
+        if wanted.partition("/")[0] in once:
+            target = f"/{wanted}" if naming.topics == NAMESPACE else moved
+        else:
+            target = _below(wanted, naming, others)
+            target = target or target_of(wanted, kind, robot, naming) or moved
+            target = target or _shared(wanted, place)
+        if target:
+            yield source, f"{'' if target[0] == '/' else root}{target}", moved
+        # What a node joins with the namespace above is no name of its own namespace.
+        if target and naming.topics != NAMESPACE:
+            for joined in asked_for(source, endpoint, namespace)[1:]:
+                yield joined, f"/{target.lstrip('/')}", moved
+
+
+def _shared(name: str, place: _Place) -> str:
+    """A name that all robots share, for a node that would look for it in its robot's namespace."""
+    inside = place.root and place.naming.topics != NAMESPACE
+    return name if inside and name[0] not in "~/" else ""
+
+
+def _root(namespace: str, robot: str, node: NodeFacts, naming: Naming) -> str:
+    if naming.topics == NAMESPACE:
+        return f"/{robot}/" if namespace.count("/") > 1 else ""
+    above = node.name.strip("/").rpartition("/")[0]
+    return f"/{above}/".replace("//", "/") if node.apart else ""
+
+
+def places_of(robot: str, nodes: Iterable[NodeFacts], naming: Naming) -> Places:
+    """The full names of a robot's nodes, by their names in the stack."""
+    found = {it.name: placed(robot, it.name, naming, it.apart) for it in nodes if not it.shared}
+    return {node: f"{above.rstrip('/')}/{name}" for node, (above, name) in found.items()}
+
+
+def _below(name: str, naming: Naming, others: Places) -> str:
+    """The target for a name below another node of the robot, such as a private service of it, if that
+    node is renamed; else empty."""
+    head, slash, rest = name.strip("/").partition("/")
+    place = others.get(head, "")
+    if naming.topics == NAMESPACE or not slash or not place:
+        return ""
+    relative = not name.startswith("/") and place.count("/") == 1
+    return f"{place.lstrip('/') if relative else place}/{rest}"
+
+
+def parsed(rules: Iterable[NodeRule]) -> tuple[RemapRule, ...]:
+    """The rules as rcl reads them."""
+    found = (parse_remap(f"{rule.source}:={rule.target}") for rule in rules)
+    return tuple(rule for rule in found if rule is not None)
+
+
+def names_of(pairs: Pairs) -> Iterator[EndpointName]:
+    """The resolved names of these nodes."""
+    for node, table in pairs:
+        bound = bind(table.name, table.namespace, parsed(table.rules))
+        bare = bind(table.name, table.namespace, ())
+        root = table.namespace.rstrip("/")
+        for endpoint in (it for it in node.endpoints if "<" not in it.name):
+            kind = TOPIC if endpoint.kind == ACTION else endpoint.kind
+            found = resolve_bound(endpoint.name, kind, bare if endpoint.fixed else bound)
+            yield EndpointName(table.robot, f"{root}/{table.name}", endpoint, found)

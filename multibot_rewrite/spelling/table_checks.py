@@ -1,0 +1,340 @@
+"""What a remap table cannot do or does wrongly."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from functools import cache
+
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.naming import NAMESPACE, Naming
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.releases import RELEASES
+from multibot_rewrite.base.rosnames import BoundNode, bind, resolve_bound
+from multibot_rewrite.knowledge.controller_ways import controller_way
+from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
+from multibot_rewrite.knowledge.stacks import load_nodes
+from multibot_rewrite.spelling.records import EndpointName, NodeRule, NodeTable, Pairs
+from multibot_rewrite.spelling.targets import expanded, target_of
+from multibot_rewrite.system.records import SERVICE, TOPIC
+
+# A stand-in for a second robot: names of a single robot cannot collide.
+PROBE = "multibot_probe"
+RUN_TIME = "the name is made at run time"
+
+UNREACHABLE_NAME = declare(
+    "MR101",
+    "no-rule-reaches-name",
+    WARNING,
+    what="No remap rule reaches a name that all robots would share: the node makes it at run time, or "
+    "it is not a ROS name.",
+    why="The nodes of all robots use the one name: data of two robots is mixed.",
+    fix="Set the parameter in the hint for each robot, or change the node.",
+    bad="""\
+nodes:
+  camera_driver:
+    package: acme_camera
+    publishes:
+      /<serial_number>/image: sensor_msgs/msg/Image
+""",
+    good="""\
+nodes:
+  camera_driver:
+    package: acme_camera
+    publishes:
+      /camera/image: sensor_msgs/msg/Image
+""",
+    line=2,
+    formats=("remap",),
+)
+
+
+def unreachable(nodes: Sequence[NodeFacts], naming: Naming) -> Iterator[Finding]:
+    """Names that every robot would share and that no remap rule reaches."""
+    for node in nodes:
+        for endpoint in node.endpoints:
+            reason = endpoint.fixed or (RUN_TIME if "<" in endpoint.name else "")
+            if reason and not endpoint.when and _needed(endpoint, naming):
+                message = f"no remap rule reaches {endpoint.kind} {endpoint.name}: {reason}"
+                parameter = "" if "parameter" in reason else endpoint.parameter
+                hint = f"set its parameter {parameter}" if parameter else ""
+                yield UNREACHABLE_NAME.finding(message, hint, node=node.name)
+
+
+def _needed(endpoint: Endpoint, naming: Naming) -> bool:
+    """Would all robots share this name? A relative name made at run time follows the namespace."""
+    if "<" in endpoint.name:
+        return naming.topics != NAMESPACE or endpoint.name.startswith("/")
+    return bool(target_of(endpoint.name, endpoint.kind, PROBE, naming))
+
+
+SHARED_NAME = declare(
+    "MR102",
+    "robots-share-name",
+    ERROR,
+    what="Two robots would have the same topic, service or action name, and it is not a shared one.",
+    why="The nodes of both robots use it: one command moves both robots, or their scans are mixed.",
+    fix="Remap it for each robot, choose other names or another separator, or allow it with "
+    "--shared-topics (shared_topics in the fleet file).",
+    bad="""\
+nodes:
+  lidar_driver:
+    package: acme_lidar
+    publishes:
+      # both are /scan_left_robot1: scan_left of robot1, scan of left_robot1
+      scan_left: sensor_msgs/msg/LaserScan
+      scan: sensor_msgs/msg/LaserScan
+""",
+    good="""\
+nodes:
+  lidar_driver:
+    package: acme_lidar
+    publishes:
+      rear_scan: sensor_msgs/msg/LaserScan
+      scan: sensor_msgs/msg/LaserScan
+""",
+    line=5,
+    formats=("remap",),
+    options={
+        "robots": ("robot1", "left_robot1"),
+        "layout": "postfix",
+        "affix": "postfix",
+        "separators": {"topic": "_"},
+    },
+)
+
+
+def collisions(names: dict[str, list[EndpointName]], naming: Naming) -> Iterator[Finding]:
+    """Names that two robots would have though they are not shared."""
+    first: dict[tuple[str, str], EndpointName] = {}
+    reported = set()
+    shared = {f"/{topic}" for topic in naming.shared_topics}
+    for name in (name for found in names.values() for name in found):
+        key = ("" if name.endpoint.kind != SERVICE else SERVICE, name.name)
+        other = first.setdefault(key, name)
+        if (
+            other.robot == name.robot
+            or name.name in shared
+            or name.endpoint.fixed
+            or key in reported
+        ):
+            continue
+        reported.add(key)
+        message = f"two robots would share {name.name}: {other.node} and {name.node} use it"
+        hint = "remap it for each robot, or allow it with --shared-topics"
+        place = {"robot": other.robot, "node": name.node, "names": (name.name,)}
+        yield SHARED_NAME.finding(message, hint, **place)
+
+
+SHARED_NODE = declare(
+    "MR106",
+    "robots-share-node",
+    ERROR,
+    what="A node of two robots would have the same full name.",
+    why="Parameters and lifecycle services are found by that name, so a request reaches either robot's "
+    "node, and the graph does not tell whose topics are whose.",
+    fix="Choose other names or another separator. Where the code of a node sets its name, give it "
+    "apart: true in the file of nodes, or choose a layout with namespaces, such as tf-per-robot.",
+    bad="""\
+nodes:
+  # both are /driver_left_robot1: driver_left of robot1, driver of left_robot1
+  driver_left:
+    package: acme_driver
+  driver:
+    package: acme_driver
+""",
+    good="""\
+nodes:
+  rear_driver:
+    package: acme_driver
+  driver:
+    package: acme_driver
+""",
+    line=5,
+    formats=("remap",),
+    options={"robots": ("robot1", "left_robot1"), "layout": "postfix", "affix": "postfix"},
+)
+
+
+def shared_nodes(tables: Iterable[NodeTable]) -> Iterator[Finding]:
+    """Full names that nodes of two robots would have; two of descriptions have a judge of their own."""
+    first: dict[str, NodeTable] = {}
+    reported = set()
+    for table in (it for it in tables if it.robot):
+        full = table.full_name
+        other = first.setdefault(full, table)
+        written = other.home.written and table.home.written
+        if other.robot == table.robot or full in reported or written:
+            continue
+        reported.add(full)
+        message = f"two robots would share the node {full}: {other.node} and {table.node}"
+        hint = "choose other names or another separator, or a layout with namespaces"
+        yield SHARED_NODE.finding(message, hint, robot=other.robot, node=table.node)
+
+
+RULE_WITHOUT_NAME = declare(
+    "MR103",
+    "rule-matches-no-name",
+    WARNING,
+    what="A remap rule of a plugin in the description matches no name of that plugin.",
+    why="The rule does nothing, and the name that it was meant for keeps its old name.",
+    fix="Correct the name on the left of the rule, or remove the rule.",
+    bad="""\
+<robot name="rover">
+  <link name="base_link"/>
+  <gazebo reference="base_link">
+    <sensor name="lidar" type="ray">
+      <plugin name="lidar_driver" filename="libgazebo_ros_ray_sensor.so">
+        <ros>
+          <remapping>~/out:=scan</remapping>
+          <remapping>laser_scan:=scan</remapping>
+        </ros>
+      </plugin>
+    </sensor>
+  </gazebo>
+</robot>
+""",
+    good="""\
+<robot name="rover">
+  <link name="base_link"/>
+  <gazebo reference="base_link">
+    <sensor name="lidar" type="ray">
+      <plugin name="lidar_driver" filename="libgazebo_ros_ray_sensor.so">
+        <ros>
+          <remapping>~/out:=scan</remapping>
+        </ros>
+      </plugin>
+    </sensor>
+  </gazebo>
+</robot>
+""",
+    line=5,
+    formats=("remap-urdf",),
+)
+LATER_RULE = declare(
+    "MR104",
+    "rule-after-first-match",
+    ERROR,
+    what="A remap rule has no effect, because an earlier rule of the same node matches the same name.",
+    why="rcl applies the first rule that matches, so the topic gets the other name.",
+    fix="Remove one of the two rules.",
+    bad="""\
+<robot name="rover">
+  <link name="base_link"/>
+  <gazebo reference="base_link">
+    <sensor name="lidar" type="ray">
+      <plugin name="lidar_driver" filename="libgazebo_ros_ray_sensor.so">
+        <ros>
+          <remapping>~/out:=scan</remapping>
+          <remapping>~/out:=front_scan</remapping>
+        </ros>
+      </plugin>
+    </sensor>
+  </gazebo>
+</robot>
+""",
+    good="""\
+<robot name="rover">
+  <link name="base_link"/>
+  <gazebo reference="base_link">
+    <sensor name="lidar" type="ray">
+      <plugin name="lidar_driver" filename="libgazebo_ros_ray_sensor.so">
+        <ros>
+          <remapping>~/out:=scan</remapping>
+        </ros>
+      </plugin>
+    </sensor>
+  </gazebo>
+</robot>
+""",
+    line=5,
+    formats=("remap-urdf",),
+)
+
+
+class _Names(NamedTuple):
+    """A node without its rules, and the full names that it asks for."""
+
+    bare: BoundNode
+    full: frozenset[tuple[str, str]]
+
+
+def useless_rules(pairs: Pairs, release: str, controllers: Pairs | None = ()) -> Iterator[Finding]:
+    """Rules that match no name of their node, and rules after one that matches first.
+
+    ``controllers`` are those that a plugin hands its rules on to; None if they are not known. A
+    description may serve robots with other controllers: a rule for one known in ``release`` is right.
+    """
+    others = [_names(*pair) for pair in controllers or ()]
+    known = _of_managers(release)
+    by_file = any(":" in node.origin for node, _ in controllers or ())
+    for node, table in pairs:
+        own = _names(node, table)
+        wide = table.home.process_wide
+        asked = [own, *(others if wide else ())]
+        robot = "" if table.robot == PROBE else table.robot
+        seen: set[tuple[str, str]] = set()
+        for rule in table.rules:
+            text = f"{rule.source}:={rule.target}"
+            whose, source = _split(rule.source)
+            match = (whose, resolve_bound(source, rule.kind or TOPIC, own.bare))
+            if match in seen:
+                message = f"{text} has no effect: an earlier rule matches first"
+                yield LATER_RULE.finding(message, "remove it", robot=robot, node=node.name)
+            elif wide and (controllers is None or (not whose and _is_for(source, known, by_file))):
+                pass
+            elif not any(_matches(rule, it) for it in asked):
+                message = f"{text} matches no name of this node"
+                yield RULE_WITHOUT_NAME.finding(message, "remove it", robot=robot, node=node.name)
+            seen.add(match)
+
+
+@cache
+def _of_managers(release: str) -> frozenset[str]:
+    """The names in the code of controller managers and of controllers that get their rules, in any
+    release: one description may be for several."""
+    handed_on = controller_way(release).of_manager
+    every = [it for known in RELEASES for it in load_nodes(known).values()]
+    nodes = [it for it in every if it.name == MANAGER or (handed_on and it.host == MANAGER)]
+    return frozenset(end.name for node in nodes for end in node.endpoints)
+
+
+def _is_for(source: str, known: frozenset[str], by_file: bool) -> bool:
+    """Is it a name in the code of a known controller, or below a node that may be one?"""
+    above, slash, _ = source.partition("/")
+    below = "" if by_file or not slash or above == "~" else f"~{source[len(above) :]}"
+    return source in known or below in known
+
+
+def _names(node: NodeFacts, table: NodeTable) -> _Names:
+    bare = bind(table.name, table.namespace, ())
+    # What is known of a controller manager only by its rules proves none of them.
+    known = [it for it in node.endpoints if it.role or not table.home.process_wide]
+    asked = {
+        (kind, name)
+        for endpoint in known
+        for kind, source in expanded(endpoint)
+        for name in asked_for(source, endpoint, table.namespace)
+    }
+    return _Names(bare, frozenset((kind, resolve_bound(name, kind, bare)) for kind, name in asked))
+
+
+def asked_for(name: str, endpoint: Endpoint, namespace: str) -> tuple[str, ...]:
+    """A name in a node's code, and what its node makes of it in the namespace above its own."""
+    above = namespace.rpartition("/")[0]
+    return (name, f"{above}/{name.lstrip('/')}") if endpoint.above and above else (name,)
+
+
+def _matches(rule: NodeRule, names: _Names) -> bool:
+    whose, source = _split(rule.source)
+    if whose not in ("", names.bare.node):
+        return False
+    match = resolve_bound(source, rule.kind or TOPIC, names.bare)
+    kinds = (rule.kind,) if rule.kind else (TOPIC, SERVICE)
+    return not names.full.isdisjoint((kind, match) for kind in kinds)
+
+
+def _split(source: str) -> tuple[str, str]:
+    """The node that the left side of a rule asks for, and the name."""
+    whose, colon, name = source.rpartition(":")
+    return (whose, name) if colon else ("", source)

@@ -1,0 +1,172 @@
+"""The tf frames of a robot, and which of its nodes sends them: description, odometry, map."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import partial
+from typing import TYPE_CHECKING
+
+from multibot_rewrite.base.naming import Naming, spelled
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.knowledge.conditions import holds
+from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.system.records import PUBLISHES
+
+if TYPE_CHECKING:
+    from lxml.etree import _Element
+
+    from multibot_rewrite.description.steps.collect import Inventory
+
+STATE_PUBLISHER = "robot_state_publisher"
+NO_PLAIN: Mapping[tuple[str, str], str] = {}
+
+
+class Edge(NamedTuple):
+    """A transform that a node sends."""
+
+    parent: str
+    child: str
+    static: bool
+
+
+Edges = Mapping[tuple[str, str], Sequence[Edge]]
+
+
+def edges_of(
+    robot: str,
+    inventory: Inventory,
+    facts: Iterable[NodeFacts],
+    plugins: Iterable[NodeFacts],
+    naming: Naming,
+    word: str = "",
+    plain: Mapping[tuple[str, str], str] = NO_PLAIN,
+) -> dict[tuple[str, str], list[Edge]]:
+    """The transforms that a robot's nodes send, by robot and node: description, odometry, map.
+
+    ``word`` is the robot's name in its frames, empty where that is its name; ``plain`` are links that
+    arguments of a xacro make of what nodes call otherwise.
+    """
+    tree = list(tree_of(inventory, naming, word or robot))
+    children = {edge.child for edge in tree}
+    links = links_of(inventory, naming, word or robot)
+    root = next((link for link in links if link not in children), "")
+    by_naming = partial(spelled, naming, word or robot, "frame")
+    result = {(robot, node.name): [*sent_by(node, "")] for node in plugins}
+    nodes = tuple(facts)
+    described = state_publisher_of(nodes)
+    for node in nodes:
+        named = _once(by_naming) if _is_static(node) else by_naming
+        frames = [
+            frame._replace(default=plain.get(("link", frame.default)) or named(frame.default))
+            for frame in node.frames
+        ]
+        own = [*sent_by(node._replace(frames=tuple(frames)), root)]
+        result[robot, node.name] = tree if node.name == described else own
+    return result
+
+
+def state_publisher_of(nodes: Sequence[NodeFacts]) -> str:
+    """The node that sends the robot's description: another state publisher sends that of a dock or the
+    like, under another name. Empty for none."""
+    found = [node.name for node in nodes if node.package == STATE_PUBLISHER]
+    return STATE_PUBLISHER if STATE_PUBLISHER in found else next(iter(found), "")
+
+
+def _once(by_naming: Callable[[str], str]) -> Callable[[str], str]:
+    """The naming for arguments, which may have the robot's name in front of a frame already."""
+    own = by_naming("x").removesuffix("x")
+    return lambda frame: frame if own and frame.startswith(own) else by_naming(frame)
+
+
+def tree_of(inventory: Inventory, naming: Naming, robot: str) -> Iterator[Edge]:
+    """The transforms that a robot's robot_state_publisher sends for its rewritten description."""
+    for it in edges_in(inventory.document.root):
+        parent, child = (at_run_time(naming, robot, link) for link in it[:2])
+        yield it._replace(parent=parent, child=child)
+
+
+def links_of(inventory: Inventory, naming: Naming, robot: str) -> list[str]:
+    """The links of a rewritten description as frames."""
+    return [at_run_time(naming, robot, link) for link in inventory.declared["link"]]
+
+
+def at_run_time(naming: Naming, robot: str, link: str) -> str:
+    """The frame of a link: nodes may put the robot's name before it."""
+    return spelled(naming, robot, "frame", link) if naming.layout.at_run_time else link
+
+
+def edges_in(root: _Element) -> Iterator[Edge]:
+    """The transforms that robot_state_publisher sends for the joints of a description as it is. A
+    frame of an SDF is the link that it is attached to."""
+    frames = root.iter("frame")
+    attached = {it.get("name", ""): it.get("attached_to", "") for it in frames}
+    for joint in root.iter("joint"):
+        ends = [joint.find(tag) for tag in ("parent", "child")]
+        names = [(end.get("link") or end.text or "").strip() for end in ends if end is not None]
+        if len(names) == 2:
+            parent, child = (_attached_to(name, attached) for name in names)
+            yield Edge(parent, child, joint.get("type") == "fixed")
+
+
+def _attached_to(name: str, attached: Mapping[str, str]) -> str:
+    """What a chain of frames ends at; a frame that is attached to nothing known stays itself."""
+    for _ in attached:
+        if not attached.get(name):
+            return name
+        name = attached[name]
+    return name
+
+
+def sent_by(node: NodeFacts, root: str) -> Iterator[Edge]:
+    """The transforms that a node's parameters name.
+
+    With ``root`` that frame is the child, except for odometry frames and those that a file sets.
+    """
+    values = {frame.parameter: frame.default for frame in node.frames}
+    given = {frame.parameter for frame in node.frames if frame.given}
+    static = _is_static(node)
+    for parent, child, _ in (it for it in node.sends if holds(it.condition, values.get)):
+        base = root and "odom" not in child and child not in given
+        edge = Edge(values[parent], root if base else values[child], static)
+        # A frame that only a file sets; a frame below itself, which tf2 refuses (buffer_core.cpp).
+        if edge.parent not in ("", edge.child) and "<" not in edge.child:
+            yield edge
+
+
+def _is_static(node: NodeFacts) -> bool:
+    """Does it only send transforms that hold for ever?"""
+    sent = {it.name.strip("/") for it in node.endpoints if it.role == PUBLISHES}
+    return "tf_static" in sent and "tf" not in sent
+
+
+def with_odometry(edges: Edges, robot: str, naming: Naming) -> tuple[Edges, str]:
+    """Add odom -> base for a robot whose nodes are not known to send odometry: its driver does.
+
+    Also returns the added transform as ``parent -> child``; empty where none is added, as for an
+    arm that is fixed to the world.
+    """
+    state = (robot, STATE_PUBLISHER)
+    tree = edges.get(state, ())
+    others = [it for key, own in edges.items() if key[0] == robot and key != state for it in own]
+    children = {edge.child for edge in (*tree, *others)}
+    roots = {edge.parent for edge in tree} - children - naming.shared_frames
+    loose = {edge.child for edge in others} - {edge.parent for edge in (*tree, *others)}
+    if len(roots) != 1 or len(loose) != 1:
+        return edges, ""
+    added = Edge(loose.pop(), roots.pop(), False)
+    return {**edges, state: [*tree, added]}, f"{added.parent} -> {added.child}"
+
+
+def frames_of(
+    inventory: Inventory, sent: Iterable[Edge], naming: Naming, robot: str
+) -> tuple[str, ...]:
+    """A robot's own frames: those of its description, and those its nodes send besides.
+
+    A ``<frame>`` of an SDF is not on tf: sdformat_urdf (jazzy, sdformat_urdf.cpp) makes a URDF of links
+    and joints.
+    """
+    own = () if inventory.document.root.tag == "sdf" else inventory.declared["frame"]
+    declared = (*links_of(inventory, naming, robot), *own)
+    ends = (frame for edge in sent for frame in edge[:2])
+    frames = dict.fromkeys((*declared, *ends))
+    return tuple(frame for frame in frames if frame not in naming.shared_frames)

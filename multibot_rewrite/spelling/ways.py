@@ -1,0 +1,137 @@
+"""Where the remap rules of each node stand, by release: a table -> deliveries, which all writers use.
+
+A node takes rules from its own process, from the node whose process it is in, from the container
+that loads it, from its spawner, or from its plugin's tag. Sources: ros2_control
+``controller_manager.cpp`` (``determine_controller_node_options``) and ``spawner.py``; rclcpp
+``rclcpp_components/src/component_manager.cpp`` (``create_node_options``: no global arguments);
+navigation2 ``nav2_costmap_2d/src/costmap_2d_ros.cpp``; gz_ros2_control ``gz_ros2_control_plugin.cpp``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import TypeAlias
+
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.releases import has_release
+from multibot_rewrite.knowledge.controller_ways import controller_way
+from multibot_rewrite.spelling.records import EndpointName, NodeRule, NodeTable, Table
+from multibot_rewrite.spelling.targets import expanded
+
+PROCESS, HOST, COMPONENT = "process", "host", "component"
+SPAWNER, PLUGIN = "spawner", "plugin"
+WAYS = (PROCESS, HOST, COMPONENT, SPAWNER, PLUGIN)
+# A costmap has the remap rules of the component that makes it (navigation2 4cade8d2f, 1.5.0).
+COSTMAP_HAS_RULES_OF_ITS_PARENT = "lyrical+"
+Pair: TypeAlias = tuple[str, str]
+
+
+class Delivery(NamedTuple):
+    """Rules for a node, as they are written where they stand: left and right sides.
+
+    ``taker`` is the node that is started with them, by its name in the stack: the node itself, its
+    host or its container; for a plugin the node that the plugin is known by.
+    """
+
+    node: NodeTable
+    way: str
+    taker: str
+    rules: tuple[Pair, ...]
+
+
+# A robot and a node's name in its stack.
+Key: TypeAlias = tuple[str, str]
+Nodes: TypeAlias = Mapping[Key, NodeTable]
+Sources: TypeAlias = Mapping[str, frozenset[str]]
+
+
+def deliveries(table: Table) -> tuple[Delivery, ...]:
+    """Where the rules of every node stand; a node of several nodes' rules has them in that order."""
+    nodes = merged(table.nodes)
+    known = {(it.robot, it.node): it for it in nodes}
+    helpers = _of_helpers(table.names)
+    return tuple(it for node in nodes for it in _deliveries(node, known, table.release, helpers))
+
+
+def rules_by_taker(given: Iterable[Delivery]) -> dict[Key, tuple[Pair, ...]]:
+    """The rules by robot and taker; those for hosted nodes name them, so they come first.
+
+    A plugin has only what is written in its description.
+    """
+    found: dict[Key, dict[Pair, None]] = {}
+    for it in sorted(given, key=lambda it: it.way != HOST):
+        if it.way != PLUGIN or it.node.home.written:
+            found.setdefault((it.node.robot, it.taker), {}).update(dict.fromkeys(it.rules))
+    return {key: tuple(rules) for key, rules in found.items()}
+
+
+def merged(nodes: Iterable[NodeTable]) -> tuple[NodeTable, ...]:
+    """The nodes, each once: one that a description and a stack have stands in the description."""
+    found: dict[tuple[str, str], NodeTable] = {}
+    for node in nodes:
+        key = (node.robot, node.full_name)
+        before = found.setdefault(key, node)
+        if node.home.written and not before.home.written:
+            found[key] = node._replace(node=before.node)
+    return tuple(found.values())
+
+
+def way_of(node: NodeTable, known: Nodes, release: str) -> str:
+    """How a node of the table gets its rules."""
+    home = node.home
+    if home.plugin:
+        return PLUGIN
+    host = known.get((node.robot, home.host))
+    if home.is_controller:
+        if controller_way(release).spawner:
+            return SPAWNER
+        return PLUGIN if host and host.home.plugin else HOST
+    if host:
+        return HOST
+    return COMPONENT if (node.robot, home.container) in known else PROCESS
+
+
+def taker_of(node: NodeTable, known: Nodes, release: str) -> str:
+    """The node that is started with the rules of this one."""
+    host = known.get((node.robot, node.home.host))
+    if way_of(node, known, release) not in (HOST, PLUGIN) or not node.home.host:
+        return node.node
+    parent = has_release(COSTMAP_HAS_RULES_OF_ITS_PARENT, release)
+    if host and way_of(host, known, release) == COMPONENT and not parent:
+        return host.home.container
+    return node.home.host
+
+
+def _deliveries(
+    node: NodeTable, known: Nodes, release: str, helpers: Sources
+) -> Iterator[Delivery]:
+    way, taker = way_of(node, known, release), taker_of(node, known, release)
+    lead = f"{node.name}:" if way == HOST else ""
+    yield Delivery(node, way, taker, tuple(_pair(it, lead) for it in node.rules))
+    # A helper node has the rules of its process alone, and not by the name of the node it helps.
+    process = _process_of(node, known)
+    asked = helpers.get(node.full_name, frozenset())
+    asked -= {it.source for it in process.rules}
+    rules = tuple(_pair(it) for it in node.rules if it.source in asked)
+    if rules and process is not node:
+        yield Delivery(node, HOST, process.node, rules)
+
+
+def _process_of(node: NodeTable, known: Nodes) -> NodeTable:
+    """The node whose process this one is in: its host, the container of either, or itself."""
+    host = known.get((node.robot, node.home.host), node)
+    return known.get((node.robot, host.home.container), host)
+
+
+def _pair(rule: NodeRule, lead: str = "") -> Pair:
+    return f"{lead}{rule.source}", rule.target
+
+
+def _of_helpers(names: Iterable[EndpointName]) -> Sources:
+    """By the full name of a node: what helper nodes of it use."""
+    found: dict[str, frozenset[str]] = {}
+    for it in names:
+        if it.endpoint.helper:
+            asked = {name for _, name in expanded(it.endpoint)}
+            found[it.node] = found.get(it.node, frozenset()) | asked
+    return found

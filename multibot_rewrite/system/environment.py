@@ -1,0 +1,233 @@
+"""The environment variables for discovery, and whether a view of the graph is complete. Pure.
+
+Sources: rcl ``domain_id.c``, ``discovery_options.c``; rmw_fastrtps ``participant.cpp`` (32 peers
+on a machine under LOCALHOST, else Fast DDS's own 4); the ROS 2 domain id page (0 to 232).
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from math import inf
+
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.wording import SEVERAL, shorten
+from multibot_rewrite.system.records import CHANGING, TIMEOUT, UNKNOWN_NODE, Caveat, End, Node
+
+MAX_DOMAIN = 232
+RANGES = ("OFF", "LOCALHOST", "SUBNET", "SYSTEM_DEFAULT")
+DEFAULT_RANGE = "SUBNET"
+KNOWN_RMW = (
+    "rmw_fastrtps_cpp",
+    "rmw_fastrtps_dynamic_cpp",
+    "rmw_cyclonedds_cpp",
+    "rmw_connextdds",
+    "rmw_zenoh_cpp",
+    "rmw_gurumdds_cpp",
+)
+# So many participants of a machine are found by unicast: under LOCALHOST, of a peer under SUBNET.
+LOCAL_LIMIT, PEER_LIMIT = 32, 4
+# The caveats of ``unfinished``.
+UNFINISHED = ("nodes-without-endpoints", "node-name-unknown")
+# How the process of a Fast DDS participant starts: the vendor, then four digits for its machine.
+_FAST_DDS = "010f"
+_NUMBER = re.compile(r"\s*\+?(0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*)")
+# Never in a host name; rmw gives up on a host that it cannot look up.
+_NOT_IN_PEER = re.compile(r"[,\s]")
+
+
+class DiscoverySettings(NamedTuple):
+    """What the environment variables set for the middleware; ``rmw`` is empty for the default."""
+
+    domain: int
+    range: str
+    static_peers: tuple[str, ...]
+    rmw: str
+    discovery_server: str
+    super_client: bool
+
+
+def settings(environ: Mapping[str, str]) -> DiscoverySettings:
+    """Read the variables as rcl does; raises UsageError for values at which rcl exits."""
+    return DiscoverySettings(
+        _domain(environ.get("ROS_DOMAIN_ID", "")),
+        _range(environ),
+        _peers(environ.get("ROS_STATIC_PEERS", "")),
+        environ.get("RMW_IMPLEMENTATION", ""),
+        environ.get("ROS_DISCOVERY_SERVER", ""),
+        environ.get("ROS_SUPER_CLIENT", "").lower() in ("true", "1"),
+    )
+
+
+def _domain(text: str) -> int:
+    if not text:
+        return 0
+    found = _NUMBER.fullmatch(text)
+    if not found:
+        raise UsageError(f"ROS_DOMAIN_ID={text!r} is not a number, give 0 to {MAX_DOMAIN}")
+    digits = found[1]
+    # rcl reads it with strtoul and base 0: a leading 0 makes it octal.
+    octal = digits.startswith("0") and digits.isdigit()
+    domain = int(digits, 8 if octal else 0)
+    if domain > MAX_DOMAIN:
+        raise UsageError(
+            f"ROS_DOMAIN_ID={text} is too high, give 0 to {MAX_DOMAIN} (101 or less avoids the"
+            " ports that Linux uses itself)"
+        )
+    return domain
+
+
+def _peers(text: str) -> tuple[str, ...]:
+    peers = tuple(filter(None, text.split(";")))
+    for peer in peers:
+        if _NOT_IN_PEER.search(peer):
+            hint = "give host names or IPv4 addresses with only ; between them"
+            raise UsageError(f"ROS_STATIC_PEERS={text!r}: {peer!r} is not a host, {hint}")
+    return peers
+
+
+def _range(environ: Mapping[str, str]) -> str:
+    if _localhost_only(environ):
+        return "LOCALHOST"
+    word = environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "") or DEFAULT_RANGE
+    return word if word in RANGES else "LOCALHOST"
+
+
+def _localhost_only(environ: Mapping[str, str]) -> bool:
+    return environ.get("ROS_LOCALHOST_ONLY", "") == "1"
+
+
+def setting_caveats(environ: Mapping[str, str]) -> Iterator[Caveat]:
+    """Problems in the variables that rcl accepts, each with what to do."""
+    asked = settings(environ)
+    word = environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "")
+    if _localhost_only(environ):
+        text = "ROS_LOCALHOST_ONLY=1 overrides discovery range and static peers; unset it and set"
+        yield Caveat("localhost-only", False, f"{text} ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST")
+    elif word and word not in RANGES:
+        text = f"ROS_AUTOMATIC_DISCOVERY_RANGE={word!r} is not a range, rcl takes LOCALHOST"
+        yield Caveat("range-word", False, f"{text}; use one of {', '.join(RANGES)}")
+    elif word == "OFF":
+        text = (
+            "ROS_AUTOMATIC_DISCOVERY_RANGE=OFF hides all other processes; use LOCALHOST or SUBNET"
+        )
+        yield Caveat("range-off", True, text)
+    elif word == "SYSTEM_DEFAULT" and asked.static_peers:
+        text = (
+            "ROS_STATIC_PEERS is not read under range SYSTEM_DEFAULT, so robots of the peers may be"
+            " missing; use SUBNET or LOCALHOST, or unset it"
+        )
+        yield Caveat("peers-unread", True, text)
+    rmw = environ.get("RMW_IMPLEMENTATION", "")
+    if rmw and rmw not in KNOWN_RMW:
+        text = f"RMW_IMPLEMENTATION={rmw!r} is unknown; use for example {', '.join(KNOWN_RMW[:3])}"
+        yield Caveat("rmw-word", False, text)
+    if asked.discovery_server and not asked.super_client:
+        text = (
+            "ROS_DISCOVERY_SERVER is set without ROS_SUPER_CLIENT: nodes may be seen without their"
+            " topics; set ROS_SUPER_CLIENT=TRUE"
+        )
+        yield Caveat("no-super-client", False, text)
+
+
+def view_caveats(
+    nodes: Collection[Node],
+    endpoints: Collection[End],
+    asked: DiscoverySettings,
+    settled: str,
+    expected: Iterable[str] = (),
+) -> Iterator[Caveat]:
+    """What to know about a view before something in it is reported as missing."""
+    names = Counter(node.name for node in nodes)
+    if settled == TIMEOUT:
+        text = "the graph was still changing when the timeout was over; give a longer --timeout"
+        yield Caveat("not-settled", True, text)
+    if settled == CHANGING:
+        yield Caveat("not-settled", True, "the graph is still changing")
+    if not nodes:
+        yield Caveat("nothing-seen", True, _nothing(asked))
+    absent = sorted(set(expected) - set(names))
+    if nodes and absent:
+        missing = shorten(absent, SEVERAL)
+        text = f"expected nodes not in the graph: {missing}; are they started, are the names right?"
+        yield Caveat("expected-not-seen", True, text)
+    yield from _cut_off(endpoints, asked)
+    yield from unfinished(nodes, endpoints, asked.discovery_server)
+    twins = [name for name, times in names.items() if times > 1]
+    if twins:
+        text = (
+            f"several nodes have the name {shorten(twins, SEVERAL)}; a node that was killed stays"
+            " visible for 20 s, look again after that"
+        )
+        yield Caveat("same-name", False, text)
+
+
+def _nothing(asked: DiscoverySettings) -> str:
+    """The message where no node was seen: where, and the likely reason."""
+    where = f"domain {asked.domain}, range {asked.range}"
+    remedy = "do the robots use this ROS_DOMAIN_ID and discovery range?"
+    if asked.discovery_server:
+        where += f", discovery server {asked.discovery_server}"
+        remedy = "is the server running there, and do the robots use it?"
+    elif asked.static_peers:
+        where += f", peers {' '.join(asked.static_peers)}"
+    elif asked.range == "LOCALHOST":
+        remedy += " For robots on other machines set ROS_STATIC_PEERS"
+    else:
+        remedy += " On other machines they may be hidden: multicast is lost, or they are on range"
+        remedy += " LOCALHOST; set ROS_STATIC_PEERS, or take the snapshot there"
+    return f"no node was seen ({where}); {remedy}"
+
+
+def _cut_off(endpoints: Iterable[End], asked: DiscoverySettings) -> Iterator[Caveat]:
+    """Where Fast DDS may have found too few participants, without multicast and without a server."""
+    machines = Counter(map(machine, _processes(endpoints)))
+    if asked.discovery_server or not machines:
+        return
+    most = max(machines.values())
+    if asked.range == "LOCALHOST" and most >= LOCAL_LIMIT:
+        text = (
+            f"{most} participants of one machine under LOCALHOST, where Fast DDS finds at most"
+            f" {LOCAL_LIMIT}: the view may be cut off; use range SUBNET for all, or a discovery"
+            " server with ROS_SUPER_CLIENT=TRUE"
+        )
+        yield Caveat("participant-limit", True, text)
+    known = [count for name, count in machines.items() if name]
+    if asked.range == "SUBNET" and asked.static_peers and min(known, default=inf) <= PEER_LIMIT:
+        text = (
+            f"a machine has no more than {PEER_LIMIT} participants, which is all that Fast DDS"
+            " finds on a static peer under SUBNET without multicast: the view may be cut off; use"
+            f" ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST, which finds {LOCAL_LIMIT}"
+        )
+        yield Caveat("peer-limit", True, text)
+
+
+def machine(process: str) -> str:
+    """What identifies the machine of a process; empty where it is not known."""
+    return process[:8] if process.startswith(_FAST_DDS) else ""
+
+
+def unfinished(
+    nodes: Iterable[Node], endpoints: Collection[End], discovery_server: str
+) -> Iterator[Caveat]:
+    """Nodes without endpoints, and endpoints without a known node: discovery is not finished."""
+    bare = sorted({node.name for node in nodes} - {endpoint.node for endpoint in endpoints})
+    if bare:
+        remedy = "set ROS_SUPER_CLIENT=TRUE" if discovery_server else "look again"
+        text = f"nodes without any endpoint: {shorten(bare, SEVERAL)}; the view is not complete,"
+        yield Caveat("nodes-without-endpoints", True, f"{text} {remedy}")
+    unknown = sorted({end.name for end in endpoints if UNKNOWN_NODE in end.node})
+    if unknown:
+        text = f"endpoints whose node is not known yet: {shorten(unknown, SEVERAL)}; look again"
+        yield Caveat("node-name-unknown", True, text)
+
+
+def participants(endpoints: Iterable[End]) -> int:
+    """How many DDS participants the endpoints belong to."""
+    return len(_processes(endpoints))
+
+
+def _processes(endpoints: Iterable[End]) -> set[str]:
+    return {endpoint.process for endpoint in endpoints} - {""}

@@ -1,0 +1,172 @@
+"""Several looks at one system, from several machines -> one snapshot. Pure.
+
+A look from one machine may miss what the network hides from it, so a node is in the result once
+any look has seen it.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator, Sequence
+
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.system.environment import UNFINISHED, participants, unfinished
+from multibot_rewrite.system.records import (
+    CHANGING,
+    EXPECTED,
+    QUIET,
+    TIMEOUT,
+    ZENOH,
+    Caveat,
+    Edge,
+    End,
+    Environment,
+    Node,
+    System,
+)
+
+_FROM_GOOD_TO_BAD = (EXPECTED, QUIET, TIMEOUT, CHANGING)
+_MANY = 4
+
+
+class Look(NamedTuple):
+    """A snapshot and the file that it is in."""
+
+    file: str
+    snapshot: System
+
+
+def merged(looks: Sequence[Look]) -> System:
+    """All that any look has seen; a single look is left as it is.
+
+    Raises UsageError for looks that no single system can explain: of two domains, or of DDS and
+    Zenoh.
+    """
+    if len(looks) == 1:
+        return looks[0].snapshot
+    _refuse_strangers(looks)
+    nodes = tuple(_nodes([look.snapshot.nodes for look in looks]))
+    endpoints = tuple(_endpoints([look.snapshot.ends for look in looks]))
+    frames = tuple(_frames(frame for look in looks for frame in look.snapshot.edges))
+    heard = tuple(sorted({it for look in looks for it in look.snapshot.heard}))
+    around = _environment(looks, nodes, endpoints)
+    parameters = {(it.node, it.name): it for look in looks for it in look.snapshot.parameters}
+    controllers = {(it.manager, it.name): it for look in looks for it in look.snapshot.controllers}
+    return System(
+        nodes,
+        endpoints,
+        frames,
+        around,
+        heard,
+        tuple(parameters[it] for it in sorted(parameters)),
+        tuple(controllers[it] for it in sorted(controllers)),
+    )
+
+
+def _refuse_strangers(looks: Sequence[Look]) -> None:
+    first = looks[0]
+    around = first.snapshot.environment
+    for look in looks[1:]:
+        other = look.snapshot.environment
+        if other.domain != around.domain:
+            where = f"{first.file} is of domain {around.domain}, {look.file} of {other.domain}"
+            raise UsageError(f"{where}: nodes of two domains never meet; merge those of one domain")
+        if (other.rmw == ZENOH) != (around.rmw == ZENOH):
+            where = f"{first.file} is of {around.rmw}, {look.file} of {other.rmw}"
+            raise UsageError(f"{where}: their nodes never meet; merge those of one middleware")
+
+
+def _nodes(looks: Sequence[Sequence[Node]]) -> Iterator[Node]:
+    """Each node once; two processes with a node of one name are two nodes."""
+    best: dict[tuple[str, str], Node] = {}
+    most: Counter[tuple[str, str]] = Counter()
+    totals: Counter[str] = Counter()
+    for nodes in looks:
+        most |= Counter((node.name, node.process) for node in nodes)
+        totals |= Counter(node.name for node in nodes)
+        for node in nodes:
+            key = node.name, node.process
+            best[key] = _fuller(best.get(key, node), node)
+    known = Counter(name for name, process in most.elements() if process)
+    for (name, process), times in sorted(most.items()):
+        # The process was not known to one look, and is to another.
+        new = times if process else min(times, totals[name] - known[name])
+        yield from [best[name, process]] * new
+
+
+def _fuller(one: Node, other: Node) -> Node:
+    """With what the other look knows and this one leaves empty."""
+    return Node._make(mine or theirs for mine, theirs in zip(one, other, strict=True))
+
+
+def _endpoints(looks: Sequence[Sequence[End]]) -> list[End]:
+    """Each endpoint once, from the look that knows most of it."""
+    best: dict[tuple[str, ...], list[End]] = {}
+    for endpoints in looks:
+        for key, ends in _by_owner(endpoints).items():
+            if key not in best or _detail(ends) > _detail(best[key]):
+                best[key] = ends
+    placed = {key[:-1] for key in best if key[-1]}
+    kept = [ends for key, ends in best.items() if key[-1] or key[:-1] not in placed]
+    return sorted((end for ends in kept for end in ends), key=repr)
+
+
+def _by_owner(endpoints: Iterable[End]) -> dict[tuple[str, ...], list[End]]:
+    found: dict[tuple[str, ...], list[End]] = defaultdict(list)
+    for end in endpoints:
+        found[end.kind, end.name, end.role, end.node, end.process].append(end)
+    return found
+
+
+def _detail(ends: Sequence[End]) -> tuple[int, int, int]:
+    known = sum(end.qos is not None for end in ends)
+    return known, sum(bool(end.type_hash) for end in ends), len(ends)
+
+
+def _frames(frames: Iterable[Edge]) -> Iterator[Edge]:
+    """Each transform once a topic, with the publishers that any look has seen."""
+    found: dict[tuple[str, str, str], list[Edge]] = defaultdict(list)
+    for frame in frames:
+        found[frame.topic, frame.parent, frame.child].append(frame)
+    for (topic, parent, child), same in sorted(found.items()):
+        publishers = {node for frame in same for node in frame.publishers}
+        static = any(frame.static for frame in same)
+        several = any(frame.several for frame in same)
+        transform = next((frame.transform for frame in same if frame.transform), ())
+        yield Edge(child, parent, topic, static, tuple(sorted(publishers)), several, transform)
+
+
+def _environment(
+    looks: Sequence[Look], nodes: Sequence[Node], endpoints: Sequence[End]
+) -> Environment:
+    around = [look.snapshot.environment for look in looks]
+    asked = around[0]
+    peers = dict.fromkeys(peer for one in around for peer in one.static_peers)
+    return asked._replace(
+        range=_words(one.range for one in around),
+        static_peers=tuple(peers),
+        rmw=_words(one.rmw for one in around),
+        discovery_server=_words(one.discovery_server for one in around),
+        super_client=all(one.super_client for one in around),
+        participants=participants(endpoints),
+        settled=max((one.settled for one in around), key=_FROM_GOOD_TO_BAD.index),
+        seconds=max(one.seconds for one in around),
+        caveats=(*_caveats(looks), *unfinished(nodes, endpoints, asked.discovery_server)),
+    )
+
+
+def _words(words: Iterable[str]) -> str:
+    return ", ".join(dict.fromkeys(filter(None, words)))
+
+
+def _caveats(looks: Sequence[Look]) -> Iterator[Caveat]:
+    """What was said of each look, unless it is asked of all of them again."""
+    files = [look.file for look in looks]
+    more = f" and {len(files) - _MANY} more" if len(files) > _MANY else ""
+    text = f"made of {len(files)} looks: {', '.join(files[:_MANY])}{more}"
+    yield Caveat("looks-merged", False, text)
+    for look in looks:
+        for caveat in look.snapshot.environment.caveats:
+            if caveat.code not in UNFINISHED:
+                yield caveat._replace(message=f"{look.file}: {caveat.message}")

@@ -1,0 +1,60 @@
+"""How far a look reached: which machines were seen, and how to look from others. Pure.
+
+"Not seen from here" is "missing" only where a robot would have been seen.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+
+from multibot_rewrite.base.plural import plural
+from multibot_rewrite.base.wording import shorten
+from multibot_rewrite.system.environment import machine
+from multibot_rewrite.system.records import ZENOH, System
+
+LOCALHOST = "LOCALHOST"
+MERGED = "looks-merged"
+
+
+def machines(graph: System) -> dict[str, list[str]]:
+    """The nodes of each machine, by what Fast DDS calls it; a Zenoh router does not say which."""
+    found: dict[str, list[str]] = defaultdict(list)
+    for node in graph.nodes if graph.environment.rmw != ZENOH else ():
+        if host := machine(node.process):
+            found[host].append(node.name)
+    return dict(found)
+
+
+def hidden_from_here(graph: System) -> bool:
+    """Whether a robot on another machine may run unseen: nothing but one machine was seen.
+
+    Then multicast may be lost, or the other machine keeps to itself. Under LOCALHOST without peers
+    only this machine was asked for, and a discovery server or a router knows all that use it.
+    """
+    around = graph.environment
+    asked_for_all = around.range not in (LOCALHOST, "OFF") or bool(around.static_peers)
+    one_look = not any(it.code == MERGED for it in around.caveats)
+    return asked_for_all and one_look and not around.discovery_server and len(machines(graph)) == 1
+
+
+def why_not_seen(graph: System, robot: str) -> str:
+    """What is known of where ``robot`` may be, and what to do, in one sentence."""
+    around = graph.environment
+    if around.rmw == ZENOH:
+        router = around.discovery_server
+        return f"is it started, in this domain, and connected to the router at {router}?"
+    if around.discovery_server:
+        return f"is it started, and does it use the discovery server {around.discovery_server}?"
+    seen = machines(graph)
+    if hidden_from_here(graph):
+        (names,) = seen.values()
+        return (
+            f"all that is seen runs on one machine ({shorten(names)}). If {robot} is on another,"
+            " multicast may be lost, or it is on range LOCALHOST: set ROS_STATIC_PEERS to its"
+            " address, or take a snapshot there and join them (multibot snapshot --snapshot). If all"
+            " robots are to be on this machine set ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST"
+        )
+    started = "is the robot started, and with this ROS_DOMAIN_ID?"
+    if around.range == LOCALHOST and not around.static_peers:
+        return f"{started} Only this machine is looked at: range LOCALHOST, no ROS_STATIC_PEERS"
+    return f"{started} {plural(len(seen), 'machine')} are seen" if len(seen) > 1 else started

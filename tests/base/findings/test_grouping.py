@@ -1,0 +1,113 @@
+"""What is the same for many robots is said once, and names them in every format."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding, same_for
+from multibot_rewrite.base.findings.formats import FORMATS, Report, rendered
+from multibot_rewrite.base.findings.grouping import grouped
+
+ROBOTS = [f"robot{number}" for number in range(1, 21)]
+NAMES = {robot: robot for robot in ROBOTS}
+
+
+def lost(robot: str, topic: str = "cmd_vel", **more: str) -> Finding:
+    """A node of the robot that does not subscribe its topic."""
+    message = f"it should subscribe topic /{robot}/{topic}, and does not"
+    cause = f"its rule /{topic}:=/{robot}/{topic} did not reach it"
+    node = f"/{robot}/driver"
+    found = Finding("MG102", ERROR, message, cause, robot=robot, node=node)
+    return found._replace(names=(f"/{robot}/{topic}",), **more)  # type: ignore[arg-type]
+
+
+def test_twenty_robots_with_one_fault_are_one_finding() -> None:
+    (one,) = grouped([lost(robot) for robot in ROBOTS], NAMES)
+    assert (one.robot, one.others) == ("robot1", tuple(ROBOTS[1:]))
+    assert same_for(one) == "; the same for robot2 and 18 more"
+
+
+def test_what_is_grouped_already_keeps_its_robots() -> None:
+    first = grouped([lost(robot) for robot in ROBOTS[:2]], NAMES)
+    assert grouped(first, NAMES) == first
+    (one,) = grouped([*first, lost("robot3")], NAMES)
+    assert one.others == ("robot2", "robot3")
+    assert str(one).count("; the same for robot2 and 1 more (its rule") == 1
+
+
+def test_two_robots_are_named_both() -> None:
+    (one,) = grouped([lost("robot2"), lost("robot7")], NAMES)
+    assert same_for(one) == "; the same for robot7"
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        pytest.param(lost("robot2", "scan"), id="topic"),
+        pytest.param(lost("robot2", level=WARNING), id="level"),
+        pytest.param(lost("robot2", code="MG310"), id="code"),
+        pytest.param(lost("robot2", file="rover.urdf"), id="file"),
+        pytest.param(lost("robot2")._replace(hint=""), id="cause"),
+        pytest.param(lost("robot2")._replace(message="/robot1/cmd_vel is lost"), id="robot"),
+    ],
+)
+def test_another_fault_is_another_finding(other: Finding) -> None:
+    assert grouped([lost("robot1"), other], NAMES) == [lost("robot1"), other]
+
+
+def test_a_name_inside_another_name_is_not_a_robot() -> None:
+    apart = [lost("robot1"), lost("robot11")]
+    assert grouped(apart, {"robot1": "robot1"}) == apart
+
+
+def test_the_word_of_a_robot_in_frames_is_the_robot() -> None:
+    words = {"fleet_a": "a", "a1": "a", "fleet_b": "b", "b1": "b"}
+    found = [
+        Finding("MG207", ERROR, f"{word}/odom is bare", robot=robot, node=f"/fleet_{robot}/amcl")
+        for robot, word in (("a", "a1"), ("b", "b1"))
+    ]
+    (one,) = grouped(found, words)
+    assert one.others == ("b",)
+
+
+def test_findings_of_a_file_that_speak_of_one_robot_are_grouped() -> None:
+    found = [
+        Finding("MF701", WARNING, f"robot {robot!r}: no transform", file="fleet.yaml", line=4)
+        for robot in ROBOTS[:3]
+    ]
+    (one,) = grouped(found, NAMES)
+    assert one.others == ("robot2", "robot3")
+
+
+def test_the_order_is_that_of_the_first() -> None:
+    scan = [lost(robot, "scan") for robot in ROBOTS[:2]]
+    command = [lost(robot) for robot in ROBOTS[:2]]
+    found = grouped([scan[0], command[0], command[1], scan[1]], NAMES)
+    assert [it.names for it in found] == [("/robot1/scan",), ("/robot1/cmd_vel",)]
+
+
+@pytest.mark.parametrize("form", FORMATS)
+def test_every_format_names_the_robots_and_the_node(form: str) -> None:
+    found = grouped([lost(robot) for robot in ROBOTS], NAMES)
+    text = rendered(form, found, Report("multibot check", ["plan.yaml"], {}))
+    assert "/robot1/driver" in text.replace("\\", "")
+    assert "MG102" in text
+    if form == "json":
+        (one,) = json.loads(text)["findings"]
+        assert (one["others"], one["file"]) == (ROBOTS[1:], None)
+    else:
+        assert "the same for robot2 and 18 more" in text
+
+
+@pytest.mark.parametrize("form", FORMATS)
+def test_a_report_without_any_file_is_one(form: str) -> None:
+    found = [lost("robot1", level=INCONCLUSIVE)]
+    assert "MG102" in rendered(form, found, Report("multibot check", [], {}))
+
+
+def test_what_is_inconclusive_is_no_failure_in_junit() -> None:
+    found = [lost("robot1", level=INCONCLUSIVE), lost("robot2")]
+    text = rendered("junit", found, Report("multibot check", ["plan.yaml"], {}))
+    assert 'tests="2" failures="1" errors="0" skipped="1"' in text

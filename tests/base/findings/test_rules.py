@@ -1,0 +1,91 @@
+"""Every rule of every command finds its bad example, once and in its line, and leaves the good one."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any, cast
+
+import pytest
+from paths import ROOT
+from rule_examples import WITHOUT_FILE, found, whole
+
+from multibot_rewrite.base.findings.finding import LEVELS
+from multibot_rewrite.lint import catalogue
+from multibot_rewrite.lint.fix import fix
+from multibot_rewrite.rules.settings import Settings
+
+RULES = catalogue.rules()
+# No text makes them: a fault of the lint, and a file that takes too long. Other tests raise them.
+WITHOUT_EXAMPLES = {
+    **dict.fromkeys(("MB001", "MB004"), "test_lint_robust.py"),
+}
+EXAMPLES = [code for code in RULES if code not in WITHOUT_EXAMPLES]
+
+
+@pytest.mark.parametrize("code", EXAMPLES)
+def test_the_examples_of_a_rule(code: str, tmp_path: Path) -> None:
+    """The bad one is found once, in its line, with edits where a fix is shown; the good one never."""
+    rule = RULES[code]
+    (finding,) = found(rule, rule.bad, tmp_path)
+    assert finding.message
+    assert bool(finding.edits) == bool(rule.fixed)
+    (tmp_path / "good").mkdir()
+    assert found(rule, rule.good, tmp_path / "good") == []
+    if set(WITHOUT_FILE) & set(rule.formats):
+        # The line names the node or one of the topics or frames, else the robot.
+        about = [it for it in (finding.node, *finding.names) if it] or [finding.robot]
+        assert any(it in rule.bad.splitlines()[rule.line - 1] for it in about if it)
+        return
+    assert finding.line == rule.line
+    assert Path(finding.file).parent == tmp_path if finding.file else finding.place != "graph"
+
+
+@pytest.mark.parametrize("code", [code for code in EXAMPLES if RULES[code].fixed])
+def test_the_fix_makes_just_what_is_shown(code: str, tmp_path: Path) -> None:
+    rule = RULES[code]
+    (finding,) = found(rule, rule.bad, tmp_path)
+    bad = Path(finding.file).read_bytes()
+    text, left = fix(finding.file, bad, Settings(select=(code,), **cast(Any, rule.options)))
+    assert text.decode() == whole(rule.fixed)
+    assert left == []
+
+
+def test_the_codes_with_a_fix() -> None:
+    fixed = {code for code, it in RULES.items() if it.fixed}
+    assert fixed == {
+        "MB002",
+        "MB126",
+        "MB128",
+        "MB133",
+        "MB134",
+        "MB136",
+        "MB140",
+        "MB141",
+        "MB142",
+        "MB301",
+    }
+
+
+def test_the_words_of_a_rule_are_all_there() -> None:
+    assert {code: it.level for code, it in RULES.items() if it.level not in LEVELS} == {}
+    texts = {code: (it.what, it.why, it.fix) for code, it in RULES.items()}
+    assert [code for code, it in texts.items() if not all(text.endswith(".") for text in it)] == []
+    named = re.compile(r"[a-z]+(-[a-z0-9]+)*")
+    assert [code for code, it in RULES.items() if not named.fullmatch(it.name)] == []
+
+
+def test_names_are_no_two_rules() -> None:
+    assert len({rule.name for rule in RULES.values()}) == len(RULES)
+
+
+@pytest.mark.parametrize("code", WITHOUT_EXAMPLES)
+def test_what_has_no_example_is_raised_in_another_test(code: str) -> None:
+    (path,) = (ROOT / "tests").rglob(WITHOUT_EXAMPLES[code])
+    assert code in path.read_text()
+
+
+def test_every_code_of_the_package_is_declared() -> None:
+    sources = (path.read_text() for path in (ROOT / "multibot_rewrite").rglob("*.py"))
+    codes = {code for text in sources for code in re.findall(r"\bM[BFGR]\d{3}\b", text)}
+    assert codes - RULES.keys() == set()

@@ -1,0 +1,43 @@
+"""What the lint says of all copies leaves a rewrite unproved: systems of the world, absolute names."""
+
+from __future__ import annotations
+
+import pytest
+
+from multibot_rewrite.description.library import rewrite
+
+ROBOT = '<robot name="rover"><link name="base_link"/><gazebo>{}</gazebo></robot>'
+SENSORS = '<plugin filename="gz-sim-sensors-system" name="gz::sim::systems::Sensors"/>'
+# gazebo_ros2_control_plugin.cpp waits for the parameters of this node: an absolute name is the same in
+# each namespace, and its own where nodes have the name of the robot.
+CONTROL = (
+    '<plugin name="control" filename="libgazebo_ros2_control.so">'
+    "<robot_param_node>{}</robot_param_node></plugin>"
+)
+
+
+def codes(inside: str, layout: str) -> list[str]:
+    made = rewrite(ROBOT.format(inside), "robot1", layout=layout, distro="humble")
+    assert bool(made.not_proved) == bool(made.findings)
+    return [it.code for it in made.findings]
+
+
+def test_a_system_of_the_world_is_not_proved() -> None:
+    """gz-sensors issue 497: each copy of the robot loads it again."""
+    assert codes(SENSORS, "both") == ["MB416"]
+
+
+@pytest.mark.parametrize(
+    ("name", "layout", "expected"),
+    [
+        ("/robot_state_publisher", "tf-per-robot", ["MB410"]),
+        ("/robot_state_publisher", "both", ["MB410"]),
+        ("robot_state_publisher", "both", []),
+    ],
+)
+def test_an_absolute_node_with_the_description(name: str, layout: str, expected: list[str]) -> None:
+    assert codes(CONTROL.format(name), layout) == expected
+
+
+def test_an_absolute_node_is_renamed_where_nodes_are() -> None:
+    assert "MB410" not in codes(CONTROL.format("/robot_state_publisher"), "postfix")

@@ -1,0 +1,268 @@
+"""The rewrite misses something wherever it looks, so its own proof holds: the second reading says so.
+
+Each fault is put into the code that both passes of the rewrite share. The second reading shares the
+vocabulary with them and nothing else.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import pytest
+
+from multibot_rewrite import rewrite
+from multibot_rewrite.base import naming
+from multibot_rewrite.description.rewriters import insert, remap_rules, tree
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import TreeNode
+from multibot_rewrite.description.steps import collect, plan, verify
+
+ROVER = """\
+<robot name="rover">
+  <link name="base"/><link name="wheel"/>
+  <joint name="axle" type="continuous"><parent link="base"/><child link="wheel"/></joint>
+  <gazebo>%s</gazebo>
+</robot>
+"""
+DRIVE = '<plugin name="drive" filename="libgazebo_ros_diff_drive.so">%s</plugin>'
+# Neither is on by itself.
+ODOM = "<publish_odom>true</publish_odom><publish_odom_tf>true</publish_odom_tf>"
+IMU = '<plugin name="imu" filename="libgazebo_ros_imu_sensor.so">%s</plugin>'
+LASER = '<plugin name="laser" filename="libgazebo_ros_laser.so">%s</plugin>'
+GZ = '<plugin name="gz::sim::systems::DiffDrive" filename="gz-sim-diff-drive-system">%s</plugin>'
+NOBODY = '<plugin name="own" filename="libnobody_knows.so">%s</plugin>'
+SCAN = "</gazebo><gazebo reference='base'><sensor name='lidar' type='gpu_lidar'>%s</sensor>"
+
+
+class Fault(NamedTuple):
+    """``names`` of ``owner`` are ``instead``; the plugin is ``source``, and ``shared`` what meets."""
+
+    about: str
+    owner: Any
+    name: str
+    instead: Any
+    source: str
+    layout: str
+    shared: str
+
+
+def nothing(*_: object) -> tuple[()]:
+    return ()
+
+
+def none(*_: object) -> None:
+    return None
+
+
+def own_text(element: Any) -> str:
+    """The text before anything else, comments too."""
+    return (element.text or "").strip()
+
+
+def majority(found: Any, element: Any) -> Any:
+    """The release with more of the tags, whatever <ros> says."""
+    tags = {child.tag for child in element}
+    return max(found, key=lambda section: (len(section.tags & tags), section.ros))
+
+
+def without(*kinds: str) -> Callable[..., dict[str, str]]:
+    """The kinds that are renamed, without some."""
+    right = naming._active
+    return lambda *given: {k: it for k, it in right(*given).items() if k not in kinds}
+
+
+def unseen(path: str) -> Callable[[TreeNode, Any], None]:
+    """A tree that has no place for the sites at a path."""
+    right = TreeNode._add
+    return lambda node, site: None if site.path == path else right(node, site)
+
+
+FAULTS = (
+    Fault(
+        "no default is inserted", insert, "_defaults", nothing, DRIVE % "", "both", "frame 'odom'"
+    ),
+    Fault(
+        "no namespace is inserted", insert, "_defaults", nothing, IMU % "", "both", "node '/imu'"
+    ),
+    Fault("no rule is inserted", insert, "_remaps", nothing, DRIVE % ODOM, "both", "topic '/tf'"),
+    Fault(
+        "no rule is inserted for a wired topic",
+        insert,
+        "_remaps",
+        nothing,
+        DRIVE % ODOM,
+        "postfix",
+        "topic '/odom'",
+    ),
+    Fault(
+        "an empty namespace is taken for one",
+        insert,
+        "text_of",
+        lambda _: "x",
+        IMU % "<ros><namespace/></ros>",
+        "both",
+        "node '/imu'",
+    ),
+    Fault(
+        "a namespace behind a comment is not read",
+        collect,
+        "text_of",
+        own_text,
+        IMU % "<ros><namespace><!-- --> /a</namespace></ros>",
+        "both",
+        "node '/a/imu'",
+    ),
+    Fault(
+        "a topic behind a comment is not read",
+        collect,
+        "text_of",
+        own_text,
+        LASER % "<topicName><!-- -->/scan</topicName>",
+        "both",
+        "topic '/scan'",
+    ),
+    Fault(
+        "a rule behind a comment is not read",
+        collect,
+        "text_of",
+        own_text,
+        DRIVE % "<ros><remapping><!-- -->cmd_vel:=/cmd</remapping></ros>",
+        "both",
+        "topic '/cmd'",
+    ),
+    Fault(
+        "the release is chosen by tags",
+        tree,
+        "_flavour",
+        majority,
+        IMU % "<ros/><topicName>imu</topicName><bodyName>base</bodyName>",
+        "both",
+        "node '/imu'",
+    ),
+    Fault(
+        "topics stay",
+        naming,
+        "_topic_affix",
+        none,
+        LASER % "<topicName>/scan</topicName>",
+        "postfix",
+        "topic '/scan'",
+    ),
+    Fault(
+        "topics of gz stay",
+        naming,
+        "_topic_affix",
+        none,
+        GZ % "<topic>/cmd</topic>",
+        "both",
+        "topic '/cmd'",
+    ),
+    Fault(
+        "topics of sensors stay",
+        naming,
+        "_topic_affix",
+        none,
+        SCAN % "<topic>scan</topic>",
+        "both",
+        "topic '/scan'",
+    ),
+    Fault(
+        "namespaces stay",
+        naming,
+        "_namespace_affix",
+        none,
+        IMU % "<ros><namespace>/a</namespace></ros>",
+        "both",
+        "node '/a/imu'",
+    ),
+    Fault("nodes stay", naming, "_active", without("node"), IMU % "", "postfix", "node '/imu'"),
+    Fault(
+        "frames stay",
+        naming,
+        "_active",
+        without("frame"),
+        DRIVE % "<odometry_frame>o</odometry_frame>",
+        "both",
+        "frame 'o'",
+    ),
+    Fault("links stay", naming, "_active", without("link"), "", "both", "frame 'base'"),
+    Fault(
+        "a rule is not read",
+        remap_rules,
+        "remap",
+        nothing,
+        DRIVE % "<ros><remapping>cmd_vel:=/cmd</remapping></ros>",
+        "both",
+        "topic '/cmd'",
+    ),
+    Fault(
+        "a parameter has no place in the tree",
+        TreeNode,
+        "_add",
+        unseen("topicName"),
+        LASER % "<topicName>/scan</topicName>",
+        "both",
+        "topic '/scan'",
+    ),
+    Fault(
+        "a namespace has no place in the tree",
+        TreeNode,
+        "_add",
+        unseen("ros/namespace"),
+        IMU % "<ros><namespace>/a</namespace></ros>",
+        "both",
+        "node '/a/imu'",
+    ),
+    Fault(
+        "plugins are not told apart",
+        tree,
+        "SELECTORS",
+        tree.SELECTORS | {"plugin": lambda _: []},
+        IMU % "<ros><namespace>/a</namespace></ros>",
+        "both",
+        "node '/a/imu'",
+    ),
+    Fault(
+        "an unknown plugin with <ros> is nothing",
+        tree,
+        "SELECTORS",
+        tree.SELECTORS | {"plugin": lambda _: []},
+        NOBODY % "<ros><namespace>/a</namespace></ros>",
+        "both",
+        "node '/a/own'",
+    ),
+)
+
+
+def found(fault: Fault) -> tuple[set[str], tuple[str, ...]]:
+    """What is shared by the words of the findings, and why the rewrite is not proved."""
+    result = rewrite(ROVER % fault.source, "robot1", layout=fault.layout)
+    said = (re.search(r"would have the (\w+ '[^']*')", it.message) for it in result.findings)
+    return {it[1] for it in said if it}, result.not_proved
+
+
+@pytest.mark.parametrize("fault", FAULTS, ids=lambda fault: fault.about)
+def test_the_second_reading_names_what_is_shared(
+    monkeypatch: pytest.MonkeyPatch, fault: Fault
+) -> None:
+    builtin_tree.cache_clear()
+    shared, _ = found(fault)
+    assert fault.shared not in shared, "without the fault there is nothing to find"
+    monkeypatch.setattr(fault.owner, fault.name, fault.instead)
+    builtin_tree.cache_clear()
+    try:
+        shared, why = found(fault)
+    finally:
+        builtin_tree.cache_clear()
+    assert fault.shared in shared
+    assert any("shared by all robots" in it for it in why)
+
+
+def test_nothing_is_inserted_at_all(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By the plan, nor asked for by the proof."""
+    for module in (plan, verify):
+        monkeypatch.setattr(module, "insertions", lambda *_: [])
+    fault = FAULTS[0]._replace(source=DRIVE % ODOM + IMU % "")
+    assert found(fault)[0] >= {"frame 'odom'", "topic '/tf'", "node '/imu'", "node '/drive'"}

@@ -1,0 +1,70 @@
+"""The second reading sees a rule that matched a name and matches none after a rewrite."""
+
+from __future__ import annotations
+
+import pytest
+
+from multibot_rewrite import rewrite
+from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.description.readback.lost_rules import LostRule, lost_rules
+from multibot_rewrite.description.readback.reading import read
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
+
+PLUGIN = (
+    '<robot name="r"><gazebo><plugin name="{}" filename="libgazebo_ros_{}.so">'
+    "<ros>{}</ros></plugin></gazebo></robot>"
+)
+
+
+def force(*rules: str, namespace: str = "") -> bytes:
+    texts = "".join(f"<remapping>{it}</remapping>" for it in rules)
+    given = f"<namespace>{namespace}</namespace>" if namespace else ""
+    return PLUGIN.format("f", "force", given + texts).encode()
+
+
+def lost(before: bytes, after: bytes) -> list[LostRule]:
+    vocabulary = builtin_tree((), NEWEST_LTS).vocabulary
+    return list(lost_rules(*(read(it, "r.urdf", vocabulary) for it in (before, after))))
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        (force("/gazebo_ros_force:=a"), force("/gazebo_ros_force:=a", namespace="robot1")),
+        (force("f/x:=y", "gazebo_ros_force:=a"), force("f/x:=y", "gazebo_ros_force2:=a")),
+        # An inserted rule stands in front and wins.
+        (force("/gazebo_ros_force:=a"), force("gazebo_ros_force:=b", "/gazebo_ros_force:=a")),
+    ],
+)
+def test_a_rule_that_matches_no_more_is_named(before: bytes, after: bytes) -> None:
+    (found,) = lost(before, after)
+    assert found.number == 0
+    assert found.name == "/gazebo_ros_force"
+    assert found.rule.endswith(":=a")
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        (force("gazebo_ros_force:=a"), force("gazebo_ros_force:=a", namespace="robot1")),
+        (force("x:=a"), force("y:=a")),
+        (force("gazebo_ros_force:=a"), force("x:=y", "gazebo_ros_force:=a/robot1")),
+    ],
+)
+def test_a_rule_that_still_matches_is_not(before: bytes, after: bytes) -> None:
+    assert lost(before, after) == []
+
+
+def test_a_rewrite_that_loses_a_rule_is_not_proved() -> None:
+    source = PLUGIN.format("imu", "imu", "<namespace>a</namespace><remapping>imu:=raw</remapping>")
+    source = source.replace("libgazebo_ros_imu", "libhector_gazebo_ros_imu")
+    source = source.replace("</ros>", "</ros><topicName>/a/imu</topicName>")
+    made = rewrite(source, "robot1", affix="prefix")
+    assert made.not_proved == ("1 remap rule that matches no name any more",)
+    assert [it.code for it in made.findings] == ["MB436"]
+
+
+def test_a_topic_that_the_layout_shares_may_lose_its_rule() -> None:
+    source = PLUGIN.format("d", "planar_move", "<remapping>tf:=my_tf</remapping>")
+    made = rewrite(source, "robot1", layout="frames-per-robot")
+    assert "MB436" not in [it.code for it in made.findings]

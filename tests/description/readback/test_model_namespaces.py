@@ -1,0 +1,167 @@
+"""What Gazebo makes of the namespaces of models, and that two robots of such a model do not meet.
+
+Expected names are those of gz-sim's scopedNamespace (its Util_TEST.cc) and DiffDrive.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite import rewrite, rewrite_all
+from multibot_rewrite.base.naming import LAYOUTS, make_naming
+from multibot_rewrite.description.readback.meeting import meetings
+from multibot_rewrite.description.readback.nodes import TOPIC
+from multibot_rewrite.description.readback.reading import read
+from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
+
+DRIVE = '<plugin filename="gz-sim-diff-drive-system" name="d"><topic>{}</topic></plugin>'
+RELEASED = ("humble", "jazzy", "kilted", "lyrical")
+MAIN = "rolling"
+
+
+def model(attributes: str, inside: str = DRIVE.format("cmd_vel")) -> str:
+    link = '<link name="base"/>'
+    return f'<sdf version="1.12"><model name="rover"{attributes}>{link}{inside}</model></sdf>'
+
+
+def topics(text: bytes, release: str, path: str = "topic") -> list[str]:
+    found = read(text, "m.sdf", load_vocabulary((), release)).names
+    return [it.name for it in found if it.kind == TOPIC and it.path == path]
+
+
+def arm(namespace: str) -> str:
+    inner = f'<link name="hand"/>{DRIVE.format("turn")}'
+    return f'<model name="arm" namespace="{namespace}">{inner}</model>'
+
+
+@pytest.mark.parametrize(
+    ("attributes", "inside", "name"),
+    [
+        ("", DRIVE.format("cmd_vel"), "/cmd_vel"),
+        (' namespace="robot"', DRIVE.format("cmd_vel"), "/robot/cmd_vel"),
+        (' namespace=" robot/"', DRIVE.format("cmd_vel"), "/robot/cmd_vel"),
+        (' namespace="//robot//"', DRIVE.format("cmd_vel"), "/robot/cmd_vel"),
+        (' namespace="robot"', DRIVE.format("/cmd_vel"), "/cmd_vel"),
+        (' namespace=""', DRIVE.format("cmd_vel"), "/cmd_vel"),
+        (' namespace="/"', DRIVE.format("cmd_vel"), "/cmd_vel"),
+        (' namespace="robot"', arm("left"), "/robot/left/turn"),
+        (' namespace="robot"', arm("/left"), "/left/turn"),
+        (' namespace="robot"', arm("/"), "/turn"),
+        (' namespace="robot"', arm(""), "/robot/turn"),
+        (' namespace="robot"', arm("{name}_{name}"), "/robot/arm_arm/turn"),
+        ("", arm("left"), "/left/turn"),
+    ],
+)
+def test_the_namespaces_around_a_plugin_are_joined(attributes: str, inside: str, name: str) -> None:
+    assert topics(model(attributes, inside).encode(), MAIN) == [name]
+
+
+def test_a_name_that_the_spawner_gives_is_not_known() -> None:
+    text = model(' namespace="{name}"').encode()
+    assert topics(text, MAIN) == []
+
+
+@pytest.mark.parametrize("release", RELEASED)
+def test_gazebo_of_a_release_knows_no_namespace(release: str) -> None:
+    assert topics(model(' namespace="robot"').encode(), release) == ["/cmd_vel"]
+
+
+def test_other_systems_take_their_topics_as_they_are() -> None:
+    system = (
+        '<plugin filename="gz-sim-velocity-control-system" name="v"><topic>push</topic></plugin>'
+    )
+    assert topics(model(' namespace="robot"', system).encode(), MAIN) == ["/push"]
+
+
+def test_default_topics_are_below_the_namespace() -> None:
+    plugin = '<plugin filename="gz-sim-diff-drive-system" name="d"/>'
+    text = model(' namespace="robot"', plugin).encode()
+    assert topics(text, MAIN, "model@namespace") == ["/robot"]
+    assert topics(text, "lyrical", "model@namespace") == []
+
+
+def written(source: str, layout: str, release: str) -> Iterator[tuple[str, bytes]]:
+    for it in rewrite_all(source, ["robot1", "robot2"], layout=layout, distro=release):
+        yield it.robot, it.data
+
+
+SOURCES = [
+    model(' namespace="robot"'),
+    model(' namespace="/robot"'),
+    model(' namespace="{name}"'),
+    model(' namespace="robot"', arm("left")),
+    model(' namespace="robot"', arm("/left")),
+    model("", arm("left")),
+    model(' namespace="robot"', DRIVE.format("/cmd_vel")),
+]
+
+
+@pytest.mark.parametrize("layout", [it.name for it in LAYOUTS])
+@pytest.mark.parametrize("release", [*RELEASED, MAIN])
+@pytest.mark.parametrize("source", SOURCES)
+def test_two_robots_do_not_meet(source: str, release: str, layout: str) -> None:
+    vocabulary = load_vocabulary((), release)
+    texts = dict(written(source, layout, release))
+    readings = {robot: read(text, robot, vocabulary) for robot, text in texts.items()}
+    assert [it.name.name for it in meetings(readings, make_naming(layout))] == []
+    assert all(len(readings[a].names) == len(readings[b].names) for a, b in combinations(texts, 2))
+
+
+@pytest.mark.parametrize("layout", [it.name for it in LAYOUTS])
+@pytest.mark.parametrize("release", [*RELEASED, MAIN])
+@pytest.mark.parametrize("source", SOURCES)
+def test_no_topic_has_the_robot_twice(source: str, release: str, layout: str) -> None:
+    for robot, text in written(source, layout, release):
+        for name in topics(text, release):
+            assert name.split("/").count(robot) == 1, name
+
+
+def test_what_cannot_be_each_robots_own_is_said() -> None:
+    """The root as a namespace, and a nested model that keeps its name: their topics are for all."""
+    for source in (model(' namespace="/"', DRIVE.format("")), model("", arm("{name}"))):
+        found = rewrite(source, "robot1", layout="tf-per-robot", distro=MAIN)
+        assert "MB430" in {it.code for it in found.findings}
+        assert any("topic" in reason for reason in found.not_proved)
+
+
+def test_a_rewrite_that_only_some_builds_of_gazebo_read_is_not_called_proved() -> None:
+    source = model(' namespace="robot"')
+    reasons = rewrite(source, "robot1", distro=MAIN).not_proved
+    assert reasons == ("1 model namespace that not every Gazebo reads",)
+    assert rewrite(source, "robot1", distro="lyrical").not_proved == ()
+
+
+def test_a_vocabulary_says_which_systems_read_it(tmp_path: Path) -> None:
+    """For a Gazebo that was built with more than main has."""
+    own = tmp_path / "own.vocab"
+    own.write_text("[plugin gz-sim-velocity-control-system]\nmodel_namespace: lyrical+\n")
+    system = (
+        '<plugin filename="gz-sim-velocity-control-system" name="v"><topic>push</topic></plugin>'
+    )
+    source = model(' namespace="robot"', system)
+    found = rewrite(
+        source, "robot1", layout="tf-per-robot", distro=MAIN, vocabulary=[str(own)]
+    ).text
+    assert "<topic>push</topic>" in found and 'namespace="robot1/robot"' in found
+
+
+def test_below_a_root_namespace_a_topic_is_each_robots_own() -> None:
+    (name,) = topics(
+        rewrite(model(' namespace="robot"', arm("/")), "robot1", distro=MAIN).data, MAIN
+    )
+    assert name == "/turn/robot1"
+
+
+def test_a_system_that_reads_what_its_gazebo_does_not_is_no_proof(tmp_path: Path) -> None:
+    own = tmp_path / "own.vocab"
+    own.write_text("[plugin gz-sim-velocity-control-system]\nmodel_namespace: lyrical+\n")
+    system = (
+        '<plugin filename="gz-sim-velocity-control-system" name="v"><topic>push</topic></plugin>'
+    )
+    source = model(' namespace="robot"', system)
+    found = rewrite(source, "robot1", distro="lyrical", vocabulary=[str(own)])
+    assert {"MB419", "MB430"} == {it.code for it in found.findings}

@@ -1,0 +1,220 @@
+"""What a description starts, by the names that its consumers' sources give it."""
+
+from __future__ import annotations
+
+import pytest
+
+from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.description.readback.reading import Reading, read
+from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
+
+
+def reading(inside: str, root: str = "robot", release: str = NEWEST_LTS) -> Reading:
+    text = f"<{root} name='r'>{inside}</{root}>"
+    return read(text.encode(), "r.urdf", load_vocabulary((), release))
+
+
+def names(inside: str, *kinds: str, release: str = NEWEST_LTS) -> list[str]:
+    found = reading(inside, release=release).names
+    return [it.name for it in found if it.kind in (kinds or ("topic", "service"))]
+
+
+def plugin(library: str, inside: str = "", name: str = "p") -> str:
+    return f'<gazebo><plugin name="{name}" filename="{library}">{inside}</plugin></gazebo>'
+
+
+# gazebo_ros node.cpp: ns = text of <namespace>, "/" without it; a <ros> hides what is beside it;
+# rclcpp puts a missing slash in front.
+@pytest.mark.parametrize(
+    ("inside", "node", "topic"),
+    [
+        ("", "/p", "/cmd_vel"),
+        ("<ros/>", "/p", "/cmd_vel"),
+        ("<ros><namespace>/a</namespace></ros>", "/a/p", "/a/cmd_vel"),
+        ("<ros><namespace>a</namespace></ros>", "/a/p", "/a/cmd_vel"),
+        ("<ros><namespace>/</namespace></ros>", "/p", "/cmd_vel"),
+        ("<ros><namespace></namespace></ros>", "/p", "/cmd_vel"),
+        ("<ros><namespace/></ros>", "/p", "/cmd_vel"),
+        ("<ros><namespace>  </namespace></ros>", "/p", "/cmd_vel"),
+        ("<ros><namespace><!-- x -->/a</namespace></ros>", "/a/p", "/a/cmd_vel"),
+        ("<namespace>/a</namespace>", "/a/p", "/a/cmd_vel"),
+        ("<namespace>/a</namespace><ros/>", "/p", "/cmd_vel"),
+        ("<ros><remapping>cmd_vel:=b</remapping></ros>", "/p", "/b"),
+        ("<remapping>cmd_vel:=b</remapping>", "/p", "/b"),
+        ("<remapping>cmd_vel:=b</remapping><ros/>", "/p", "/cmd_vel"),
+        ("<ros><remapping><!-- x -->cmd_vel:=/b</remapping></ros>", "/p", "/b"),
+        ("<ros><remapping>cmd_vel:=b</remapping><namespace>a</namespace></ros>", "/a/p", "/a/b"),
+        ("<ros><remapping>cmd_vel := b</remapping></ros>", "/p", "/cmd_vel"),
+    ],
+)
+def test_the_node_of_a_classic_plugin(inside: str, node: str, topic: str) -> None:
+    text = plugin("libgazebo_ros_diff_drive.so", inside)
+    assert names(text, "node") == [node]
+    assert topic in names(text)
+
+
+# gazebo_ros_diff_drive.cpp: odom and /tf only where these parameters are true.
+@pytest.mark.parametrize(
+    ("inside", "found"),
+    [
+        ("", set()),
+        ("<publish_odom>true</publish_odom>", {"/odom"}),
+        ("<publish_odom>True</publish_odom>", {"/odom"}),
+        ("<publish_odom>no</publish_odom>", set()),
+        ("<publish_odom_tf>1</publish_odom_tf>", {"/tf"}),
+        ("<publish_wheel_tf><!-- x -->true</publish_wheel_tf>", {"/tf"}),
+    ],
+)
+def test_topics_that_a_parameter_turns_on(inside: str, found: set[str]) -> None:
+    topics = set(names(plugin("libgazebo_ros_diff_drive.so", inside)))
+    assert topics & {"/odom", "/tf"} == found
+
+
+# gz-sim SystemLoader.cc: lib, .so, a version and the old family's name do not count.
+@pytest.mark.parametrize(
+    ("library", "name"),
+    [
+        ("gz-sim-diff-drive-system", "gz::sim::systems::DiffDrive"),
+        ("libgz-sim-diff-drive-system.so", "any label"),
+        ("gz-sim8-diff-drive-system", "x"),
+        ("libignition-gazebo6-diff-drive-system.so", "x"),
+        ("ignition-gazebo-diff-drive-system", "ignition::gazebo::systems::DiffDrive"),
+        ("my-own-name", "gz::sim::systems::DiffDrive"),
+        ("my-own-name", "ignition::gazebo::systems::DiffDrive"),
+        ("/opt/lib/libgz-sim-diff-drive-system.so", "x"),
+    ],
+)
+def test_names_of_a_system(library: str, name: str) -> None:
+    text = plugin(library, "<topic>drive</topic><odom_topic>/o</odom_topic>", name)
+    assert names(text) == ["/drive", "/o"]
+    assert not reading(text).unknown
+
+
+def test_an_unknown_plugin_is_unknown_with_its_number() -> None:
+    text = plugin("libgazebo_ros_p3d.so") + plugin("libacme.so", "<ros/>", "acme")
+    found = reading(text)
+    assert found.unknown == ((1, "libacme.so"),)
+    assert [it.full_name for it in found.nodes] == ["/p", "/acme"]
+
+
+# gazebo_ros_imu.cpp of noetic reads robotNamespace and topicName, gazebo_ros_imu_sensor.cpp of ros2
+# neither; only ROS 2 has <ros>.
+@pytest.mark.parametrize(
+    ("inside", "release"),
+    [
+        ("<topicName>/imu</topicName><bodyName>b</bodyName><ros/>", "2"),
+        ("<topicName>/imu</topicName><bodyName>b</bodyName>", "1"),
+        ("<frame_name>b</frame_name>", "2"),
+        ("", "2"),
+    ],
+)
+def test_which_ros_a_plugin_is_for(inside: str, release: str) -> None:
+    text = plugin("libgazebo_ros_imu_sensor.so", inside)
+    assert ("node" in {it.kind for it in reading(text).names}) == (release == "2")
+    assert ("/imu" in names(text)) == (release == "1")
+
+
+# gz-sensors CameraSensor.cc: camera_info is beside the image, unless it is given.
+@pytest.mark.parametrize(
+    ("kind", "inside", "found"),
+    [
+        ("imu", "<topic>scan</topic>", {"/scan"}),
+        ("imu", "<topic><!-- c -->imu</topic>", {"/imu"}),
+        ("camera", "<topic/>", set()),
+        ("camera", "", set()),
+        ("camera", "<topic>front/image</topic>", {"/front/image", "/front/camera_info"}),
+        ("camera", "<topic>image</topic>", {"/image", "/camera_info"}),
+        (
+            "camera",
+            "<topic>a/b</topic><camera><camera_info_topic>c</camera_info_topic></camera>",
+            {"/a/b", "/c"},
+        ),
+    ],
+)
+def test_topics_of_a_sensor(kind: str, inside: str, found: set[str]) -> None:
+    text = f'<gazebo reference="l"><sensor name="s" type="{kind}">{inside}</sensor></gazebo>'
+    assert set(names(text)) == found
+
+
+def test_a_control_plugin_reads_its_settings_in_ros_alone() -> None:
+    """gz_ros2_control_plugin.cpp: <ros> is asked for, nothing beside it is a namespace."""
+    inside = "<namespace>/a</namespace><remapping>/tf:=b</remapping>"
+    text = plugin("gz_ros2_control-system", inside, "gz_ros2_control::GazeboSimROS2ControlPlugin")
+    assert names(text, "node") == ["/controller_manager"]
+    assert "/tf" in names(text)
+    within = plugin("libgz_ros2_control-system.so", f"<ros>{inside}</ros>", "x")
+    assert names(within, "node") == ["/a/controller_manager"]
+    assert "/a/b" in names(within, release="jazzy")
+    # determine_controller_node_options (ros2_control 6.5.0) gives no controller the manager's rules.
+    assert "/tf" in names(within, release="lyrical")
+
+
+def test_ros_1_topics_are_below_the_namespace() -> None:
+    """gazebo_ros_p3d.cpp (noetic): node handle of robotNamespace; absent it is global."""
+    given = "<robotNamespace>a</robotNamespace><topicName>t</topicName><bodyName>b</bodyName>"
+    assert names(plugin("libgazebo_ros_p3d.so", given)) == ["/a/t"]
+    assert names(plugin("libgazebo_ros_p3d.so", given.replace(">a<", "><"))) == ["/t"]
+    absolute = given.replace(">t<", ">/t<")
+    assert names(plugin("libgazebo_ros_p3d.so", absolute)) == ["/t"]
+
+
+def test_frames_are_links_and_those_of_plugins() -> None:
+    text = (
+        '<link name="base"/><group><link name="no_frame"/></group>'
+        + plugin("libgazebo_ros_diff_drive.so", "<odometry_frame><!-- x -->o</odometry_frame>")
+        + plugin("libgazebo_ros_planar_move.so", "<odometry_frame/>")
+    )
+    found = names(text, "frame")
+    # sdformat's Get<std::string>(name, default) gives "" for an element that is there and empty.
+    assert found == ["base", "o", "base_footprint", "base_footprint"]
+
+
+def test_names_that_are_looked_up_in_the_world() -> None:
+    """gz_system.cpp: an IMU is found by its name alone, in every model."""
+    system = (
+        '<gazebo reference="l"><sensor name="imu" type="imu"/></gazebo><ros2_control name="h">'
+        "<hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin></hardware>"
+        '<sensor name="imu"/></ros2_control>'
+    )
+    assert names(system, "sensor") == ["imu"]
+    assert names(system.replace("GazeboSimSystem", "Other"), "sensor") == []
+
+
+def test_a_place_is_the_number_among_elements_of_the_tag() -> None:
+    text = plugin("libacme.so") + plugin("libgazebo_ros_diff_drive.so")
+    (node,) = (it for it in reading(text).names if it.kind == "node")
+    assert (node.tag, node.number, node.path) == ("plugin", 1, "@name")
+
+
+def test_topics_are_below_the_word_that_a_plugin_makes_them_of() -> None:
+    """gazebo_ros_camera.cpp: image_transport topics are <camera_name>/image_raw."""
+    text = plugin("libgazebo_ros_camera.so", "<camera_name>front</camera_name>")
+    assert "/front" in names(text, "topic")
+    within = text.replace("<camera_name>", "<ros><namespace>a</namespace></ros><camera_name>")
+    assert "/a/front" in names(within, "topic")
+
+
+def test_a_particle_emitter_has_a_topic() -> None:
+    emitter = "<particle_emitter name='e'><topic>/smoke</topic></particle_emitter>"
+    assert names(f"<gazebo reference='base'>{emitter}</gazebo>") == ["/smoke"]
+    assert names("<gazebo reference='base'/>") == []
+
+
+# rcl arguments.c: rules follow -r or --remap between --ros-args and --, and are taken in their old form
+# outside of these; node.cpp puts <argument> first.
+@pytest.mark.parametrize(
+    ("arguments", "topic"),
+    [
+        (("--ros-args", "-r", "cmd_vel:=b"), "/b"),
+        (("--ros-args", "--remap", "cmd_vel:=b"), "/b"),
+        (("--ros-args", "--", "--ros-args", "-r", "cmd_vel:=b"), "/b"),
+        (("cmd_vel:=b",), "/b"),
+        (("-r", "cmd_vel:=b"), "/b"),
+        (("cmd_vel:=b", "--ros-args", "-r", "cmd_vel:=c"), "/b"),
+        (("--ros-args", "cmd_vel:=b"), "/cmd_vel"),
+        (("--ros-args", "--", "-r", "cmd_vel:=b"), "/b"),
+    ],
+)
+def test_rules_in_arguments(arguments: tuple[str, ...], topic: str) -> None:
+    inside = "".join(f"<argument>{it}</argument>" for it in arguments)
+    assert topic in names(plugin("libgazebo_ros_diff_drive.so", f"<ros>{inside}</ros>"))

@@ -1,0 +1,125 @@
+"""What a rewrite is called: proved, or not and why."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from paths import ROBOTS
+from postfix_command import run
+
+from multibot_rewrite import RewriteRefused, rewrite, rewrite_all
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.description.checks.verdict import REASONS, not_proved
+
+LIDAR = """<robot name="r"><link name="a"/><gazebo reference="a">
+<sensor name="lidar" type="gpu_lidar"><topic>{}</topic></sensor></gazebo></robot>"""
+DRIVE = """<robot name="r"><link name="a"/><gazebo>
+<plugin name="drive" filename="libgazebo_ros_diff_drive.so"><ros><namespace>{}</namespace></ros>
+</plugin></gazebo></robot>"""
+
+
+def of(*codes: str) -> tuple[str, ...]:
+    return not_proved(Finding(code, "warning", "x") for code in codes)
+
+
+@pytest.mark.parametrize(
+    ("codes", "why"),
+    [
+        ((), ()),
+        (("MB405", "MB301"), ()),
+        (("MB901",), ("1 name not understood",)),
+        (("MB430", "MB901", "MB430"), ("1 name not understood", "2 topics shared by all robots")),
+        (("MB431", "MB432"), ("1 node shared by all robots", "1 frame shared by all robots")),
+        (("MB902", "MB903"), ("1 plugin not known", "1 hardware class not known")),
+    ],
+)
+def test_reasons_with_counts(codes: tuple[str, ...], why: tuple[str, ...]) -> None:
+    assert of(*codes) == why
+
+
+def test_every_reason_is_a_warning_of_a_rewrite() -> None:
+    """--strict stops at warnings: a reason below would pass."""
+    from multibot_rewrite.lint.catalogue import rules
+
+    known = rules()
+    assert {code for code in REASONS if known[code].level not in ("warning", "note")} == set()
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        (LIDAR.format("scan"), ()),
+        (LIDAR.format("{name}/scan"), ("1 topic shared by all robots",)),
+        (DRIVE.format("demo"), ()),
+        (DRIVE.format(""), ()),
+        (DRIVE.format("<!-- c -->demo"), ()),
+        (
+            DRIVE.format("{name}"),
+            ("1 topic shared by all robots", "1 node shared by all robots"),
+        ),
+    ],
+)
+def test_a_rewrite_says_why_it_is_not_proved(text: str, why: tuple[str, ...]) -> None:
+    assert rewrite(text, "robot1", layout="tf-per-robot").not_proved == why
+
+
+def test_the_summary_and_strict(tmp_path: Path) -> None:
+    file, out = tmp_path / "r.urdf", tmp_path / "out.urdf"
+    file.write_text(LIDAR.format("{name}/scan"))
+    done = run(tmp_path, "r.urdf", "robot1", "-o", str(out))
+    assert done.code == 0
+    end = "; rewritten, not proved: 1 topic shared by all robots (facts of lyrical)\n"
+    assert done.err.endswith(end)
+    out.unlink()
+    stopped = run(tmp_path, "r.urdf", "robot1", "-o", str(out), "--strict")
+    assert stopped.code == 1
+    assert not out.exists()
+    assert "proved" not in stopped.err
+    healthy = run(tmp_path, str(ROBOTS / "rover.urdf"), "robot1", "-o", str(out), "--strict")
+    assert healthy.code == 0
+    assert healthy.err.endswith("; proved (facts of lyrical)\n")
+
+
+def test_what_is_not_shown_is_a_reason_all_the_same(tmp_path: Path) -> None:
+    file = tmp_path / "r.urdf"
+    file.write_text(LIDAR.format("{name}/scan"))
+    quiet = run(tmp_path, "r.urdf", "robot1", "-o", str(tmp_path / "o"), "--ignore", "MB430")
+    assert "MB430" not in quiet.err
+    assert "not proved: 1 topic" in quiet.err
+
+
+# odom of left_b and odom_left of b are both odom_left_b; the first is a default that was inserted.
+OVERLAP = """<robot name="r"><link name="a"/>
+<gazebo><plugin name="p" filename="libgazebo_ros_diff_drive.so">
+<publish_odom>true</publish_odom><ros/></plugin></gazebo>
+<gazebo><plugin name="q" filename="libgazebo_ros_planar_move.so">
+<ros><remapping>odom:=odom_left</remapping></ros></plugin></gazebo></robot>"""
+
+
+def test_two_robots_that_meet_in_what_was_inserted_are_refused() -> None:
+    with pytest.raises(RewriteRefused) as refused:
+        list(rewrite_all(OVERLAP, ["left_b", "b"], separators={"topic": "_"}))
+    (finding,) = refused.value.findings
+    assert finding.code == "MB421"
+    assert "left_b and b would both have the topic '/odom_left_b'" in finding.message
+    assert len(list(rewrite_all(OVERLAP, ["left_b", "c"], separators={"topic": "_"}))) == 2
+    assert len(list(rewrite_all(OVERLAP, ["left_b", "b"]))) == 2
+
+
+def test_what_all_robots_share_is_no_refusal_of_two() -> None:
+    """It is a warning however the robots are called."""
+    text = LIDAR.format("{name}/scan")
+    first, second = rewrite_all(text, ["left_b", "b"], separators={"topic": "_"})
+    assert first.not_proved == second.not_proved == ("1 topic shared by all robots",)
+
+
+def test_a_model_of_another_file_is_not_proved() -> None:
+    """Nobody reads what its sensors publish; a world's models are no part of a robot."""
+    source = (
+        '<sdf version="1.9"><model name="rover"><link name="base"/>'
+        "<include><uri>model://lidar</uri><name>front</name></include></model></sdf>"
+    )
+    made = rewrite(source, "robot1", layout="both")
+    assert made.not_proved == ("1 included model not read",)
+    assert [it.code for it in made.findings] == ["MB906"]

@@ -1,0 +1,82 @@
+"""Outputs in which robots would share something: the second reading names it."""
+
+from __future__ import annotations
+
+import pytest
+from paths import FIXTURES
+from proof_faults import Fault, read_faults
+
+from multibot_rewrite import rewrite
+from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.description.readback.meeting import meetings, same_for_all
+from multibot_rewrite.description.readback.reading import read
+from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
+
+RUNNING = b"""\
+<robot name="rover">
+  <link name="base"/>
+  <gazebo>
+    <plugin name="drive" filename="libgazebo_ros_diff_drive.so">
+      <ros><namespace>/demo</namespace><remapping>cmd_vel:=cmd</remapping></ros>
+      <publish_odom>true</publish_odom>
+      <publish_odom_tf>TRUE</publish_odom_tf>
+      <robot_base_frame>base</robot_base_frame>
+    </plugin>
+    <plugin name="imu" filename="libgazebo_ros_imu_sensor.so"/>
+  </gazebo>
+  <gazebo reference="base">
+    <sensor name="lidar" type="gpu_lidar"><topic>scan</topic></sensor>
+  </gazebo>
+</robot>
+"""
+FAULTS = read_faults(FIXTURES / "meeting_faults.txt")
+LEAST = 25
+
+
+def named(kind: str, name: str) -> str:
+    return f"{kind}:{name}"
+
+
+def shared(text: bytes, layout: str) -> set[str]:
+    """What all robots would have of one robot's text."""
+    reading = read(text, "rover", load_vocabulary((), NEWEST_LTS))
+    found = same_for_all(reading, "robot1", make_naming(layout))
+    return {named(it.kind, it.name) for it in found}
+
+
+def met(texts: dict[str, bytes], layout: str) -> set[str]:
+    """Where robots meet, by their texts."""
+    readings = {
+        robot: read(text, robot, load_vocabulary((), NEWEST_LTS)) for robot, text in texts.items()
+    }
+    found = meetings(readings, make_naming(layout))
+    return {named(it.name.kind, it.name.name) for it in found}
+
+
+@pytest.mark.parametrize("fault", FAULTS, ids=lambda fault: fault.about)
+def test_what_is_shared_is_named(fault: Fault) -> None:
+    text = rewrite(RUNNING, "robot1", layout=fault.layout).data
+    wrong = fault.planted(text)
+    twin = wrong.replace(b"robot1", b"robot2")
+    assert fault.refused_by not in shared(text, fault.layout)
+    assert fault.refused_by in shared(wrong, fault.layout)
+    assert fault.refused_by in met({"robot1": wrong, "robot2": twin}, fault.layout)
+
+
+@pytest.mark.parametrize("layout", ["both", "postfix", "tf-per-robot", "frames-per-robot"])
+def test_without_a_fault_nothing_is_shared(layout: str) -> None:
+    one, two = (rewrite(RUNNING, robot, layout=layout).data for robot in ("robot1", "robot2"))
+    assert shared(one, layout) == set()
+    assert met({"robot1": one, "robot2": two}, layout) == set()
+
+
+def test_a_text_of_another_robot_meets_that_robot() -> None:
+    """The second robot got the first one's text: it is right by itself."""
+    text = rewrite(RUNNING, "robot1", layout="both").data
+    found = met({"robot1": text, "robot2": text}, "both")
+    assert found >= {"frame:base/robot1", "node:/robot1/imu", "topic:/robot1/scan"}
+
+
+def test_no_fault_was_lost() -> None:
+    assert len(FAULTS) >= LEAST

@@ -1,0 +1,156 @@
+"""``--why FILE:LINE``: which rewriter claims a value, why, and what it becomes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from paths import FIXTURES
+
+from multibot_rewrite.base.model import InputError, UsageError
+from multibot_rewrite.cli.urdf_postfix import main
+from multibot_rewrite.description.library import explain
+
+ROVER = FIXTURES / "robots" / "rover.urdf"
+ROBOT = """\
+<robot name="rover">
+  <link name="base"/>
+  <link name="laser"><visual><geometry><mesh filename="package://p/laser.dae"/></geometry></visual></link>
+  <joint name="fixed" type="fixed"><parent link="base"/><child link="laser"/></joint>
+  <gazebo reference="lost"/>
+  <gazebo>
+    <plugin name="drive" filename="libgazebo_ros_diff_drive.so">
+      <odometry_frame>map</odometry_frame>
+      <robot_base_frame>base</robot_base_frame>
+    </plugin>
+    <plugin name="own" filename="libown.so"><place>laser</place><speed>3</speed></plugin>
+  </gazebo>
+</robot>
+"""
+SRDF = '<robot name="rover">\n<group name="all">\n<link name="base"/>\n</group></robot>'
+
+
+def told(line: int, **options: object) -> dict[str, tuple[str, str, str]]:
+    """Path -> (section or nothing, reason, new value) for a line of ``ROBOT``."""
+    found = explain(ROBOT, line, **options)
+    return {
+        item.path: (item.site.section if item.site else "", item.reason, item.new) for item in found
+    }
+
+
+def test_a_claimed_value_names_its_rewriter_and_its_declaration() -> None:
+    path = "robot/gazebo/plugin[libgazebo_ros_diff_drive.so]/robot_base_frame"
+    section, reason, new = told(9)[path]
+    assert section == "plugin gazebo_ros_diff_drive"
+    assert (reason, new) == ("link 'base', declared at line 2", "base/robot1")
+    assert told(9, robot="r2", affix="prefix")[path][2] == "r2/base"
+
+
+def test_a_kept_value_says_why() -> None:
+    assert told(4)["robot/joint@type"][:2] == (
+        "element joint",
+        "an enumeration: revolute, fixed, floating...",
+    )
+    assert told(3)["robot/link/visual/geometry/mesh@filename"][1] == "a file URI"
+
+
+@pytest.mark.parametrize(
+    ("line", "path", "options", "words"),
+    [
+        pytest.param(8, "odometry_frame", {}, "a shared frame", id="shared-frame"),
+        pytest.param(
+            5, "gazebo@reference", {}, "not declared, so it is not renamed", id="dangling"
+        ),
+        pytest.param(9, "robot_base_frame", {"layout": "L1"}, "does not rename links", id="layout"),
+    ],
+)
+def test_a_value_that_stays_says_why(line: int, path: str, options: dict, words: str) -> None:
+    found = {item.path: item for item in explain(ROBOT, line, **options)}
+    (item,) = (item for name, item in found.items() if name.endswith(path))
+    assert words in item.reason
+    assert item.new == item.value
+
+
+def test_what_nothing_claims_is_told_apart() -> None:
+    found = told(11)
+    assert found["robot/gazebo/plugin[libown.so]/place"] == (
+        "",
+        "it holds the name 'laser'",
+        "laser",
+    )
+    assert found["robot/gazebo/plugin[libown.so]/speed"][1] == "it holds no declared name"
+
+
+def test_inserted_elements_are_listed_at_their_plugin() -> None:
+    (item,) = (item for item in explain(ROBOT, 7) if item.inserted)
+    assert "<remapping>cmd_vel:=cmd_vel/robot1</remapping>" in item.inserted
+    assert not [i for i in explain(ROBOT, 7, layout="L2") if "/tf:=" in "".join(i.inserted)]
+
+
+def test_an_empty_element_that_is_filled_says_what_empty_means() -> None:
+    text = ROBOT.replace("</plugin>", "\n<ros>\n<namespace/></ros></plugin>", 1)
+    line = next(at for at, row in enumerate(text.split("\n"), 1) if "<namespace/>" in row)
+    (item,) = explain(text, line, layout="L1")
+    assert (item.path.rpartition("]/")[2], item.column) == ("ros/namespace", 1)
+    assert item.inserted == ("<namespace>/robot1</namespace>",)
+    assert "read as '/'" in item.reason
+    assert not [
+        it for at in range(line) for it in explain(text, at, layout="L1") if "filled" in it.reason
+    ]
+
+
+def test_a_refused_description_is_explained_all_the_same() -> None:
+    twice = ROBOT.replace('<link name="base"/>', '<link name="base"/><link name="base"/>')
+    assert {item.new for item in explain(twice, 2)} == {"base/robot1"}
+
+
+def test_an_srdf_is_explained_beside_its_urdf() -> None:
+    (item,) = explain(SRDF, 3, urdf=ROBOT)
+    assert (item.reason, item.new) == ("link 'base', declared at line 2 of the URDF", "base/robot1")
+    with pytest.raises(InputError, match="beside its URDF"):
+        explain(SRDF, 3)
+
+
+@pytest.mark.slow
+def test_every_claim_of_a_real_robot_is_explained_at_its_line() -> None:
+    text = ROVER.read_text()
+    for number in range(1, text.count("\n") + 1):
+        for item in explain(text, number):
+            assert item.line == number
+            assert item.inserted or item.value.strip() in text.split("\n")[number - 1]
+
+
+def test_the_command_prints_place_rewriter_and_result(capsys: pytest.CaptureFixture[str]) -> None:
+    line = next(
+        n for n, row in enumerate(ROVER.read_text().split("\n"), 1) if "<left_joint>" in row
+    )
+    assert main(["--why", f"{ROVER}:{line}", "bob"]) == 0
+    out = capsys.readouterr().out
+    assert out.startswith(f"{ROVER}:{line}:")
+    assert "claimed by [plugin gazebo_ros_diff_drive] classic_ros2.vocab:" in out
+    assert "for bob: 'left_wheel_joint_bob'" in out
+
+
+@pytest.mark.parametrize(
+    ("place", "words"),
+    [
+        pytest.param("{}", "write FILE:LINE", id="no-line"),
+        pytest.param("{}:x", "write FILE:LINE", id="no-number"),
+        pytest.param(":3", "write FILE:LINE", id="no-file"),
+        pytest.param("{}:99999", "no value starts on this line", id="past-the-end"),
+        pytest.param("{}.gone:1", "cannot be read", id="no-such-file"),
+    ],
+)
+def test_bad_places_are_one_line(
+    place: str, words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "a.urdf").write_text(ROBOT)
+    assert main(["--why", place.format(tmp_path / "a.urdf")]) == 2
+    err = capsys.readouterr().err
+    assert words in err
+    assert err.count("\n") == 1
+
+
+def test_a_robot_name_is_checked() -> None:
+    with pytest.raises(UsageError):
+        explain(ROBOT, 2, "1st")

@@ -1,0 +1,351 @@
+"""Vocabulary of installed packages: found, used and undone; a broken package stops everything."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from case_files import read_case
+from paths import FIXTURES
+
+from multibot_rewrite import VocabularyError, rewrite, strip
+from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
+from multibot_rewrite.description.rewriters.vocabulary.installed import announcing, installed
+from tools.pages.plugins import pages
+
+pytestmark = pytest.mark.slow
+
+ACME = FIXTURES / "third_party" / "acme_robots"
+CASE = read_case("acme", (ACME / "cases" / "acme_winch.case").read_bytes())
+COMMAND = (sys.executable, "-m", "multibot_rewrite.cli.urdf_postfix")
+PIP = (sys.executable, "-m", "pip", "--disable-pip-version-check", "install", "--quiet")
+OFFLINE = ("--no-deps", "--no-index", "--no-build-isolation")
+SECTION = "[plugin {name}]\nmy_frame uses link frame\n"
+ROBOT = (
+    '<robot name="a"><link name="base"/><gazebo><plugin name="p" filename="lib{name}.so">'
+    "<my_frame>base</my_frame></plugin></gazebo></robot>"
+)
+Make = Callable[..., Path]
+
+
+@pytest.fixture(scope="module")
+def acme(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder that pip installed the third-party package into."""
+    source = tmp_path_factory.mktemp("source") / "acme"
+    shutil.copytree(ACME, source)
+    # Reading its vocabulary must not run its code.
+    (source / "acme_robots" / "__init__.py").write_text("raise ImportError\n")
+    target = tmp_path_factory.mktemp("target")
+    words = [*PIP, *OFFLINE, "--no-compile", "--target", str(target), str(source)]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return target
+
+
+@pytest.fixture
+def broken(acme: Path, tmp_path: Path) -> Path:
+    """A copy of what pip installed, to break."""
+    return shutil.copytree(acme, tmp_path / "site")
+
+
+@pytest.fixture
+def make(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Make]:
+    """Lay down a distribution with one package of one vocabulary file, first on sys.path."""
+    caches = (installed, load_vocabulary, builtin_tree)
+
+    def distribution(
+        name: str,
+        text: str,
+        *,
+        value: str = "",
+        version: str = "1.0",
+        site: str = "",
+        end: str = "",
+    ) -> Path:
+        home = tmp_path / (site or name)
+        package = home / name.replace("-", "_")
+        package.mkdir(parents=True)
+        (package / "__init__.py").write_text("raise ImportError\n")
+        (package / "it.vocab").write_text(text, encoding="utf-8")
+        folder = home / f"{package.name}-{version}{end or '.dist-info'}"
+        folder.mkdir()
+        about = f"Metadata-Version: 2.1\nName: {name}\nVersion: {version}\n"
+        (folder / ("PKG-INFO" if end else "METADATA")).write_text(about)
+        points = f"[multibot_rewrite.vocabulary]\nit = {value or package.name}\n"
+        (folder / "entry_points.txt").write_text(points)
+        monkeypatch.syspath_prepend(str(home))
+        for cache in caches:
+            cache.cache_clear()
+        return home
+
+    yield distribution
+    for cache in caches:
+        cache.cache_clear()
+
+
+def run(site: Path, *words: str, stdin: bytes = b"") -> subprocess.CompletedProcess[bytes]:
+    """Run the command where ``site`` is on Python's path; standard input is the robot."""
+    env = {**os.environ, "PYTHONPATH": os.pathsep.join([str(site), *_path()])}
+    return subprocess.run(
+        [*COMMAND, "-", *words, "--verbose"],
+        input=stdin,
+        env=env,
+        cwd=site,
+        capture_output=True,
+        check=False,
+    )
+
+
+def _path() -> list[str]:
+    return [os.environ["PYTHONPATH"]] if os.environ.get("PYTHONPATH") else []
+
+
+def complaint() -> str:
+    """What every call says now; always one line."""
+    with pytest.raises(VocabularyError) as caught:
+        rewrite('<robot name="a"><link name="none of it is needed"/></robot>', "r1")
+    assert "\n" not in str(caught.value)
+    return str(caught.value)
+
+
+def my_frame(name: str) -> str:
+    """Where the plugin of that name ends up with its frame."""
+    text = rewrite(ROBOT.format(name=name), "r1").text
+    return text.partition("<my_frame>")[2].partition("<")[0]
+
+
+# What pip installs is used by the command.
+
+
+def test_what_is_installed_is_known_renamed_and_undone(acme: Path) -> None:
+    without = run(acme.parent, "robot1", stdin=CASE.source)
+    assert without.stderr.count(b"MB902") == 2
+    rewritten = run(acme, "robot1", "--fail-on", "warning", stdin=CASE.source)
+    assert (rewritten.returncode, rewritten.stdout) == (0, CASE.output), rewritten.stderr
+    stripped = run(acme, "robot1", "--strip", stdin=rewritten.stdout)
+    assert (stripped.returncode, stripped.stdout) == (0, CASE.source)
+
+
+def _write(site: Path, text: str) -> None:
+    (site / "acme_robots" / "acme.vocab").write_text(text, encoding="utf-8")
+
+
+def _bad_grammar(site: Path) -> None:
+    _write(site, "[plugin acme_winch]\nrope uses lnik\n")
+
+
+def _no_file(site: Path) -> None:
+    (site / "acme_robots" / "acme.vocab").unlink()
+
+
+def _clash(site: Path) -> None:
+    _write(site, "[plugin gazebo_ros_diff_drive]\n\nodometry_frame keep mine\n")
+
+
+def _missing_package(site: Path) -> None:
+    shutil.rmtree(site / "acme_robots")
+
+
+@pytest.mark.parametrize(
+    ("break_it", "words"),
+    [
+        pytest.param(_bad_grammar, "/acme.vocab:2: unknown kind 'lnik', use one of", id="grammar"),
+        pytest.param(_no_file, "entry point acme = acme_robots: no *.vocab file in", id="no-file"),
+        pytest.param(_clash, "/acme.vocab:3: odometry_frame is there already, in cl", id="clash"),
+        pytest.param(_missing_package, "there is no package 'acme_robots'", id="no-package"),
+    ],
+)
+def test_a_broken_package_stops_the_command(
+    broken: Path, break_it: Callable[[Path], None], words: str
+) -> None:
+    break_it(broken)
+    done = run(broken, "robot1", stdin=b'<robot name="a"><link name="l"/></robot>')
+    said = done.stderr.decode()
+    assert (done.returncode, done.stdout, said.count("\n")) == (2, b"", 1), said
+    assert said.startswith("urdf-postfix: acme-robots 1.0: ")
+    assert words in said
+    assert said.endswith("; correct and reinstall it, or: pip uninstall acme-robots\n")
+
+
+# The rest in this process, with distributions laid down by hand.
+
+
+@pytest.mark.parametrize("end", [".dist-info", ".egg-info"])
+def test_every_library_call_uses_it(make: Make, end: str) -> None:
+    assert my_frame("aa") == "base"
+    make("aa", SECTION.format(name="aa"), end=end)
+    rewritten = rewrite(ROBOT.format(name="aa"), "r1")
+    assert "<my_frame>base/r1</my_frame>" in rewritten.text
+    assert rewritten.findings == ()
+    assert strip(rewritten.data, "r1").decode() == ROBOT.format(name="aa")
+
+
+def test_files_come_by_distribution_whatever_the_path(make: Make) -> None:
+    for name in ("b-b", "Aa", "c"):
+        make(name, SECTION.format(name=name))
+    assert [file.distribution for file in installed()] == ["Aa", "b-b", "c"]
+
+
+def test_a_package_below_another_is_not_imported(make: Make) -> None:
+    home = make("aa", SECTION.format(name="outer"), value="aa.vocab")
+    (home / "aa" / "vocab").mkdir()
+    (home / "aa" / "vocab" / "it.vocab").write_text(SECTION.format(name="inner"))
+    assert (my_frame("inner"), my_frame("outer")) == ("base/r1", "base")
+    assert "aa" not in sys.modules
+
+
+def test_the_first_of_a_distribution_that_is_there_twice_counts(make: Make) -> None:
+    make("a-a", SECTION.format(name="old"), version="1.0", site="second")
+    make("a-a", SECTION.format(name="new"), version="2.0", site="first")
+    assert [file.version for file in installed()] == ["2.0"]
+    assert (my_frame("new"), my_frame("old")) == ("base/r1", "base")
+
+
+def test_a_newer_one_without_vocabulary_hides_an_older_one(make: Make) -> None:
+    make("aa", SECTION.format(name="old"), version="1.0", site="second")
+    home = make("aa", "", version="2.0", site="first")
+    (home / "aa-2.0.dist-info" / "entry_points.txt").unlink()
+    installed.cache_clear()
+    assert installed() == ()
+
+
+def test_a_half_removed_distribution_is_none(make: Make) -> None:
+    home = make("aa", SECTION.format(name="aa"))
+    (home / "aa-1.0.dist-info").rename(home / "~a-1.0.dist-info")
+    assert announcing([str(home)]) == []
+
+
+def test_two_entry_points_for_one_package_read_it_once(make: Make) -> None:
+    home = make("aa", SECTION.format(name="aa"))
+    with (home / "aa-1.0.dist-info" / "entry_points.txt").open("a") as file:
+        file.write("again = aa\n")
+    assert my_frame("aa") == "base/r1"
+
+
+def test_a_file_that_is_installed_and_named_too_is_read_once(make: Make) -> None:
+    path = str(make("aa", SECTION.format(name="aa")) / "aa" / "it.vocab")
+    text = rewrite(ROBOT.format(name="aa"), "r1", vocabulary=[path]).text
+    assert "<my_frame>base/r1</my_frame>" in text
+
+
+def test_the_page_of_what_is_built_in_holds_nothing_else(make: Make) -> None:
+    before = pages()
+    make("aa", SECTION.format(name="aa"))
+    assert pages() == before
+
+
+@pytest.mark.parametrize(
+    ("value", "words"),
+    [
+        pytest.param("nowhere", "there is no package 'nowhere'", id="missing"),
+        pytest.param("aa.nowhere", "there is no package 'aa.nowhere'", id="missing-below"),
+        pytest.param("nowhere.aa", "there is no package 'nowhere.aa'", id="missing-above"),
+        pytest.param("this", "there is no package 'this'", id="module"),
+        pytest.param("aa:it", "'aa:it' is not the name of a package", id="attribute"),
+        pytest.param("../aa", "'../aa' is not the name of a package", id="path"),
+        pytest.param("importlib", "no *.vocab file in ", id="package-of-others"),
+        pytest.param("aa\nodd", "entry_points.txt cannot be read", id="no-entry-points"),
+    ],
+)
+def test_a_wrong_entry_point_is_refused(make: Make, value: str, words: str) -> None:
+    make("aa", SECTION.format(name="aa"), value=value)
+    message = complaint()
+    assert message.startswith("aa 1.0: ")
+    assert words in message
+    assert message.endswith("pip uninstall aa")
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "words"),
+    [
+        pytest.param("hello\n", 1, "text before the first [section]", id="text-first"),
+        pytest.param("[gadget a]\n", 1, "TYPE one of", id="type"),
+        pytest.param("[plugin a]\n@x[ uses link\n", 2, "bad path", id="path"),
+        pytest.param("[plugin a]\nwith: nope\n", 1, "there is no [block nope]", id="block"),
+        pytest.param("[element a]\nat: robbot\n", 1, "there is no [element robbot]", id="at"),
+        pytest.param("[element x.link]\nat: robot\n", 1, "has a section or sites", id="tag"),
+        pytest.param("[element link]\nat: robot\n@name keep it\n", 3, "is there al", id="element"),
+        pytest.param(
+            "[plugin mine gazebo_ros_diff_drive]\nleft_joint keep it\n", 2, "is there", id="alias"
+        ),
+        pytest.param(
+            "[plugin gazebo_ros_diff_drive]\nros/namespace keep it\n",
+            2,
+            "is there",
+            id="of-a-block",
+        ),
+        pytest.param(
+            "[element plugin]\nat: gazebo\nselect: sensor\n", 1, "select: is 'plugin'", id="setting"
+        ),
+    ],
+)
+def test_a_wrong_file_is_refused_though_nothing_needs_it(
+    make: Make, text: str, line: int, words: str
+) -> None:
+    path = make("aa", text) / "aa" / "it.vocab"
+    message = complaint()
+    assert message.startswith(f"aa 1.0: {path}:{line}: ")
+    assert words in message
+    assert message.endswith("; correct and reinstall it, or: pip uninstall aa")
+
+
+def test_a_file_that_is_not_utf8_is_refused(make: Make) -> None:
+    path = make("aa", "") / "aa" / "it.vocab"
+    path.write_bytes(b"# sp\xe4t\n")
+    assert complaint().startswith(f"aa 1.0: {path}: cannot be read: it is not UTF-8")
+
+
+def test_two_packages_that_say_different_things_are_refused(make: Make) -> None:
+    one = make("aa", SECTION.format(name="both")) / "aa" / "it.vocab"
+    two = make("bb", SECTION.format(name="both").replace("link", "joint")) / "bb" / "it.vocab"
+    message = complaint()
+    assert message.startswith(f"bb 1.0: {two}:2: my_frame is there already, in aa 1.0: {one}")
+    assert message.endswith("pip uninstall bb")
+
+
+def test_a_mistake_of_the_user_is_not_blamed_on_a_package(make: Make, tmp_path: Path) -> None:
+    make("aa", SECTION.format(name="aa"))
+    mine = tmp_path / "mine.vocab"
+    mine.write_text(SECTION.format(name="aa"))
+    with pytest.raises(VocabularyError) as caught:
+        rewrite(ROBOT.format(name="aa"), "r1", vocabulary=[str(mine)])
+    assert str(caught.value).startswith(f"{mine}:2: my_frame is there already, in aa 1.0: ")
+    assert "uninstall" not in str(caught.value)
+
+
+def test_a_user_file_called_like_a_built_in_one_hides_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "hardware.vocab").write_text(SECTION.format(name="aa"))
+    monkeypatch.chdir(tmp_path)
+    builtin = list(load_vocabulary((), NEWEST_LTS, packages=False).names("hardware"))
+    vocabulary = load_vocabulary(("hardware.vocab",), NEWEST_LTS, packages=False)
+    assert list(vocabulary.names("hardware")) == builtin
+    assert [found.file for found in vocabulary.find("plugin", "aa")] == ["./hardware.vocab"]
+
+
+def test_one_user_file_costs_no_parsing_of_the_rest(tmp_path: Path) -> None:
+    mine = tmp_path / "mine.vocab"
+    mine.write_text(SECTION.format(name="gazebo_ros_p3d") + "[block ros]\nextra uses link\n")
+    vocabulary = load_vocabulary((str(mine),), NEWEST_LTS, packages=False)
+    parsed = {section.name for found in vocabulary._found.values() for section in found}
+    assert {"plugin gazebo_ros_p3d (ROS 2)", "block ros"} <= parsed
+    assert len(parsed) < 6
+
+
+def test_where_nothing_is_installed_the_machinery_stays_out() -> None:
+    code = (
+        "import sys, multibot_rewrite as m;"
+        "m.rewrite('<robot name=\"r\"><link name=\"l\"/></robot>', 'r1');"
+        "print({'importlib.metadata', 'importlib.resources'} & set(sys.modules))"
+    )
+    words = [sys.executable, "-c", code]
+    done = subprocess.run(words, capture_output=True, text=True, check=True)
+    assert done.stdout == "set()\n"

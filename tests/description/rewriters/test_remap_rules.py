@@ -1,0 +1,191 @@
+"""The left side of a plugin's remap rule names what it named before, whatever its form.
+
+What is expected comes from rcl's own steps (rcl remap.c, expand_topic_name.c; ``rosnames``, which is
+held against rcl in tests/base/rosnames): a node in a namespace asks for a name, the first rule applies.
+"""
+
+from __future__ import annotations
+
+import re
+from itertools import product
+
+import pytest
+
+from multibot_rewrite import rewrite, strip
+from multibot_rewrite.base.rosnames import parse_remap, resolve_name
+
+ROBOT = '<robot name="rover"><link name="base"/><gazebo>{}</gazebo></robot>'
+LEFT = (
+    "cmd_vel",
+    "/cmd_vel",
+    "/a/cmd_vel",
+    "{node}:/cmd_vel",
+    "rostopic:///cmd_vel",
+    "other:/cmd_vel",
+)
+WAYS = [*product(["postfix", "both"], ["postfix", "prefix"])]
+PLUGIN = (
+    '<plugin name="{node}" filename="libgazebo_ros_{library}.so"><ros>{ros}</ros>{rest}</plugin>'
+)
+
+
+def plugin(library: str, ros: str, rest: str = "", node: str = "drive") -> str:
+    return ROBOT.format(PLUGIN.format(library=library, ros=ros, rest=rest, node=node))
+
+
+def rules(*texts: str) -> str:
+    return "".join(f"<remapping>{it}</remapping>" for it in texts)
+
+
+def rule_texts(text: str) -> list[str]:
+    return re.findall(r"<(?:remapping|argument)>([^<]*)<", text)
+
+
+def name_in_graph(text: str, name: str, kind: str = "topic") -> str:
+    """What rcl makes of a name in the code of the one plugin of a description."""
+    node = re.findall(r'<plugin name="([^"]*)"', text)[0]
+    namespace = (re.findall(r"<namespace>([^<]*)<", text) or ["/"])[0]
+    found = [it for it in map(parse_remap, rule_texts(text)) if it is not None]
+    return resolve_name(name, kind, node, namespace, found)
+
+
+@pytest.mark.parametrize("left", LEFT)
+@pytest.mark.parametrize("namespace", ["", "a", "/a"])
+@pytest.mark.parametrize("right", ["go", "/go"])
+def test_a_rule_matches_in_the_robots_namespace_what_it_matched_before(
+    left: str, namespace: str, right: str
+) -> None:
+    given = f"<namespace>{namespace}</namespace>" if namespace else ""
+    source = plugin("force", given + rules(f"{left.format(node='drive')}:={right}"))
+    source = source.replace("cmd_vel", "gazebo_ros_force")
+    before = name_in_graph(source, "gazebo_ros_force")
+    made = rewrite(source, "robot1", layout="tf-per-robot")
+    assert name_in_graph(made.text, "gazebo_ros_force") == f"/robot1{before}"
+    assert made.not_proved == ()
+    assert strip(made.text, "robot1", layout="tf-per-robot") == source.encode()
+
+
+@pytest.mark.parametrize(
+    ("left", "name"),
+    [("/drive/out", "~/out"), ("drive/out", "~/out"), ("~/out", "~/out")],
+)
+@pytest.mark.parametrize(("layout", "affix"), WAYS)
+def test_a_rule_below_the_nodes_name_follows_it(
+    left: str, name: str, layout: str, affix: str
+) -> None:
+    source = plugin("ray_sensor", rules(f"{left}:=scan"))
+    made = rewrite(source, "robot1", layout=layout, affix=affix)
+    wanted = {
+        "both": "/robot1/scan",
+        "postfix": {"postfix": "/scan/robot1"}.get(affix, "/robot1/scan"),
+    }
+    assert name_in_graph(made.text, name) == wanted[layout]
+
+
+CAMERA = "<camera_name>{}</camera_name>"
+
+
+@pytest.mark.parametrize("stem", ["camera", "front/camera", "/camera"])
+@pytest.mark.parametrize("namespace", ["", "a"])
+@pytest.mark.parametrize(("layout", "affix"), WAYS)
+def test_a_rule_below_the_name_of_a_camera_follows_it(
+    stem: str, namespace: str, layout: str, affix: str
+) -> None:
+    given = f"<namespace>{namespace}</namespace>" if namespace else ""
+    full = stem if stem.startswith("/") else f"/{namespace}/{stem}".replace("//", "/")
+    source = plugin("camera", given + rules(f"{full}/image_raw:=image"), CAMERA.format(stem))
+    made = rewrite(source, "robot1", layout=layout, affix=affix)
+    assert made.not_proved == ()
+    (name,) = re.findall(r"<camera_name>([^<]*)<", made.text)
+    assert "robot1" in name or (layout == "both" and not stem.startswith("/"))
+    image = name_in_graph(made.text, f"{name}/image_raw")
+    assert image.replace("robot1", "").strip("/").endswith("image")
+    assert strip(made.text, "robot1", layout=layout, affix=affix) == source.encode()
+
+
+def test_what_an_image_transport_adds_moves_with_its_image() -> None:
+    source = plugin("camera", rules("/camera/image_raw/compressed:=jpg"), CAMERA.format("camera"))
+    made = rewrite(source, "robot1", layout="both")
+    assert "<remapping>/robot1/camera/image_raw/compressed:=jpg<" in made.text
+
+
+def test_a_name_that_is_absolute_in_the_code_stays_on_the_left() -> None:
+    source = plugin("diff_drive", rules("/tf:=my_tf", "/clock:=time"))
+    made = rewrite(source, "robot1", layout="both")
+    assert rule_texts(made.text) == ["/tf:=my_tf", "/clock:=time"]
+
+
+def test_a_relative_rule_for_an_absolute_name_gets_one_that_still_matches() -> None:
+    """In the root namespace tf and /tf are one name; in a robot's they are two."""
+    source = plugin("planar_move", rules("tf:=my_tf"))
+    assert name_in_graph(source, "/tf") == "/my_tf"
+    made = rewrite(source, "robot1", layout="tf-per-robot")
+    assert name_in_graph(made.text, "/tf") == "/robot1/my_tf"
+    assert made.not_proved == ()
+    assert strip(made.text, "robot1", layout="tf-per-robot") == source.encode()
+
+
+@pytest.mark.parametrize("rule", ["other:/tf:=tf", "rosservice:///tf:=tf"])
+def test_a_rule_that_is_not_for_this_topic_does_not_keep_one_from_it(rule: str) -> None:
+    made = rewrite(plugin("planar_move", rules(rule)), "robot1", layout="both")
+    assert name_in_graph(made.text, "/tf") == "/robot1/tf"
+
+
+def test_a_rule_for_another_node_keeps_its_left_side() -> None:
+    made = rewrite(plugin("force", rules("other:/gazebo_ros_force:=push")), "robot1", layout="both")
+    assert rule_texts(made.text) == ["other:/gazebo_ros_force:=push"]
+
+
+def test_a_namespace_in_a_rule_is_that_of_the_node() -> None:
+    source = plugin("force", rules("__ns:=/x", "/x/gazebo_ros_force:=push"))
+    for layout, wanted in (("both", "/robot1/x/push"), ("postfix", "/x/push/robot1")):
+        made = rewrite(source, "robot1", layout=layout)
+        assert name_in_graph(made.text, "gazebo_ros_force") == wanted
+
+
+def test_a_rule_of_an_unknown_plugin_moves_and_nothing_is_proved() -> None:
+    source = plugin("of_nobody", rules("/go:=cmd_vel", "/tf:=tf", "/diagnostics:=diagnostics"))
+    made = rewrite(source, "robot1", layout="both")
+    moved = ["/robot1/go:=cmd_vel", "/tf:=tf", "/diagnostics:=diagnostics"]
+    assert rule_texts(made.text) == moved
+    assert made.not_proved == ("1 plugin not known",)
+
+
+def test_rules_for_controllers_move_with_the_namespace_of_their_manager() -> None:
+    source = ROBOT.format(
+        '<plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" filename="gz_ros2_control-system">'
+        f"<ros>{rules('/base/cmd_vel:=go', '/tf:=tf')}</ros></plugin>"
+    )
+    texts = rule_texts(rewrite(source, "robot1", layout="both", distro="jazzy").text)
+    assert "/robot1/base/cmd_vel:=go" in texts
+    assert "/tf:=tf" in texts
+
+
+def test_an_argument_that_is_a_parameter_is_no_rule() -> None:
+    flags = ("--ros-args", "-p", "use_sim_time:=true", "-r", "gazebo_ros_force:=push")
+    source = plugin("force", "".join(f"<argument>{it}</argument>" for it in flags))
+    made = rewrite(source, "robot1", layout="postfix")
+    assert rule_texts(made.text) == [*flags[:4], "gazebo_ros_force:=push/robot1"]
+
+
+def test_an_argument_in_the_old_form_is_a_rule() -> None:
+    """rcl arguments.c takes a:=b outside of --ros-args, and says that this form is deprecated."""
+    source = plugin("force", "<argument>gazebo_ros_force:=push</argument>")
+    made = rewrite(source, "robot1", layout="postfix")
+    assert rule_texts(made.text) == ["gazebo_ros_force:=push/robot1"]
+    assert made.not_proved == ()
+
+
+def test_an_argument_that_rcl_refuses_proves_nothing() -> None:
+    flags = ("--ros-args", "gazebo_ros_force:=push")
+    source = plugin("force", "".join(f"<argument>{it}</argument>" for it in flags))
+    assert rewrite(source, "robot1", layout="postfix").not_proved
+
+
+def test_a_rule_for_the_controller_manager_is_none_for_its_controllers() -> None:
+    source = ROBOT.format(
+        '<plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" filename="gz_ros2_control-system">'
+        f"<ros>{rules('controller_manager:/tf:=tf')}</ros></plugin>"
+    )
+    made = rewrite(source, "robot1", layout="both", distro="jazzy")
+    assert "<remapping>/tf:=tf<" in made.text

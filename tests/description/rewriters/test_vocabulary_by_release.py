@@ -1,0 +1,126 @@
+"""Rows and sections of the vocabulary that hold in some releases only."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite.base.model import VocabularyError
+from multibot_rewrite.base.releases import RELEASES
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
+
+TEXT = """
+[block shared]
+old  uses link  releases=<=jazzy
+both uses joint
+
+[plugin beam]
+with: shared
+publishes: beam
+both uses link releases=kilted+
+rate uses joint releases=humble
+rate uses link releases=rolling  # another meaning
+never keep it is a number releases=humble
+
+[plugin beam]
+releases: lyrical+
+publishes: beam_info
+
+[plugin young]
+releases: kilted, rolling
+frame uses frame
+
+[element ray]
+at: robot
+releases: <=humble
+@link uses link
+
+[element part]
+at: ray
+@link uses link
+"""
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> str:
+    file = tmp_path / "v.vocab"
+    file.write_text(TEXT)
+    return str(file)
+
+
+def rows(path: str, release: str, name: str = "beam") -> dict[str, str]:
+    found = load_vocabulary((path,), release).find("plugin", name)
+    return {it.path: " ".join(it.kinds) for section in found for it in section.sites}
+
+
+@pytest.mark.parametrize(
+    ("release", "known"),
+    [
+        ("humble", {"old": "link", "both": "joint", "rate": "joint", "never": ""}),
+        ("jazzy", {"old": "link", "both": "joint"}),
+        ("kilted", {"both": "link"}),
+        ("rolling", {"both": "link", "rate": "link"}),
+    ],
+)
+def test_a_row_is_there_in_its_releases_only(path: str, release: str, known: object) -> None:
+    assert rows(path, release) == known
+
+
+@pytest.mark.parametrize(("release", "topics"), [("kilted", 1), ("lyrical", 2), ("rolling", 2)])
+def test_a_section_given_again_adds_in_its_releases(path: str, release: str, topics: int) -> None:
+    (beam,) = load_vocabulary((path,), release).find("plugin", "beam")
+    assert beam.topics == ("beam", "beam_info")[:topics]
+
+
+@pytest.mark.parametrize("release", RELEASES)
+def test_a_plugin_is_unknown_where_its_release_lacks_it(path: str, release: str) -> None:
+    assert bool(rows(path, release, "young")) == (release in ("kilted", "rolling"))
+
+
+@pytest.mark.parametrize("release", RELEASES)
+def test_an_element_and_what_is_in_it_are_not_read_without_their_release(
+    path: str, release: str
+) -> None:
+    robot = builtin_tree((path,), release).formats["robot"]
+    assert ("ray" in robot.children) == (release == "humble")
+
+
+def test_all_releases_together_are_one_page(path: str) -> None:
+    first, second = load_vocabulary((path,), "").find("plugin", "beam")
+    assert [(it.path, it.releases) for it in first.sites if it.path == "rate"] == [
+        ("rate", "humble"),
+        ("rate", "rolling"),
+    ]
+    assert (first.topics, second.topics, second.releases) == (("beam",), ("beam_info",), "lyrical+")
+
+
+@pytest.mark.parametrize(
+    ("row", "message"),
+    [
+        ("x uses link releases=iron", "2: x releases='iron' names no releases, write jazzy"),
+        ("releases: jazzy kilted", "2: releases: 'jazzy kilted' names no releases"),
+        (
+            "x uses link releases=humble\nx uses joint releases=<=jazzy",
+            "3: x is there already, at l",
+        ),
+        ("x uses link\nx uses joint releases=jazzy", "3: x is there already, at line 2"),
+    ],
+)
+def test_what_is_wrong_in_any_release_is_refused_in_all(
+    row: str, message: str, tmp_path: Path
+) -> None:
+    (tmp_path / "w.vocab").write_text(f"[plugin wrong]\n{row}\n")
+    for release in RELEASES:
+        with pytest.raises(VocabularyError, match=message):
+            load_vocabulary((str(tmp_path / "w.vocab"),), release)
+
+
+def test_two_files_may_say_something_of_a_path_in_different_releases(
+    path: str, tmp_path: Path
+) -> None:
+    (tmp_path / "more.vocab").write_text("[plugin beam]\nold uses joint releases=kilted\n")
+    more = str(tmp_path / "more.vocab")
+    found = load_vocabulary((path, more), "kilted").find("plugin", "beam")
+    assert {it.path for it in found[0].sites} == {"both", "old"}

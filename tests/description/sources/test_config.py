@@ -1,0 +1,210 @@
+"""``[tool.multibot-rewrite]``: found above the input, read by commands only, mistakes named."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from multibot_rewrite import UsageError, rewrite
+from multibot_rewrite.base.config import configured_vocabulary
+from multibot_rewrite.cli.urdf_postfix import main
+
+TABLE = '[tool.multibot-rewrite]\nvocabulary = ["data/mine.vocab"]\n'
+SECTION = "[plugin mine]\nmy_frame uses link frame\n"
+ROBOT = (
+    '<robot name="a">\n<link name="base"/>\n<gazebo><plugin name="p" filename="libmine.so">'
+    "<my_frame>base</my_frame></plugin></gazebo>\n</robot>\n"
+)
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Path:
+    """A project with one vocabulary file and a robot two folders down."""
+    (tmp_path / "data").mkdir()
+    (tmp_path / "data" / "mine.vocab").write_text(SECTION)
+    (tmp_path / "pyproject.toml").write_text(TABLE)
+    (tmp_path / "robots" / "crane").mkdir(parents=True)
+    (tmp_path / "robots" / "crane" / "in.urdf").write_text(ROBOT)
+    return tmp_path
+
+
+def complaint(project: Path, text: str | bytes) -> str:
+    """What is said about such a pyproject.toml, without its name."""
+    path = project / "pyproject.toml"
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    with pytest.raises(UsageError) as caught:
+        configured_vocabulary(str(project / "robots" / "crane" / "in.urdf"))
+    message = str(caught.value)
+    assert message.startswith(f"{path}:")
+    assert "\n" not in message
+    return message.removeprefix(f"{path}:").strip()
+
+
+@pytest.mark.parametrize("near", ["robots/crane/in.urdf", "robots/crane", "", "nowhere/in.urdf"])
+def test_paths_hang_on_the_pyproject_above_the_input(project: Path, near: str) -> None:
+    assert configured_vocabulary(str(project / near)) == (str(project / "data/mine.vocab"),)
+
+
+def test_standard_input_stands_in_the_working_directory(
+    project: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(project / "robots")
+    assert configured_vocabulary("-") == (str(project / "data/mine.vocab"),)
+    monkeypatch.chdir(project.parent)
+    assert configured_vocabulary("-") == ()
+
+
+def test_only_the_nearest_pyproject_counts(project: Path) -> None:
+    (project / "robots" / "pyproject.toml").write_text('[project]\nname = "other"\n')
+    assert configured_vocabulary(str(project / "robots/crane/in.urdf")) == ()
+
+
+def test_files_keep_their_order_and_may_be_absolute(project: Path, tmp_path: Path) -> None:
+    other = tmp_path / "other.vocab"
+    other.write_text("")
+    listed = f'["{other}", "data/mine.vocab"]'
+    (project / "pyproject.toml").write_text(f"[tool.multibot-rewrite]\nvocabulary = {listed}\n")
+    found = configured_vocabulary(str(project / "in.urdf"))
+    assert found == (str(other), str(project / "data/mine.vocab"))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        pytest.param(
+            '[tool]\nmultibot-rewrite = {vocabulary = ["data/mine.vocab"]}\n', id="inline"
+        ),
+        pytest.param(
+            '[tool . "multibot-rewrite"]\nvocabulary = ["data/mine.vocab"]\n', id="quoted"
+        ),
+        pytest.param('tool.multibot-rewrite.vocabulary = ["data/mine.vocab"]\n', id="dotted"),
+        pytest.param(f'[project]\nname = "é"\n\n{TABLE}'.replace("\n", "\r\n"), id="crlf"),
+    ],
+)
+def test_every_spelling_of_the_table_is_seen(project: Path, text: str) -> None:
+    (project / "pyproject.toml").write_text(text, encoding="utf-8", newline="")
+    assert len(configured_vocabulary(str(project / "in.urdf"))) == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        pytest.param("[tool.multibot-rewrite]\nx = \n", "2:5: broken TOML", id="broken"),
+        pytest.param("a = 1\n[tool.multibot-rewrite\n", "2:", id="no-bracket"),
+        pytest.param(TABLE + TABLE, "broken TOML", id="table-twice"),
+        pytest.param(b"# multibot-rewrite\na = '\xff'\n", "2: it is not UTF-8", id="latin-1"),
+        pytest.param(
+            "[tool.multibot-rewrite]\nvocab = []\n", "unknown key 'vocab', use vocabulary", id="key"
+        ),
+        pytest.param(
+            TABLE.replace("-", "_"), "write [tool.multibot-rewrite]", id="underscore-in-the-name"
+        ),
+        pytest.param("[tool]\nmultibot-rewrite = 3\n", "is a number, write a table", id="no-table"),
+        pytest.param("[[tool.multibot-rewrite]]\n", "is a list, write a table", id="tables"),
+        *(
+            pytest.param(
+                f"[tool.multibot-rewrite]\nvocabulary = {value}\n", f"vocabulary is {what}", id=what
+            )
+            for value, what in (
+                ('"data/mine.vocab"', "a string"),
+                ("true", "a boolean"),
+                ("1.5", "a number"),
+                ("{a = 1}", "a table"),
+                ("1979-05-27", "a date"),
+            )
+        ),
+        pytest.param(
+            '[tool.multibot-rewrite]\nvocabulary = ["data/mine.vocab", 3]\n',
+            "vocabulary holds a number, write paths in quotes",
+            id="list-of-others",
+        ),
+        *(
+            pytest.param(TABLE.replace("data/mine.vocab", path), f"no file {path!r}", id=name)
+            for path, name in (("data/none.vocab", "missing"), ("data", "folder"), ("", "empty"))
+        ),
+    ],
+)
+def test_a_wrong_table_is_one_line(project: Path, text: str | bytes, words: str) -> None:
+    assert words in complaint(project, text)
+
+
+def test_the_command_uses_it_and_the_library_does_not(
+    project: Path, capsysbinary: pytest.CaptureFixture[bytes]
+) -> None:
+    path = str(project / "robots" / "crane" / "in.urdf")
+    assert main([path, "robot1", "--fail-on", "warning"]) == 0
+    rewritten = capsysbinary.readouterr().out
+    assert b"<my_frame>base/robot1</my_frame>" in rewritten
+    assert "<my_frame>base</my_frame>" in rewrite(path, "robot1").text
+    out = project / "robots" / "out.urdf"
+    out.write_bytes(rewritten)
+    assert main([str(out), "robot1", "--strip"]) == 0
+    assert capsysbinary.readouterr().out.decode() == ROBOT
+
+
+def test_a_file_named_twice_is_read_once(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = str(project / "robots" / "crane" / "in.urdf")
+    again = str(project / "robots" / ".." / "data" / "mine.vocab")
+    assert main([path, "robot1", "--vocabulary", again]) == 0
+    assert "base/robot1</my_frame>" in capsys.readouterr().out
+
+
+def test_a_wrong_table_stops_the_command(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (project / "pyproject.toml").write_text("[tool.multibot-rewrite]\nx = 1\n")
+    assert main([str(project / "in.urdf"), "robot1"]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith(f"urdf-postfix: {project / 'pyproject.toml'}: ")
+    assert err.count("\n") == 1
+
+
+@pytest.mark.parametrize("text", [None, '[project]\nname = "x"\n'], ids=["no-file", "no-table"])
+def test_a_project_without_the_table_pays_no_parser(tmp_path: Path, text: str | None) -> None:
+    if text is not None:
+        (tmp_path / "pyproject.toml").write_text(text)
+    code = (
+        "import sys; from multibot_rewrite.base.config import configured_vocabulary as c;"
+        f"assert c({str(tmp_path / 'in.urdf')!r}) == (); print('tomllib' in sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "False\n"
+
+
+class TomlDecodeError(ValueError):
+    """That of toml 0.10.2, which Ubuntu 22.04 has for Python 3.10."""
+
+
+def without_parsers(monkeypatch: pytest.MonkeyPatch, other: object) -> None:
+    for name in ("tomllib", "tomli"):
+        monkeypatch.setitem(sys.modules, name, None)
+    monkeypatch.setitem(sys.modules, "toml", other)
+
+
+def test_the_parser_of_ubuntu_22_04_is_taken_where_python_has_none(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    def fails(_: str) -> None:
+        raise TomlDecodeError("Empty value is invalid (line 2 column 1 char 8)")
+
+    told = {"tool": {"multibot-rewrite": {"vocabulary": ["a.vocab"]}}}
+    (tmp_path / "pyproject.toml").write_text(TABLE)
+    (tmp_path / "a.vocab").write_text("")
+    parser = SimpleNamespace(loads=lambda _: told, TomlDecodeError=TomlDecodeError)
+    without_parsers(monkeypatch, parser)
+    assert configured_vocabulary(str(tmp_path)) == (str(tmp_path / "a.vocab"),)
+    parser.loads = fails
+    with pytest.raises(UsageError, match=r"toml:2:1: broken TOML, correct it: Empty value is"):
+        configured_vocabulary(str(tmp_path))
+
+
+def test_a_python_without_any_parser_is_told_what_to_install(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    (tmp_path / "pyproject.toml").write_text(TABLE)
+    without_parsers(monkeypatch, None)
+    with pytest.raises(UsageError, match=r"pip install tomli, or sudo apt install python3-toml"):
+        configured_vocabulary(str(tmp_path))

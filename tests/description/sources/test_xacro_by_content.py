@@ -1,0 +1,72 @@
+"""A xacro is one by what is in it: turtlebot3's descriptions end in .urdf and have arguments."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite import UsageError, rewrite
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.description.sources.read import has_xacro, is_xacro, read_whole
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
+from multibot_rewrite.lint.check import lint_file
+from multibot_rewrite.rules.settings import Settings
+
+SPACE = 'xmlns:xacro="http://ros.org/wiki/xacro"'
+TURTLEBOT = f"""\
+<robot name="waffle" {SPACE}>
+  <xacro:arg name="namespace" default=""/>
+  <xacro:property name="namespace" value="$(arg namespace)"/>
+  <link name="${{namespace}}base_link"/>
+</robot>
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        (TURTLEBOT, True),
+        (f'<robot {SPACE.replace("xacro=", "x=")}><x:arg name="a"/></robot>', True),
+        (f"<robot {SPACE}><link/></robot>", False),
+        (f'<robot {SPACE}><!-- <xacro:arg name="a"/> --><link/></robot>', False),
+        ('<robot xmlns:v="http://vendor"><v:arg/></robot>', False),
+        ("<robot><link name='xacro'/></robot>", False),
+        ("", False),
+    ],
+)
+def test_what_is_a_xacro(text: str, found: bool, tmp_path: Path) -> None:
+    (tmp_path / "r.urdf").write_text(text)
+    assert has_xacro(text.encode()) is found
+    assert is_xacro(str(tmp_path / "r.urdf")) is found
+    assert is_xacro(str(tmp_path / "there_is_none.urdf")) is False
+    assert is_xacro("any.xacro") is True
+
+
+def test_it_is_expanded_and_takes_arguments(tmp_path: Path) -> None:
+    path = tmp_path / "r.urdf"
+    path.write_text(TURTLEBOT)
+    assert b'<link name="base_link"/>' in read_whole(str(path), {}).data
+    assert b'<link name="r1/base_link"/>' in read_whole(str(path), {"namespace": "r1/"}).data
+    assert '<link name="base_link/r1"/>' in rewrite(path, "r1").text
+    assert [it.code for it in lint_file(str(path), Settings(select=("MB105",)))] == []
+    path.write_text("<robot name='r'><link name='a'/></robot>")
+    with pytest.raises(UsageError, match="no xacro"):
+        read_whole(str(path), {"namespace": "r1/"})
+
+
+def test_where_nodes_name_frames_no_argument_may_name_links(tmp_path: Path) -> None:
+    (tmp_path / "r.urdf").write_text(TURTLEBOT)
+    fleet = tmp_path / "fleet.yaml"
+    fleet.write_text(
+        "layout: LAYOUT\naffix: prefix\ndescription: r.urdf\n"
+        'arguments: {namespace: "{robot}/"}\nrobots: [{name: r1}, {name: r2}]\n'
+    )
+    text = fleet.read_text()
+    fleet.write_text(text.replace("LAYOUT", "frame-prefix"))
+    with pytest.raises(InputError, match=r"namespace:=\{robot\}/ .* 'r1/base_link'.*once more"):
+        plan_fleet(read_fleet(str(fleet), "", {}))
+    fleet.write_text(text.replace("LAYOUT", "L2"))
+    plan = plan_fleet(read_fleet(str(fleet), "", {}))
+    assert b'"r1/base_link"' in plan.robots[0].description

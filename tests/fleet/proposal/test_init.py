@@ -1,0 +1,426 @@
+"""``multibot init``: from descriptions and folders to a fleet file that builds."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Mapping
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from paths import ROBOTS, ROOT
+
+from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.fleet.proposal import trying
+from multibot_rewrite.fleet.proposal.choosing import names_of, unlike
+from multibot_rewrite.fleet.proposal.needed_values import NeededValues
+
+ARM = """\
+<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="prefix" default=""/>
+  <xacro:arg name="title" default=""/>
+  <xacro:include filename="tool.xacro"/>
+  <link name="$(arg prefix)base_link"/>
+  <link name="$(arg prefix)hand"/>
+  <link name="$(arg title)sign"/>
+  <joint name="$(arg prefix)shoulder" type="continuous">
+    <parent link="$(arg prefix)base_link"/><child link="$(arg prefix)hand"/>
+  </joint>
+  <joint name="sign_joint" type="fixed">
+    <parent link="$(arg prefix)base_link"/><child link="$(arg title)sign"/>
+  </joint>
+</robot>
+"""
+TOOL = '<robot name="tool" xmlns:xacro="http://www.ros.org/wiki/xacro"/>'
+# Two metres wide and long: its corners are 1.41 m from its base.
+WIDE = """\
+<robot name="wide">
+  <link name="base"><collision><geometry><box size="2 2 1"/></geometry></collision></link>
+  <link name="top"/>
+  <joint name="j" type="fixed"><parent link="base"/><child link="top"/></joint>
+</robot>
+"""
+
+
+def init(*words: object) -> int:
+    return main(["init", *map(str, words)])
+
+
+def made(folder: Path, *words: object, code: int = 0) -> Mapping[str, Any]:
+    """The fleet file for these words, which also builds."""
+    file = folder / "fleet.yaml"
+    assert init(*words, "-o", file) == code
+    found = yaml.safe_load(file.read_text())
+    assert isinstance(found, dict)
+    if code == 0:
+        assert main(["build", str(file), "-o", str(folder / "out"), "-q"]) == 0
+    return found
+
+
+def test_two_robots_of_a_description(tmp_path: Path) -> None:
+    shutil.copy(ROBOTS / "rover.urdf", tmp_path)
+    fleet = made(tmp_path, tmp_path / "rover.urdf")
+    assert fleet["description"] == "rover.urdf"
+    assert fleet["simulator"] == "gazebo"
+    assert [it["name"] for it in fleet["robots"]] == ["robot1", "robot2"]
+    assert (tmp_path / "out" / "robot2" / "rover.urdf").exists()
+
+
+def test_so_many_robots_apart_from_each_other(tmp_path: Path) -> None:
+    shutil.copy(ROBOTS / "rover.urdf", tmp_path)
+    fleet = made(tmp_path, tmp_path, "-n", 4, "--layout", "L4", "--distro", "jazzy")
+    assert fleet["layout"] == "postfix"
+    assert fleet["distro"] == "jazzy"
+    places = [it["pose"]["y"] for it in fleet["robots"]]
+    assert len(places) == 4
+    assert all(b - a >= 0.5 for a, b in pairwise(places))
+
+
+def test_wide_robots_are_further_apart(tmp_path: Path) -> None:
+    (tmp_path / "wide.urdf").write_text(WIDE)
+    fleet = made(tmp_path, tmp_path / "wide.urdf", "-n", 3)
+    # 2 * 1.41 m and half a metre, in steps of half a metre.
+    assert [it["pose"]["y"] for it in fleet["robots"]] == [0, 3.5, 7]
+
+
+def test_what_another_file_includes_is_no_description(tmp_path: Path) -> None:
+    """The part would be taken for the robot: it has more links and a shorter path."""
+    part = TOOL.replace("/>", '><link name="x"/><link name="y"/><link name="z"/></robot>')
+    (tmp_path / "a.xacro").write_text(part)
+    (tmp_path / "robot.urdf.xacro").write_text(
+        TOOL.replace("/>", '><xacro:include filename="a.xacro"/><link name="x0"/></robot>')
+    )
+    assert init(tmp_path, "-o", tmp_path / "fleet.yaml") in (0, 1)
+    fleet = yaml.safe_load((tmp_path / "fleet.yaml").read_text())
+    assert fleet["description"] == "robot.urdf.xacro"
+
+
+def test_one_rviz_config_is_taken(tmp_path: Path) -> None:
+    shutil.copy(ROBOTS / "rover.urdf", tmp_path)
+    for name in ("rover.rviz", "zoo.rviz"):
+        shutil.copy(
+            ROOT / "examples" / "multibot_example" / "config" / "rover.rviz", tmp_path / name
+        )
+    assert made(tmp_path, tmp_path)["companions"] == {"rviz": "rover.rviz"}
+    assert (
+        "#   zoo.rviz: rover.rviz of another folder was taken"
+        in (tmp_path / "fleet.yaml").read_text()
+    )
+
+
+def test_a_prefix_argument_of_a_xacro_is_used_and_no_other(tmp_path: Path) -> None:
+    """``title`` is empty and goes in front of a name, too; it is not called as a prefix is."""
+    (tmp_path / "arm.urdf.xacro").write_text(ARM)
+    (tmp_path / "tool.xacro").write_text(TOOL)
+    fleet = made(tmp_path, tmp_path)
+    assert fleet["arguments"] == {"prefix": "{robot}_"}
+    assert fleet["description"] == "arm.urdf.xacro", "what it includes is no robot of its own"
+    assert 'name="robot1_base_link"' in (tmp_path / "out/robot1/arm.urdf").read_text()
+
+
+def test_companions_and_stacks_of_a_folder(tmp_path: Path) -> None:
+    shutil.copytree(ROOT / "examples" / "namespace_and_prefix", tmp_path / "source")
+    for name in ("fleet", "joint_states", "nav2"):
+        (tmp_path / "source" / f"{name}.yaml").unlink()
+    other = tmp_path / "source" / "nav2_params_other.yaml"
+    other.write_text((tmp_path / "source" / "nav2_params.yaml").read_text())
+    fleet = made(tmp_path, tmp_path / "source")
+    assert fleet["stack"] == ["nav2"]
+    assert fleet["layout"] == "tf-per-robot"
+    names = fleet["companions"]
+    assert names["rviz"] == "source/nav2.rviz"
+    assert names["bridge"] == ["source/bridge.yaml"]
+    assert "source/nav2_params.yaml" in names["params"]
+    assert "source/nav2_params_other.yaml" not in names["params"]
+    text = (tmp_path / "fleet.yaml").read_text()
+    assert "#   source/nav2_params_other.yaml: nav2_params.yaml has parameters of" in text
+
+
+def test_files_of_another_robot_of_the_package_are_its_own(tmp_path: Path) -> None:
+    """A package with examples: each has a robot and files beside it; what is above them is for all."""
+    (tmp_path / "package.xml").write_text("<package><name>many</name></package>")
+    for name in ("left", "right"):
+        (tmp_path / name / "config").mkdir(parents=True)
+        shutil.copy(ROBOTS / "rover.urdf", tmp_path / name / f"{name}.urdf")
+        section = f"{name}_node: {{ros__parameters: {{rate: 1}}}}\n"
+        (tmp_path / name / "config" / f"{name}.yaml").write_text(section)
+    (tmp_path / "config").mkdir()
+    (tmp_path / "config" / "all.yaml").write_text("every_node: {ros__parameters: {rate: 1}}\n")
+    fleet = made(tmp_path, tmp_path / "left" / "left.urdf")
+    assert set(fleet["companions"]["params"]) == {"config/all.yaml", "left/config/left.yaml"}
+
+
+@pytest.mark.parametrize(
+    "name", ["launch_tutorial/rover.urdf", "two_robots_postfix/scout.urdf.xacro"]
+)
+def test_a_robot_of_the_examples_has_the_files_of_its_folder(name: str, tmp_path: Path) -> None:
+    fleet = made(tmp_path, ROOT / "examples" / name)
+    files = [
+        it
+        for its in fleet["companions"].values()
+        for it in ([its] if isinstance(its, str) else its)
+    ]
+    assert files and all(f"examples/{Path(name).parent}/" in it for it in files)
+    assert "srdf" not in fleet and "stack" not in fleet
+
+
+def test_ros2_control_and_a_real_robot(tmp_path: Path) -> None:
+    shutil.copy(ROBOTS / "rover_gz.urdf", tmp_path)
+    assert made(tmp_path, tmp_path)["stack"] == ["gz_ros2_control"]
+
+
+def test_different_robots_have_names_of_their_own(tmp_path: Path) -> None:
+    for name in ("rover.urdf", "two_finger_arm.urdf"):
+        shutil.copy(ROBOTS / name, tmp_path)
+    fleet = made(tmp_path, tmp_path / "rover.urdf", tmp_path / "two_finger_arm.urdf", "-n", 1)
+    robots = {it["name"]: it["description"] for it in fleet["robots"]}
+    assert robots == {"rover1": "rover.urdf", "two_finger_arm1": "two_finger_arm.urdf"}
+
+
+def test_a_layout_that_does_not_work_is_replaced(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def errors(data: Mapping[str, Any], *_: object) -> list[tuple[str, str]]:
+        return [] if data["layout"] == "both" else [("", "MR102 they would meet")]
+
+    monkeypatch.setattr(trying, "errors_of", errors)
+    shutil.copy(ROBOTS / "rover.urdf", tmp_path)
+    fleet = made(tmp_path, tmp_path / "rover.urdf")
+    assert fleet["layout"] == "both"
+    why = "# Layout frames-per-robot does not work for these files: MR102 they would meet"
+    assert why in (tmp_path / "fleet.yaml").read_text()
+
+
+def test_a_real_arm_on_the_world_gets_a_world_of_its_own(tmp_path: Path) -> None:
+    world = '<robot name="r"><link name="world"/><link name="a"/><joint name="j" type="fixed">'
+    world += '<parent link="world"/><child link="a"/></joint></robot>'
+    (tmp_path / "r.urdf").write_text(world)
+    fleet = made(tmp_path, tmp_path / "r.urdf")
+    assert fleet["shared_frames"] == ["map"], "each real robot stands on a world of its own"
+
+
+def test_what_does_not_build_is_written_with_the_reason(tmp_path: Path, capsys: Any) -> None:
+    (tmp_path / "r.urdf").write_text(
+        '<robot name="r"><link name="a"/><link name="a_robot1"/></robot>'
+    )
+    made(tmp_path, tmp_path / "r.urdf", code=1)
+    said = capsys.readouterr().err
+    assert "It does not build yet" in said
+    assert "# It does not build yet" in (tmp_path / "fleet.yaml").read_text()
+
+
+def test_a_file_that_does_not_go_with_the_robot_is_left_out(tmp_path: Path) -> None:
+    """A config of ROS 1 would stop the build."""
+    shutil.copy(ROBOTS / "rover.urdf", tmp_path)
+    (tmp_path / "old.rviz").write_text("Visualization Manager:\n  Class: ''\n  Displays: []\n")
+    (tmp_path / "a.yaml").write_text("/**:\n  ros__parameters: {rate: 1}\n")
+    old = "Visualization Manager:\n  Displays:\n    - Class: rviz/Grid\n"
+    (tmp_path / "old.rviz").write_text(old)
+    fleet = made(tmp_path, tmp_path)
+    assert "rviz" not in fleet.get("companions", {})
+    assert "#   old.rviz: this is a ROS 1 config" in (tmp_path / "fleet.yaml").read_text()
+
+
+def test_another_description_is_taken_where_the_first_does_not_build(tmp_path: Path) -> None:
+    """``a.urdf`` would come first: its path is shorter."""
+    text = '<robot name="r"><link name="a"/><link name="a_robot1"/></robot>'
+    (tmp_path / "a.urdf").write_text(text)
+    (tmp_path / "other.urdf").write_text(text.replace("a_robot1", "b"))
+    fleet = made(tmp_path, tmp_path)
+    assert fleet["description"] == "other.urdf"
+
+
+@pytest.mark.parametrize(
+    "launch",
+    [
+        "DeclareLaunchArgument('kind', default_value='small')",
+        "DeclareLaunchArgument(\n'other', default_value='x'), DeclareLaunchArgument(\n"
+        "    'kind', description='it', choices=['small', 'large'])",
+        "LaunchConfiguration('other', default='x'), LaunchConfiguration('kind', default='small')",
+    ],
+)
+def test_what_a_xacro_needs_is_as_its_launch_file_has_it(launch: str, tmp_path: Path) -> None:
+    (tmp_path / "r.urdf.xacro").write_text(
+        TOOL.replace("/>", '><link name="$(arg kind)"/></robot>')
+    )
+    (tmp_path / "r.launch.py").write_text(f"x = [{launch}]\n")
+    fleet = made(tmp_path, tmp_path)
+    assert fleet["arguments"] == {"kind": "small"}
+    assert "# It needs kind, which nobody gave" in (tmp_path / "fleet.yaml").read_text()
+
+
+def test_a_default_that_is_no_value_is_chosen(tmp_path: Path) -> None:
+    """As ``ur_type`` of Universal Robots, whose default is the name of no robot."""
+    body = '<xacro:arg name="kind" default="none"/><xacro:include filename="$(arg kind).xacro"/>'
+    robot = TOOL.replace("/>", f'>{body}<link name="a"/></robot>')
+    (tmp_path / "r.urdf.xacro").write_text(robot)
+    (tmp_path / "small.xacro").write_text(TOOL)
+    (tmp_path / "r.launch.py").write_text("DeclareLaunchArgument('kind', choices=['small'])\n")
+    assert made(tmp_path, tmp_path)["arguments"] == {"kind": "small"}
+
+
+@pytest.mark.parametrize(
+    ("declared", "chosen"),
+    [("", {"kind": "small"}), ("default_value='large', ", {})],
+)
+def test_only_what_every_launch_has_to_choose_is_chosen(
+    declared: str, chosen: dict[str, str], tmp_path: Path
+) -> None:
+    xacro, launch = tmp_path / "r.urdf.xacro", tmp_path / "r.launch.py"
+    xacro.write_text(TOOL.replace("/>", '><xacro:arg name="kind" default="none"/></robot>'))
+    launch.write_text(f"DeclareLaunchArgument('kind', {declared}choices=['small', 'large'])\n")
+    assert NeededValues([str(launch)]).of_mandatory(str(xacro)) == chosen
+
+
+def test_classic_is_of_humble_and_its_plugin_has_the_manager(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As TurtleBot 4: a ros2_control_node beside the plugin would be a second manager."""
+    monkeypatch.delenv("ROS_DISTRO", raising=False)
+    text = (ROBOTS / "rover_gz.urdf").read_text()
+    at, end = text.index("<gazebo>"), text.rindex("</gazebo>") + len("</gazebo>")
+    plugin = '<gazebo><plugin name="gazebo_ros2_control" filename="libgazebo_ros2_control.so">'
+    plugin += "<ros><namespace></namespace><remapping>/tf:=tf</remapping></ros>"
+    plugin += "<parameters>c.yaml</parameters></plugin></gazebo>"
+    (tmp_path / "rover.urdf").write_text(text[:at] + plugin + text[end:])
+    fleet = made(tmp_path, tmp_path / "rover.urdf")
+    assert fleet["stack"] == ["gazebo_ros2_control"]
+    assert fleet["distro"] == "humble"
+    assert fleet["layout"] == "tf-per-robot", "its plugin sends tf on a topic of each robot"
+    assert "ros2_control_node" not in (tmp_path / "out" / "fleet.launch.py").read_text()
+    assert "gz_ros_control" not in (tmp_path / "out" / "plan.yaml").read_text()
+
+
+def test_names_of_the_robots_are_given(tmp_path: Path, capsys: Any) -> None:
+    shutil.copy(ROBOTS / "rover.urdf", tmp_path)
+    fleet = made(tmp_path, tmp_path, "--robots", "scout,carrier")
+    assert [it["name"] for it in fleet["robots"]] == ["scout", "carrier"]
+    two = (tmp_path / "rover.urdf", ROBOTS / "two_finger_arm.urdf")
+    assert init(*two, "--robots", "a,b", "-o", "-") == 2
+    assert "--robots is for one description" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["{there}"], "is there already; name another with -o"),
+        (["nowhere", "-o", "-"], "there is no such file or folder"),
+        (["{folder}/empty", "-o", "-"], "no description of a robot is there"),
+        (["{folder}/bad.urdf", "-o", "-"], "bad.urdf"),
+        (["{folder}/part.xacro", "-o", "-"], "it has no link; give the file that has the robot"),
+        (["{folder}/need.xacro", "-o", "-"], "give it as size:=VALUE"),
+        (["-n", "0"], "a fleet has at least one robot"),
+        (["--robots", "a,a"], "a is there twice"),
+        (["--robots", "1bad"], "1bad"),
+        (["--robots", "a,b", "-n", "3"], "give one of them"),
+        (["--layout", "L9"], "--layout"),
+    ],
+)
+def test_mistakes_are_one_line(words: list[str], says: str, tmp_path: Path, capsys: Any) -> None:
+    (tmp_path / "empty").mkdir()
+    (tmp_path / "bad.urdf").write_text("<robot")
+    (tmp_path / "part.xacro").write_text(TOOL)
+    (tmp_path / "need.xacro").write_text(TOOL.replace("/>", '><link name="$(arg size)"/></robot>'))
+    there = tmp_path / "fleet.yaml"
+    there.write_text("mine")
+    given = [it.format(folder=tmp_path, there=ROBOTS / "rover.urdf") for it in words]
+    more = [] if "-o" in given else ["-o", str(there)]
+    try:
+        code = init(*given, *more)
+    except SystemExit as end:
+        code = int(str(end.code))
+    said = capsys.readouterr().err
+    assert code == 2
+    assert says in said
+    assert len(said.splitlines()) == 1
+    assert there.read_text() == "mine"
+
+
+def test_names_of_robots() -> None:
+    assert names_of(["rover"], 2) == [("robot1", "robot2")]
+    assert names_of(["Arm-7", "arm-7"], 1) == [("arm_1",), ("arm__1_1",)]
+    assert len(set(unlike(["a", "A", "7", "-"]))) == 4
+
+
+CRANE = """\
+<robot name="crane">
+  <link name="mast"/><link name="crane_hook"/><link name="crane_rope"/><link name="mast_top"/>
+  <joint name="lift_joint" type="prismatic"><parent link="mast"/><child link="crane_hook"/>
+    <limit lower="0" upper="1" effort="1" velocity="1"/></joint>
+  <link name="hook"/><link name="map"/><link name="odom"/>
+  <joint name="hook_joint" type="fixed"><parent link="crane_hook"/><child link="hook"/></joint>
+  <joint name="map_joint" type="fixed"><parent link="mast"/><child link="map"/></joint>
+  <joint name="odom_joint" type="fixed"><parent link="mast"/><child link="odom"/></joint>
+  <joint name="rope_joint" type="fixed"><parent link="mast"/><child link="crane_rope"/></joint>
+  <joint name="top_joint" type="fixed"><parent link="mast"/><child link="mast_top"/></joint>
+</robot>
+"""
+
+
+@pytest.fixture
+def yard(tmp_path: Path) -> Path:
+    """A rover and a crane in one folder, with files for each in another one."""
+    (tmp_path / "package.xml").write_text("<package><name>yard</name></package>")
+    (tmp_path / "urdf").mkdir()
+    (tmp_path / "config").mkdir()
+    shutil.copy(ROBOTS / "rover.urdf", tmp_path / "urdf")
+    (tmp_path / "urdf" / "crane.urdf").write_text(CRANE)
+    return tmp_path
+
+
+def params_of(yard: Path, **values: object) -> list[str]:
+    """Which of these files, a section with these values each, go with the rover."""
+    for name, value in values.items():
+        text = yaml.safe_dump({f"{name}_node": {"ros__parameters": {"it": value}}})
+        (yard / "config" / f"{name}.yaml").write_text(text)
+    taken = made(yard, yard / "urdf" / "rover.urdf").get("companions", {}).get("params", [])
+    return [Path(it).stem for it in taken]
+
+
+def test_files_that_name_joints_of_another_robot_are_its_own(yard: Path) -> None:
+    rover, crane = ["lidar_link", "imu_link"], ["lift_joint", "crane_hook"]
+    assert params_of(yard, wheels=rover, hook=crane) == ["wheels"]
+    text = (yard / "fleet.yaml").read_text()
+    assert "#   config/hook.yaml: it is for crane.urdf, which has crane_hook, lift_joint" in text
+
+
+@pytest.mark.parametrize(
+    "named",
+    [
+        # What a copied file names, or names of all robots; a word that is a name, as a key.
+        ["lift_joint"], ["map", "odom", "world"], {"mast": 1, "hook": 2}, 5,
+        # A robot of both parts has more than the rover: the rover's part is the rover's.
+        ["lidar_link", "imu_link", "crane_hook", "lift_joint", "mast_top", "crane_rope"],
+    ],
+)  # fmt: skip
+def test_files_that_are_not_surely_of_another_robot_stay(yard: Path, named: object) -> None:
+    assert params_of(yard, some=named) == ["some"]
+
+
+def test_files_in_the_folder_of_the_robot_are_its_own(yard: Path) -> None:
+    """Those are nearer to it than to the crane, whatever they name."""
+    (yard / "crane").mkdir()
+    (yard / "urdf" / "crane.urdf").rename(yard / "crane" / "crane.urdf")
+    text = yaml.safe_dump({"a": {"ros__parameters": {"it": ["lift_joint", "crane_hook"]}}})
+    (yard / "urdf" / "a.yaml").write_text(text)
+    assert params_of(yard) == ["a"]
+
+
+def test_files_of_moveit_go_with_the_nearest_srdf(yard: Path) -> None:
+    shutil.copy(ROBOTS / "rover.srdf", yard / "urdf")
+    (yard / "crane_config").mkdir()
+    group = '<group name="lift"><joint name="lift_joint"/></group>'
+    (yard / "crane_config" / "crane.srdf").write_text(f'<robot name="crane">{group}</robot>')
+    limits = "joint_limits: {lift_joint: {has_velocity_limits: true, max_velocity: 1.0}}\n"
+    (yard / "crane_config" / "joint_limits.yaml").write_text(limits)
+    fleet = made(yard, yard / "urdf" / "rover.urdf")
+    assert (fleet["srdf"], fleet.get("companions", {})) == ("urdf/rover.srdf", {})
+
+
+def test_a_house_is_not_the_robot_of_a_folder(tmp_path: Path) -> None:
+    walls = "".join(f'<link name="wall_{at}"/>' for at in range(3))
+    (tmp_path / "a.sdf").write_text(f'<sdf version="1.9"><model name="a">{walls}</model></sdf>')
+    (tmp_path / "the_crane.urdf").write_text(CRANE)
+    assert made(tmp_path, tmp_path)["description"] == "the_crane.urdf"

@@ -1,0 +1,118 @@
+"""A vendor's bridge in a namespace below the robot's, and models whose name is a path, as Clearpath's.
+
+Expected from clearpath_generator_gz: the bridge of a sensor is started in NAMESPACE/sensors, where
+ros_gz_bridge expands the relative ROS names of its file; robots are spawned as NAMESPACE/robot.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import yaml
+
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.fleet.build import Outputs, make_outputs
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
+
+ROW = """\
+- ros_topic_name: {}
+  gz_topic_name: /model/robot/imu
+  ros_type_name: sensor_msgs/msg/Imu
+  gz_type_name: gz.msgs.IMU
+  direction: GZ_TO_ROS
+"""
+FILTER = "ekf_filter_node: {ros__parameters: {imu0: sensors/imu_0/data, odom_frame: odom}}\n"
+FLEET = """\
+layout: L1
+description: r.urdf
+stack: robot_localization
+robots:
+  - {name: robot1, model: robot1/robot}
+  - {name: robot2, model: robot2/robot}
+companions: {bridge: b.yaml, params: p.yaml}
+"""
+
+
+def made(folder: Path, name: str, more: str = "") -> Outputs:
+    (folder / "r.urdf").write_text('<robot name="r"><link name="base_link"/></robot>')
+    (folder / "b.yaml").write_text(ROW.format(name))
+    (folder / "p.yaml").write_text(FILTER)
+    (folder / "fleet.yaml").write_text(f"{FLEET}{more}")
+    return make_outputs(plan_fleet(read_fleet(str(folder / "fleet.yaml"), "", {})))
+
+
+def first_row(outputs: Outputs) -> dict[str, str]:
+    (text,) = (it.data for it in outputs.files if it.path == "robot2/bridge.yaml")
+    row: dict[str, str] = yaml.safe_load(text)[0]
+    return row
+
+
+@pytest.mark.parametrize(
+    ("name", "more", "topic"),
+    [
+        ("imu_0/data", "bridge_namespace: sensors\n", "/robot2/sensors/imu_0/data"),
+        ("imu_0/data", "bridge_namespace: /sensors/\n", ""),
+        ("imu_0/data", "", "/robot2/imu_0/data"),
+        ("/imu_0/data", "bridge_namespace: sensors\n", "/robot2/imu_0/data"),
+        ('"<namespace>/imu_0/data"', "bridge_namespace: sensors\n", "/robot2/imu_0/data"),
+    ],
+)
+def test_relative_names_are_below_the_bridge(
+    name: str, more: str, topic: str, tmp_path: Path
+) -> None:
+    if not topic:
+        with pytest.raises(InputError, match="bridge_namespace"):
+            made(tmp_path, name, more)
+        return
+    row = first_row(made(tmp_path, name, more))
+    assert row["ros_topic_name"] == topic
+    assert row["gz_topic_name"] == "/model/robot2/robot/imu"
+
+
+def test_topics_of_such_a_bridge_are_heard(tmp_path: Path) -> None:
+    """The filter reads /robot1/sensors/imu_0/data: with the namespace it is sent, without it is not."""
+
+    def unheard(outputs: Outputs) -> list[str]:
+        return [it.message for it in outputs.findings if "sensors/imu_0/data" in it.message]
+
+    assert unheard(made(tmp_path, "imu_0/data", "bridge_namespace: sensors\n")) == []
+    assert unheard(made(tmp_path, "imu_0/data")) != []
+
+
+@pytest.mark.parametrize("model", ["robot2//robot", "/robot2", "robot2/", "a b"])
+def test_a_model_is_no_odd_path(model: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="model"):
+        made(tmp_path, "x")
+        text = (tmp_path / "fleet.yaml").read_text().replace("robot2/robot", model)
+        (tmp_path / "fleet.yaml").write_text(text)
+        read_fleet(str(tmp_path / "fleet.yaml"), "", {})
+
+
+SYSTEM = """\
+structure:
+  nodes:
+    /robot1/{namespace}imu_bridge:
+      pkg: ros_gz_bridge
+      exec: parameter_bridge
+      params: {{config_file: /etc/vendor/{file}}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("namespace", "file", "more", "topic"),
+    [
+        ("sensors/", "b.yaml", "", "/robot2/sensors/imu_0/data"),
+        ("", "b.yaml", "", "/robot2/imu_0/data"),
+        ("sensors/", "other.yaml", "", "/robot2/imu_0/data"),
+        ("sensors/", "b.yaml", "bridge_namespace: mine\n", "/robot2/mine/imu_0/data"),
+    ],
+)
+def test_a_launch_file_says_where_its_bridge_runs(
+    namespace: str, file: str, more: str, topic: str, tmp_path: Path
+) -> None:
+    system = SYSTEM.format(namespace=namespace, file=file)
+    (tmp_path / "system_model.yaml").write_text(system)
+    row = first_row(made(tmp_path, "imu_0/data", f"launch: system_model.yaml\n{more}"))
+    assert row["ros_topic_name"] == topic

@@ -1,0 +1,235 @@
+"""A xacro's own arguments for a robot's names are filled, where that makes the names of the layout.
+
+Expectations: names as the layouts have them in docs/fleet-file.md, and what Husarion's, Clearpath's and
+UR's launch files give to their xacros.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from lxml import etree
+
+from multibot_rewrite import InputError
+from multibot_rewrite.description.reports import xacro_arguments
+from multibot_rewrite.fleet.build import Outputs, make_outputs
+from multibot_rewrite.fleet.file import filled_arguments
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
+
+SPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+ARM = """
+<link name="$(arg tf_prefix)base_link"/><link name="$(arg tf_prefix)tool0"/>
+<joint name="$(arg tf_prefix)elbow" type="revolute"><axis xyz="0 0 1"/>
+  <parent link="$(arg tf_prefix)base_link"/><child link="$(arg tf_prefix)tool0"/>
+  <limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+<note for="nobody">$(arg tf_prefix)</note>
+"""
+# As Husarion's ROSbot has it: without a namespace there is no slash.
+BASE = """
+<xacro:property name="ns" value="$(arg namespace)"/>
+<xacro:property name="above" value="${'' if ns in ('', 'None') else ns + '/'}"/>
+<link name="base_link"/>
+<ros2_control name="${above}system" type="system">
+  <hardware><plugin>acme/System</plugin></hardware>
+  <sensor name="${above}imu"><state_interface name="orientation.x"/></sensor>
+</ros2_control>
+<gazebo reference="base_link"><sensor name="lidar" type="gpu_lidar">
+  <topic>${above}scan</topic></sensor></gazebo>
+"""
+IMU = """\
+controller_manager:
+  ros__parameters: {imu: {type: imu_sensor_broadcaster/IMUSensorBroadcaster}}
+imu: {ros__parameters: {sensor_name: <namespace>/imu, frame_id: base_link}}
+"""
+WITH_PREFIX = {"layout": "frames-per-robot", "affix": "prefix", "separators": {"link": "_"}}
+TF_PER_ROBOT = {"layout": "tf-per-robot"}
+
+
+def xacro(folder: Path, argument: str, body: str, default: str = "") -> str:
+    declared = f'<xacro:arg name="{argument}" default="{default}"/>'
+    (folder / "r.urdf.xacro").write_text(f'<robot name="r" {SPACE}>{declared}{body}</robot>')
+    return str(folder / "r.urdf.xacro")
+
+
+def made(description: str, robots: Any = ("robot1", "robot2"), **keys: Any) -> Outputs:
+    own = [it if isinstance(it, dict) else {"name": it} for it in robots]
+    data = {"description": description, "robots": own, **keys}
+    return make_outputs(plan_fleet(read_fleet(data, "jazzy", {})))
+
+
+def root(outputs: Outputs, robot: str, file: str = "r.urdf") -> etree._Element:
+    (data,) = (it.data for it in outputs.files if it.path == f"{robot}/{file}")
+    return etree.fromstring(data)
+
+
+def names(outputs: Outputs, robot: str, tag: str) -> list[str]:
+    return [it.get("name", "") for it in root(outputs, robot).iter(tag)]
+
+
+def said(outputs: Outputs) -> list[str]:
+    return [it.message for it in outputs.findings if it.code == "MF840"]
+
+
+def nobodys(outputs: Outputs, robot: str) -> str:
+    return root(outputs, robot).findtext("note") or ""
+
+
+@pytest.mark.parametrize(
+    ("separators", "given"), [({"link": "_"}, "robot2_"), ({"link": "/", "joint": "/"}, "robot2/")]
+)
+def test_a_prefix_is_filled_as_the_layout_separates(
+    separators: dict[str, str], given: str, tmp_path: Path
+) -> None:
+    keys = {**WITH_PREFIX, "separators": separators}
+    outputs = made(xacro(tmp_path, "tf_prefix", ARM), **keys)
+    assert names(outputs, "robot2", "link") == [f"{given}base_link", f"{given}tool0"]
+    assert names(outputs, "robot2", "joint") == [f"{given}elbow"]
+    # What no rewrite knows has it, too.
+    assert nobodys(outputs, "robot2") == given
+    (message,) = said(outputs)
+    assert message.endswith(f"tf_prefix of its xacro is filled, it is {given.replace('2', '1')}")
+
+
+def test_names_that_would_get_different_separators_are_left_to_the_layout(tmp_path: Path) -> None:
+    keys = {**WITH_PREFIX, "separators": {}}
+    outputs = made(xacro(tmp_path, "tf_prefix", ARM), **keys)
+    assert names(outputs, "robot2", "link") == ["robot2/base_link", "robot2/tool0"]
+    assert names(outputs, "robot2", "joint") == ["robot2_elbow"]
+    assert nobodys(outputs, "robot2") == ""
+    (message,) = said(outputs)
+    assert "tf_prefix of its xacro is not filled: it makes {robot}base_link of a link" in message
+
+
+@pytest.mark.parametrize(
+    "keys",
+    [
+        TF_PER_ROBOT,
+        {"layout": "frame-prefix"},
+        {"layout": "postfix"},
+        {"layout": "frames-per-robot"},
+    ],
+)
+def test_a_prefix_is_left_where_links_get_none(keys: dict[str, Any], tmp_path: Path) -> None:
+    outputs = made(xacro(tmp_path, "tf_prefix", ARM), **keys)
+    assert nobodys(outputs, "robot1") == ""
+    assert said(outputs) == []
+
+
+@pytest.mark.parametrize("layout", ["tf-per-robot", "frames-per-robot", "both", "frame-prefix"])
+@pytest.mark.parametrize("default", ["", "None"])
+def test_a_namespace_is_filled_in_layouts_with_namespaces(
+    default: str, layout: str, tmp_path: Path
+) -> None:
+    path = xacro(tmp_path, "namespace", BASE, default)
+    (tmp_path / "p.yaml").write_text(IMU)
+    outputs = made(path, layout=layout, companions={"params": str(tmp_path / "p.yaml")})
+    assert [it.text for it in root(outputs, "robot2").iter("topic")] == ["robot2/scan"]
+    assert names(outputs, "robot2", "ros2_control") == ["robot2/system"]
+    (params,) = (it.data for it in outputs.files if it.path == "robot2/p.yaml")
+    assert b"sensor_name: robot2/imu" in params
+    assert len(said(outputs)) == 1
+
+
+def test_a_namespace_is_left_in_a_layout_without(tmp_path: Path) -> None:
+    outputs = made(xacro(tmp_path, "namespace", BASE), layout="postfix")
+    assert [it.text for it in root(outputs, "robot1").iter("topic")] != ["robot1/scan"]
+    assert said(outputs) == []
+
+
+@pytest.mark.parametrize(
+    "keys",
+    [
+        {"arguments": {"namespace": ""}},
+        {"fill_arguments": False},
+        {"robots": [{"name": "robot1", "fill_arguments": False}]},
+        {"robots": [{"name": "robot1", "arguments": {"namespace": ""}}]},
+    ],
+)
+def test_the_fleet_file_may_say_otherwise(keys: dict[str, Any], tmp_path: Path) -> None:
+    path = xacro(tmp_path, "namespace", BASE)
+    outputs = made(path, **{"robots": ["robot1"], **TF_PER_ROBOT, **keys})
+    assert names(outputs, "robot1", "ros2_control") == ["system"]
+    assert said(outputs) == []
+
+
+def test_a_value_of_the_fleet_file_wins(tmp_path: Path) -> None:
+    keys = {**WITH_PREFIX, "arguments": {"tf_prefix": "{robot}_arm_"}}
+    outputs = made(xacro(tmp_path, "tf_prefix", ARM), **keys)
+    assert names(outputs, "robot1", "link") == ["robot1_arm_base_link", "robot1_arm_tool0"]
+    assert said(outputs) == []
+
+
+@pytest.mark.parametrize(("argument", "default"), [("tf_prefix", "ur_"), ("side", "")])
+def test_what_is_not_for_robots_is_left(argument: str, default: str, tmp_path: Path) -> None:
+    path = xacro(tmp_path, argument, ARM.replace("tf_prefix", argument), default)
+    outputs = made(path, **WITH_PREFIX)
+    assert names(outputs, "robot1", "link")[0] == f"robot1_{default}base_link"
+    assert nobodys(outputs, "robot1") == default
+    assert said(outputs) == []
+
+
+def test_a_prefix_that_misses_a_reference_is_not_filled(tmp_path: Path) -> None:
+    """Kinova's gripper_joint_name is an argument of its own, with a name without the prefix."""
+    hardware = """<ros2_control name="s" type="system"><hardware><plugin>a/B</plugin></hardware>
+      <joint name="elbow"><command_interface name="position"/></joint></ros2_control>"""
+    outputs = made(xacro(tmp_path, "tf_prefix", ARM + hardware), **WITH_PREFIX)
+    assert names(outputs, "robot1", "joint") == ["robot1_elbow", "robot1_elbow"]
+    assert nobodys(outputs, "robot1") == ""
+    (message,) = said(outputs)
+    assert message.endswith("not filled: something still names elbow, which it renames")
+
+
+def test_each_argument_gets_the_word_of_its_names(tmp_path: Path) -> None:
+    robots = [{"name": "robot1", "namespace": "n1", "prefix": "p1"}]
+    arm = made(xacro(tmp_path, "tf_prefix", ARM), robots, **WITH_PREFIX)
+    assert names(arm, "robot1", "link")[0] == "p1_base_link"
+    assert nobodys(arm, "robot1") == "p1_"
+    body = BASE.replace("${above}system", "system").replace("${above}imu", "imu")
+    base = made(xacro(tmp_path, "namespace", body), robots, **WITH_PREFIX)
+    assert [it.text for it in root(base, "robot1").iter("topic")] == ["n1/scan"]
+    both = made(xacro(tmp_path, "namespace", BASE), robots, **WITH_PREFIX)
+    assert ["not filled" in it for it in said(both)] == [True]
+
+
+def test_a_namespace_of_several_levels_is_not_filled(tmp_path: Path) -> None:
+    body = BASE.replace("${above}system", "system").replace("${above}imu", "imu")
+    robots = [{"name": "robot1", "namespace": "a/robot1"}]
+    outputs = made(xacro(tmp_path, "namespace", body), robots, **TF_PER_ROBOT)
+    assert [it.text for it in root(outputs, "robot1").iter("topic")] == ["a/robot1/scan"]
+    assert ["not filled" in it for it in said(outputs)] == [True]
+
+
+def test_what_a_simulator_gets_is_filled_too(tmp_path: Path) -> None:
+    (tmp_path / "r.urdf").write_text('<robot name="r"><link name="base_link"/></robot>')
+    arg = f'<sdf version="1.8" {SPACE}><xacro:arg name="namespace" default=""/>'
+    sensor = '<sensor name="s" type="gpu_lidar"><topic>$(arg namespace)/scan</topic></sensor>'
+    model = f'<model name="r"><link name="base_link">{sensor}</link></model></sdf>'
+    (tmp_path / "r.sdf.xacro").write_text(arg + model)
+    keys = {**TF_PER_ROBOT, "simulated": str(tmp_path / "r.sdf.xacro")}
+    outputs = made(str(tmp_path / "r.urdf"), **keys)
+    assert [it.text for it in root(outputs, "robot2", "r.sdf").iter("topic")] == ["robot2/scan"]
+
+
+def test_what_cannot_be_expanded_is_told_as_ever(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="xacro failed"):
+        made(xacro(tmp_path, "namespace", '<link name="$(arg other)"/>'), **TF_PER_ROBOT)
+
+
+def test_one_look_serves_all_robots(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    looked: list[str] = []
+    look = xacro_arguments.find_arguments
+
+    def counted(path: str, *more: Any, **keys: Any) -> Any:
+        looked.append(path)
+        return look(path, *more, **keys)
+
+    monkeypatch.setattr(filled_arguments, "find_arguments", counted)
+    robots = [f"robot{at}" for at in range(5)]
+    outputs = made(
+        xacro(tmp_path, "tf_prefix", ARM), robots, **WITH_PREFIX, arguments={"x": "{robot}"}
+    )
+    assert nobodys(outputs, "robot4") == "robot4_"
+    assert len(looked) == 1

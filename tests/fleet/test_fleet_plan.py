@@ -1,0 +1,287 @@
+"""Fleets of different robots: every name of every file that is made, looked at one by one."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from fleet_folder import SMALL, fleet_folder, mixed
+from lxml import etree
+from plans import own
+
+from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet import expected
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
+from multibot_rewrite.fleet.robots.with_start_pose_nodes import (
+    split_per_robot,
+    with_start_pose_nodes,
+)
+from multibot_rewrite.spelling.plan_file import from_yaml
+
+LAYOUTS = [("L1", "prefix"), ("L2", "prefix"), ("L3", "postfix"), ("L4", "postfix")]
+
+
+def made(folder: Path, text: str, **files: str) -> dict[str, str]:
+    plan = plan_fleet(read_fleet(str(fleet_folder(folder, text, **files)), "", {}))
+    return {it.path: it.data.decode() for it in make_outputs(plan).files}
+
+
+@pytest.fixture(params=LAYOUTS, ids=lambda it: it[0])
+def fleet(request: pytest.FixtureRequest, tmp_path: Path) -> tuple[str, dict[str, str]]:
+    layout, affix = request.param
+    return layout, made(tmp_path, mixed(layout, affix))
+
+
+def test_a_section_in_the_namespace_of_its_robot_is_for_that_robot(tmp_path: Path) -> None:
+    """Clearpath's generators write the sections of controllers below the robot's namespace."""
+    section = "{ros__parameters: {base: {type: diff_drive_controller/DiffDriveController}}}"
+    text = f"/r1:\n  controller_manager: {section}\n  base: {{ros__parameters: {{rate: 1}}}}\n"
+    robot = "{name: r1, description: base.urdf, companions: {params: own.yaml}}"
+    folder = fleet_folder(
+        tmp_path,
+        f"layout: L1\nstack: ros2_control\nrobots: [{robot}]\n",
+        base__urdf="<robot name='r'><link name='base_link'/></robot>",
+        own__yaml=text,
+    )
+    plan = expected(plan_fleet(read_fleet(str(folder), "", {})).fleet)
+    assert {"/r1/controller_manager", "/r1/base"} <= {*own(plan, plan.robots[0].name)}
+    assert [it for it in own(plan, plan.robots[0].name) if it.startswith("/r1/r1")] == []
+
+
+def spell(layout: str, name: str, word: str, separator: str = "/") -> str:
+    """What these tests expect, computed without the package."""
+    if layout == "L1":
+        return name
+    return f"{word}{separator}{name}" if layout == "L2" else f"{name}{separator}{word}"
+
+
+def topic(layout: str, name: str, word: str) -> str:
+    return f"/{name}/{word}" if layout == "L4" else f"/{word}/{name}"
+
+
+def names(text: str, tag: str) -> list[str]:
+    return [it.get("name", "") for it in etree.fromstring(text.encode()).iter(tag)]
+
+
+def scalars(value: Any) -> Iterator[str]:
+    if isinstance(value, Mapping):
+        for key, below in value.items():
+            yield str(key)
+            yield from scalars(below)
+    elif isinstance(value, list):
+        for below in value:
+            yield from scalars(below)
+    else:
+        yield str(value)
+
+
+def test_every_robot_has_its_files_and_no_other(fleet: tuple[str, dict[str, str]]) -> None:
+    layout, files = fleet
+    common = {"plan.yaml", "remappings.yaml", "commands.md", "bridge.yaml"}
+    common |= {"fleet.launch.py"}
+    own = {
+        "scout": {"rover.urdf", "params.yaml", "bridge.yaml", "one_robot.rviz", "start_pose.yaml"},
+        "reach": {
+            *("arm.urdf", "arm.srdf", "limits.yaml", "moveit_parameters.yaml", "one_robot.rviz")
+        },
+        "grip": {"arm.urdf", "one_robot.rviz"},
+        "bare": {"rover.urdf", "one_robot.rviz"},
+    }
+    together = layout == "L2"
+    wanted = {f"{robot}/{file}" for robot, its in own.items() for file in its}
+    if together:
+        wanted = {it for it in wanted if not it.endswith(".rviz")} | {"one_robot.rviz"}
+    assert set(files) - common == wanted - common
+    assert set(files) >= common - {"bridge.yaml"}
+
+
+def test_links_and_joints_of_each_description(fleet: tuple[str, dict[str, str]]) -> None:
+    layout, files = fleet
+    links = {
+        "scout/rover.urdf": ("s1", ["base_link", "lidar_link"], ["lidar_joint"]),
+        "bare/rover.urdf": ("bare", ["base_link", "lidar_link"], ["lidar_joint"]),
+        "reach/arm.urdf": ("reach", ["foot", "gripper"], ["elbow"]),
+        "grip/arm.urdf": ("grip", ["foot", "fork"], ["elbow"]),
+    }
+    for path, (word, bare, joints) in links.items():
+        assert names(files[path], "link") == [spell(layout, it, word) for it in bare]
+        assert names(files[path], "joint") == [spell(layout, it, word, "_") for it in joints]
+
+
+def test_the_srdf_names_what_its_description_declares(fleet: tuple[str, dict[str, str]]) -> None:
+    layout, files = fleet
+    assert names(files["reach/arm.srdf"], "joint") == [spell(layout, "elbow", "reach", "_")]
+    assert names(files["reach/arm.srdf"], "group") == ["all"]
+
+
+def test_params_have_the_namespace_in_keys_and_the_prefix_in_frames(
+    fleet: tuple[str, dict[str, str]],
+) -> None:
+    layout, files = fleet
+    data = yaml.safe_load(files["scout/params.yaml"])
+    node = "/amcl_fleet_scout" if layout == "L4" else "/fleet_scout/amcl"
+    given = data[node]["ros__parameters"]
+    assert given["base_frame_id"] == spell(layout, "base_link", "s1")
+    assert given["odom_frame_id"] == spell(layout, "odom", "s1")
+    assert "# its base" in files["scout/params.yaml"]
+
+
+def test_moveit_limits_have_the_joint(fleet: tuple[str, dict[str, str]]) -> None:
+    layout, files = fleet
+    data = yaml.safe_load(files["reach/limits.yaml"])
+    assert list(data["joint_limits"]) == [spell(layout, "elbow", "reach", "_")]
+
+
+def test_a_bridge_has_namespace_and_model(fleet: tuple[str, dict[str, str]]) -> None:
+    layout, files = fleet
+    own = yaml.safe_load(files["scout/bridge.yaml"])[0]
+    assert own["ros_topic_name"] == topic(layout, "scan", "fleet_scout")
+    assert own["gz_topic_name"] == "/model/scout_model/scan"
+
+
+def test_rviz_shows_the_topics_of_all(fleet: tuple[str, dict[str, str]]) -> None:
+    layout, files = fleet
+    found = {it for path, text in files.items() if path.endswith(".rviz") for it in
+             scalars(yaml.safe_load(text))}  # fmt: skip
+    for word in ("fleet_scout", "reach", "grip", "bare"):
+        assert topic(layout, "scan", word) in found
+
+
+def test_commands_spawn_the_model_with_its_own_topic(fleet: tuple[str, dict[str, str]]) -> None:
+    layout, files = fleet
+    lines = [shlex.split(it) for it in files["commands.md"].splitlines() if " create " in it]
+    spawned = [(it[it.index("-name") + 1], it[it.index("-topic") + 1]) for it in lines]
+    words = {"scout_model": "fleet_scout", "reach": "reach", "grip": "grip", "bare": "bare"}
+    assert spawned == [
+        (model, topic(layout, "robot_description", word)) for model, word in words.items()
+    ]
+
+
+def test_a_start_pose_is_for_the_node_that_runs(fleet: tuple[str, dict[str, str]]) -> None:
+    layout, files = fleet
+    node = "/amcl_fleet_scout" if layout == "L4" else "/fleet_scout/amcl"
+    given = yaml.safe_load(files["scout/start_pose.yaml"])[node]["ros__parameters"]
+    assert (given["set_initial_pose"], given["initial_pose.x"]) == (True, 1.0)
+
+
+def test_the_plan_reads_back_and_holds_each_robots_nodes(
+    fleet: tuple[str, dict[str, str]],
+) -> None:
+    layout, files = fleet
+    plan = from_yaml(files["plan.yaml"].encode(), "plan.yaml")
+    by_name = {it.name: it for it in plan.robots}
+    assert set(by_name) == {"fleet_scout", "reach", "grip", "bare"}
+    assert all(
+        any("robot_state_publisher" in node for node in own(plan, it.name)) for it in plan.robots
+    )
+    assert any("amcl" in it for it in own(plan, "fleet_scout"))
+    assert any("move_group" in it for it in own(plan, "reach"))
+    assert not any("amcl" in it for it in own(plan, "reach"))
+    frames = {frame for it in plan.robots for frame in it.frames}
+    assert layout == "L1" or spell(layout, "base_link", "s1") in frames
+
+
+def test_remappings_hold_every_node_of_the_plan(fleet: tuple[str, dict[str, str]]) -> None:
+    _, files = fleet
+    table = yaml.safe_load(files["remappings.yaml"])["robots"]
+    plan = from_yaml(files["plan.yaml"].encode(), "plan.yaml")
+    full = {
+        f"{it['namespace'].rstrip('/')}/{it['name']}"
+        for own in table.values()
+        for it in own.values()
+    }
+    # What a node makes for itself is a pattern, and gets its rules from that node.
+    own = {it.name for it in plan.nodes if it.robot and "*" not in it.name}
+    assert own <= full
+
+
+def test_no_file_of_a_robot_has_a_word_of_another(fleet: tuple[str, dict[str, str]]) -> None:
+    _, files = fleet
+    words = {"scout": ("fleet_scout", "s1", "scout_model"), "reach": ("reach",), "grip": ("grip",)}
+    for path, text in files.items():
+        owner, slash, _ = path.partition("/")
+        others = [it for name, its in words.items() if name != owner for it in its]
+        found = [it for it in others if slash and re.search(rf"\b{it}\b", text)]
+        assert found == [], path
+
+
+# ---------------------------------------------------------------- what meets
+
+
+def test_two_stacks_whose_names_meet_are_reported(tmp_path: Path) -> None:
+    text = (
+        "layout: L2\naffix: prefix\nshared_topics: [/clock, /scan]\n"
+        "robots:\n  - {name: a, description: rover.urdf, stack: nav2}\n"
+        "  - {name: b, description: rover.urdf, stack: moveit}\n"
+    )
+    plan = plan_fleet(read_fleet(str(fleet_folder(tmp_path, text)), "", {}))
+    assert {it.robot for it in plan.fleet.table.nodes} >= {"a", "b"}
+    assert not [it for it in plan.fleet.table.problems if it.code == "MR102"]
+
+
+def test_affixes_that_make_one_name_of_two_are_refused(tmp_path: Path) -> None:
+    """``arm_left`` of ``b`` and ``arm`` of ``left_b`` are both ``arm_left_b``."""
+    one = '<robot name="x"><link name="arm_left"/></robot>'
+    two = '<robot name="y"><link name="arm"/></robot>'
+    text = (
+        "layout: L3\nseparators: {link: _}\nrobots:\n"
+        "  - {name: one, postfix: b, description: one.urdf}\n"
+        "  - {name: two, postfix: left_b, description: two.urdf}\n"
+    )
+    plan = plan_fleet(
+        read_fleet(str(fleet_folder(tmp_path, text, one__urdf=one, two__urdf=two)), "", {})
+    )
+    told = [it for it in make_outputs(plan).findings if it.code == "MF601"]
+    assert [it.level for it in told] == ["error"]
+    assert "two robots have the same link 'arm_left_b': 'one' and 'two'" in told[0].message
+    assert (Path(told[0].file).name, told[0].line) == ("fleet.yaml", 5)
+
+
+def test_companions_of_one_name_are_in_folders_of_their_own(tmp_path: Path) -> None:
+    (tmp_path / "more").mkdir()
+    (tmp_path / "more" / "params.yaml").write_text("x:\n  ros__parameters: {a: 1}\n")
+    text = SMALL.replace("[params.yaml]", "[params.yaml, more/params.yaml]")
+    files = made(tmp_path, text)
+    assert "/robot1/x:" in files["robot1/more/params.yaml"]
+    assert f"robot1/{tmp_path.name}/params.yaml" in files
+    assert "robot1/params.yaml" not in files
+    assert "robot1/more/params.yaml" in files["fleet.launch.py"]
+
+
+def test_folders_of_one_name_are_in_those_above_them(tmp_path: Path) -> None:
+    for folder in ("a/more", "b/more"):
+        (tmp_path / folder).mkdir(parents=True)
+        (tmp_path / folder / "params.yaml").write_text("x:\n  ros__parameters: {a: 1}\n")
+    text = SMALL.replace("[params.yaml]", "[a/more/params.yaml, b/more/params.yaml]")
+    assert {"robot1/a/more/params.yaml", "robot1/b/more/params.yaml"} <= made(tmp_path, text).keys()
+
+
+# ---------------------------------------------------------------- the fleet as one, and alone
+
+
+def test_a_held_robot_is_a_planned_publisher(tmp_path: Path) -> None:
+    text = SMALL.replace("stack: nav2\n", "stack: no_robot_state_publisher\n").replace(
+        "  params: [params.yaml]\n", ""
+    )
+    plan = plan_fleet(read_fleet(str(fleet_folder(tmp_path, text)), "", {}))
+    found = with_start_pose_nodes(plan)
+    assert [it.name for it in found.table.nodes] == ["start_pose"]
+    assert found.edges["robot1", "start_pose"][0][:2] == ("map", "robot1/base_link")
+    assert with_start_pose_nodes(plan._replace(robots=())) == plan.fleet
+
+
+def test_each_robot_alone_is_the_fleet_in_parts(tmp_path: Path) -> None:
+    plan = plan_fleet(read_fleet(str(fleet_folder(tmp_path, mixed())), "", {}))
+    parts = list(split_per_robot(plan))
+    assert [it.robots for it in parts] == [(it,) for it in plan.robots]
+    own = [name for it in parts for name in it.fleet.table.names]
+    assert sorted(own, key=str) == sorted(
+        (it for it in plan.fleet.table.names if it.robot), key=str
+    )
+    assert {key for it in parts for key in it.fleet.edges} == set(plan.fleet.edges)

@@ -1,0 +1,470 @@
+"""Bridge, static transforms, spawning and teleoperation of a fleet."""
+
+from __future__ import annotations
+
+import shlex
+from collections import Counter, defaultdict
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from beside import findings_of
+from paths import CORPUS
+
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.base.rosnames import check_full_name, check_topic_name
+from multibot_rewrite.companions.bridge import BridgeFile, rewrite_bridge
+from multibot_rewrite.companions.context import make_context
+from multibot_rewrite.companions.yaml_text import read_yaml
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleet.outputs import spawn, teleop
+from multibot_rewrite.fleet.outputs.bridge_merge import as_spawned, fill_bridge, merge_bridges
+from multibot_rewrite.fleet.robots import start_poses
+from multibot_rewrite.spelling.bridged_topics import BridgedTopic
+from multibot_rewrite.spelling.bridged_topics import bridged_topics as generated_bridge
+
+LAYOUTS = ("L1", "L2", "L3", "L4")
+TYPES = "  ros_type_name: a/msg/B\n  gz_type_name: gz.msgs.B\n"
+
+
+def context(layout: str, *links: str) -> Any:
+    declared = defaultdict(dict, {"link": dict.fromkeys(links), "joint": {"hip": None}})
+    side = "postfix" if layout == "L4" else "prefix"
+    return make_context(declared, make_naming(layout, side), (), distro=NEWEST_LTS)
+
+
+def bridged(text: str, layout: str = "L2", *links: str) -> BridgeFile:
+    return rewrite_bridge(read_yaml(text.encode(), "bridge.yaml"), context(layout, *links))
+
+
+def own(text: str, layout: str = "L2", *links: str) -> list[dict[str, Any]]:
+    made = bridged(text, layout, *links)
+    return yaml.safe_load(fill_bridge(made.own.template, "ns", "word", "rover1")) or []
+
+
+def one(names: str, layout: str = "L2", *links: str) -> tuple[str, str]:
+    """The ROS and gz name that an entry has for a robot."""
+    rows = "".join(f"  {line}\n" for line in names.split("; "))
+    found = own(f"-{rows[1:]}{TYPES}", layout, *links)[0]
+    both = found.get("topic_name", "")
+    ros, gz = (found.get(f"{side}_topic_name", "") or both for side in ("ros", "gz"))
+    assert not (both and ("ros_topic_name" in found or "gz_topic_name" in found)), found
+    return ros or gz, gz or ros
+
+
+@pytest.mark.parametrize(
+    ("names", "layout", "ros", "gz"),
+    [
+        ("topic_name: scan", "L2", "/ns/scan", "/ns/scan"),
+        ("topic_name: /scan", "L1", "/ns/scan", "/ns/scan"),
+        ("topic_name: /scan", "L4", "/scan/ns", "/scan/ns"),
+        ("ros_topic_name: a; gz_topic_name: /b", "L2", "/ns/a", "/ns/b"),
+        ("ros_topic_name: a", "L2", "/ns/a", "/ns/a"),
+        ("gz_topic_name: a", "L2", "/ns/a", "/ns/a"),
+        (
+            "topic_name: /model/rover/cmd_vel",
+            "L2",
+            "/ns/model/rover/cmd_vel",
+            "/model/rover1/cmd_vel",
+        ),
+        ("gz_topic_name: /model/rover/pose", "L2", "/ns/model/rover/pose", "/model/rover1/pose"),
+        ("ros_topic_name: /tf; gz_topic_name: /model/rover/tf", "L2", "/tf", "/model/rover1/tf"),
+        ("ros_topic_name: tf; gz_topic_name: /model/rover/tf", "L2", "/tf", "/model/rover1/tf"),
+        ("ros_topic_name: tf; gz_topic_name: /model/rover/tf", "L1", "/ns/tf", "/model/rover1/tf"),
+        ("ros_topic_name: tf; gz_topic_name: /model/rover/tf", "L4", "/tf/ns", "/model/rover1/tf"),
+        (
+            "ros_topic_name: imu; gz_topic_name: /world/w/model/rover/link/base/sensor/s/imu",
+            "L2",
+            "/ns/imu",
+            "/world/w/model/rover1/link/word/base/sensor/s/imu",
+        ),
+        (
+            "ros_topic_name: cmd; gz_topic_name: /model/rover/joint/hip/0/cmd_pos",
+            "L2",
+            "/ns/cmd",
+            "/model/rover1/joint/word_hip/0/cmd_pos",
+        ),
+        ("topic_name: <robot_namespace>/scan", "L2", "/ns/scan", "/ns/scan"),
+        ("ros_topic_name: a; gz_topic_name: /model/<name>/b", "L2", "/ns/a", "/model/rover1/b"),
+    ],
+)
+def test_names_of_an_entry(names: str, layout: str, ros: str, gz: str) -> None:
+    assert one(names, layout, "base") == (ros, gz)
+
+
+def test_topic_name_is_split_where_the_sides_differ() -> None:
+    text = f"- topic_name: /model/rover/pose  # where\n{TYPES}"
+    made = fill_bridge(bridged(text).own.template, "ns", "word", "rover1")
+    assert made == (
+        "- ros_topic_name: /ns/model/rover/pose\n  gz_topic_name: /model/rover1/pose  # where\n"
+        + TYPES
+    )
+
+
+def test_an_entry_in_braces_is_split_too() -> None:
+    text = "- {topic_name: /model/a/p, ros_type_name: b, gz_type_name: c}\n"
+    assert own(text)[0] == {
+        "ros_topic_name": "/ns/model/a/p",
+        "gz_topic_name": "/model/rover1/p",
+        "ros_type_name": "b",
+        "gz_type_name": "c",
+    }
+
+
+def test_points_are_below_the_robots_topic() -> None:
+    text = (
+        "- topic_name: lidar/points\n  ros_type_name: a\n  gz_type_name: gz.msgs.PointCloudPacked\n"
+    )
+    assert own(text, "L4")[0]["gz_topic_name"] == "/lidar/ns/points"
+    assert own(text, "L2")[0]["topic_name"] == "/ns/lidar/points"
+
+
+@pytest.mark.parametrize("topic", ["/clock", "clock", "/stats", "/world/w/stats", "/world/w/clock"])
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_topics_of_the_world_are_bridged_once(topic: str, layout: str) -> None:
+    text = f"- ros_topic_name: /clock\n  gz_topic_name: {topic}\n{TYPES}- topic_name: a\n{TYPES}"
+    made = bridged(text, layout)
+    assert [it["gz_topic_name"] for it in yaml.safe_load(made.shared)] == [topic]
+    assert len(own(text, layout)) == 1
+
+
+def test_a_file_with_nothing_shared_or_nothing_own() -> None:
+    assert bridged(f"- topic_name: a\n{TYPES}").shared == ""
+    assert own(f"- topic_name: /clock\n{TYPES}") == []
+
+
+@pytest.mark.parametrize(
+    ("entry", "code"),
+    [
+        (f"- topic_name: a\n  ros_topic_name: b\n{TYPES}", "MB855"),
+        (f"- topic_name: a\n  gz_topic_name: b\n{TYPES}", "MB855"),
+        ("- topic_name: a\n  ros_type_name: b\n", "MB855"),
+        ("- ros_type_name: b\n  gz_type_name: c\n", "MB855"),
+        (f"- topic_name: a\n  direction: IN\n{TYPES}", "MB855"),
+        ("- just text\n", "MB855"),
+        (f"- topic_name: a\n  gz_ros_topic_name: b\n{TYPES}", "MB858"),
+        (f"- ros_topic_name: a/$(var b)\n{TYPES}", "MB862"),
+        (f"- gz_topic_name: /model/x/joint/hip/0/cmd_pos\n{TYPES}", "MB861"),
+        (f"- topic_name: /model/x/a\n{TYPES}- topic_name: /model/door/b\n{TYPES}", "MF505"),
+        (f"- topic_name: a\n  lazy: base\n{TYPES}", "MB860"),
+        (f"- ros_topic_name: a\n  gz_topic_name: /model/x/link/bas/a\n{TYPES}", "MB853"),
+    ],
+)
+def test_mistakes_in_an_entry_are_reported(entry: str, code: str) -> None:
+    assert [it.code for it in findings_of(bridged(entry, "L2", "base").own)] == [code]
+
+
+def test_an_entry_that_does_not_load_is_left_out() -> None:
+    text = f"- topic_name: a\n  gz_topic_name: b\n{TYPES}- topic_name: good\n{TYPES}"
+    assert [it["topic_name"] for it in own(text)] == ["/ns/good"]
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("", "is empty"),
+        ("a: b\n", "not a list of topics"),
+        ("[{topic_name: a}]\n", "in brackets"),
+        (f"- &a\n  topic_name: b\n{TYPES}", "anchor"),
+    ],
+)
+def test_a_file_that_is_no_bridge(text: str, why: str) -> None:
+    with pytest.raises(InputError, match=why):
+        bridged(text)
+
+
+def test_a_model_that_no_gz_topic_can_hold() -> None:
+    made = bridged(f"- topic_name: /model/a/b\n{TYPES}").own.template
+    with pytest.raises(InputError, match="'my rover'"):
+        fill_bridge(made, "ns", "word", "my rover")
+
+
+def test_one_file_of_all_robots_and_of_what_descriptions_say() -> None:
+    text = "- topic_name: scan  # lidar\n" + TYPES
+    made = bridged(text)
+    texts = [(name, fill_bridge(made.own.template, name, name, name)) for name in ("r1", "r2")]
+    clock = f"---\n  - topic_name: /clock\n{TYPES.replace('  r', '    r').replace('  g', '    g')}"
+    generated = [
+        BridgedTopic("", "/clock", "/clock", "c", "c", "GZ_TO_ROS"),
+        BridgedTopic("r1", "/r1/scan", "r1/scan", "s", "s", "GZ_TO_ROS"),
+        BridgedTopic("r1", "/r1/imu", "r1/imu", "i", "i", "GZ_TO_ROS"),
+    ]
+    text, findings = merge_bridges([*texts, ("shared", clock), ("again", clock)], generated)
+    names = [it.get("topic_name") or it["gz_topic_name"] for it in yaml.safe_load(text)]
+    assert names == ["/r1/scan", "/r2/scan", "/clock", "/r1/imu"] and not findings
+    assert text.count("# lidar") == 2
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_generated_topics_follow_the_spawned_model(fleet: Any, layout: str) -> None:
+    plan = fleet(layout, body=DRIVE)
+    carried, _ = generated_bridge(plan.fleet.inventories, plan.fleet.naming)
+    found = [it.gz for it in as_spawned(carried, plan.robots) if it.gz.startswith("/model/")]
+    assert {name.split("/")[2] for name in found} == {"r1", "second"}
+
+
+def test_two_gz_topics_on_one_ros_topic_are_reported() -> None:
+    text = "".join(f"- ros_topic_name: /s\n  gz_topic_name: /{it}\n{TYPES}" for it in "ab")
+    assert [it.code for it in merge_bridges([("f", text)], [])[1]] == ["MF506"]
+
+
+@pytest.fixture(scope="module")
+def bridges() -> list[Path]:
+    files = sorted((CORPUS / "ros_gz_bridge").glob("**/*.yaml"))
+    if not files:
+        pytest.skip(f"no corpus of bridge files: looked for {CORPUS / 'ros_gz_bridge'}/**/*.yaml")
+    assert len(files) >= 30
+    return files
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_bridge_corpus(bridges: list[Path], layout: str) -> None:
+    refused: Counter[str] = Counter()
+    for path in bridges:
+        document = read_yaml(path.read_bytes(), path.name)
+        try:
+            made = rewrite_bridge(
+                document, context(layout, "base_link", "imu_link", "wheel_left_link")
+            )
+        except InputError as error:
+            refused[str(error)] += 1
+            continue
+        text = fill_bridge(made.own.template, "zorba", "zorba", "zorba")
+        problems = list(entry_problems(document.text, text, made.shared))
+        assert not problems, f"{path}: {problems}"
+    assert not refused
+
+
+def entry_problems(source: str, text: str, shared: str) -> Iterator[str]:
+    """What is wrong with a robot's file: but for names its entries and lines are the source's."""
+    before = yaml.safe_load(source)
+    after = [*(yaml.safe_load(text) or []), *(yaml.safe_load(shared) or [])]
+    if len(before) != len(after):
+        yield f"{len(before)} entries became {len(after)}"
+    kept = {"topic_name", "ros_topic_name", "gz_topic_name", "frame_id"}
+    plain = Counter(str({k: v for k, v in it.items() if k not in kept}) for it in before)
+    if plain != Counter(str({k: v for k, v in it.items() if k not in kept}) for it in after):
+        yield "something else than a name changed"
+    lines = set(source.splitlines())
+    yield from (
+        f"line {line!r}" for line in text.splitlines() if line not in lines and "zorba" not in line
+    )
+    for entry in yaml.safe_load(text) or []:
+        both = entry.get("topic_name", "")
+        ros = both or entry.get("ros_topic_name", "") or entry.get("gz_topic_name", "")
+        if not set("<{$") & set(ros) and (check_topic_name(ros) or check_full_name(ros)):
+            yield f"{ros} is no full name"
+
+
+ROVER = """\
+<robot name="rover">
+  <link name="base"/><link name="lidar"/>
+  <joint name="mount" type="fixed"><parent link="base"/><child link="lidar"/></joint>
+  {}
+</robot>
+"""
+DRIVE = (
+    '<gazebo><plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive">'
+    "<frame_id>odom</frame_id></plugin></gazebo>"
+)
+
+
+@pytest.fixture
+def fleet(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
+    monkeypatch.chdir(tmp_path)
+
+    def make(layout: str, stack: str = "robot_state", body: str = "", more: str = "") -> FleetPlan:
+        (tmp_path / "rover.urdf").write_text(ROVER.format(body))
+        side = "postfix" if layout == "L4" else "prefix"
+        (tmp_path / "fleet.yaml").write_text(
+            f"layout: {layout}\naffix: {side}\nstack: {stack}\n{more}"
+            "robots:\n"
+            "  - {name: r1, description: rover.urdf, pose: {x: 1.0, y: -0.5, yaw: 1.57}}\n"
+            "  - {name: r2, description: rover.urdf, namespace: two, model: second}\n"
+        )
+        return plan_fleet(read_fleet("fleet.yaml", "", {}))
+
+    return make
+
+
+@pytest.mark.parametrize(
+    ("layout", "body", "child", "rules"),
+    [
+        ("L1", "", "base", ["__ns:=/r1", "__node:=start_pose", "/tf_static:=tf_static"]),
+        ("L2", "", "r1/base", ["__ns:=/r1", "__node:=start_pose"]),
+        ("L2", DRIVE, "r1/odom", ["__ns:=/r1", "__node:=start_pose"]),
+        ("L3", DRIVE, "r1/odom", ["__ns:=/r1", "__node:=start_pose", "/tf_static:=tf_static"]),
+        ("L4", DRIVE, "odom/r1", ["__node:=start_pose_r1", "/tf_static:=/tf_static/r1"]),
+    ],
+)
+def test_a_pose_is_a_static_transform(
+    fleet: Any, layout: str, body: str, child: str, rules: list[str]
+) -> None:
+    found = start_poses.start_poses(fleet(layout, body=body))
+    assert len(found.transforms) == 1 and not found.findings
+    words = shlex.split(start_poses.command(found.transforms[0]))
+    assert words[:4] == ["ros2", "run", "tf2_ros", "static_transform_publisher"]
+    assert words[4:16] == shlex.split("--x 1.0 --y -0.5 --z 0.0 --roll 0.0 --pitch 0.0 --yaw 1.57")
+    assert words[16:20] == ["--frame-id", "map", "--child-frame-id", child]
+    assert words[20:] == ["--ros-args", *(text for rule in rules for text in ("-r", rule))]
+
+
+def test_odometry_of_a_node_of_the_stack(fleet: Any) -> None:
+    found = start_poses.start_poses(fleet("L2", "diff_drive_controller"))
+    assert [it.child for it in found.transforms] == ["r1/odom"]
+
+
+@pytest.mark.parametrize(("stack", "initial"), [("nav2", ["amcl"]), ("nav2_slam", [])])
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_no_second_parent_beside_a_localisation(
+    fleet: Any, layout: str, stack: str, initial: list[str]
+) -> None:
+    found = start_poses.start_poses(fleet(layout, stack, DRIVE))
+    assert not found.transforms
+    assert [it.code for it in found.findings] == ([] if initial else ["MF701"])
+    assert [it.node for it in found.initial] == initial
+    for it in found.initial:
+        assert it.values == {
+            "set_initial_pose": True,
+            **{"initial_pose.x": 1.0, "initial_pose.y": -0.5},
+            **{"initial_pose.z": 0.0, "initial_pose.yaw": 1.57},
+        }
+
+
+def test_the_map_frame_of_each_robot_is_below_the_world(fleet: Any) -> None:
+    more = "shared_frames: [world]\n"
+    slam = start_poses.start_poses(
+        fleet("L2", "[robot_state, slam_toolbox]", DRIVE, more)
+    ).transforms
+    assert [(it.parent, it.child, it.pose.x) for it in slam] == [("world", "r1/map", 1.0)]
+    amcl = start_poses.start_poses(fleet("L2", "[robot_state, amcl]", DRIVE, more))
+    assert [(it.child, it.pose) for it in amcl.transforms] == [("r1/map", start_poses.ORIGIN)]
+    assert [it.node for it in amcl.initial] == ["amcl"]
+
+
+def test_a_description_that_already_starts_with_the_world(fleet: Any) -> None:
+    body = (
+        '<link name="world"/><joint name="fix" type="fixed">'
+        '<parent link="world"/><child link="base"/></joint>'
+    )
+    found = start_poses.start_poses(fleet("L2", body=body))
+    assert not found.transforms and [it.code for it in found.findings] == ["MF709"]
+    assert "fixes 'r1/base' to 'world'" in found.findings[0].message
+
+
+def test_the_fleets_world_frame_is_the_parent(fleet: Any) -> None:
+    found = start_poses.start_poses(fleet("L2", more="world: world\n"))
+    assert found.transforms[0].parent == "world"
+
+
+def test_spawning_in_gz(fleet: Any) -> None:
+    first, second = spawn.spawns(fleet("L2"))[0]
+    assert spawn.gz_arguments(first) == [
+        *("-name", "r1", "-topic", "/r1/robot_description"),
+        *("-x", "1.0", "-y", "-0.5", "-z", "0.0", "-R", "0.0", "-P", "0.0", "-Y", "1.57"),
+        "-allow_renaming=false",
+    ]
+    assert spawn.gz_arguments(second)[:4] == ["-name", "second", "-topic", "/two/robot_description"]
+
+
+def test_a_flag_that_is_on_or_off_has_no_value_of_its_own(fleet: Any) -> None:
+    assert "false" not in spawn.gz_arguments(spawn.spawns(fleet("L2"))[0][0])
+
+
+def test_the_postfix_layout_has_a_topic_for_each_description(fleet: Any) -> None:
+    assert [it.topic for it in spawn.spawns(fleet("L4"))[0]] == [
+        "/robot_description/r1",
+        "/robot_description/two",
+    ]
+
+
+def classic(*namespaces: str) -> str:
+    """Plugins that no vocabulary has, so that nothing is inserted in them."""
+    plugins = (
+        f'<plugin name="p{at}" filename="libgazebo_ros_acme.so">{namespace}</plugin>'
+        for at, namespace in enumerate(namespaces)
+    )
+    return f"<gazebo>{''.join(plugins)}</gazebo>"
+
+
+SPACE = "<ros><namespace>/here</namespace></ros>"
+
+
+@pytest.mark.parametrize(
+    ("namespaces", "layout", "given", "codes"),
+    [
+        (("", ""), "L2", ["-robot_namespace", "/r1"], []),
+        ((SPACE, SPACE), "L2", [], []),
+        ((SPACE, ""), "L2", [], ["MF706", "MF706"]),
+        (("", ""), "L4", [], []),
+        # Names have a postfix there, and no plugin gets a namespace.
+        ((SPACE, ""), "L4", [], []),
+    ],
+)
+def test_a_namespace_of_the_description_is_not_overwritten(
+    fleet: Any, namespaces: tuple[str, ...], layout: str, given: list[str], codes: list[str]
+) -> None:
+    made, findings = spawn.spawns(fleet(layout, body=classic(*namespaces)))
+    assert spawn.classic_arguments(made[0])[16:] == given
+    assert [it.code for it in findings] == codes
+
+
+def test_no_namespace_where_nothing_needs_one(fleet: Any) -> None:
+    for layout in LAYOUTS:
+        made, _ = spawn.spawns(fleet(layout))
+        assert "-robot_namespace" not in spawn.classic_command(made[0])
+
+
+def test_driving(fleet: Any) -> None:
+    assert [teleop.command(it) for it in teleop.teleops(fleet("L2", "nav2"))] == [
+        f"ros2 run teleop_twist_keyboard teleop_twist_keyboard --ros-args -r cmd_vel:=/{it}/cmd_vel"
+        for it in ("r1", "two")
+    ]
+    plan = fleet("L4")
+    assert teleop.teleops(plan) == ()
+    assert teleop.teleop(plan, plan.robots[0]).topic == "/cmd_vel/r1"
+
+
+def test_a_bridge_to_the_simulator_reads_commands(fleet: Any) -> None:
+    drive = (
+        '<gazebo><plugin name="gz::sim::systems::DiffDrive" filename="gz-sim-diff-drive-system">'
+        "<topic>drive</topic></plugin></gazebo>"
+    )
+    assert [it.topic for it in teleop.teleops(fleet("L2", body=drive))] == [
+        "/r1/drive",
+        "/two/drive",
+    ]
+    rows = f"- topic_name: go\n{TYPES}  direction: {{}}\n".replace("a/msg/B", teleop.PLAIN)
+    for direction, heard in (("ROS_TO_GZ", ["/r1/go"]), ("GZ_TO_ROS", [])):
+        Path("bridge.yaml").write_text(rows.format(direction))
+        plan = fleet("L2", more="companions: {bridge: bridge.yaml}\n")
+        assert [it.topic for it in teleop.teleops(plan)][:1] == heard
+
+
+def test_a_controller_that_takes_stamped_commands_only(fleet: Any) -> None:
+    it = teleop.teleops(fleet("L2", "diff_drive_controller"))[0]
+    assert it.topic == "/r1/diff_drive_controller/cmd_vel"
+    assert teleop.arguments(it)[3:] == ["-p", "stamped:=true", "-p", "frame_id:=r1/base"]
+
+
+def test_a_bridge_that_takes_stamped_commands(fleet: Any) -> None:
+    (first,) = teleop.teleops(fleet("L2"), stamped={"/r1/cmd_vel"})
+    assert (first.robot, first.stamped, first.frame) == ("r1", True, "r1/base")
+
+
+def test_a_listener_that_takes_no_stamp_decides(fleet: Any) -> None:
+    Path("own.yaml").write_text(
+        "nodes:\n"
+        "  base: {package: acme, subscribes: {cmd_vel: geometry_msgs/msg/Twist}}\n"
+        "  log: {package: acme, subscribes: {cmd_vel: geometry_msgs/msg/TwistStamped}}\n"
+        "stacks:\n  own: {about: both, nodes: [base, log]}\n  half: {about: one, nodes: [log]}\n"
+    )
+    both, half = (
+        teleop.teleops(fleet("L2", stack, more="nodes: own.yaml\n"))[0] for stack in ("own", "half")
+    )
+    assert (both.stamped, half.stamped) == (False, True)

@@ -1,0 +1,403 @@
+"""``fleet.launch.py``: what it starts, without launch and in the real one."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import sys
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+from xml.etree import ElementTree
+
+import pytest
+from launched_programs import launched
+from paths import ROBOTS, ROOT, SUPPORT
+from told_nodes import nodes_of, words_of
+
+from multibot_rewrite import launch, load_fleet
+from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.cli.rehearse import stage
+from multibot_rewrite.live.rehearsal import split_over_processes, to_order, with_substitutes
+from multibot_rewrite.producers.ros.child import RUN_STUBS, observe, running
+from multibot_rewrite.producers.ros.request import Request, to_text
+from multibot_rewrite.rules.check import check, doubts
+from multibot_rewrite.spelling.plan_file import read_plan
+
+LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
+TWO = "robots:\n  - {name: robot1, pose: {x: 1.0}}\n  - {name: robot2, pose: {x: 3.0}}\n"
+CONTROLLERS = """\
+controller_manager:
+  ros__parameters:
+    update_rate: 100
+    joint_state_broadcaster: {type: joint_state_broadcaster/JointStateBroadcaster}
+    wheels: {type: diff_drive_controller/DiffDriveController}
+wheels:
+  ros__parameters: {left_wheel_names: [left_wheel_joint], right_wheel_names: [right_wheel_joint]}
+"""
+FLEETS = {
+    "classic": f"description: rover.urdf\n{TWO}",
+    "gz": f"description: rover_gz.urdf\nstack: gz_ros2_control\ncompanions: {{params: c.yaml}}\n{TWO}",
+    "sdf": f"description: rover.sdf\n{TWO}",
+    "real": f"description: two_finger_arm.urdf\nsimulator: none\nstack: robot_state\n{TWO}",
+    "kinds": (
+        "robots:\n  - {name: robot1, description: rover.urdf, pose: {x: 1.0}}\n"
+        "  - {name: arm, description: two_finger_arm.urdf, pose: {x: 3.0}}\n"
+    ),
+    "ten": "description: rover.urdf\nrobots:\n  - {name: robot, count: 10, step: {y: 2.0}}\n",
+}
+
+
+def built(folder: Path, kind: str, layout: str) -> Path:
+    """The folder of a fleet that was built."""
+    for name in ("rover.urdf", "rover_gz.urdf", "rover.sdf", "two_finger_arm.urdf"):
+        shutil.copy(ROBOTS / name, folder)
+    (folder / "c.yaml").write_text(CONTROLLERS)
+    fleet = folder / "fleet.yaml"
+    fleet.write_text(f"layout: {layout}\n{FLEETS[kind]}")
+    assert main(["build", str(fleet), "-o", str(folder / "out"), "-q"]) == 0
+    return folder / "out"
+
+
+def of_python(out: Path, monkeypatch: pytest.MonkeyPatch) -> list[tuple[Any, ...]]:
+    """The processes: program, namespace, name, rules, number of files and of own words; the classes of
+    launch_ros only note what they are given."""
+    noted: list[dict[str, Any]] = []
+
+    class Noting:
+        def __init__(self, *words: Any, **named: Any) -> None:
+            if "executable" in named:
+                noted.append(named)
+
+        def perform(self, context: Any) -> str:
+            return ""
+
+    for name in (
+        *("launch", "launch.actions", "launch.conditions", "launch.substitutions", "launch_ros"),
+        *("launch_ros.actions", "launch_ros.substitutions", "launch_ros.descriptions"),
+        "launch_ros.parameter_descriptions",
+    ):
+        module = ModuleType(name)
+        module.__getattr__ = lambda _: Noting  # type: ignore[method-assign]
+        monkeypatch.setitem(sys.modules, name, module)
+    text = (out / "fleet.launch.py").read_text()
+    names: dict[str, Any] = {"__file__": str(out / "fleet.launch.py"), "__name__": "fleet"}
+    exec(compile(text, "fleet.launch.py", "exec"), names)
+    names["generate_launch_description"]()
+    names["chosen"](None)
+    return sorted(
+        (
+            it["package"],
+            it["executable"],
+            it.get("namespace", ""),
+            it.get("name", ""),
+            tuple(it.get("remappings", ())),
+            sum(1 for one in it["parameters"] if isinstance(one, str)),
+            len(it.get("arguments", ())),
+        )
+        for it in noted
+    )
+
+
+def test_what_two_robots_of_gazebo_classic_are_started_with(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    out = built(tmp_path, "classic", "tf-per-robot")
+    tf = (("/tf", "tf"), ("/tf_static", "tf_static"))
+    state = "robot_state_publisher"
+    assert of_python(out, monkeypatch) == [
+        ("gazebo_ros", "spawn_entity.py", "", "", (), 0, 16),
+        ("gazebo_ros", "spawn_entity.py", "", "", (), 0, 16),
+        (state, state, "/robot1", state, tf, 0, 0),
+        (state, state, "/robot2", state, tf, 0, 0),
+        ("tf2_ros", "static_transform_publisher", "", "", (), 0, 23),
+        ("tf2_ros", "static_transform_publisher", "", "", (), 0, 23),
+    ]
+    text = (out / "fleet.launch.py").read_text()
+    assert '"robot_description": text("robot1/rover.urdf")' in text
+    assert 'FindPackageShare("gazebo_ros")' in text
+    assert "ros2 run teleop_twist_keyboard" in text
+
+
+def test_the_nodes_of_nav2_with_their_lifecycle(tmp_path: Path) -> None:
+    shutil.copytree(ROOT / "examples" / "namespace_and_prefix", tmp_path / "example")
+    fleet, out = tmp_path / "example" / "nav2.yaml", tmp_path / "out"
+    assert main(["build", str(fleet), "-o", str(out), "-q"]) == 0
+    text = (out / "fleet.launch.py").read_text()
+    assert '"node_names": ["map_server", "amcl"]' in text
+
+
+@pytest.mark.parametrize("layout", ["frames-per-robot", "postfix"])
+def test_a_plugin_of_the_simulator_is_not_started_again(
+    layout: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """gz_ros2_control makes the controller manager; controllers that files declare are spawned."""
+    out = built(tmp_path, "gz", layout)
+    found = [it[1] for it in of_python(out, monkeypatch)]
+    assert "ros2_control_node" not in found
+    assert "spawner" in found
+    if layout == "postfix":
+        return
+    text = (out / "fleet.launch.py").read_text()
+    assert 'arguments=["wheels"' in text
+
+
+@pytest.mark.parametrize(
+    ("release", "library"), [("humble", "ignition-gazebo"), ("jazzy", "gz-sim")]
+)
+def test_the_world_runs_the_sensors_of_the_robots(
+    release: str, library: str, tmp_path: Path
+) -> None:
+    """In Gazebo's empty.sdf neither a lidar nor an IMU sends; one that a robot brings runs once."""
+    sensors = "".join(
+        f'<sensor name="{it}" type="{it}"/>' for it in ("gpu_lidar", "imu", "altimeter")
+    )
+    plugin = f'<plugin filename="{library}-altimeter-system" name="a"/>'
+    links = '<link name="base_link"/>'
+    body = f'{links}<gazebo reference="base_link">{sensors}</gazebo><gazebo>{plugin}</gazebo>'
+    (tmp_path / "r.urdf").write_text(f'<robot name="r">{body}</robot>')
+    (tmp_path / "fleet.yaml").write_text(f"distro: {release}\ndescription: r.urdf\n{TWO}")
+    out = tmp_path / "out"
+    main(["build", str(tmp_path / "fleet.yaml"), "-o", str(out), "-q"])
+    world = ElementTree.parse(out / "world.sdf").getroot()
+    systems = {it.get("filename"): it.get("name") for it in world.iter("plugin")}
+    empty = {"physics", "user-commands", "scene-broadcaster", "contact"}
+    wanted = {f"{library}-{it}-system" for it in (*empty, "sensors", "imu")}
+    assert systems.keys() == wanted
+    assert systems[f"{library}-sensors-system"] == "gz::sim::systems::Sensors"
+    assert (
+        'DeclareLaunchArgument("world", default_value=file("world.sdf")'
+        in (out / "fleet.launch.py").read_text()
+    )
+
+
+def test_no_sensor_needs_no_world(tmp_path: Path) -> None:
+    out = built(tmp_path, "kinds", "both")
+    assert not (out / "world.sdf").exists(), "Gazebo Classic, and an arm without sensors"
+
+
+def test_an_sdf_is_spawned_from_its_file(tmp_path: Path) -> None:
+    text = (built(tmp_path, "sdf", "both") / "fleet.launch.py").read_text()
+    assert '"-file", file("robot1/rover.sdf")' in text
+    assert "-topic" not in text
+
+
+def test_a_real_robot_needs_no_simulator(tmp_path: Path) -> None:
+    text = (built(tmp_path, "real", "both") / "fleet.launch.py").read_text()
+    assert "ros_gz_sim" not in text
+    assert 'DeclareLaunchArgument("use_sim_time", default_value="false"' in " ".join(text.split())
+    assert 'executable="joint_state_publisher"' in text, "nothing else sends its joint states"
+
+
+def of_nav2(folder: Path, distro: str = "jazzy", **keys: str) -> str:
+    """The file for two robots with Nav2's parameters and these keys."""
+    for name in ("hexbase.urdf.xacro", "nav2_params.yaml"):
+        shutil.copy(ROOT / "examples" / "namespace_and_prefix" / name, folder)
+    more = "".join(f"{key}: {value}\n" for key, value in keys.items())
+    (folder / "fleet.yaml").write_text(
+        f"distro: {distro}\ndescription: hexbase.urdf.xacro\n{more}"
+        f"companions: {{params: nav2_params.yaml}}\n{TWO}"
+    )
+    out = folder / "out"
+    assert main(["build", str(folder / "fleet.yaml"), "-o", str(out), "-q"]) == 0
+    return (out / "fleet.launch.py").read_text()
+
+
+def test_slam_toolbox_is_brought_up(tmp_path: Path) -> None:
+    """It has a life cycle from Jazzy on, and no manager of Nav2 knows it."""
+    python = of_nav2(tmp_path, layout="tf-per-robot", stack="nav2_slam")
+    before = python.partition('executable="sync_slam_toolbox_node"')[0].split()
+    assert before[-3:] == ["*brought_up(", "LifecycleNode(", 'package="slam_toolbox",']
+    assert python.count("*brought_up(") == 2, "one a robot, and nothing else"
+
+
+def test_in_humble_slam_toolbox_has_no_life_cycle(tmp_path: Path) -> None:
+    python = of_nav2(tmp_path, layout="postfix", stack="nav2_slam", distro="humble")
+    assert 'executable="sync_slam_toolbox_node"' in python
+    assert "brought_up" not in python
+
+
+def test_a_container_has_its_components(tmp_path: Path) -> None:
+    python = of_nav2(tmp_path, layout="both", stack="nav2_composed")
+    assert 'plugin="nav2_controller::ControllerServer"' in python
+    assert 'executable="component_container_isolated"' in python
+    starts = python.split("\ndef start_")[1:]
+    found = [it.partition("\nROBOTS")[0].count(" ComposableNode(") for it in starts]
+    assert len(found) == 2 and min(found) > 10
+
+
+def test_a_shared_map_server_has_a_manager(tmp_path: Path) -> None:
+    topics = "[/map, /clock, /rosout, /parameter_events, /diagnostics]"
+    python = of_nav2(
+        tmp_path, layout="both", stack="nav2", shared_nodes="[map_server]", shared_topics=topics
+    )
+    assert '{"autostart": True, "node_names": ["map_server"]}' in python
+    assert python.count('executable="map_server"') == 1
+
+
+def test_relays_of_tf_are_started(tmp_path: Path) -> None:
+    python = of_nav2(tmp_path, layout="both", affix="prefix", stack="nav2", relayed="true")
+    told = '{"input_topic": "/robot1/tf", "output_topic": "/tf"}'
+    assert told in python
+    assert python.count('package="topic_tools"') == 4
+
+
+def test_nodes_of_bringup_are_left_to_it(tmp_path: Path) -> None:
+    """Its parameter files have no namespaces, so a node in one would get nothing of them."""
+    python = of_nav2(tmp_path, layout="tf-per-robot", stack="nav2", params_style="bringup")
+    assert "# Not started: amcl (parameter files are in the form of nav2_bringup" in python
+    assert 'package="nav2_amcl"' not in python
+    assert 'package="robot_state_publisher"' in python
+
+
+REAL = pytest.mark.skipif(
+    bool(launch.missing()),
+    reason=f"not tried in the real launch, which is not here: {launch.missing()}",
+)
+
+
+def programs(out: Path) -> dict[str, str]:
+    """The programs of the launch file with their packages."""
+    text = (out / "fleet.launch.py").read_text()
+    pairs = re.findall(r'package="(\w+)",\s+executable="([\w.]+)"', text)
+    return {executable: package for package, executable in pairs}
+
+
+@REAL
+@pytest.mark.parametrize(
+    ("words", "robot"), [("robots:=robot2", "robot2"), ("robots:=1", "robot1")]
+)
+def test_arguments_choose_robots_and_windows(words: str, robot: str, tmp_path: Path) -> None:
+    out = built(tmp_path, "classic", "both")
+    told, _ = launched(out / "fleet.launch.py", tmp_path, words, programs=programs(out))
+    spaces = [word for it in told for word in words_of(it)[2] if word.startswith("__ns")]
+    assert set(spaces) == {f"__ns:=/{robot}"}
+
+
+@REAL
+@pytest.mark.parametrize(
+    ("words", "shown"),
+    [("", ["robot1", "robot2"]), ("robots:=robot2", ["robot2"]), ("rviz:=false", [])],
+)
+def test_a_window_of_one_robot_opens_with_that_robot(
+    words: str, shown: list[str], tmp_path: Path
+) -> None:
+    example, out = ROOT / "examples" / "two_robots_postfix", tmp_path / "out"
+    assert main(["build", str(example / "fleet.yaml"), "-o", str(out), "-q"]) == 0
+    given = [words] if words else []
+    told, _ = launched(out / "fleet.launch.py", tmp_path, *given, programs=programs(out))
+    opened = [it["words"] for it in told if it["words"][0].endswith("/rviz2")]
+    assert sorted(Path(it[2]).parent.name for it in opened) == shown
+
+
+@REAL
+@pytest.mark.parametrize("installed", [True, False])
+def test_tf_is_bridged_where_the_bridge_is_installed(installed: bool, tmp_path: Path) -> None:
+    out = built(tmp_path, "real", "tf-per-robot\nrelayed: true")
+    known = {
+        name: package for name, package in programs(out).items() if installed or "tf_n" not in name
+    }
+    told, said = launched(out / "fleet.launch.py", tmp_path, programs=known)
+    bridges = [it["words"][1:] for it in told if it["words"][0].endswith("/tf_namespace_bridge")]
+    assert sorted(word for words in bridges for word in words if word.startswith("__ns")) == (
+        ["__ns:=/robot1", "__ns:=/robot2"] if installed else []
+    )
+    worlds = [it["words"] for it in told if "__node:=bridged_world" in it["words"]]
+    assert sorted(it[it.index("--child-frame-id") + 1] for it in worlds) == (
+        ["robot1/map", "robot2/map"] if installed else []
+    )
+    line = "tf_namespace_bridge is not installed, so the tf of robot2 is not on /tf"
+    assert (line in said) == (not installed)
+
+
+def chosen(out: Path, monkeypatch: pytest.MonkeyPatch, text: str) -> list[str]:
+    """The robots that the Python file starts for ``robots:=`` with this text."""
+    of_python(out, monkeypatch)
+    names: dict[str, Any] = {"__file__": str(out / "fleet.launch.py"), "__name__": "fleet"}
+    exec(compile((out / "fleet.launch.py").read_text(), "fleet.launch.py", "exec"), names)
+    names["ROBOTS"] = {name: lambda name=name: [name] for name in names["ROBOTS"]}
+
+    class Given:
+        def __init__(self, _: str) -> None: ...
+
+        def perform(self, _: object) -> str:
+            return text
+
+    names["LaunchConfiguration"] = Given
+    found: list[str] = names["chosen"](None)
+    return found
+
+
+def test_so_many_robots_are_started(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    out = built(tmp_path, "ten", "both")
+    assert chosen(out, monkeypatch, "3") == ["robot1", "robot2", "robot3"]
+    assert chosen(out, monkeypatch, "robot9, robot2") == ["robot9", "robot2"]
+    assert len(chosen(out, monkeypatch, "")) == 10
+    for text, said in (
+        ("12", "10 robots were built; for more: multibot build"),
+        ("0", "robots:=0"),
+    ):
+        with pytest.raises(RuntimeError, match=said):
+            chosen(out, monkeypatch, text)
+
+
+def test_more_robots_than_the_file_has_are_built(tmp_path: Path) -> None:
+    """No file is edited: the third one stands as far from the second as that from the first."""
+    built(tmp_path, "classic", "both")
+    fleet, out = tmp_path / "fleet.yaml", tmp_path / "more"
+    before = fleet.read_text()
+    assert main(["build", str(fleet), "-o", str(out), "-q", "--count", "3"]) == 0
+    assert fleet.read_text() == before
+    assert (out / "robot3" / "rover.urdf").exists()
+    assert (
+        '"robot3", "-topic", "/robot3/robot_description", "-x", "5.0"'
+        in (out / "fleet.launch.py").read_text()
+    )
+
+
+@REAL
+@pytest.mark.live
+def test_slam_toolbox_is_active_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("rclpy", reason="no rclpy: pip install '.[ros]'")
+    of_nav2(tmp_path, layout="tf-per-robot", stack="slam_toolbox")
+    for name, value in stage(None).items():
+        monkeypatch.setenv(name, value)
+    out, real = tmp_path / "out", {"sync_slam_toolbox_node": SUPPORT / "lifecycle_stand_in.py"}
+    words = ("robots:=robot2", "simulator:=false")
+    told, _ = launched(out / "fleet.launch.py", tmp_path, *words, programs=programs(out), real=real)
+    (slam,) = (it for it in told if "state" in it)
+    assert "__ns:=/robot2" in slam["words"]
+    # lifecycle_msgs Transition: configure is 1, activate 3.
+    assert (slam["state"], slam["asked"]) == ("active", [1, 3])
+
+
+def runs() -> Iterator[Any]:
+    for kind in FLEETS:
+        for layout in LAYOUTS:
+            deep = () if (kind, layout) == ("gz", "both") else (pytest.mark.deep,)
+            yield pytest.param(kind, layout, marks=deep)
+
+
+@REAL
+@pytest.mark.live
+@pytest.mark.parametrize(("kind", "layout"), list(runs()))
+def test_what_is_started_is_as_planned(kind: str, layout: str, tmp_path: Path) -> None:
+    pytest.importorskip("rclpy", reason="no rclpy: pip install '.[ros]'")
+    out = built(tmp_path, kind, layout)
+    fleet = load_fleet(tmp_path / "fleet.yaml")
+    told, _ = launched(out / "fleet.launch.py", tmp_path, "rviz:=false", programs=programs(out))
+    plan = read_plan((out / "plan.yaml").read_bytes(), "plan.yaml")
+    environ, replaced = stage(None), {}
+    with ExitStack() as stack:
+        children = [
+            stack.enter_context(running(RUN_STUBS, to_text(to_order(nodes)), environ))
+            for nodes in split_over_processes(list(nodes_of(told, fleet)))
+        ]
+        for child in children:
+            replaced |= json.loads(child.next_message() or b"{}")
+        graph = observe(Request(40.0, substitutes=True), environ)
+    assert doubts(graph) == ()
+    assert [it.message for it in check(with_substitutes(plan, replaced), graph)] == []

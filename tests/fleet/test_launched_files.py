@@ -1,0 +1,158 @@
+"""Parameter files that only launch files name are rewritten, so that plan and files agree."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from rule_examples import DESCRIPTION
+
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
+from multibot_rewrite.fleet.launch import launched_robot
+from multibot_rewrite.producers.launch.records import (
+    LaunchedNode,
+    LaunchGraph,
+    LaunchOrder,
+    ParameterText,
+)
+from multibot_rewrite.system.records import Place
+
+FLEET = """\
+layout: frames-per-robot
+affix: prefix
+distro: jazzy
+companions: {{params: [{params}]}}
+launch: bringup.launch.py
+robots:
+  - {{name: robot1, description: robot.urdf}}
+  - {{name: robot2, description: robot.urdf}}
+"""
+DRIVE = """\
+controller_manager:
+  ros__parameters:
+    drive: {type: diff_drive_controller/DiffDriveController}
+drive:
+  ros__parameters:
+    base_frame_id: SIDEbase_link
+    left_wheel_names: [wheel_joint]
+"""
+FILLED = DRIVE.replace("SIDE", "")
+AT = Place("bringup.launch.py", 7)
+
+
+def built(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, given: ParameterText, params: str = ""
+) -> tuple[dict[str, str], list[Finding]]:
+    """Paths and texts of a build, and the findings of its plan."""
+    node = LaunchedNode(
+        "controller_manager", "ros2_control_node", "", "/", (), (given,), "", (), "", AT
+    )
+    graphs = {"bringup.launch.py": LaunchGraph((node,))}
+
+    def graph(order: LaunchOrder) -> LaunchGraph:
+        return graphs[Path(order.file).name]
+
+    monkeypatch.setattr(launched_robot, "launch_graph", graph)
+    (folder / "robot.urdf").write_text(DESCRIPTION)
+    (folder / "bringup.launch.py").write_text("")
+    (folder / "fleet.yaml").write_text(FLEET.format(params=params))
+    plan = plan_fleet(read_fleet(str(folder / "fleet.yaml"), "", {}))
+    texts = {it.path: it.data.decode() for it in make_outputs(plan).files}
+    return texts, [it for it in plan.fleet.table.problems if it.code == "MF824"]
+
+
+def test_a_file_that_only_a_launch_names_is_written_for_each_robot(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "drive.yaml"
+    file.write_text(FILLED)
+    found, notes = built(tmp_path, monkeypatch, ParameterText(str(file), FILLED, str(file)))
+    assert notes == []
+    assert "base_frame_id: robot2/base_link" in found["robot2/drive.yaml"]
+    assert "left_wheel_names: [robot2_wheel_joint]" in found["robot2/drive.yaml"]
+    assert "/robot1/drive:" in found["robot1/drive.yaml"]
+
+
+def test_what_a_launch_makes_of_a_file_counts_and_the_file_is_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "drive.yaml"
+    file.write_text(FILLED)
+    made = ParameterText("", f"# made\n{FILLED}", str(file))
+    assert "robot1/drive.yaml" in built(tmp_path, monkeypatch, made)[0]
+
+
+def test_what_the_launch_fills_is_written_as_it_fills_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "drive.yaml"
+    file.write_text(DRIVE.replace("SIDE", "$(var side)"))
+    found, notes = built(tmp_path, monkeypatch, ParameterText("", FILLED, str(file)))
+    assert notes == []
+    assert "base_frame_id: robot1/base_link" in found["robot1/drive.yaml"]
+    assert "$(var" not in found["robot1/drive.yaml"]
+
+
+@pytest.mark.parametrize("filled", [f"{FILLED}\n# more\n", DRIVE.replace("SIDE", "robot1_")])
+def test_a_file_that_is_filled_for_one_robot_is_left_out(
+    filled: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "drive.yaml"
+    file.write_text(DRIVE.replace("SIDE", "$(var side)"))
+    found, notes = built(tmp_path, monkeypatch, ParameterText("", filled, str(file)))
+    assert "robot1/drive.yaml" not in found
+    assert [(it.level, it.file, it.line) for it in notes] == [("warning", *AT[:2])]
+    assert str(file) in notes[0].message and "params" in notes[0].hint
+
+
+def test_the_robots_own_file_of_that_name_is_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "other").mkdir()
+    file, own = tmp_path / "other" / "drive.yaml", tmp_path / "drive.yaml"
+    file.write_text(FILLED)
+    own.write_text(f"# own\n{FILLED}")
+    given = ParameterText(str(file), FILLED, str(file))
+    found, notes = built(tmp_path, monkeypatch, given, "drive.yaml")
+    assert found["robot1/drive.yaml"].startswith("# own")
+    assert [(it.level, it.line) for it in notes] == [("note", 7)]
+    same = ParameterText(str(own), FILLED, str(own))
+    assert built(tmp_path, monkeypatch, same, "drive.yaml")[1] == []
+
+
+def test_a_file_without_parameters_is_passed_over(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "flat.yaml"
+    file.write_text("a: 1\n")
+    found, notes = built(tmp_path, monkeypatch, ParameterText(str(file), "a: 1\n", str(file)))
+    assert notes == [] and "robot1/flat.yaml" not in found
+
+
+def test_robots_that_launch_files_of_their_own_have_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def graph(order: LaunchOrder) -> LaunchGraph:
+        path = tmp_path / dict(order.arguments)["params"]
+        given = ParameterText(str(path), path.read_text(), str(path))
+        own = ("controller_manager", "ros2_control_node", "", "/", (), (given,))
+        return LaunchGraph((LaunchedNode(*own, "", (), "", AT),))
+
+    monkeypatch.setattr(launched_robot, "launch_graph", graph)
+    (tmp_path / "robot.urdf").write_text(DESCRIPTION)
+    (tmp_path / "bringup.launch.py").write_text("")
+    (tmp_path / "robot1.yaml").write_text(FILLED)
+    (tmp_path / "robot2.yaml").write_text(FILLED.replace("drive", "steer"))
+    fleet = FLEET.format(params="").replace("launch.py", "launch.py params:={robot}.yaml")
+    (tmp_path / "fleet.yaml").write_text(fleet)
+    plan = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {}))
+    paths = {it.path for it in make_outputs(plan).files}
+    assert {"robot1/robot1.yaml", "robot2/robot2.yaml"} <= paths
+    assert not {"robot2/robot1.yaml", "robot1/robot2.yaml"} & paths
+    controllers = {
+        (it.robot, it.name) for it in plan.fleet.table.nodes if it.node in ("drive", "steer")
+    }
+    assert controllers == {("robot1", "drive"), ("robot2", "steer")}

@@ -1,0 +1,91 @@
+"""Namespaces of two and more levels, as /fleet_a/robot1: from the fleet file to the check."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from nav2_graphs import ROVER, healthy, moved, with_end, without_node
+
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet import expected
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
+from multibot_rewrite.rules.check import check
+from multibot_rewrite.spelling.plan_file import from_yaml, to_yaml
+from multibot_rewrite.system.records import System
+
+NAMESPACED = ("tf-per-robot", "frames-per-robot", "both")
+# Two fleets with robots of one name, and a robot beside them.
+FLEET = """\
+layout: {layout}
+description: {rover}
+stack: nav2
+distro: jazzy
+robots:
+- {{name: a1, namespace: /fleet_a/robot1}}
+- {{name: b1, namespace: fleet_b/robot1}}
+- {{name: guard}}
+"""
+
+
+def planned(folder: Path, layout: str) -> System:
+    """The plan of the fleet, through its file."""
+    file = folder / "fleet.yaml"
+    file.write_text(FLEET.format(layout=layout, rover=ROVER))
+    plan = expected(plan_fleet(read_fleet(str(file), "", {})).fleet)
+    return from_yaml(to_yaml(plan).encode(), "plan.yaml")
+
+
+@pytest.mark.parametrize("layout", NAMESPACED)
+def test_a_fleet_as_planned_has_no_findings(tmp_path: Path, layout: str) -> None:
+    plan = planned(tmp_path, layout)
+    names = [robot.name for robot in plan.robots]
+    assert names == ["fleet_a/robot1", "fleet_b/robot1", "guard"]
+    assert check(plan, healthy(plan)) == []
+    scans = {it.name for it in plan.ends if it.code_name in {"/scan", "scan"}}
+    assert scans == {"/fleet_a/robot1/scan", "/fleet_b/robot1/scan", "/guard/scan"}
+
+
+def test_frames_have_the_robots_word_and_not_its_path(tmp_path: Path) -> None:
+    plan = planned(tmp_path, "both")
+    assert [robot.tf_topic for robot in plan.robots][:2] == [
+        "/fleet_a/robot1/tf",
+        "/fleet_b/robot1/tf",
+    ]
+    assert [robot.frames[0].rpartition("/")[2] for robot in plan.robots] == ["a1", "b1", "guard"]
+
+
+def test_faults_name_the_robot(tmp_path: Path) -> None:
+    """A leak, another robot's scan, a node without its namespace and a node of nobody's plan."""
+    plan = planned(tmp_path, "both")
+    graph = moved(healthy(plan), "/fleet_a/robot1/cmd_vel", "/cmd_vel", "robot1/collision_monitor")
+    graph = moved(graph, "/fleet_b/robot1/scan", "/fleet_a/robot1/scan", "fleet_b/robot1/amcl")
+    graph = without_node(graph, "/guard/bt_navigator")
+    graph = with_end(graph, "/fleet_b/robot1/gripper", "/fleet_b/robot1/open")
+    found = {(it.code, it.robot, it.node) for it in check(plan, graph)}
+    assert ("MG310", "fleet_a/robot1", "/fleet_a/robot1/collision_monitor") in found
+    assert ("MG321", "fleet_b/robot1", "/fleet_b/robot1/amcl") in found
+    assert ("MG101", "guard", "/guard/bt_navigator") in found
+    assert ("MG108", "fleet_b/robot1", "/fleet_b/robot1/gripper") in found
+    hints = " ".join(it.hint for it in check(plan, graph))
+    assert "robot1/fleet_" not in hints
+
+
+def test_a_robot_above_another_one_keeps_its_names(tmp_path: Path) -> None:
+    """/site and /site/robot1 are both robots: the longer path wins."""
+    file = tmp_path / "fleet.yaml"
+    text = FLEET.format(layout="both", rover=ROVER)
+    file.write_text(text.replace("name: guard", "name: guard, namespace: fleet_a"))
+    plan = expected(plan_fleet(read_fleet(str(file), "", {})).fleet)
+    graph = with_end(healthy(plan), "/fleet_a/robot1/gripper", "/fleet_a/robot1/open")
+    assert [(it.code, it.robot) for it in check(plan, graph)] == [("MG108", "fleet_a/robot1")]
+
+
+def test_the_layout_without_namespaces_refuses_them(tmp_path: Path) -> None:
+    file = tmp_path / "fleet.yaml"
+    file.write_text(FLEET.format(layout="postfix", rover=ROVER))
+    with pytest.raises(InputError) as refused:
+        read_fleet(str(file), "", {})
+    assert f"{file}:6: 'a1' has the namespace 'fleet_a/robot1'" in str(refused.value)
+    assert "take a layout with namespaces" in str(refused.value)

@@ -1,0 +1,190 @@
+"""Fleets whose xacro names its robots by arguments: all files of a robot have the same names."""
+
+from __future__ import annotations
+
+import pickle
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from lxml import etree
+from paths import FIXTURES
+
+from multibot_rewrite import InputError, load_fleet
+from multibot_rewrite.base.findings.finding import NOTE, Finding
+from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.description.sources import job
+from multibot_rewrite.description.sources.read import SourceText, read_whole
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.robots.rewritten_robots import read_jobs
+
+XACROS = FIXTURES / "xacros"
+SRDF = """\
+<robot name="arm">
+  <group name="arm"><chain base_link="base_link" tip_link="tool0"/></group>
+  <disable_collisions link1="base_link" link2="camera_link" reason="Never"/>
+</robot>
+"""
+PARAMETERS = """\
+controller_manager:
+  ros__parameters:
+    arm_controller: {type: joint_trajectory_controller/JointTrajectoryController}
+arm_controller:
+  ros__parameters:
+    joints: [elbow]
+    command_interfaces: [position]
+    state_interfaces: [position]
+"""
+LIMITS = "joint_limits:\n  elbow: {has_velocity_limits: true, max_velocity: 1.0}\n"
+FLEET = f"""\
+layout: frames-per-robot
+affix: prefix
+separators: {{link: _}}
+description: {XACROS / "arm.urdf.xacro"}
+srdf: arm.srdf
+companions: {{params: controllers.yaml, moveit: [limits.yaml]}}
+"""
+BY_PLACEHOLDER = """\
+arguments: {tf_prefix: '{robot}_'}
+robots:
+  - {name: left, pose: {y: 1}}
+  - {name: right, pose: {y: -1}}
+"""
+BY_VALUE = """\
+robots:
+  - {name: left, pose: {y: 1}, arguments: {tf_prefix: left_}}
+  - {name: right, pose: {y: -1}, arguments: {tf_prefix: right_}}
+"""
+
+
+def fleet(folder: Path, text: str) -> Path:
+    (folder / "arm.srdf").write_text(SRDF)
+    (folder / "controllers.yaml").write_text(PARAMETERS)
+    (folder / "limits.yaml").write_text(LIMITS)
+    (folder / "fleet.yaml").write_text(text)
+    return folder / "fleet.yaml"
+
+
+def worth_a_look(findings: Iterable[Finding]) -> list[str]:
+    """The codes of findings above notes: these robots have no drivers."""
+    return [it.code for it in findings if it.level != NOTE]
+
+
+def links(text: str) -> list[str | None]:
+    return [it.get("name") for it in etree.fromstring(text.encode()).findall("link")]
+
+
+@pytest.mark.parametrize("robots", [BY_PLACEHOLDER, BY_VALUE])
+@pytest.mark.parametrize("name", ["left", "right"])
+def test_all_files_of_a_robot_agree(tmp_path: Path, robots: str, name: str) -> None:
+    made = load_fleet(fleet(tmp_path, FLEET + robots))
+    text = {path: made.text(path) for path in made.files}
+    own = next(it for path, it in text.items() if path.startswith(name) and path.endswith(".urdf"))
+    own_links = [f"{name}_{it}" for it in ("base_link", "tool0", "gripper", "camera_link")]
+    assert links(own) == own_links
+    srdf = etree.fromstring(text[f"{name}/arm.srdf"].encode())
+    assert dict(srdf.find("group/chain").attrib) == {  # type: ignore[union-attr]
+        "base_link": f"{name}_base_link",
+        "tip_link": f"{name}_tool0",
+    }
+    controllers = yaml.safe_load(text[f"{name}/controllers.yaml"])
+    parameters = controllers[f"/{name}/arm_controller"]["ros__parameters"]
+    assert parameters["joints"] == [f"{name}_elbow"]
+    assert list(yaml.safe_load(text[f"{name}/limits.yaml"])["joint_limits"]) == [f"{name}_elbow"]
+    assert worth_a_look(made.made.findings) == []
+
+
+def test_robots_with_and_without_the_argument(tmp_path: Path) -> None:
+    robots = BY_VALUE.replace(", arguments: {tf_prefix: right_}", "")
+    made = load_fleet(fleet(tmp_path, FLEET + robots))
+    assert links(made.robot("right").description)[0] == "right_base_link"
+    assert links(made.robot("left").description)[0] == "left_base_link"
+    assert "right_elbow" in made.text("right/controllers.yaml")
+
+
+@pytest.mark.parametrize("key", ["prefix", "namespace"])
+def test_a_name_of_its_own_beside_another_prefix_or_namespace(tmp_path: Path, key: str) -> None:
+    text = (FLEET + BY_PLACEHOLDER).replace("name: left", f"name: left, {key}: l1")
+    made = load_fleet(fleet(tmp_path, text))
+    camera = "l1_camera_link" if key == "prefix" else "left_camera_link"
+    assert links(made.robot("left").description) == [
+        "left_base_link",
+        "left_tool0",
+        "left_gripper",
+        camera,
+    ]
+    assert "joints: [left_elbow]" in made.text("left/controllers.yaml")
+    srdf = made.text("left/arm.srdf")
+    assert 'base_link="left_base_link" tip_link="left_tool0"' in srdf
+    assert f'link2="{camera}"' in srdf
+    assert worth_a_look((*made.findings, *made.made.findings)) == []
+
+
+def test_a_namespace_argument(tmp_path: Path) -> None:
+    text = f"""\
+layout: tf-per-robot
+description: {XACROS / "base.urdf.xacro"}
+arguments: {{namespace: '{{robot}}'}}
+robots: [{{name: robot1, pose: {{x: 1}}}}, {{name: robot2, pose: {{x: 2}}}}]
+"""
+    made = load_fleet(fleet(tmp_path, text))
+    root = etree.fromstring(made.robot("robot2").description.encode())
+    assert [it.text for it in root.iter("namespace")] == ["robot2", "/robot2"]
+    assert worth_a_look(made.made.findings) == []
+
+
+def test_an_argument_with_the_namespace_of_a_robot(tmp_path: Path) -> None:
+    text = f"""\
+layout: tf-per-robot
+description: {XACROS / "base.urdf.xacro"}
+robots:
+  - {{name: one, namespace: fleet_a, arguments: {{namespace: fleet_a}}, pose: {{x: 1}}}}
+  - {{name: two, namespace: fleet_b, arguments: {{namespace: fleet_b}}, pose: {{x: 2}}}}
+"""
+    made = load_fleet(fleet(tmp_path, text))
+    root = etree.fromstring(made.robot("two").description.encode())
+    assert [it.text for it in root.iter("namespace")] == ["fleet_b", "/fleet_b"]
+    assert worth_a_look((*made.findings, *made.made.findings)) == []
+    assert [it.shared for robot in made.plan.robots for it in [robot.member]] == [(), ()]
+
+
+def test_a_further_robot_is_one_more_expansion(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    read: list[str] = []
+
+    def counted(source: str, args: Any, trust: bool) -> SourceText:
+        read.append(str(source))
+        return read_whole(source, args, trust)
+
+    monkeypatch.setattr(job, "read_whole", counted)
+    text = FLEET.replace("srdf: arm.srdf\n", "") + "arguments: {tf_prefix: '{robot}_'}\nrobots:\n"
+    robots = [f"  - {{name: r{at}, pose: {{y: {at}}}}}\n" for at in range(5)]
+    file = read_fleet(str(fleet(tmp_path, text + "".join(robots))), "", {})
+    read_jobs(file.robots, make_naming(), (), False, file.distro)
+    # One for each robot, one for a robot of another name, one without the argument.
+    assert len(read) == 5 + 2
+
+
+def test_one_value_for_several_robots_is_refused(tmp_path: Path) -> None:
+    text = FLEET + BY_PLACEHOLDER.replace("{robot}_", "left_")
+    with pytest.raises(InputError) as refused:
+        load_fleet(fleet(tmp_path, text))
+    assert str(refused.value).endswith(
+        "fleet.yaml:10: 'right' has the arguments of 'left', which put that name into names;"
+        " write {robot} in its place"
+    )
+
+
+def test_an_unknown_placeholder_has_its_line(tmp_path: Path) -> None:
+    path = fleet(tmp_path, FLEET + BY_PLACEHOLDER.replace("{robot}", "{tf}"))
+    with pytest.raises(InputError, match=r"fleet\.yaml:9: 'left': tf_prefix:=\{tf\}_: unknown"):
+        read_fleet(str(path), "", {})
+
+
+def test_a_fleet_with_own_arguments_can_be_pickled(tmp_path: Path) -> None:
+    made = load_fleet(fleet(tmp_path, FLEET + BY_PLACEHOLDER))
+    copy = pickle.loads(pickle.dumps(made))
+    assert copy.text("left/controllers.yaml") == made.text("left/controllers.yaml")

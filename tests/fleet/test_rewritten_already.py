@@ -1,0 +1,62 @@
+"""A description that carries a robot's namespace or tag already is refused for the fleet."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from fleet_folder import fleet_folder
+
+from multibot_rewrite.base.findings.finding import RewriteRefused
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
+
+FLEET = "layout: both\naffix: prefix\ndescription: rover.urdf\nrobots: [{}]\n"
+ROBOT = '<robot name="rover"><link name="{}"/><link name="b"/><link name="c"/>{}</robot>\n'
+DRIVE = '<gazebo><plugin name="p" filename="libgazebo_ros_diff_drive.so">{}</plugin></gazebo>'
+NAMESPACE = DRIVE.format("<ros><namespace>{}</namespace></ros>")
+
+
+def planned(folder: Path, robot: str, link: str, namespace: str) -> FleetPlan:
+    """The plan of a fleet of one robot, whose description has a link and a namespace."""
+    text = ROBOT.format(link, NAMESPACE.format(namespace))
+    return plan_fleet(
+        read_fleet(str(fleet_folder(folder, FLEET.format(robot), rover__urdf=text)), "", {})
+    )
+
+
+BOTH = "{name: r7, namespace: site7, prefix: s1}"
+
+
+@pytest.mark.parametrize(
+    ("robot", "link", "namespace", "of"),
+    [
+        pytest.param("{name: r7}", "r7_a", "/x", "r7", id="link"),
+        pytest.param("{name: r7}", "a", "/r7", "r7", id="namespace"),
+        pytest.param(BOTH, "s1/a", "/x", "s1", id="tag"),
+        pytest.param(BOTH, "a", "/site7", "site7", id="namespace-beside-a-tag"),
+    ],
+)
+def test_refused(tmp_path: Path, robot: str, link: str, namespace: str, of: str) -> None:
+    with pytest.raises(RewriteRefused, match=f"MB106 .*already rewritten for {of}: "):
+        planned(tmp_path, robot, link, namespace)
+
+
+@pytest.mark.parametrize(
+    ("link", "namespace"),
+    [
+        pytest.param("site7/a", "/x", id="the-namespace-in-a-link"),
+        pytest.param("a", "/s1", id="the-tag-in-a-namespace"),
+        pytest.param("r7_a", "/r7", id="the-name-that-is-in-no-name"),
+    ],
+)
+def test_a_word_counts_where_it_would_be_added(tmp_path: Path, link: str, namespace: str) -> None:
+    (robot,) = planned(tmp_path, BOTH, link, namespace).robots
+    text = robot.description.decode()
+    assert f'"s1/{link}"' in text
+    assert f"<namespace>/site7{namespace}</namespace>" in text
+
+
+def test_a_second_robot_is_looked_at_as_well(tmp_path: Path) -> None:
+    with pytest.raises(RewriteRefused, match="already rewritten for r8"):
+        planned(tmp_path, "{name: r7}, {name: r8}", "r8_a", "/x")

@@ -1,0 +1,100 @@
+"""Robots that would be spawned into each other, and how far a robot reaches."""
+
+from __future__ import annotations
+
+from math import hypot
+from pathlib import Path
+
+import pytest
+from lxml import etree
+
+from multibot_rewrite.description.checks.footprint import reach_of
+from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
+
+CART = """\
+<robot name="cart">
+  <link name="base"><collision><geometry><box size="0.6 0.4 0.2"/></geometry></collision></link>
+  <link name="mast"><collision><origin xyz="0.1 0 0"/>
+    <geometry><cylinder radius="0.05" length="1"/></geometry></collision></link>
+  <joint name="up" type="fixed"><origin xyz="0.5 0 0.5" rpy="0 0 1.5707963267948966"/>
+    <parent link="base"/><child link="mast"/></joint>
+  <gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"/></gazebo>
+</robot>
+"""
+
+
+def test_how_far_a_robot_reaches() -> None:
+    """The mast stands half a metre ahead, and a turned origin puts its cylinder to the left."""
+    assert reach_of(etree.fromstring(CART)) == pytest.approx(hypot(0.55, 0.15))
+    without = etree.fromstring(CART)
+    for it in without.findall("link/collision"):
+        it.tag = "visual"
+    assert reach_of(without) == pytest.approx(hypot(0.55, 0.15))
+    assert reach_of(etree.fromstring('<robot name="r"><link name="a"/></robot>')) == 0
+
+
+def found(folder: Path, robots: str, more: str = "", code: str = "MF835") -> list[str]:
+    (folder / "cart.urdf").write_text(CART)
+    file = folder / "fleet.yaml"
+    file.write_text(f"layout: both\ndescription: cart.urdf\n{more}robots:\n{robots}")
+    made = make_outputs(plan_fleet(read_fleet(str(file), "", {})))
+    return [it.message for it in made.findings if it.code == code]
+
+
+@pytest.mark.parametrize(("place", "near"), [("0.3", True), ("0.5", True), ("0.7", False)])
+def test_robots_that_overlap_are_told(place: str, near: bool, tmp_path: Path) -> None:
+    robots = f"  - {{name: a, pose: {{x: 1}}}}\n  - {{name: b, pose: {{x: 1, y: -{place}}}}}\n"
+    said = found(tmp_path, robots)
+    assert bool(said) is near
+    if near:
+        assert said == [
+            f"robot 'b' starts {float(place):.2f} m from robot 'a'; their shapes need 0.57 m"
+        ]
+
+
+def test_one_above_the_other_is_apart(tmp_path: Path) -> None:
+    assert found(tmp_path, "  - {name: a, pose: {z: 2}}\n  - {name: b, pose: {x: 0}}\n") == []
+
+
+def test_a_robot_without_a_pose_is_at_the_origin(tmp_path: Path) -> None:
+    robots = "  - {name: a}\n  - {name: b, pose: {x: 0.1}}\n"
+    assert len(found(tmp_path, robots)) == 1
+    assert found(tmp_path, robots, "simulator: none\n") == []
+    assert found(tmp_path, "  - {name: a}\n  - {name: b}\n") == [], "somebody else places them"
+
+
+def test_neighbours_of_a_large_fleet(tmp_path: Path) -> None:
+    robots = "  - {name: r, count: 450, pose: {x: 0}, step: {y: 0.4}}\n"
+    assert len(found(tmp_path, robots)) > 0
+
+
+ROWS = """\
+- {ros_topic_name: scan, gz_topic_name: scan, ros_type_name: sensor_msgs/msg/LaserScan,
+   gz_type_name: gz.msgs.LaserScan}
+"""
+
+
+@pytest.mark.parametrize(
+    ("more", "told"),
+    [
+        ("simulator: gazebo\n", True),
+        ("stack: bridge_per_robot\n", True),
+        ("companions: {bridge: rows.yaml}\n", True),
+        ("", False),
+        ("simulator: none\n", False),
+        # What launch files start may spawn them anywhere.
+        ("simulator: gazebo\nlaunch: system_model.yaml\n", False),
+    ],
+)
+def test_robots_in_a_simulator_without_any_pose(more: str, told: bool, tmp_path: Path) -> None:
+    (tmp_path / "rows.yaml").write_text(ROWS)
+    (tmp_path / "system_model.yaml").write_text(
+        "structure: {nodes: {/amcl: {pkg: nav2_amcl, exec: amcl}}}\n"
+    )
+    said = found(tmp_path, "  - {name: a}\n  - {name: b}\n", more, "MF839")
+    assert said == (["no robot has a start pose: all 2 are spawned in each other"] if told else [])
+    posed = "  - {name: a}\n  - {name: b, pose: {y: 2}}\n"
+    assert found(tmp_path, posed, more, "MF839") == []
+    assert found(tmp_path, "  - {name: a}\n", more, "MF839") == []

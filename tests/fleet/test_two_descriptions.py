@@ -1,0 +1,141 @@
+"""A URDF for robot_state_publisher and an SDF for the simulator, from one entry of a fleet file.
+
+As Nav2's tb3_simulation_launch.py has it: the URDF is published, gz_waffle.sdf.xacro is spawned.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import yaml
+
+from multibot_rewrite import load_fleet
+from multibot_rewrite.fleet.build import Outputs, make_outputs
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
+
+URDF = """\
+<robot name="rover">
+  <link name="base_link"/><link name="lidar_link"/><link name="wheel"/>
+  <joint name="wheel_joint" type="continuous"><parent link="base_link"/><child link="wheel"/></joint>
+  <joint name="mast" type="fixed"><parent link="base_link"/><child link="lidar_link"/></joint>
+</robot>
+"""
+SDF = """\
+<sdf version="1.9" xmlns:xacro="http://ros.org/wiki/xacro"><xacro:arg name="namespace" default=""/>
+<model name="rover">
+  <link name="base_link">
+    <sensor name="lidar" type="gpu_lidar"><topic>$(arg namespace)/scan</topic>
+      <gz_frame_id>FRAME</gz_frame_id></sensor>
+  </link>
+  <link name="wheel"/>
+  <joint name="JOINT" type="revolute"><parent>base_link</parent><child>wheel</child></joint>
+  <plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive">
+    <left_joint>JOINT</left_joint><right_joint>JOINT</right_joint>
+    <topic>cmd_vel</topic><odom_topic>odom</odom_topic><tf_topic>tf</tf_topic>
+    <frame_id>odom</frame_id><child_frame_id>base_link</child_frame_id>
+  </plugin>
+</model></sdf>
+"""
+FLEET = """\
+layout: LAYOUT
+affix: prefix
+description: rover.urdf
+simulated: rover.sdf.xacro
+arguments: {namespace: "{robot}"}
+robots:
+  - {name: robot1, pose: {x: 1}}
+  - {name: robot2, pose: {x: 3}}
+"""
+
+
+def written(
+    folder: Path, layout: str, joint: str = "wheel_joint", frame: str = "lidar_link", more: str = ""
+) -> str:
+    (folder / "rover.urdf").write_text(URDF)
+    text = SDF.replace("JOINT", joint).replace("FRAME", frame)
+    (folder / "rover.sdf.xacro").write_text(text)
+    (folder / "fleet.yaml").write_text(f"{FLEET.replace('LAYOUT', layout)}{more}")
+    return str(folder / "fleet.yaml")
+
+
+def made(folder: Path, layout: str, **changed: str) -> tuple[Outputs, dict[str, str]]:
+    outputs = make_outputs(plan_fleet(read_fleet(written(folder, layout, **changed), "", {})))
+    return outputs, {it.path: it.data.decode() for it in outputs.files}
+
+
+@pytest.mark.parametrize(
+    ("layout", "link", "frame"),
+    [
+        ("tf-per-robot", "lidar_link", "lidar_link"),
+        ("frames-per-robot", "robot2/lidar_link", "robot2/lidar_link"),
+        ("frame-prefix", "lidar_link", "robot2/lidar_link"),
+    ],
+)
+def test_both_are_rewritten_and_the_model_is_spawned(
+    layout: str, link: str, frame: str, tmp_path: Path
+) -> None:
+    outputs, text = made(tmp_path, layout)
+    assert f'<link name="{link}"' in text["robot2/rover.urdf"]
+    model = text["robot2/rover.sdf"]
+    assert f"<gz_frame_id>{frame}</gz_frame_id>" in model
+    # The argument has named the topic already.
+    assert "<topic>robot2/scan</topic>" in model
+    assert "<topic>robot2/cmd_vel</topic>" in model
+    line = next(it for it in text["commands.md"].splitlines() if "ros_gz_sim create" in it)
+    assert "-name robot1 -file robot1/rover.sdf" in line
+    assert 'file("robot2/rover.sdf")' in text["fleet.launch.py"]
+    assert ('"frame_prefix": "robot2/"' in text["fleet.launch.py"]) == (layout == "frame-prefix")
+    rows = yaml.safe_load(text["robot2/bridge.yaml"])
+    assert "/robot2/cmd_vel" in {it["ros_topic_name"] for it in rows}
+    frames = yaml.safe_load(text["plan.yaml"])["robots"]["robot2"]["frames"]
+    # lidar_link is in the URDF alone.
+    assert frame in frames
+    codes = {it.code for it in outputs.findings if it.level != "note"}
+    assert codes & {"MF711", "MF602", "MF603", "MF604", "MF605", "MB106"} == set()
+
+
+def test_tf_is_that_of_the_description(tmp_path: Path) -> None:
+    """The model has no mast: robot_state_publisher reads the URDF."""
+    plan = plan_fleet(read_fleet(written(tmp_path, "frames-per-robot"), "", {}))
+    sent = plan.fleet.edges["robot2", "robot_state_publisher"]
+    assert ("robot2/base_link", "robot2/lidar_link") in {(it.parent, it.child) for it in sent}
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({"joint": "axle"}, "no moving joint wheel_joint"),
+        ({"frame": "mast_link"}, "its description has not: mast_link"),
+    ],
+)
+def test_what_does_not_fit_is_said(changed: dict[str, str], said: str, tmp_path: Path) -> None:
+    outputs, _ = made(tmp_path, "tf-per-robot", **changed)
+    found = [it for it in outputs.findings if it.code == "MF711"]
+    assert [(it.line, said in it.message) for it in found] == [(7, True)]
+
+
+def test_a_real_robot_has_no_model(tmp_path: Path) -> None:
+    _, text = made(tmp_path, "tf-per-robot", joint="axle", more="simulator: none\n")
+    assert "robot1/rover.sdf" not in text
+    assert "create" not in text["commands.md"]
+
+
+def test_a_script_spawns_the_text(tmp_path: Path) -> None:
+    robot = load_fleet(written(tmp_path, "L2")).robot("robot1")
+    option, text = robot.spawn_arguments[2:4]
+    assert option == "-string"
+    assert '<link name="robot1/base_link">' in text
+    assert robot.description.startswith("<robot")
+
+
+def test_two_robots_of_one_model_and_of_none(tmp_path: Path) -> None:
+    path = Path(written(tmp_path, "L2"))
+    text = path.read_text().replace("simulated: rover.sdf.xacro\n", "")
+    text = text.replace("x: 1}}", "x: 1}, simulated: rover.sdf.xacro}")
+    path.write_text(text.replace('arguments: {namespace: "{robot}"}\n', ""))
+    outputs = make_outputs(plan_fleet(read_fleet(str(path), "", {})))
+    lines = b"".join(it.data for it in outputs.files if it.path == "commands.md").decode()
+    assert "-name robot1 -file robot1/rover.sdf" in lines
+    assert "-name robot2 -topic /robot2/robot_description" in lines

@@ -1,0 +1,401 @@
+"""The doctor: silent where nothing is wrong, each seeded fault found with its cause, no plan needed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from fault_changes import Fault, added, nav, shared_tf
+from graph_cases import environment, qos, sent
+from graph_faults import FAULTS
+from graph_faults_page import lines
+from healthy_systems import (
+    CLOCK,
+    SCAN,
+    SYSTEMS,
+    TF,
+    TWIST,
+    nav2_with_tools,
+    plan,
+    simulated,
+    single,
+    started,
+    with_ends,
+    with_node,
+)
+from node_answers import told
+from paths import ROOT
+
+from multibot_rewrite.base.findings.finding import INCONCLUSIVE
+from multibot_rewrite.cli import multibot
+from multibot_rewrite.live.diagnose import diagnose, survey
+from multibot_rewrite.live.seen_plan import seen_plan
+from multibot_rewrite.producers.ros.voices import Voices
+from multibot_rewrite.rules.check import check
+from multibot_rewrite.rules.guess import guess_robots
+from multibot_rewrite.spelling.plan_file import from_yaml, to_yaml
+from multibot_rewrite.system.answers import with_answers
+from multibot_rewrite.system.json import from_json, to_json
+from multibot_rewrite.system.questions import questions
+from multibot_rewrite.system.records import (
+    PUBLISHES,
+    SERVES,
+    SUBSCRIBES,
+    Caveat,
+    Edge,
+    System,
+)
+
+EMPTY = System((), (), (), environment())
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_a_healthy_system_has_no_finding(name: str) -> None:
+    assert [str(it) for it in diagnose(SYSTEMS[name]()).findings] == []
+
+
+@pytest.mark.parametrize("fault", FAULTS, ids=[it.name for it in FAULTS])
+def test_a_fault_is_found_with_its_cause(fault: Fault) -> None:
+    found = diagnose(fault.change(fault.system())).findings
+    said = [str(it) for it in found if (it.code, it.level) == (fault.code, fault.level)]
+    assert any(all(word in line for word in fault.words) for line in said), list(map(str, found))
+    # One fault is not ten findings.
+    assert {it.code for it in found} <= {fault.code, *fault.also}
+
+
+def test_there_are_faults_enough() -> None:
+    assert len(FAULTS) >= 60
+    assert len({it.name for it in FAULTS}) == len(FAULTS)
+
+
+def test_the_page_of_faults_is_that_of_today() -> None:
+    assert (ROOT / "docs" / "graph-faults.md").read_text() == "".join(f"{it}\n" for it in lines())
+
+
+# ---------------------------------------------------------------- whose names
+
+
+@pytest.mark.parametrize(
+    ("system", "names", "layout"),
+    [
+        (lambda: nav2_with_tools("L1"), ["robot1", "robot2"], "tf-per-robot"),
+        (lambda: nav2_with_tools("L2"), ["robot1", "robot2"], "frames-per-robot"),
+        (lambda: nav2_with_tools("L3"), ["robot1", "robot2"], "both"),
+        (lambda: started(("nav2",), "L4"), ["robot1", "robot2"], "postfix"),
+        (SYSTEMS["namespaces of two levels"], ["fleet_a/robot1", "fleet_b/robot1"], "tf-per-robot"),
+        (SYSTEMS["a robot with two arms, no namespaces"], ["left", "right"], ""),
+        (single, [], ""),
+        (lambda: EMPTY, [], ""),
+    ],
+)
+def test_the_robots_and_their_layout(
+    system: Callable[[], System], names: list[str], layout: str
+) -> None:
+    seen = diagnose(system())
+    assert [it.name for it in seen.robots] == names
+    assert (seen.layout.name if seen.layout else "") == layout
+
+
+def test_parts_of_a_robot_are_no_robots() -> None:
+    """Cameras and costmaps have namespaces with topics like a robot's."""
+    graph = single()
+    for part in ("camera_left", "camera_right", "zed_front", "local_costmap"):
+        ends = [(PUBLISHES, f"/{part}/{it}", TWIST) for it in ("odom", "joint_states")]
+        graph = with_node(graph, f"/{part}/node", *ends)
+    assert guess_robots(graph) == ()
+
+
+def test_a_robot_that_has_just_started_is_one_by_its_number() -> None:
+    graph = with_node(nav2_with_tools(), "/robot3/lidar", (PUBLISHES, "/robot3/scan", SCAN))
+    assert [it.name for it in guess_robots(graph)] == ["robot1", "robot2", "robot3"]
+
+
+def test_names_to_which_nobody_listens_are_no_robot() -> None:
+    ends = [(PUBLISHES, f"/robot_2/{it}", TWIST) for it in ("cmd_vel", "odom")]
+    graph = with_node(nav2_with_tools(), "/fleet_manager", *ends)
+    assert [it.name for it in guess_robots(graph)] == ["robot1", "robot2"]
+
+
+def test_the_frames_of_robots_called_otherwise_than_their_namespace() -> None:
+    graph = nav2_with_tools("L1")
+    seen = diagnose(graph)
+    assert seen.whose.robot("/robot1/scan") == "robot1"
+    assert seen.whose.plain("/robot1/scan") == "/scan"
+    assert seen.whose.robot("/fleet_manager") == ""
+
+
+def test_a_name_within_a_word_is_no_robots() -> None:
+    """``/robot11`` is not robot1's, nor is a topic that only contains the letters."""
+    graph = with_node(nav2_with_tools(), "/robot11_scanner", (PUBLISHES, "/myrobot1/scan", SCAN))
+    robot = diagnose(graph).whose.robot
+    assert (robot("/robot11_scanner"), robot("/myrobot1/scan")) == ("", "")
+
+
+# ---------------------------------------------------------------- close to a fault, and none
+
+
+def test_one_robot_may_have_plain_frames_beside_robots_that_have_not() -> None:
+    """The first robot kept its description: nothing meets."""
+    graph = nav2_with_tools("L2")
+    frames = [
+        it._replace(
+            child=it.child.removesuffix("/robot1"), parent=it.parent.removesuffix("/robot1")
+        )
+        for it in graph.edges
+    ]
+    assert diagnose(graph._replace(edges=tuple(frames))).findings == ()
+
+
+def test_two_servers_that_take_turns_are_one_sender() -> None:
+    graph = nav2_with_tools()
+    for node in ("behavior_server", "docking_server"):
+        graph = with_ends(graph, f"/robot1/{node}", (PUBLISHES, "/robot1/cmd_vel", TWIST))
+    assert diagnose(graph).findings == ()
+
+
+def test_a_bag_that_is_played_to_a_viewer_alone_is_what_bags_are_for() -> None:
+    player = with_node(
+        EMPTY, "/rosbag2_player", (PUBLISHES, "/robot1/scan", SCAN), (PUBLISHES, "/tf", TF)
+    )
+    player = with_node(player, "/rviz2", (SUBSCRIBES, "/robot1/scan", SCAN))
+    assert diagnose(player).findings == ()
+
+
+def test_a_command_typed_under_a_wrong_name_is_an_error() -> None:
+    """``ros2 topic pub /cmd_vel``: its node is hidden, and no viewer that sends when it is asked."""
+    graph = with_node(nav2_with_tools(), "/_ros2cli_4711", (PUBLISHES, "/cmd_vel", TWIST))
+    found = diagnose(graph).findings
+    assert [(it.node, it.level) for it in found] == [("/_ros2cli_4711", "error")]
+    assert "/robot1/cmd_vel" in str(found[0])
+
+
+def test_tools_on_another_clock_are_none_of_a_robot() -> None:
+    graph = with_ends(simulated("robot1"), "/rosbag2_recorder", (SUBSCRIBES, "/clock", CLOCK))
+    assert diagnose(graph).findings == ()
+
+
+def test_a_dock_that_no_robot_owns_may_be_on_a_shared_tf() -> None:
+    graph = nav2_with_tools("L2")
+    dock = Edge("dock", "map", "/tf_static", True, ())
+    assert diagnose(sent(graph._replace(edges=(*graph.edges, dock)))).findings == ()
+
+
+def test_what_is_not_seen_may_be_missing_only_in_the_view() -> None:
+    fault = next(it for it in FAULTS if it.code == "MG501")
+    graph = fault.change(fault.system())
+    doubt = Caveat("not-settled", True, "still changing")
+    partial = graph._replace(environment=graph.environment._replace(caveats=(doubt,)))
+    assert {it.level for it in diagnose(partial).findings} == {INCONCLUSIVE}
+
+
+def second_lidar(graph: System) -> System:
+    """A second lidar with another QoS: the reader gets the scans of one."""
+    graph = added("/robot1/rear_lidar", (PUBLISHES, "/robot1/scan", SCAN))(graph)
+    weak, strong = qos(reliability="BEST_EFFORT"), qos(reliability="RELIABLE")
+    ends = (
+        it._replace(qos=weak if it.node == "/robot1/rear_lidar" else strong)
+        if it.name == "/robot1/scan"
+        else it
+        for it in graph.ends
+    )
+    return graph._replace(ends=tuple(reversed(tuple(ends))))
+
+
+def test_a_reader_that_hears_one_of_two_publishers_is_warned() -> None:
+    found = diagnose(second_lidar(nav2_with_tools())).findings
+    assert {(it.code, it.level) for it in found} == {("MG307", "warning")}
+    assert all("no message of /robot1/rear_lidar ever arrives" in it.hint for it in found)
+
+
+# ---------------------------------------------------------------- the plan of what is seen
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_the_plan_of_what_is_seen_is_fulfilled_by_it(name: str) -> None:
+    graph = SYSTEMS[name]()
+    written = to_yaml(seen_plan(diagnose(graph)))
+    read = from_yaml(written.encode(), "plan.yaml")
+    # A frame of a sensor that no description has, and one robot's frames in a plan without.
+    assert [str(it) for it in check(read, graph) if it.level == "error"] == []
+
+
+def test_the_layout_and_tf_topics_are_told() -> None:
+    said = list(survey(diagnose(nav2_with_tools("L1"))))
+    assert said[0] == "2 robots by their namespaces: robot1, robot2"
+    assert "tf-per-robot (L1" in said[1]
+    assert "tf on /robot1/tf: 3 nodes of robot1" in said
+
+
+# ---------------------------------------------------------------- the command
+
+
+def saved(folder: Path, graph: System) -> str:
+    (folder / "graph.json").write_bytes(to_json(graph))
+    return str(folder / "graph.json")
+
+
+def faulty(code: str, level: str = "error") -> System:
+    fault = next(it for it in FAULTS if (it.code, it.level) == (code, level))
+    return fault.change(fault.system())
+
+
+def test_a_healthy_system_ends_with_0(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert multibot.main(["check", "--snapshot", saved(tmp_path, nav())]) == 0
+    out, err = capsys.readouterr()
+    assert out == "" and err.endswith("multibot: 0 findings: nothing wrong seen\n")
+
+
+@pytest.mark.parametrize(
+    ("graph", "more", "code"),
+    [
+        (faulty("MG402"), [], 1),
+        (faulty("MG312", "warning"), [], 0),
+        (faulty("MG312", "warning"), ["--fail-on", "warning"], 1),
+        (faulty("MG402"), ["--ignore", "MG402"], 0),
+        (faulty("MG402"), ["--select", "MG3"], 0),
+    ],
+)
+def test_the_exit_code(graph: System, more: list[str], code: int, tmp_path: Path) -> None:
+    assert multibot.main(["check", "--snapshot", saved(tmp_path, graph), *more]) == code
+
+
+def test_an_incomplete_view_is_inconclusive(tmp_path: Path) -> None:
+    doubt = Caveat("not-settled", True, "still changing")
+    graph = nav()._replace(environment=environment(doubt))
+    assert multibot.main(["check", "--snapshot", saved(tmp_path, graph)]) == 3
+
+
+def test_a_graph_without_robots_is_inconclusive(tmp_path: Path) -> None:
+    graph = with_node(EMPTY, "/_ros2cli_4711")
+    assert multibot.main(["check", "--snapshot", saved(tmp_path, graph)]) == 3
+    assert multibot.main(["check", "--snapshot", saved(tmp_path, EMPTY)]) == 3
+
+
+def test_the_page(tmp_path: Path) -> None:
+    graph, page = saved(tmp_path, faulty("MG402")), tmp_path / "page.html"
+    given = ["--report", str(page), "-q"]
+    assert multibot.main(["check", "--snapshot", graph, *given]) == 1
+    assert "MG402" in page.read_text()
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_what_is_suggested_is_taken(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    graph, folder = saved(tmp_path, SYSTEMS[name]()), tmp_path / "first"
+    assert multibot.main(["check", "--snapshot", graph, "--suggest", str(folder)]) == 0
+    assert multibot.main(["check", str(folder / "plan.yaml"), "--snapshot", graph]) == 0
+    fleet, planned = str(folder / "fleet.yaml"), str(tmp_path / "plan.yaml")
+    assert multibot.main(["plan", fleet, "-o", planned]) == 0, capsys.readouterr().err
+
+
+def test_what_separates_a_robots_word_from_frames_is_suggested(tmp_path: Path) -> None:
+    """`robot1_base_link`, where a fleet file has `robot1/base_link` by itself."""
+
+    def spelled(name: str) -> str:
+        plain, _, robot = name.rpartition("/")
+        return f"{robot}_{plain}" if plain else name
+
+    graph = shared_tf()
+    frames = (it._replace(child=spelled(it.child), parent=spelled(it.parent)) for it in graph.edges)
+    graph, folder = graph._replace(edges=tuple(frames)), tmp_path / "first"
+    given = ["check", "--snapshot", saved(tmp_path, graph), "--suggest", str(folder)]
+    assert multibot.main(given) == 0
+    planned = str(tmp_path / "plan.yaml")
+    assert multibot.main(["plan", str(folder / "fleet.yaml"), "-o", planned]) == 0
+    robot, _ = from_yaml(Path(planned).read_bytes(), planned).robots
+    assert "robot1_base_link" in robot.frames
+
+
+def test_a_suggestion_replaces_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "fleet.yaml").write_text("mine")
+    given = ["--snapshot", saved(tmp_path, nav()), "--suggest", str(tmp_path)]
+    assert multibot.main(["check", *given]) == 2
+    assert "fleet.yaml is there already" in capsys.readouterr().err
+    assert (tmp_path / "fleet.yaml").read_text() == "mine"
+
+
+def test_a_plan_of_the_same_fleet_is_not_needed() -> None:
+    """What the doctor calls healthy is so by its plan, too: only tools are not planned."""
+    found = check(plan(("nav2",), "L1"), nav())
+    assert {it.code for it in found} <= {"MG108"}
+
+
+# ---------------------------------------------------------------- states
+
+
+def test_whom_to_ask() -> None:
+    """Of two nodes with one name either may answer: none of them is asked."""
+    managed, plain = "lifecycle_msgs/srv/GetState", "rcl_interfaces/srv/GetParameters"
+    ends = ((SERVES, "/robot1/amcl/get_state", managed), (SERVES, "/elsewhere/get_state", managed))
+    graph = with_node(EMPTY, "/robot1/amcl", *ends)
+    wanted = {("/robot1/amcl/get_state", managed), ("/robot1/amcl/get_parameters", plain)}
+    assert {(it.service, it.type) for it in questions(graph)} == wanted
+    assert list(questions(graph._replace(nodes=(*graph.nodes, *graph.nodes)))) == []
+
+
+def test_a_healthy_robot_by_its_states() -> None:
+    """Inactive controllers beside an active one, the same ones in another robot, tools."""
+    own = (("arm", "active", ("j1/position",)), ("spare", "inactive", ()))
+    states = (
+        told("/robot1/amcl", "active", True),
+        told("/robot1/controller_manager", "", True, own),
+        told("/robot2/controller_manager", "", True, own),
+        told("/robot1/rviz2", "", False),
+    )
+    graph = nav()
+    for state in states:
+        graph = with_node(graph, state.node)
+    assert diagnose(with_answers(graph, states)).findings == ()
+
+
+def test_nobody_manages_it_so_it_may_be_meant() -> None:
+    camera, amcl = (
+        told("/robot1/camera", "unconfigured"),
+        told("/robot1/amcl", "inactive"),
+    )
+    (found,) = diagnose(with_answers(with_node(nav(), camera.node), [camera])).findings
+    assert (found.code, found.level) == ("MG511", "warning")
+    (found,) = diagnose(with_answers(nav(), [amcl])).findings
+    assert (found.code, found.level) == ("MG511", "error")
+    assert "/robot1/lifecycle_manager_localization" in found.hint
+
+
+@pytest.mark.parametrize("more", [["--zenoh", "tcp/localhost:7447"], ["--snapshot", "g"]])
+def test_states_are_of_the_live_graph(more: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert multibot.main(["check", "--state", *more]) == 2
+    assert "--state asks nodes of the live graph" in capsys.readouterr().err
+
+
+# ---------------------------------------------------------------- several senders
+
+
+@pytest.mark.parametrize(
+    ("marks", "latched", "several"),
+    [
+        ([1, 2, 3, 7, 8], False, False),
+        ([1500, 30, 1501, 31, 1502], False, True),
+        ([5, 5, 6, 6], False, True),
+        # Started anew, once.
+        ([90, 91, 1, 2, 3], False, False),
+        ([1, 1], True, True),
+        ([1, 2], True, False),
+        ([b"a", b"a", b"a"], False, False),
+        ([b"a", b"b", b"a", b"b"], False, True),
+        ([None, None, None], False, False),
+    ],
+)
+def test_the_numbers_of_messages_tell_several_senders(
+    marks: list[int | bytes | None], latched: bool, several: bool
+) -> None:
+    heard = Voices()
+    for mark in marks:
+        heard = heard.after(mark)
+    assert heard.several(latched) is several
+
+
+def test_whether_several_send_a_transform_is_kept_in_a_file() -> None:
+    frame = Edge("base_link", "odom", "/tf", False, ("/ekf", "/driver"), True)
+    graph = EMPTY._replace(edges=(frame, frame._replace(child="laser", several=False)))
+    assert from_json(to_json(graph), "graph.json") == graph

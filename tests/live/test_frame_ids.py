@@ -1,0 +1,268 @@
+"""Frames that headers of messages name: who is told what, and what is healthy."""
+
+from __future__ import annotations
+
+import struct
+from pathlib import Path
+
+import pytest
+from fault_changes import nav, shared_tf
+from graph_examples import read_example, read_system
+from healthy_systems import SYSTEMS, plan
+from node_answers import told
+
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.cli import multibot
+from multibot_rewrite.live.diagnose import diagnose
+from multibot_rewrite.producers.ros.headers import HeaderSamples, sensor_topics
+from multibot_rewrite.producers.zenoh.cdr import read_header_frame
+from multibot_rewrite.rules.check import check, judge
+from multibot_rewrite.rules.index import index
+from multibot_rewrite.rules.ownership import Whose
+from multibot_rewrite.system.answers import with_answers
+from multibot_rewrite.system.json import from_json, to_json
+from multibot_rewrite.system.merging import Look, merged
+from multibot_rewrite.system.records import (
+    PUBLISHES,
+    TOPIC,
+    End,
+    Heard,
+    Node,
+    System,
+    answering,
+    clocks,
+)
+
+SCAN, JOINTS = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/JointState"
+TWO_ROBOTS = """\
+running: transform map -> robot1/odom on /tf
+running: transform robot1/odom -> robot1/camera_link on /tf
+running: transform map -> robot2/odom on /tf
+running: transform robot2/odom -> robot2/camera_link on /tf
+running: /robot1/camera publishes /robot1/image sensor_msgs/msg/Image
+running: /robot1/camera publishes /robot1/camera_info sensor_msgs/msg/CameraInfo
+running: /robot1/planner publishes /robot1/goal geometry_msgs/msg/PoseStamped
+"""
+
+
+def serialized(frame: str, mark: bytes = b"\x00\x01", rest: bytes = b"\x00" * 9) -> bytes:
+    """A message as DDS has it: encapsulation, stamp, text with its length and a zero, the rest."""
+    order = "<" if mark == b"\x00\x01" else ">"
+    text = frame.encode() + b"\x00"
+    return mark + b"\x00\x00" + struct.pack(f"{order}iII", 7, 8, len(text)) + text + rest
+
+
+def found(*lines: str) -> list[Finding]:
+    return judge(read_system(TWO_ROBOTS + "".join(f"running: {it}\n" for it in lines)))
+
+
+def heard(graph: System, topic: str, frame: str) -> System:
+    return graph._replace(heard=(Heard(topic, frame),))
+
+
+def codes(text: str, topic: str, frame: str) -> list[str]:
+    """Of an example in which a message on ``topic`` names ``frame``."""
+    seen = read_system(text)
+    return [it.code for it in judge(index(heard(seen.system, topic, frame), Whose(*seen[1:6])))]
+
+
+def test_a_camera_has_several_topics_and_one_finding() -> None:
+    (it,) = found(
+        "frame_id camera_link on /robot1/image", "frame_id camera_link on /robot1/camera_info"
+    )
+    assert (it.code, it.level, it.robot, it.node) == ("MG412", ERROR, "robot1", "/robot1/camera")
+    assert "set the frame of /robot1/camera to robot1/camera_link" in it.hint
+    assert "/robot1/camera_info, /robot1/image" in it.message or "/robot1/image, " in it.message
+
+
+def test_another_robots_frame_is_named_with_both() -> None:
+    (it,) = found("frame_id robot2/camera_link on /robot1/image")
+    assert (it.code, it.robot) == ("MG411", "robot1")
+    assert "a frame of robot2; sent by /robot1/camera" in it.message
+
+
+def test_a_name_like_none_is_a_warning() -> None:
+    (it,) = found("frame_id thermal on /robot1/image")
+    assert (it.code, it.level) == ("MG412", WARNING)
+    assert "send a transform for it" in it.hint
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "frame_id robot1/camera_link on /robot1/image",
+        "frame_id /robot1/camera_link on /robot1/image",
+        "frame_id map on /robot1/goal",
+        # A follower's goal is in the frame of the robot in front.
+        "frame_id robot2/camera_link on /robot1/goal",
+        # Nobody publishes it any more.
+        "frame_id camera_link on /robot1/gone",
+    ],
+)
+def test_healthy_headers(line: str) -> None:
+    assert found(line) == []
+
+
+def test_an_empty_frame_and_no_tf_say_nothing() -> None:
+    assert codes(TWO_ROBOTS, "/robot1/image", "") == []
+    without_tf = "".join(it for it in TWO_ROBOTS.splitlines(True) if "transform" not in it)
+    assert codes(without_tf, "/robot1/image", "x") == []
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_systems_whose_headers_are_right(name: str) -> None:
+    """Every sensor topic in a frame of its robot's tree: a leaf, where there is one."""
+    graph = SYSTEMS[name]()
+    seen = diagnose(graph).whose
+    own = {seen.frame_robot(it.child): it.child for it in graph.edges}
+    topics = [it.name for it in sensor_topics(graph.ends)]
+    names = [Heard(it, own.get(seen.robot(it), "")) for it in topics]
+    findings = diagnose(graph._replace(heard=tuple(names))).findings
+    assert [str(it) for it in findings] == []
+
+
+def test_a_robots_tf_topic_is_its_own_whoever_sends_there() -> None:
+    """A relay of all robots sends robot1's tf, as rmw or a bridge does."""
+    text = (
+        "running: /relay publishes /robot1/tf tf2_msgs/msg/TFMessage\n"
+        "running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan\n"
+        "running: transform base_link -> laser on /robot1/tf by /relay\n"
+    )
+    assert codes(text, "/robot1/scan", "laser") == []
+    assert codes(text, "/robot1/scan", "lidar") == ["MG412"]
+
+
+def test_check_says_it_as_well() -> None:
+    """With a plan, whether tf is shared or each robot's own; the topic itself is planned."""
+    bare = heard(shared_tf(), "/robot1/scan", "base_link")
+    assert "MG412" in {it.code for it in check(plan(("nav2",), "L2"), bare)}
+    graph = nav()
+    frames = sorted({it.child for it in graph.edges if "robot1" in it.topic})
+    right = heard(graph, "/robot1/scan", frames[0])
+    assert {it.code for it in check(plan(("nav2",), "L1"), right)} <= {"MG108"}
+    other = heard(graph, "/robot1/scan", "no_such_frame")
+    assert "MG412" in {it.code for it in check(plan(("nav2",), "L1"), other)}
+
+
+def test_with_a_plan_the_example_is_found() -> None:
+    """The topic is as planned, and its header is not."""
+    text = """\
+planned: frames of robot1 on /tf: robot1/base_link, robot1/lidar_link
+running: transform robot1/base_link -> robot1/lidar_link on /tf
+as planned: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan
+running: frame_id lidar_link on /robot1/scan
+"""
+    assert [it.code for it in check(*read_example(text))] == ["MG412"]
+
+
+# ---------------------------------------------------------------- what is received
+
+
+@pytest.mark.parametrize("mark", [b"\x00\x01", b"\x00\x00"])
+def test_the_frame_of_a_serialized_message(mark: bytes) -> None:
+    assert read_header_frame(serialized("robot1/größe", mark)) == "robot1/größe"
+    assert read_header_frame(serialized("", mark)) == ""
+
+
+@pytest.mark.parametrize(
+    "data", [b"", b"\x00\x01", serialized("lidar")[:18], b"\x00\x07" + b"\x00" * 40]
+)
+def test_what_is_no_header_has_no_frame(data: bytes) -> None:
+    assert read_header_frame(data) is None
+
+
+def end(topic: str, type_: str = SCAN, node: str = "/a") -> End:
+    return End(TOPIC, PUBLISHES, topic, type_, "", node, None, "")
+
+
+def test_one_message_of_one_publisher_ends_its_subscription() -> None:
+    callbacks, ended, subscribed = {}, [], []
+
+    def subscribe(topic: str, type_: str, latched: bool, callback: object) -> object:
+        callbacks[topic] = callback
+        subscribed.append(topic)
+        return lambda: ended.append(topic)
+
+    samples = HeaderSamples(subscribe)  # type: ignore[arg-type]
+    ends = [
+        end("/scan"),
+        end("/two"),
+        end("/two", node="/b"),
+        end("/joints", JOINTS),
+        end("/silent"),
+    ]
+    for _ in range(2):
+        samples.update(ends)
+    assert sorted(subscribed) == ["/scan", "/silent", "/two"]
+    for frame in ("x", "y"):
+        callbacks["/two"](serialized(frame))  # type: ignore[operator]
+    callbacks["/scan"](serialized("laser"))  # type: ignore[operator]
+    assert ended == ["/scan"]
+    assert samples.heard() == (("/scan", "laser"), ("/two", "x"), ("/two", "y"))
+    assert samples.keep_waiting(1000) and not samples.keep_waiting(0)
+
+
+# ---------------------------------------------------------------- the file
+
+
+def test_a_snapshot_keeps_what_was_heard_and_answered() -> None:
+    own = (("arm", "active", ("joint1/position",)), ("spare", "inactive", ()))
+    states = (
+        told("/a", "inactive", True, (), (("rate", "5.0"),)),
+        told("/b", "", None, own),
+        told("/c"),
+    )
+    nodes = (*nav().nodes, Node("/a"))
+    graph = with_answers(nav()._replace(nodes=nodes, heard=(Heard("/scan", "/laser"),)), states)
+    assert from_json(to_json(graph), "g") == graph
+    assert graph.nodes[-1].lifecycle == "inactive"
+    assert answering(graph) == {"/a", "/b"}
+    assert not any(it in to_json(nav()) for it in (b'"heard"', b'"parameters"', b'"lifecycle"'))
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ('"heard": 3, ', "heard: expected a list, not 3"),
+        ('"heard": [{"topic": "scan", "frame": ""}], ', "heard[0].topic: expected a full name"),
+        (
+            '"parameters": [{"node": "/a", "name": "rate", "value": 5}], ',
+            "parameters[0].value: expected text",
+        ),
+        ('"controllers": [{"name": "arm"}], ', "controllers[0].manager: missing"),
+    ],
+)
+def test_wrong_records_are_said_with_their_place(text: str, said: str) -> None:
+    data = to_json(nav()).decode().replace('"nodes"', f'{text}"nodes"', 1)
+    with pytest.raises(InputError, match="g: ") as raised:
+        from_json(data.encode(), "g")
+    assert said in str(raised.value)
+
+
+def test_looks_from_two_machines_are_joined() -> None:
+    there = nav()._replace(nodes=(Node("/m"), Node("/n")))
+    first = there._replace(heard=(Heard("/b", "x"), Heard("/a", "x")))
+    second = there._replace(heard=(Heard("/a", "x"), Heard("/a", "y")))
+    first = with_answers(first, [told("/n", sim_time=True), told("/m", "active")])
+    second = with_answers(second, [told("/n", "inactive")])
+    both = merged([Look("1", first), Look("2", second)])
+    assert both.heard == (("/a", "x"), ("/a", "y"), ("/b", "x"))
+    assert [(it.name, it.lifecycle) for it in both.nodes] == [("/m", "active"), ("/n", "inactive")]
+    assert clocks(both) == {"/n": True}
+
+
+def test_the_table_shows_what_was_heard_and_answered(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    states = (
+        told("/m", "", False, (("arm", "active", ()),)),
+        told("/n", "inactive"),
+    )
+    nodes = (*nav().nodes, Node("/n"))
+    graph = with_answers(nav()._replace(nodes=nodes, heard=(Heard("/scan", "laser"),)), states)
+    (tmp_path / "g.json").write_bytes(to_json(graph))
+    assert multibot.main(["snapshot", "--snapshot", str(tmp_path / "g.json")]) == 0
+    lines = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert ["/scan", "laser"] in lines and ["/n", "inactive"] in lines
+    assert ["/m", "false", "arm", "(active)"] in lines

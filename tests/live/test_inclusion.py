@@ -1,0 +1,64 @@
+"""With a plan all is found that is found without one: the same code at the same place, or what the plan
+says is missing there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+from fault_changes import Fault
+from graph_cases import CASES, Case, healthy, read_plan
+from graph_faults import FAULTS
+from graph_faults_page import PLANS
+
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.live.diagnose import diagnose
+from multibot_rewrite.rules.check import check
+from multibot_rewrite.system.records import System
+
+# What a plan has and is not there: what reads it waits for that.
+LACKS = ("MG101", "MG102", "MG109")
+
+
+def hidden(plan: System, graph: System) -> list[str]:
+    """What is found of a graph without its plan, and not with it."""
+    found = check(plan, graph)
+    lost = {*_names_of_missing(plan, graph)} if {it.code for it in found} & {*LACKS} else set()
+    unsaid = (it for it in diagnose(graph).findings if not any(_says(one, it) for one in found))
+    return [str(it) for it in unsaid if lost.isdisjoint(it.names)]
+
+
+def _says(one: Finding, other: Finding) -> bool:
+    """Is it the same, of the same node, name or robot?"""
+    about = [
+        {it.node, *it.names, f"of {it.robot}" if it.robot else ""} - {""} for it in (one, other)
+    ]
+    return one.code == other.code and not about[0].isdisjoint(about[1])
+
+
+def _names_of_missing(plan: System, graph: System) -> Iterator[str]:
+    there = {(it.node, it.kind, it.role, it.name) for it in graph.ends}
+    for it in plan.ends:
+        if (it.node, it.kind, it.role, it.name) not in there:
+            yield it.name
+
+
+@pytest.mark.parametrize(
+    "fault", [it for it in FAULTS if it.system in PLANS], ids=lambda fault: fault.name
+)
+def test_a_seeded_fault_is_not_hidden_by_its_plan(fault: Fault) -> None:
+    assert hidden(PLANS[fault.system](), fault.change(fault.system())) == []
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case.layout}-{case.code}")
+def test_a_broken_fleet_is_not_hidden_by_its_plan(case: Case) -> None:
+    assert hidden(read_plan(case.layout), case.broken(healthy(case.layout))) == []
+
+
+def test_what_nobody_planned_is_found_as_without_a_plan() -> None:
+    """A static transform of a frame of nobody, sent by two nodes with other values."""
+    graph = healthy("frames-per-robot")
+    dock = graph.edges[0]._replace(child="dock", parent="map", several=True, static=True)
+    doubled = graph._replace(edges=(*graph.edges, dock._replace(topic="/tf_static")))
+    assert {it.code for it in diagnose(doubled).findings} == {"MG408"}
+    assert "MG408" in {it.code for it in check(read_plan("frames-per-robot"), doubled)}

@@ -1,0 +1,809 @@
+"""``multibot learn``: what a graph shows becomes facts, and tables of them serve the nodes' code."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterable, Iterator, Sequence
+from functools import cache
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from paths import FIXTURES
+
+from multibot_rewrite.base.model import ProofError, UsageError
+from multibot_rewrite.base.naming import Naming, make_naming
+from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.base.rosnames import bind, expand, resolve_bound
+from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.fleet.fleet import NO_STATE_PUBLISHER
+from multibot_rewrite.knowledge.node_library import NodeLibrary, stack_of
+from multibot_rewrite.knowledge.records import TRANSPORTS, Endpoint, NodeFacts
+from multibot_rewrite.knowledge.stacks import built_in, user_stack
+from multibot_rewrite.live.learning.choosing import choose_nodes, helpers_without_owner, left_out
+from multibot_rewrite.live.learning.learn import LearnedNode, learn
+from multibot_rewrite.live.learning.nodes_file import to_yaml
+from multibot_rewrite.spelling.bridged_topics import TF_TYPE
+from multibot_rewrite.spelling.records import Table
+from multibot_rewrite.spelling.table import build_table, parsed
+from multibot_rewrite.spelling.targets import expanded
+from multibot_rewrite.system.json import to_json
+from multibot_rewrite.system.records import (
+    ACTION,
+    CALLS,
+    PUBLISHES,
+    QUIET,
+    SERVES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+    Caveat,
+    End,
+    Environment,
+    Node,
+    System,
+)
+from multibot_rewrite.system.tool_nodes import is_tool
+
+LAYOUTS = ("L1", "L2", "L3", "L4")
+ROBOTS = ("robot1", "robot2")
+# The parts without the nodes: nobody described these.
+UNKNOWN = NodeLibrary(built_in(NEWEST_LTS).parts, {}, {})
+TEXT, IMAGE, TRIGGER = "std_msgs/msg/String", "sensor_msgs/msg/Image", "std_srvs/srv/Trigger"
+FETCH = "acme_msgs/action/Fetch"
+EVERY_NODE = tuple(end for end in built_in(NEWEST_LTS).parts["every_node"] if end.name != "/clock")
+LIFECYCLE = built_in(NEWEST_LTS).parts["lifecycle"]
+
+
+# Node, kind, role and name.
+Led = tuple[str, str, str, str]
+
+
+# ---------------------------------------------------------------- what a graph shows of a node
+
+
+def environment(*caveats: Caveat) -> Environment:
+    return Environment(0, "LOCALHOST", (), "rmw_fastrtps_cpp", "", False, 4, QUIET, 3.5, caveats)
+
+
+def graph(*nodes: NodeFacts, base: str = "", process: str = "") -> System:
+    """What is seen of nodes that run without any rule below ``base``, in one process or in several."""
+    found = [(node, *placed(node, base)) for node in nodes]
+    seen = [Node(f"{space.rstrip('/')}/{own}", process or node.name) for node, space, own in found]
+    ends = [end for one in found for end in shown(*one)]
+    return System(tuple(seen), tuple(ends), (), environment())
+
+
+def placed(node: NodeFacts, base: str) -> tuple[str, str]:
+    """Namespace and own name."""
+    above, _, own = node.name.rpartition("/")
+    return f"{base}/{above}".rstrip("/") or "/", own
+
+
+def shown(node: NodeFacts, space: str, own: str) -> Iterator[End]:
+    for end in node.endpoints:
+        full = expand(end.name, space, own)
+        for kind, role, name, type_ in parts_of(end._replace(name=full)):
+            yield End(kind, role, name, type_, "", f"{space.rstrip('/')}/{own}", None, "")
+
+
+def parts_of(end: Endpoint) -> Iterator[tuple[str, str, str, str]]:
+    """An endpoint as the middleware has it, and the record of the action."""
+    yield end.kind, end.role, end.name, end.type
+    topic = PUBLISHES if end.role in (SERVES, PUBLISHES) else SUBSCRIBES
+    if end.kind == ACTION:
+        hidden = f"{end.name}/_action"
+        yield SERVICE, end.role, f"{hidden}/send_goal", f"{end.type}_SendGoal"
+        yield SERVICE, end.role, f"{hidden}/get_result", f"{end.type}_GetResult"
+        yield SERVICE, end.role, f"{hidden}/cancel_goal", "action_msgs/srv/CancelGoal"
+        yield TOPIC, topic, f"{hidden}/feedback", f"{end.type}_FeedbackMessage"
+        yield TOPIC, topic, f"{hidden}/status", "action_msgs/msg/GoalStatusArray"
+    if end.transport:
+        for transport in TRANSPORTS:
+            name = f"{end.name}/{transport}"
+            yield TOPIC, topic, name, "sensor_msgs/msg/CompressedImage"
+
+
+def learned(
+    seen: System, *names: str, base: str = "/", library: NodeLibrary = UNKNOWN
+) -> tuple[LearnedNode, ...]:
+    """What is learned, proved to survive the file."""
+    found = learn(seen, choose_nodes(seen, names, base), base, library)
+    assert to_yaml(found, "mine", library)
+    return found
+
+
+def one(seen: System, *names: str, base: str = "/", library: NodeLibrary = UNKNOWN) -> LearnedNode:
+    (found,) = learned(seen, *names, base=base, library=library)
+    return found
+
+
+def node(*ends: Endpoint, name: str = "driver") -> NodeFacts:
+    return NodeFacts(name, "", ends)
+
+
+def publishes(name: str, type_: str = TEXT, **more: object) -> Endpoint:
+    return Endpoint(TOPIC, PUBLISHES, name, type_)._replace(**more)  # type: ignore[arg-type]
+
+
+def subscribes(name: str, type_: str = TEXT) -> Endpoint:
+    return Endpoint(TOPIC, SUBSCRIBES, name, type_)
+
+
+def spelled(found: LearnedNode) -> list[tuple[str, str]]:
+    return [(end.role, end.name) for end in found.own]
+
+
+def with_end(seen: System, *ends: tuple[str, str, str, str, str]) -> System:
+    """With more endpoints: node, kind, role, name, type."""
+    more = tuple(End(k, r, name, type_, "", who, None, "") for who, k, r, name, type_ in ends)
+    return seen._replace(ends=(*seen.ends, *more))
+
+
+# ---------------------------------------------------------------- the tables serve the code
+
+
+def bare(node: NodeFacts) -> NodeFacts:
+    """The node as its code is: without what a launch file makes of it, each graph name said once."""
+    ends = [end._replace(remapped="", fixed="") for end in node.endpoints if "<" not in end.name]
+    inner = {(kind, name) for end in ends for kind, name in list(expanded(end))[1:]}
+    kept = dict.fromkeys(end for end in ends if (end.kind, end.name) not in inner)
+    return node._replace(shared=False, endpoints=tuple(kept))
+
+
+def said(table: Table) -> set[Led]:
+    """Where the table says that names lead."""
+    return {(n.node, n.endpoint.kind, n.endpoint.role, n.name) for n in table.names}
+
+
+def led(nodes: Iterable[NodeFacts], table: Table) -> set[Led]:
+    """Where the graph names of the code lead under the table's rules."""
+    found = set()
+    facts = {node.name: node for node in nodes}
+    for one in (one for one in table.nodes if one.robot):
+        bound = bind(one.name, one.namespace, parsed(one.rules))
+        for end in facts[one.node].endpoints:
+            for kind, name in expanded(end):
+                full = f"{one.namespace.rstrip('/')}/{one.name}"
+                found.add((full, kind, end.role, resolve_bound(name, kind, bound)))
+    return found
+
+
+def assert_served(
+    nodes: Sequence[NodeFacts], base: str, library: NodeLibrary, naming: Naming
+) -> None:
+    """Learned from one robot without rules, the table is that of the facts, and its rules serve."""
+    seen = graph(*nodes, base=base)
+    names = [node.name for node in seen.nodes]
+    found = learned(seen, *names, base=base or "/", library=library)
+    real = build_table(ROBOTS, nodes, naming, release=NEWEST_LTS)
+    table = build_table(ROBOTS, [node.facts for node in found], naming, release=NEWEST_LTS)
+    assert said(table) == said(real)
+    assert led(nodes, table) == led(nodes, real)
+    assert set(table.problems) <= set(real.problems)
+
+
+# It subscribes to `tf` of its namespace; whether its code or a rule has that name cannot be seen.
+BOTH_TREES = "tf_namespace_bridge"
+
+
+@cache
+def stacks() -> dict[str, list[NodeFacts]]:
+    """Every stack and node that is known, as its code is; one stack only leaves a node out."""
+    library = built_in(NEWEST_LTS)
+    names = sorted({*library.stacks, *library.nodes} - {NO_STATE_PUBLISHER, BOTH_TREES})
+    return {name: [bare(node) for node in stack_of(library, name)] for name in names}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("affix", ["postfix", "prefix"])
+@pytest.mark.parametrize("layout", LAYOUTS)
+@pytest.mark.parametrize("base", ["", pytest.param("/old", marks=pytest.mark.deep)])
+def test_every_known_stack_is_learned_as_it_is_described(
+    base: str, layout: str, affix: str
+) -> None:
+    naming = make_naming(layout, affix)
+    for nodes in stacks().values():
+        assert_served(nodes, base, built_in(NEWEST_LTS), naming)
+
+
+# Written without ``~`` below the node's own name, which only who knows the code can tell.
+LITERAL = {"nav2_slam", "nav2_slam_composed", "slam_toolbox"}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("layout", LAYOUTS)
+@pytest.mark.parametrize("base", ["", pytest.param("/old", marks=pytest.mark.deep)])
+def test_every_stack_is_learned_where_nothing_is_known(base: str, layout: str) -> None:
+    for name, nodes in stacks().items():
+        if name not in LITERAL or layout != "L4":
+            # Nor can it be seen that the code of a node places it.
+            seen = [node._replace(apart=False) for node in nodes]
+            assert_served(seen, base, UNKNOWN, make_naming(layout))
+
+
+TOKENS = st.sampled_from(["scan", "cmd_vel", "image", "goal", "tf", "clock", "a1"])
+PATHS = st.lists(TOKENS, min_size=1, max_size=3).map("/".join)
+# A relative name of a shared topic looks as an absolute one does, in the root.
+SHARED = {"tf", "clock"}
+
+
+@st.composite
+def endpoints(draw: st.DrawFn) -> Endpoint:
+    lead = draw(st.sampled_from(["", "/", "~/"]))
+    path = draw(PATHS.filter(lambda path: lead or path not in SHARED))
+    kind = draw(st.sampled_from([TOPIC, SERVICE, ACTION]))
+    role = draw(st.sampled_from([PUBLISHES, SUBSCRIBES] if kind == TOPIC else [SERVES, CALLS]))
+    image = kind == TOPIC and draw(st.booleans())
+    type_ = {TOPIC: IMAGE if image else TEXT, SERVICE: TRIGGER, ACTION: FETCH}[kind]
+    return Endpoint(kind, role, f"{lead}{path}", type_, transport=image and draw(st.booleans()))
+
+
+NAMES = st.sampled_from(["driver", "planner", "lower/costmap", "lower/deep/eye"])
+
+
+@st.composite
+def robots(draw: st.DrawFn) -> list[NodeFacts]:
+    names = draw(st.lists(NAMES, min_size=1, max_size=4, unique=True))
+    ends = st.lists(endpoints(), max_size=6, unique_by=lambda end: (end.role, end.name.strip("~/")))
+    return [bare(NodeFacts(name, "", tuple(draw(ends)))) for name in names]
+
+
+@pytest.mark.slow
+@given(
+    nodes=robots(),
+    base=st.sampled_from(["", "/old", "/fleet/old"]),
+    layout=st.sampled_from(LAYOUTS),
+    affix=st.sampled_from(["postfix", "prefix"]),
+)
+def test_any_robot_is_learned_as_it_is(
+    nodes: list[NodeFacts], base: str, layout: str, affix: str
+) -> None:
+    assert_served(nodes, base, UNKNOWN, make_naming(layout, affix))
+
+
+@pytest.mark.slow
+@given(nodes=robots(), seed=st.integers())
+def test_the_file_does_not_depend_on_the_order_of_the_snapshot(
+    nodes: list[NodeFacts], seed: int
+) -> None:
+    seen = graph(*nodes)
+    mixed = random.Random(seed)
+    other = seen._replace(
+        nodes=tuple(mixed.sample(seen.nodes, len(seen.nodes))),
+        ends=tuple(mixed.sample(seen.ends, len(seen.ends))),
+    )
+    texts = {to_yaml(learned(it), "mine", UNKNOWN) for it in (seen, other)}
+    assert len(texts) == 1
+
+
+# ---------------------------------------------------------------- what cannot be told apart
+
+
+@pytest.mark.parametrize(
+    ("code", "layout", "leads"),
+    [
+        pytest.param("driver/x", "L4", "/driver/x", id="literal in the postfix layout"),
+        pytest.param("/driver/x", "L1", "/driver/x", id="absolute below its own name"),
+    ],
+)
+def test_a_name_below_the_nodes_own_is_taken_for_private(
+    code: str, layout: str, leads: str
+) -> None:
+    """The difference that the page tells: such a name is not moved until the file says it."""
+    own = node(publishes(code))
+    found = one(graph(own))
+    assert spelled(found) == [(PUBLISHES, "~/x")]
+    table = build_table(ROBOTS, [found.facts], make_naming(layout), release=NEWEST_LTS)
+    assert {name for *_, name in led([own], table)} == {leads}
+    written = build_table(
+        ROBOTS, [node(publishes("/driver/x"))], make_naming(layout), release=NEWEST_LTS
+    )
+    assert led([own], written) == said(written)
+
+
+def test_a_relative_shared_topic_in_the_root_is_taken_for_the_shared_one() -> None:
+    own = node(publishes("diagnostics"))
+    assert spelled(one(graph(own))) == [(PUBLISHES, "/diagnostics")]
+    assert spelled(one(graph(own, base="/old"), base="/old")) == [(PUBLISHES, "diagnostics")]
+
+
+def test_tf_is_absolute_wherever_it_was_seen() -> None:
+    own = node(publishes("tf", TF_TYPE), publishes("tf_static", TEXT))
+    found = one(graph(own, base="/old"), base="/old")
+    assert found.parts == ("tf_broadcaster",)
+    assert spelled(found) == [(PUBLISHES, "tf_static")]
+
+
+def test_the_code_of_a_known_node_is_known() -> None:
+    """slam_toolbox says /scan, and slam_toolbox/ before its services, whatever led them where."""
+    own = node(subscribes("scan"), publishes("slam_toolbox/x"), name="slam_toolbox")
+    found = one(graph(own, base="/old"), base="/old", library=built_in(NEWEST_LTS))
+    assert (SUBSCRIBES, "/scan") in spelled(found)
+    known = node(publishes("slam_toolbox/scan_visualization"), name="slam_toolbox")
+    found = one(graph(known), library=built_in(NEWEST_LTS))
+    assert spelled(found) == [(PUBLISHES, "/slam_toolbox/scan_visualization")]
+
+
+# ---------------------------------------------------------------- spelling
+
+
+def test_in_the_root_a_name_gets_the_rule_that_serves_both_ways_to_write_it() -> None:
+    own = node(publishes("odom"), subscribes("/cmd_vel"), publishes("~/state"))
+    found = one(graph(own))
+    assert spelled(found) == [
+        (PUBLISHES, "/odom"), (PUBLISHES, "~/state"), (SUBSCRIBES, "/cmd_vel"),
+    ]  # fmt: skip
+    assert found.facts.note == "seen as /driver"
+
+
+def test_in_the_robots_namespace_names_tell_how_they_are_written() -> None:
+    own = node(publishes("odom"), subscribes("/cmd_vel"), publishes("~/state"))
+    found = one(graph(own, base="/old"), base="/old")
+    assert found.facts.name == "driver"
+    assert spelled(found) == [
+        (PUBLISHES, "odom"), (PUBLISHES, "~/state"), (SUBSCRIBES, "/cmd_vel"),
+    ]  # fmt: skip
+
+
+def test_a_node_in_a_namespace_of_its_own_keeps_it() -> None:
+    costmap = node(publishes("costmap"), subscribes("/scan"), name="local_costmap/local_costmap")
+    for base in ("", "/old"):
+        found = one(graph(costmap, base=base), base=base or "/")
+        assert found.facts.name == "local_costmap/local_costmap"
+        assert spelled(found) == [(PUBLISHES, "costmap"), (SUBSCRIBES, "/scan")]
+
+
+def test_what_the_robot_has_above_a_nodes_namespace_is_absolute() -> None:
+    seen = graph(node(name="local_costmap/local_costmap"), base="/old")
+    who = "/old/local_costmap/local_costmap"
+    seen = with_end(
+        seen,
+        (who, TOPIC, SUBSCRIBES, "/old/scan", TEXT),
+        (who, TOPIC, SUBSCRIBES, "/older/scan", TEXT),
+    )
+    assert spelled(one(seen, base="/old")) == [(SUBSCRIBES, "/older/scan"), (SUBSCRIBES, "/scan")]
+
+
+def test_two_names_with_the_same_name_in_code_become_one() -> None:
+    seen = graph(node(name="eye/camera"), base="/old")
+    who = "/old/eye/camera"
+    seen = with_end(
+        seen, (who, TOPIC, SUBSCRIBES, "/old/x", TEXT), (who, TOPIC, SUBSCRIBES, "/x", IMAGE)
+    )
+    (end,) = one(seen, base="/old").own
+    assert (end.name, end.type, end.also) == ("/x", IMAGE, (TEXT,))
+    assert end.note == "also seen as /x"
+
+
+# ---------------------------------------------------------------- what is one thing
+
+
+@pytest.mark.parametrize("role", [SERVES, CALLS])
+def test_five_parts_are_an_action(role: str) -> None:
+    own = node(Endpoint(ACTION, role, "fetch", FETCH), Endpoint(ACTION, role, "~/near", FETCH))
+    found = one(graph(own))
+    assert spelled(found) == [(role, "/fetch"), (role, "~/near")]
+    assert {(end.kind, end.type) for end in found.own} == {(ACTION, FETCH)}
+
+
+def test_an_action_is_known_by_its_parts_and_by_its_record_alone() -> None:
+    whole = graph(node(Endpoint(ACTION, SERVES, "fetch", FETCH)))
+    parts = whole._replace(ends=tuple(e for e in whole.ends if e.kind != ACTION))
+    record = whole._replace(ends=tuple(e for e in whole.ends if e.kind == ACTION))
+    for seen in (parts, record):
+        assert [(end.kind, end.name, end.type) for end in one(seen).own] == [
+            (ACTION, "/fetch", FETCH)
+        ]
+
+
+def test_who_listens_to_an_action_is_no_client_of_it() -> None:
+    """rcl lists everybody who subscribes to the feedback among the clients."""
+    whole = graph(node(Endpoint(ACTION, CALLS, "fetch", FETCH)))
+    seen = whole._replace(ends=tuple(e for e in whole.ends if e.kind != SERVICE))
+    found = one(seen)
+    assert [(end.kind, end.name) for end in found.own] == [
+        (TOPIC, "/fetch/_action/feedback"), (TOPIC, "/fetch/_action/status"),
+    ]  # fmt: skip
+
+
+def test_server_and_client_of_one_action_are_two() -> None:
+    own = node(Endpoint(ACTION, SERVES, "fetch", FETCH), Endpoint(ACTION, CALLS, "fetch", FETCH))
+    assert spelled(one(graph(own))) == [(SERVES, "/fetch"), (CALLS, "/fetch")]
+
+
+def test_an_action_and_a_service_of_one_name_become_one() -> None:
+    own = node(
+        Endpoint(ACTION, SERVES, "fetch", FETCH), Endpoint(SERVICE, SERVES, "fetch", TRIGGER)
+    )
+    (end,) = one(graph(own)).own
+    assert (end.kind, end.note) == (ACTION, "there is a service with this name too")
+
+
+def test_an_image_brings_its_transports() -> None:
+    own = node(publishes("~/image", IMAGE, transport=True), publishes("image", IMAGE))
+    plain, image = one(graph(own)).own
+    assert (plain.name, plain.transport) == ("/image", False)
+    assert (image.name, image.transport) == ("~/image", True)
+
+
+def test_only_an_image_has_transports() -> None:
+    own = node(publishes("cloud"), publishes("cloud/zstd"), publishes("x/compressed", IMAGE))
+    names = [name for _, name in spelled(one(graph(own)))]
+    assert names == ["/cloud", "/cloud/zstd", "/x/compressed"]
+
+
+def test_a_transport_without_a_rule_of_its_own_stays() -> None:
+    """A table makes rules for TRANSPORTS: what it does not know would be lost."""
+    own = node(publishes("image", IMAGE, transport=True), publishes("image/ffmpeg"))
+    assert [name for _, name in spelled(one(graph(own)))] == ["/image", "/image/ffmpeg"]
+
+
+def test_what_every_node_has_is_a_part_where_it_is_whole() -> None:
+    clock = Endpoint(TOPIC, SUBSCRIBES, "/clock", "rosgraph_msgs/msg/Clock")
+    description = Endpoint(
+        SERVICE, SERVES, "~/get_type_description", "type_description_interfaces/srv/X"
+    )
+    found = one(graph(node(*EVERY_NODE, clock, description, publishes("x"))))
+    assert (found.parts, spelled(found)) == (("every_node",), [(PUBLISHES, "/x")])
+    # rclpy does not listen to /parameter_events.
+    some = [end for end in EVERY_NODE if end.role != SUBSCRIBES]
+    found = one(graph(node(*some, clock, description, publishes("x"))))
+    assert (found.parts, spelled(found)) == ((), [(PUBLISHES, "/x"), (SUBSCRIBES, "/clock")])
+    assert found.own[1].when == "run: simulated"
+
+
+@pytest.mark.parametrize("base", ["", pytest.param("/old", marks=pytest.mark.deep)])
+@pytest.mark.parametrize(
+    "part", ["lifecycle", "bond", "tf_listener", "tf_broadcaster", "diagnostics", "tf_buffer"]
+)
+def test_a_part_that_is_whole_is_named(part: str, base: str) -> None:
+    whole = built_in(NEWEST_LTS).parts[part]
+    found = one(graph(node(*whole), base=base), base=base or "/")
+    assert (found.parts, found.own) == ((part,), ())
+    assert found.facts.endpoints == whole
+
+
+def test_in_a_namespace_an_absolute_name_is_not_a_parts_relative_one() -> None:
+    bond = [end._replace(name="/bond") for end in built_in(NEWEST_LTS).parts["bond"]]
+    assert one(graph(node(*bond))).parts == ("bond",)
+    assert one(graph(node(*bond), base="/old"), base="/old").parts == ()
+
+
+def test_a_part_that_is_not_whole_or_of_another_type_is_written_out() -> None:
+    found = one(graph(node(*LIFECYCLE[1:], publishes("bond"), subscribes("bond"))))
+    assert found.parts == ()
+    assert len(found.own) == len(LIFECYCLE) + 1
+
+
+def test_types_that_are_none_or_many() -> None:
+    seen = with_end(
+        graph(node(publishes("two"))),
+        ("/driver", TOPIC, PUBLISHES, "/two", IMAGE),
+        ("/driver", TOPIC, PUBLISHES, "/none", ""),
+        ("/driver", TOPIC, PUBLISHES, "/odd", "std_msgs/String"),
+        ("/driver", SERVICE, CALLS, "/wrong", TEXT),
+    )
+    found = {end.name: (end.type, end.also) for end in one(seen).own}
+    assert found == {
+        "/two": (IMAGE, (TEXT,)), "/none": ("", ()), "/odd": ("", ()), "/wrong": ("", ()),
+    }  # fmt: skip
+
+
+# ---------------------------------------------------------------- helper nodes
+
+LISTENER = NodeFacts(
+    "transform_listener_impl_55d0c0ffee",
+    "",
+    (*built_in(NEWEST_LTS).parts["tf_listener"], *EVERY_NODE),
+)
+
+
+def test_a_helper_in_the_process_of_one_node_is_that_nodes() -> None:
+    found = one(graph(node(publishes("x")), LISTENER, process="p"))
+    assert found.parts == ("tf_helper",)
+    assert {end.name for end in found.facts.endpoints if end.helper} == {"/tf", "/tf_static"}
+    assert found.remarks == ()
+
+
+def test_a_helper_of_several_nodes_is_added_to_each_with_a_remark() -> None:
+    seen = graph(node(name="one"), node(name="two"), LISTENER, process="p")
+    for found in (*learned(seen), one(seen, "/one")):
+        assert found.parts == ("tf_helper",)
+        bare, remark = found.remarks
+        assert bare == "only its name is seen, no endpoints"
+        assert (
+            "each gets the endpoints of the helper nodes there: /transform_listener_impl_55d0c0ffee"
+            in remark
+        )
+
+
+def test_a_helper_of_another_process_is_not_taken() -> None:
+    seen = graph(node(publishes("x")), LISTENER)
+    assert one(seen).parts == ()
+    assert helpers_without_owner(seen, ["/driver"]) == ("/transform_listener_impl_55d0c0ffee",)
+    assert helpers_without_owner(graph(node(), LISTENER, process="p"), ["/driver"]) == ()
+
+
+def test_what_a_node_asks_for_itself_is_not_its_helpers() -> None:
+    seen = graph(node(*built_in(NEWEST_LTS).parts["tf_listener"]), LISTENER, process="p")
+    found = one(seen)
+    assert found.parts == ("tf_listener",)
+    assert not any(end.helper for end in found.facts.endpoints)
+
+
+def test_a_helper_that_is_named_is_a_node() -> None:
+    seen = graph(node(), LISTENER, process="p")
+    driver, helper = learned(seen, "/driver", "/transform_listener_impl_55d0c0ffee")
+    assert driver.facts.endpoints == ()
+    assert helper.parts == ("tf_listener", "every_node")
+
+
+def test_a_hidden_node_has_no_helper() -> None:
+    found = one(graph(node(publishes("x")), node(name="_hidden"), LISTENER, process="p"))
+    assert (found.parts, found.remarks) == (("tf_helper",), ())
+
+
+def test_half_a_listener_is_written_out_as_a_helpers() -> None:
+    half = LISTENER._replace(endpoints=(subscribes("/tf", TF_TYPE),))
+    (end,) = one(graph(node(), half, process="p")).own
+    assert (end.name, end.helper) == ("/tf", True)
+    assert end.note == "asked for by transform_listener_impl_<address>"
+
+
+# ---------------------------------------------------------------- which nodes
+
+
+def test_all_nodes_but_tools_are_learned() -> None:
+    tools = ("_ros2cli_7", "launch_ros_12", "rqt_gui_py_node_3", "rviz2", "rosbag2_recorder")
+    seen = graph(*(node(name=name) for name in ("b", "a", *tools, "foxglove_bridge")), LISTENER)
+    assert choose_nodes(seen, (), "/") == ("/a", "/b")
+    assert choose_nodes(seen, ("/rviz2",), "/") == ("/rviz2",)
+
+
+# What people run beside a robot: no part of it, whatever namespace it runs in.
+BESIDE = [
+    "rosbridge_websocket", "rosapi", "tf2_echo", "teleop_twist_keyboard", "joy_node", "gazebo",
+    "ros_gz_bridge", "spawner_arm_controller", "static_transform_publisher_x7", "my_container",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("tool", BESIDE)
+def test_what_the_check_ignores_is_not_learned_unless_asked_for_by_name(tool: str) -> None:
+    seen = graph(node(name="driver"), node(name=f"r1/{tool}"))
+    assert is_tool(f"/r1/{tool}")
+    assert choose_nodes(seen, (), "/") == ("/driver",)
+    assert choose_nodes(seen, (f"/r1/{tool}",), "/") == (f"/r1/{tool}",)
+
+
+@pytest.mark.parametrize("name", ["driver", "joint_state_broadcaster", "gazer", "bridge_driver"])
+def test_nodes_of_a_robot_are_no_tools(name: str) -> None:
+    assert not is_tool(f"/r1/{name}")
+
+
+def test_tools_that_may_be_a_robots_are_named() -> None:
+    """Not the hidden ones, launch and tf listeners: nobody plans those."""
+    names = ("driver", "can_bridge", "joy_node", "_ros2cli_7", "launch_ros_12")
+    seen = graph(*(node(name=name) for name in names), LISTENER)
+    assert left_out(seen, ["/driver"], "/") == ("/can_bridge", "/joy_node")
+    assert left_out(seen, ["/driver", "/joy_node"], "/") == ("/can_bridge",)
+
+
+def test_all_nodes_of_a_namespace_are_learned() -> None:
+    seen = graph(node(name="r1/a"), node(name="r1/eye/b"), node(name="r11/c"), node(name="r1"))
+    for namespace in ("/r1", "/r1/"):
+        assert choose_nodes(seen, (), namespace) == ("/r1/a", "/r1/eye/b")
+
+
+@pytest.mark.parametrize(
+    ("names", "namespace", "said"),
+    [
+        (["/drivr"], "/", "/drivr: no node has this name; running are /driver"),
+        (["/zzz"], "/", "/zzz: no node has this name; running are /driver, /r1/planner"),
+        (["/driver"], "/r1", "/driver: the node is not below --namespace /r1"),
+        ([], "/r2", "there is no node to learn below /r2; running are"),
+        ([], "/r 2", "namespace '/r 2': character 3, ' ', is not a letter"),
+        (["/twin"], "/", "/twin: 2 nodes have this name; stop all but one"),
+        ([], "/", "/twin: 2 nodes have this name"),
+    ],
+)
+def test_nodes_that_cannot_be_learned(names: list[str], namespace: str, said: str) -> None:
+    seen = graph(*(node(name=name) for name in ("driver", "r1/planner", "twin", "twin")))
+    with pytest.raises(UsageError) as caught:
+        choose_nodes(seen, names, namespace)
+    assert said in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("end", "said"),
+    [
+        ((TOPIC, PUBLISHES, "/a b", TEXT), "topic name '/a b' in the graph: character 3"),
+        (
+            (SERVICE, PUBLISHES, "/x", TRIGGER),
+            "/driver publishes the service /x, which is not possible",
+        ),
+        ((TOPIC, SERVES, "/x", TEXT), "/driver serves the topic /x, which is not possible"),
+    ],
+)
+def test_an_endpoint_that_no_node_can_have(end: tuple[str, str, str, str], said: str) -> None:
+    seen = with_end(graph(node()), ("/driver", *end))
+    with pytest.raises(UsageError) as caught:
+        learn(seen, ["/driver"], "/", UNKNOWN)
+    assert said in str(caught.value)
+
+
+def test_a_known_node_is_compared() -> None:
+    (amcl,) = stacks()["amcl"]
+    found = one(graph(amcl), library=built_in(NEWEST_LTS))
+    assert found.remarks == ("known as amcl of nav2_amcl; as described there",)
+    some = tuple(end for end in amcl.endpoints if end.name != "scan")
+    found = one(graph(node(*some, publishes("~/x"), name="amcl")), library=built_in(NEWEST_LTS))
+    (remark,) = found.remarks
+    assert remark.endswith("; additional: publishes ~/x; not seen: subscribes scan")
+
+
+def test_conditions_and_the_clock_are_no_news() -> None:
+    (amcl,) = stacks()["amcl"]
+    always = tuple(end for end in amcl.endpoints if not end.when)
+    assert always != amcl.endpoints
+    clock = subscribes("/clock", "rosgraph_msgs/msg/Clock")
+    found = one(graph(amcl._replace(endpoints=(*always, clock))), library=built_in(NEWEST_LTS))
+    assert found.remarks[0].endswith("as described there")
+
+
+def test_what_is_made_at_run_time_is_no_news() -> None:
+    (costmap,) = stacks()["local_costmap/local_costmap"]
+    more = (publishes("my_layer"), subscribes("/robot/front"))
+    found = one(
+        graph(costmap._replace(endpoints=costmap.endpoints + more)), library=built_in(NEWEST_LTS)
+    )
+    assert found.remarks[0].endswith("as described there")
+
+
+# ---------------------------------------------------------------- the file
+
+
+def test_a_file_that_reads_otherwise_is_not_written() -> None:
+    found = one(graph(node(publishes("x"))))
+    (end,) = found.own
+    for wrong in (end._replace(name="/y"), end._replace(type="no type")):
+        with pytest.raises(ProofError, match="the learned nodes"):
+            to_yaml([found._replace(own=(wrong,))], "mine", UNKNOWN)
+
+
+@pytest.mark.parametrize("name", ["on", "null", "y", "x1e3"])
+def test_words_of_yaml_are_names_like_others(name: str) -> None:
+    found = one(graph(node(publishes(name), publishes(f"~/{name}"), name=name)))
+    assert found.facts.name == name
+    assert to_yaml([found], "no", UNKNOWN)
+
+
+# ---------------------------------------------------------------- the command
+
+
+@pytest.fixture
+def shot(tmp_path: Path) -> Path:
+    """A snapshot of two nodes nobody described, and of a tool."""
+    driver = node(
+        publishes("odom"), subscribes("/cmd_vel"), Endpoint(ACTION, SERVES, "dock", FETCH)
+    )
+    eye = node(publishes("~/image", IMAGE, transport=True), *EVERY_NODE, name="eye")
+    path = tmp_path / "graph.json"
+    path.write_bytes(to_json(graph(driver, eye, node(name="rviz2"))))
+    return path
+
+
+def test_what_is_learned_gives_the_whole_table(
+    shot: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    mine = str(tmp_path / "mine.yaml")
+    assert main(["learn", "--snapshot", str(shot), "--stack", "mine", "-o", mine]) == 0
+    note = "left out as tools: /rviz2; to learn one give its name to --node"
+    said = f"multibot: note: {note}\nmultibot: 2 nodes learned as stack mine (facts of lyrical)\n"
+    assert capsys.readouterr() == ("", said)
+    names = [node.name for node in stack_of(user_stack(mine, NEWEST_LTS), "mine")]
+    assert names == ["driver", "eye"]
+    rover = str(FIXTURES / "robots" / "rover.urdf")
+    fleet = [rover, "robot1", "robot2", "--nodes", mine, "--stack", "mine", "--layout"]
+    assert main(["plan", "--form=table", *fleet, "frames-per-robot"]) == 0
+    out, err = capsys.readouterr()
+    assert err == ""
+    for rule in ("/cmd_vel -> cmd_vel", "/dock/_action/feedback -> dock/_action/feedback"):
+        assert out.count(rule) == len(ROBOTS)
+
+
+def test_one_node_goes_to_standard_output(shot: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["learn", "--snapshot", str(shot), "--node", "/eye", "-o", "-"]) == 0
+    out, err = capsys.readouterr()
+    assert main(["learn", "--snapshot", str(shot), "--node", "/eye"]) == 0
+    assert capsys.readouterr().out == out
+    assert "# Of: /eye\n" in out
+    assert (
+        "nodes:\n  eye:\n    note: seen as /eye\n    with: [every_node]\n    publishes:\n"
+        "      ~/image: {type: sensor_msgs/msg/Image, transport: true}\n\nstacks:\n  learned:\n"
+        "    about: Learned from a running graph\n    nodes:\n      - eye\n"
+    ) in out
+    assert err == "multibot: 1 node learned as stack learned (facts of lyrical)\n"
+
+
+def test_an_incomplete_view_is_written_and_reported(
+    shot: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    seen = graph(node(publishes("odom")))
+    caveat = Caveat("not-settled", True, "it still changed")
+    shot.write_bytes(to_json(seen._replace(environment=environment(caveat))))
+    mine = tmp_path / "mine.yaml"
+    assert main(["learn", "--snapshot", str(shot), "-o", str(mine)]) == 3
+    assert "multibot: incomplete: it still changed\n" in capsys.readouterr().err
+    assert "/odom" in mine.read_text()
+
+
+def test_nodes_of_one_robot_without_its_namespace_get_a_hint(
+    shot: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    hint = "add --namespace /old"
+    shot.write_bytes(to_json(graph(node(), node(name="eye/camera"), base="/old")))
+    for more, hinted in (
+        ([], True),
+        (["--namespace", "/old"], False),
+        (["--namespace", "/"], False),
+    ):
+        assert main(["learn", "--snapshot", str(shot), *more]) == 0
+        assert (hint in capsys.readouterr().err) is hinted
+
+
+def test_helpers_without_a_node_are_reported(
+    shot: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    shot.write_bytes(to_json(graph(node(), LISTENER)))
+    assert main(["learn", "--snapshot", str(shot)]) == 0
+    assert "they are left out: /transform_listener_impl_55d0c0ffee" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--node", "driver"], "'driver' is not a full name, give for example /driver"),
+        (["--node", "/drivr"], "/drivr: no node has this name; running are /driver"),
+        (["--namespace", "old"], "'old' is not a full name"),
+        (["--namespace", "/a-b"], "namespace '/a-b': character 3, '-', is not a letter"),
+        (["--namespace", "/none"], "there is no node to learn below /none"),
+        (["--stack", ""], "'' is not a name of a stack, give one word"),
+        (["--stack", "a\nb"], "is not a name of a stack, give one word"),
+        (["--timeout", "5"], "--timeout and --domain are for the live graph"),
+        (["--domain", "5"], "--timeout and --domain are for the live graph"),
+        (["--node"], "argument --node: expected one argument"),
+        (["--node", "/driver", "/eye"], "unexpected /eye; a list is written A,B"),
+        (["-o", "/dev/null/mine.yaml"], "/dev/null is a file, not a folder"),
+    ],
+)
+def test_wrong_use_is_one_line(
+    shot: Path, words: list[str], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    try:
+        code: object = main(["learn", "--snapshot", str(shot), *words])
+    except SystemExit as end:
+        code = end.code
+    out, err = capsys.readouterr()
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert said in err
+
+
+def test_the_snapshot_is_never_written_over(shot: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    before = shot.read_bytes()
+    assert main(["learn", "--snapshot", str(shot), "-o", str(shot)]) == 2
+    assert "is a file that is read" in capsys.readouterr().err
+    assert shot.read_bytes() == before
+
+
+@pytest.mark.parametrize("data", [b"", b"{}", b"[1]", b'{"schema": 1}', b"\xff"])
+def test_what_is_no_snapshot_is_one_line(
+    shot: Path, data: bytes, capsys: pytest.CaptureFixture[str]
+) -> None:
+    shot.write_bytes(data)
+    assert main(["learn", "--snapshot", str(shot)]) == 2
+    out, err = capsys.readouterr()
+    assert (out, err.count("\n")) == ("", 1)
+    assert err.startswith(f"multibot: {shot}")

@@ -1,0 +1,281 @@
+"""``multibot plan`` and ``multibot check``: the plan is a file, a snapshot is held against it."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+from graph_cases import as_planned as planned_graph
+from graph_cases import environment, moved, without_node
+from paths import FIXTURES
+from plans import optional, places
+
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.spelling.plan_file import from_yaml, read_plan, to_yaml
+from multibot_rewrite.system.json import to_json
+from multibot_rewrite.system.records import Caveat, System
+
+ROVER = str(FIXTURES / "robots" / "rover.urdf")
+FLEET = (ROVER, "robot1", "robot2", "--stack", "nav2,robot_state", "--layout", "both")
+
+
+@pytest.fixture(scope="module")
+def nav2_plan(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    """The plan of two rovers with Nav2."""
+    path = tmp_path_factory.mktemp("plan") / "plan.yaml"
+    assert main(["plan", *FLEET, "-o", str(path)]) == 0
+    return path.read_bytes()
+
+
+@pytest.fixture
+def plan(tmp_path: Path, nav2_plan: bytes) -> Path:
+    """The same as a file that a test may edit."""
+    path = tmp_path / "plan.yaml"
+    path.write_bytes(nav2_plan)
+    return path
+
+
+def as_planned(plan: Path) -> System:
+    """A graph that is the plan; of tf nothing was heard."""
+    return planned_graph(from_yaml(plan.read_bytes(), "plan"))._replace(edges=())
+
+
+def held(plan: Path, graph: System, capture: pytest.CaptureFixture[str]) -> tuple[int, str, str]:
+    """Exit code, output and messages of a check."""
+    path = plan.with_name("graph.json")
+    path.write_bytes(to_json(graph))
+    capture.readouterr()
+    code = main(["check", str(plan), "--snapshot", str(path)])
+    return code, *capture.readouterr()
+
+
+def test_a_plan_is_read_back_as_it_was_written(plan: Path) -> None:
+    wanted = from_yaml(plan.read_bytes(), "plan")
+    assert to_yaml(wanted).encode() == plan.read_bytes()
+    assert [robot.name for robot in wanted.robots] == ["robot1", "robot2"]
+    assert len(wanted.ends) > 200
+    assert "base_link/robot1" in wanted.robots[0].frames
+
+
+def test_a_plan_in_json_is_the_same_plan(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    written = plan.with_name("plan.json")
+    assert main(["plan", *FLEET, "-o", str(written)]) == 0
+    kept = json.loads(written.read_text())
+    assert set(kept["robots"]) == {"robot1", "robot2"}
+    assert read_plan(written.read_bytes(), "plan") == from_yaml(plan.read_bytes(), "plan")
+    assert held(written, as_planned(plan), capsys)[:2] == (0, "")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("{", "{{", "plan.json:1:2: not valid JSON: "),
+        ('"layout"', '"layoot"', "plan.json: the plan: key 'layout' is missing"),
+        ('["publishes"', '["sends"', "robots.robot1.nodes."),
+        ('"/robot1/tf"', '"tf"', "'tf' is not a full name; write it with a / in front"),
+        ('"robots": {', '"robots": [{', "not valid JSON"),
+        ("ros", "ros\xff", "not valid JSON"),
+    ],
+)
+def test_a_wrong_plan_in_json_is_one_line(
+    plan: Path, old: str, new: str, words: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    written = plan.with_name("plan.json")
+    assert main(["plan", *FLEET, "-o", str(written)]) == 0
+    text = written.read_text()
+    assert old in text
+    written.write_bytes(text.replace(old, new, 1).encode("latin-1"))
+    code, _, err = held(written, as_planned(plan), capsys)
+    assert (code, err.count("\n")) == (2, 1)
+    assert words in err
+
+
+def test_a_fleet_as_planned(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    code, out, err = held(plan, as_planned(plan), capsys)
+    assert (code, out) == (0, "")
+    assert err == "multibot: 2 robots, 0 findings: as planned (facts of lyrical)\n"
+
+
+def test_why_cmd_vel_never_comes(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    graph = moved(as_planned(plan), "/robot1/cmd_vel", "/cmd_vel", "diff_drive")
+    code, out, _ = held(plan, graph, capsys)
+    assert code == 1
+    assert "/robot1/diff_drive: error: MG102" in out
+    assert "it subscribes to /cmd_vel instead" in out
+
+
+def test_an_incomplete_view_is_inconclusive(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    cut = Caveat("participants", True, "exactly 32 participants")
+    graph = without_node(as_planned(plan), "/robot2/amcl")._replace(environment=environment(cut))
+    code, out, err = held(plan, graph, capsys)
+    assert code == 3
+    assert "/robot2/amcl: inconclusive: MG101" in out
+    assert "exactly 32 participants" in err
+
+
+def test_an_edited_plan_is_what_counts(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    graph = without_node(as_planned(plan), "/robot2/imu_driver")
+    assert held(plan, graph, capsys)[0] == 1
+    driver = re.compile(r"      /robot2/imu_driver:.*\n(?:      - .*\n)*")
+    plan.write_text(driver.sub("", plan.read_text()))
+    assert "      /robot2/imu_driver:" not in plan.read_text()
+    assert held(plan, graph, capsys)[0] == 0
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        pytest.param("robots:", "robts:", "'robots' is missing", id="no-robots"),
+        pytest.param("subscribes, topic", "hears, topic", "'hears'", id="role"),
+        pytest.param("    tf: ", "    tfs: ", "'tf' is missing", id="no-tf"),
+        pytest.param(
+            "[earth, map, utm, world]", "map", "shared_frames is not a list", id="no-list"
+        ),
+        pytest.param("topic, /robot1", "topic, robot1", "is not a full name", id="relative"),
+        pytest.param("layout:", "layout: [", "not valid YAML", id="no-yaml"),
+        pytest.param("    tf: /robot1/tf", "    tf:", "tf: None is not a full name", id="tf"),
+        pytest.param(
+            "      /robot1/imu_driver:",
+            "      imu_driver:",
+            "'imu_driver' is not a full name",
+            id="n",
+        ),
+        pytest.param(
+            "ignored_nodes: []", "ignored_nodes: rviz", "ignored_nodes is not a list", id="i"
+        ),
+        pytest.param("sources:", "sources: [a]\nmore:", "unknown key 'more'", id="more"),
+        pytest.param(f": {ROVER}:88", ": [1]", "sources./robot1/diff_drive: write", id="place"),
+        pytest.param(
+            "/robot1/imu_driver:\n      - [publishes, topic, /robot1/imu, sensor_msgs/msg/Imu, ~/out]",
+            "/robot1/imu_driver: {}",
+            "imu_driver is not a list",
+            id="r",
+        ),
+        pytest.param(
+            "odom/robot1 -> base", "odom/robot1 base", "sends./robot1/diff_drive: wr", id="s"
+        ),
+        pytest.param(
+            "    nodes:", "    optional: x\n    nodes:", "optional is not a list", id="optional"
+        ),
+    ],
+)
+def test_a_wrong_plan_is_one_line(
+    plan: Path, capsys: pytest.CaptureFixture[str], old: str, new: str, words: str
+) -> None:
+    text = plan.read_text()
+    assert old in text
+    graph = plan.with_name("graph.json")
+    graph.write_bytes(to_json(as_planned(plan)))
+    plan.write_text(text.replace(old, new, 1))
+    with pytest.raises(InputError, match=words.replace("[", r"\[")):
+        from_yaml(plan.read_bytes(), "plan.yaml")
+    capsys.readouterr()
+    assert main(["check", str(plan), "--snapshot", str(graph)]) == 2
+    err = capsys.readouterr().err
+    assert err.startswith(f"multibot: {plan}")
+    assert err.count("\n") == 1
+
+
+def test_a_file_that_is_not_a_snapshot(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    capsys.readouterr()
+    assert main(["check", str(plan), "--snapshot", str(plan)]) == 2
+    assert "not valid JSON" in capsys.readouterr().err
+
+
+# ---------------------------------------------------------------- where a node comes from
+
+
+def sources(path: Path) -> dict[str, str]:
+    return places(from_yaml(path.read_bytes(), "plan"))
+
+
+def test_the_plan_has_the_lines_of_the_users_file(plan: Path) -> None:
+    found = sources(plan)
+    assert len(found) == 10
+    lines = Path(ROVER).read_text().splitlines()
+    for node, place in found.items():
+        file, _, line = place.rpartition(":")
+        assert file == ROVER
+        assert f'<plugin name="{node.rpartition("/")[2]}"' in lines[int(line) - 1]
+
+
+@pytest.mark.parametrize("layout", ["tf-per-robot", "frames-per-robot", "both", "postfix"])
+def test_inserted_lines_do_not_move_them(layout: str, tmp_path: Path) -> None:
+    path = tmp_path / "plan.yaml"
+    assert main(["plan", str(ROVER), "robot1", "robot2", "--layout", layout, "-o", str(path)]) == 0
+    assert sorted({int(place.rpartition(":")[2]) for place in sources(path).values()}) == [
+        88, 97, 106, 118, 126,
+    ]  # fmt: skip
+
+
+def test_the_lines_of_a_xacro_are_those_of_the_expanded_text(tmp_path: Path) -> None:
+    path = tmp_path / "plan.yaml"
+    assert main(["plan", f"{ROVER}.xacro", "robot1", "-o", str(path)]) == 0
+    places = sources(path).values()
+    assert places
+    assert all(" (expanded):" in place for place in places)
+
+
+def test_a_cause_names_the_line(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    graph = moved(as_planned(plan), "/robot1/cmd_vel", "/cmd_vel", "diff_drive")
+    _, out, _ = held(plan, graph, capsys)
+    assert f"plugin diff_drive has no namespace or remap rule for it, see {ROVER}:88" in out
+
+
+# ---------------------------------------------------------------- what a plan has besides
+
+
+def test_a_plan_from_before_is_read(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    graph = as_planned(plan)
+    text = plan.read_text().partition("\nsources:")[0].replace("distro: lyrical\n", "") + "\n"
+    kept = re.sub(r"^    (other_frames|optional): \[[^]]*\]\n", "", text, flags=re.MULTILINE)
+    assert len(kept) < len(plan.read_text())
+    plan.write_text(kept)
+    assert places(from_yaml(plan.read_bytes(), "plan")) == {}
+    assert held(plan, graph, capsys)[:2] == (0, "")
+
+
+def test_a_node_under_a_condition_is_optional(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    plan = tmp_path / "plan.yaml"
+    command = ["plan", str(ROVER), "robot1", "--stack", "robot_state", "--layout", "L2"]
+    assert main([*command, "-o", str(plan)]) == 0
+    node = "/robot1/joint_state_publisher"
+    assert optional(from_yaml(plan.read_bytes(), "plan"), "robot1") == (node,)
+    assert held(plan, without_node(as_planned(plan), node), capsys)[0] == 0
+
+
+def test_types_by_parameter_are_all_in_the_plan(plan: Path) -> None:
+    ends = from_yaml(plan.read_bytes(), "plan").ends
+    (end,) = (e for e in ends if (e.node, e.code_name) == ("/robot1/velocity_smoother", "cmd_vel"))
+    assert (end.type, *end.also) == ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
+
+
+def test_frames_that_parameters_name_are_other_frames(tmp_path: Path) -> None:
+    path = tmp_path / "plan.yaml"
+    bare = tmp_path / "bare.urdf"
+    bare.write_text('<robot name="r"><link name="base_link"/></robot>')
+    command = ["plan", str(bare), "robot1", "--stack", "localization", "--layout", "L2"]
+    assert main([*command, "-o", str(path)]) == 0
+    (robot,) = from_yaml(path.read_bytes(), "plan").robots
+    assert {"base_footprint/robot1"} <= {*robot.frames, *robot.other_frames}
+    assert not {"map", "map/robot1"} & {*robot.frames, *robot.other_frames}
+
+
+@pytest.mark.parametrize("when", ["", "planning"])
+def test_a_node_that_another_one_makes_is_optional_with_it(when: str, tmp_path: Path) -> None:
+    nodes, plan = tmp_path / "nodes.yaml", tmp_path / "plan.yaml"
+    nodes.write_text(
+        "nodes:\n  planner:\n    package: own\n"
+        "    subscribes: {scene: {type: std_msgs/msg/String, by: _private_*}}\n"
+        f"stacks:\n  own: {{about: x, nodes: [{{node: planner, when: {when!r}}}]}}\n"
+    )
+    words = ["--nodes", str(nodes), "--stack", "own", "--layout", "frames-per-robot"]
+    assert main(["plan", str(ROVER), "robot1", "robot2", *words, "-o", str(plan)]) == 0
+    may_miss = optional(from_yaml(plan.read_bytes(), "plan"), "robot1")
+    made = ("/robot1/planner", "/robot1/planner_private_*")
+    assert set(made) & set(may_miss) == (set(made) if when else set())

@@ -1,0 +1,245 @@
+"""What a plan can say besides names, as people write it: shared nodes, senders, QoS, alternatives."""
+
+from __future__ import annotations
+
+import pytest
+from graph_cases import environment, qos
+from plans import own
+
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.rules.check import check
+from multibot_rewrite.spelling.plan import planned_end
+from multibot_rewrite.spelling.plan_file import read_plan, to_json, to_yaml
+from multibot_rewrite.system.records import End, Node, System, Topic, alternatives
+
+PLAN = """\
+layout: both
+shared_nodes:
+  /map_server:
+  - [publishes, topic, /map, nav_msgs/msg/OccupancyGrid, map]
+  /fleet_manager:
+  - [calls, service, /robot1/dock, std_srvs/srv/Trigger, /robot1/dock]
+  /rviz2: []
+shared_topics: [/map]
+shared_frames: [map]
+robots:
+  robot1:
+    tf: /robot1/tf
+    frames: []
+    nodes:
+      /robot1/driver:
+      - [subscribes, topic, /robot1/cmd_vel, geometry_msgs/msg/Twist, cmd_vel]
+      - [serves, service, /robot1/dock, std_srvs/srv/Trigger, dock]
+      /robot1/amcl: []
+      /robot1/slam_toolbox: []
+topics:
+  /robot1/cmd_vel: {senders: [/robot1/mux, "/robot1/teleop_*"], one_sender: true}
+  /map: {qos: {durability: transient_local, reliability: reliable}}
+one_of:
+- [/robot1/amcl, /robot1/slam_toolbox]
+"""
+
+
+def plan(text: str = PLAN) -> bytes:
+    return text.encode()
+
+
+def test_what_is_written_is_read() -> None:
+    found = read_plan(plan(), "plan.yaml")
+    assert own(found) == ("/map_server", "/fleet_manager", "/rviz2")
+    assert found.ends[0] == planned_end(
+        "/map_server", "topic", "publishes", "/map", "nav_msgs/msg/OccupancyGrid", "map"
+    )
+    assert found.topics == (
+        Topic("/robot1/cmd_vel", ("/robot1/mux", "/robot1/teleop_*"), True),
+        Topic("/map", qos=(("durability", "TRANSIENT_LOCAL"), ("reliability", "RELIABLE"))),
+    )
+    assert alternatives(found) == (("/robot1/amcl", "/robot1/slam_toolbox"),)
+    assert read_plan(to_yaml(found).encode(), "again.yaml") == found
+    assert read_plan(to_json(found).encode(), "again.json") == found
+
+
+def test_shared_nodes_may_be_names_alone() -> None:
+    text = PLAN.replace("  /rviz2: []\n", "")
+    start, end = text.index("shared_nodes"), text.index("shared_topics")
+    short = text[:start] + "shared_nodes: [/map_server, /rviz2]\n" + text[end:]
+    assert own(read_plan(plan(short), "plan.yaml")) == ("/map_server", "/rviz2")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("one_sender: true", "one_sender: 1", "topics./robot1/cmd_vel.one_sender: write true or"),
+        (
+            "senders: [",
+            "sender: [",
+            "topics./robot1/cmd_vel: key 'sender' is not known; did",
+        ),
+        (
+            "durability: tra",
+            "durabilty: tra",
+            "topics./map.qos: key 'durabilty' is not known; did you",
+        ),
+        ("reliability: reliable", "reliability: 1", "topics./map.qos: write words, as {durab"),
+        ("  /map: {qos", "  map: {qos", "topics: 'map' is not a full name; write it with a / in"),
+        ("- [/robot1/amcl, ", "- [amcl, ", "one_of[0]: 'amcl' is not a full name"),
+        ("one_of:\n- [/robot1/amcl, /robot1/slam_toolbox]", "one_of: /a", "one_of is not a list"),
+        ("  /rviz2: []", "  rviz2: []", "shared_nodes: 'rviz2' is not a full name"),
+        (
+            "- [calls, service, ",
+            "- [call, service, ",
+            "shared_nodes./fleet_manager[0]: 'call', 'se",
+        ),
+        ("one_of:", "oneof:", "the plan: unknown key 'oneof'"),
+    ],
+)
+def test_what_is_wrong_is_told_with_its_place(old: str, new: str, said: str) -> None:
+    assert old in PLAN
+    with pytest.raises(InputError) as refused:
+        read_plan(plan(PLAN.replace(old, new)), "plan.yaml")
+    assert str(refused.value).startswith("plan.yaml: ")
+    assert said in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def graph(*ends: tuple[str, str, str, str], more: tuple[str, ...] = ()) -> System:
+    """Endpoints as (node, role, name, type); ``more`` are nodes without one."""
+    found = tuple(
+        End(
+            "service" if "/srv/" in type_ else "topic",
+            role,
+            name,
+            type_,
+            "",
+            node,
+            qos(reliability="RELIABLE", durability="TRANSIENT_LOCAL"),
+            "",
+        )
+        for node, role, name, type_ in ends
+    )
+    names = dict.fromkeys((*(it.node for it in found), *more))
+    return System(tuple(Node(it, "") for it in names), found, (), environment())
+
+
+MAP = ("/map_server", "publishes", "/map", "nav_msgs/msg/OccupancyGrid")
+DOCK = ("/fleet_manager", "calls", "/robot1/dock", "std_srvs/srv/Trigger")
+DRIVER = (
+    ("/robot1/driver", "subscribes", "/robot1/cmd_vel", "geometry_msgs/msg/Twist"),
+    ("/robot1/driver", "serves", "/robot1/dock", "std_srvs/srv/Trigger"),
+)
+MUX = ("/robot1/mux", "publishes", "/robot1/cmd_vel", "geometry_msgs/msg/Twist")
+RUNNING = (MAP, DOCK, *DRIVER)
+NODES = ("/rviz2", "/robot1/amcl")
+
+
+def codes(found: System) -> list[tuple[str, str]]:
+    return [(it.code, it.node) for it in check(read_plan(plan(), "plan.yaml"), found)]
+
+
+def test_a_system_as_planned() -> None:
+    assert codes(graph(*RUNNING, more=NODES)) == []
+
+
+def test_a_shared_node_that_calls_another_robot() -> None:
+    """The planned call is missing, and the cause is the name it has in its place."""
+    wrong = ("/fleet_manager", "calls", "/robot_1/dock", "std_srvs/srv/Trigger")
+    findings = check(read_plan(plan(), "p"), graph(MAP, wrong, *DRIVER, more=NODES))
+    assert [(it.code, it.node, it.robot) for it in findings] == [("MG102", "/fleet_manager", "")]
+    assert "/robot_1/dock instead" in findings[0].hint
+
+
+def test_a_shared_node_without_its_topic() -> None:
+    wrong = ("/map_server", "publishes", "/robot1/map", "nav_msgs/msg/OccupancyGrid")
+    assert ("MG102", "/map_server") in codes(graph(wrong, DOCK, *DRIVER, more=NODES))
+
+
+def test_who_may_send() -> None:
+    """Patterns count; a tool may not send where it is not named."""
+    teleop = ("/robot1/teleop_keyboard", "publishes", "/robot1/cmd_vel", "geometry_msgs/msg/Twist")
+    pub = ("/_ros2cli_77", "publishes", "/robot1/cmd_vel", "geometry_msgs/msg/Twist")
+    assert codes(graph(*RUNNING, teleop, more=NODES)) == []
+    assert codes(graph(*RUNNING, pub, more=NODES)) == [("MG121", "/_ros2cli_77")]
+    both = codes(graph(*RUNNING, MUX, teleop, more=NODES))
+    assert ("MG121", "/robot1/mux") in both
+    # Of a sender that may send and one that may not, the second is too many.
+    stray = ("/robot1/stray", "publishes", "/robot1/cmd_vel", "geometry_msgs/msg/Twist")
+    assert ("MG121", "/robot1/stray") in codes(graph(*RUNNING, MUX, stray, more=NODES))
+
+
+@pytest.mark.parametrize(
+    ("running", "code"),
+    [
+        ((), "MG124"),
+        (("/robot1/amcl",), ""),
+        (("/robot1/slam_toolbox",), ""),
+        (("/robot1/amcl", "/robot1/slam_toolbox"), "MG125"),
+    ],
+)
+def test_one_of_several_nodes(running: tuple[str, ...], code: str) -> None:
+    found = codes(graph(*RUNNING, more=("/rviz2", *running)))
+    assert [it for it, _ in found] == ([code] if code else [])
+
+
+def test_a_map_that_is_not_latched() -> None:
+    found = graph(*RUNNING, more=NODES)
+    ends = tuple(
+        it._replace(qos=qos(reliability="RELIABLE", durability="VOLATILE"))
+        if it.name == "/map"
+        else it
+        for it in found.ends
+    )
+    assert codes(found._replace(ends=ends)) == [("MG309", "/map_server")]
+
+
+PATTERN = PLAN.replace(
+    "      /robot1/amcl: []\n",
+    "      /robot1/amcl:\n"
+    "      - [publishes, topic, /robot1/camera_*/image_raw, sensor_msgs/msg/Image, image_raw]\n",
+).replace("  /rviz2: []", "  /rviz_*: []")
+IMAGE = "sensor_msgs/msg/Image"
+
+
+@pytest.mark.parametrize(
+    ("topics", "found"),
+    [
+        (("/robot1/camera_left/image_raw",), []),
+        (("/robot1/camera_left/image_raw", "/robot1/camera_right/image_raw"), []),
+        ((), ["MG102"]),
+        (("/robot1/camera_left/depth/image_raw",), ["MG102"]),
+        (("/camera_left/image_raw",), ["MG102", "MG320"]),
+    ],
+)
+def test_names_that_are_made_at_run_time(topics: tuple[str, ...], found: list[str]) -> None:
+    """A star stands for a part of one segment, in topics as in nodes; what fits is planned."""
+    images = [("/robot1/amcl", "publishes", name, IMAGE) for name in topics]
+    seen = graph(*RUNNING, *images, more=("/rviz_47", "/robot1/amcl"))
+    findings = check(read_plan(plan(PATTERN), "plan.yaml"), seen)
+    assert [it.code for it in findings] == found
+
+
+def test_a_pattern_is_compared_by_its_type() -> None:
+    wrong = ("/robot1/amcl", "publishes", "/robot1/camera_left/image_raw", "std_msgs/msg/String")
+    seen = graph(*RUNNING, wrong, more=("/rviz_47",))
+    (finding,) = check(read_plan(plan(PATTERN), "plan.yaml"), seen)
+    assert (finding.code, finding.names) == ("MG306", ("/robot1/camera_left/image_raw",))
+
+
+BRIDGED = PLAN.replace(
+    "topics:\n",
+    "topics:\n"
+    "  /robot1/scan: {bridge: [publishes], type: sensor_msgs/msg/LaserScan}\n"
+    "  /robot1/imu: {bridge: [publishes], type: sensor_msgs/msg/Imu}\n",
+)
+
+
+@pytest.mark.parametrize(
+    ("type_", "found"),
+    [("sensor_msgs/msg/LaserScan", []), ("sensor_msgs/msg/PointCloud2", ["MG126"])],
+)
+def test_a_bridge_that_carries_another_type(type_: str, found: list[str]) -> None:
+    """Who reads the scan gets nothing, though a topic of that name is there."""
+    rows = (("/robot1/scan", type_), ("/robot1/imu", "sensor_msgs/msg/Imu"))
+    ends = (("/ros_gz_bridge", "publishes", name, one) for name, one in rows)
+    seen = graph(*RUNNING, *ends, more=NODES)
+    findings = check(read_plan(plan(BRIDGED), "plan.yaml"), seen)
+    assert [it.code for it in findings] == found

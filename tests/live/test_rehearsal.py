@@ -1,0 +1,261 @@
+"""The stub nodes of a rehearsal: names of the code, rules of the table, transforms."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+from paths import FIXTURES, ROBOTS
+
+from multibot_rewrite.base.naming import Naming, make_naming
+from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.cli import rehearse
+from multibot_rewrite.description.library import rewrite
+from multibot_rewrite.description.readback.reading import read
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.steps.collect import Inventory, collect
+from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.fleet.fleet import make_fleet
+from multibot_rewrite.knowledge.node_library import stack_of
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
+from multibot_rewrite.knowledge.stacks import built_in
+from multibot_rewrite.live.rehearsal import (
+    PROCESSES,
+    StubEndpoint,
+    StubNode,
+    action_parts,
+    from_order,
+    split_over_processes,
+    stub_nodes,
+    substitute_type,
+    to_order,
+    with_substitutes,
+)
+from multibot_rewrite.producers.ros.request import Request
+from multibot_rewrite.spelling.plan import expect
+from multibot_rewrite.spelling.plan_file import read_plan
+from multibot_rewrite.spelling.plugin_nodes import plugin_nodes
+from multibot_rewrite.spelling.records import Home, NodeRule, NodeTable, Table
+from multibot_rewrite.spelling.table import build_table
+from multibot_rewrite.spelling.transforms import Edge as SentEdge
+from multibot_rewrite.spelling.transforms import edges_of, frames_of, with_odometry
+from multibot_rewrite.spelling.ways import WAYS
+from multibot_rewrite.system.json import from_json
+from multibot_rewrite.system.records import (
+    ACTION,
+    CALLS,
+    PUBLISHES,
+    SERVES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+    System,
+)
+
+ROVER = ROBOTS / "rover.urdf"
+LASER = "sensor_msgs/msg/LaserScan"
+NODE = NodeFacts(
+    "drive",
+    "drive",
+    (
+        Endpoint(TOPIC, SUBSCRIBES, "/cmd_vel", "geometry_msgs/msg/Twist"),
+        Endpoint(TOPIC, PUBLISHES, "scan"),
+        Endpoint(TOPIC, PUBLISHES, "debug", "std_msgs/msg/String", when="debug"),
+        Endpoint(ACTION, SERVES, "go", "nav2_msgs/action/Spin"),
+        Endpoint(TOPIC, SUBSCRIBES, "/tf", "tf2_msgs/msg/TFMessage", helper=True),
+    ),
+)
+MAPPER = NodeFacts("mapper", "mapper", (Endpoint(TOPIC, SUBSCRIBES, "scan", LASER),))
+
+
+def table(layout: str = "L2") -> Table:
+    return build_table(
+        ("robot1", "robot2"), (NODE, MAPPER), make_naming(layout), release=NEWEST_LTS
+    )
+
+
+def drive(layout: str = "L2", left_out: tuple[str, ...] = ()) -> StubNode:
+    stubs = [stub for robot, stub in stub_nodes(table(layout), {}, left_out) if robot == "robot2"]
+    return next(stub for stub in stubs if stub.name == "drive")
+
+
+def test_a_stub_has_the_names_of_the_code_and_rcl_gets_the_rules() -> None:
+    stub = drive()
+    assert stub.endpoints[0] == StubEndpoint(
+        TOPIC, SUBSCRIBES, "/cmd_vel", "geometry_msgs/msg/Twist", False
+    )
+    assert stub.arguments == ("--ros-args", "-r", "__ns:=/robot2", "-r", "/cmd_vel:=cmd_vel")
+    assert drive("L4").arguments[:3] == ("--ros-args", "-r", "__node:=drive_robot2")
+
+
+def test_without_rules_a_node_keeps_only_namespace_and_name() -> None:
+    assert drive(left_out=WAYS).arguments == ("--ros-args", "-r", "__ns:=/robot2")
+
+
+def test_an_endpoint_with_a_condition_is_left_out() -> None:
+    assert "debug" not in {part.name for part in drive().endpoints}
+
+
+def test_an_unknown_type_is_that_of_the_other_endpoint() -> None:
+    assert StubEndpoint(TOPIC, PUBLISHES, "scan", LASER, False) in drive().endpoints
+
+
+def test_endpoints_of_a_helper_are_marked() -> None:
+    assert [part.name for part in drive().endpoints if part.helper] == ["/tf"]
+
+
+def test_a_node_of_the_plugins_and_of_the_stack_is_one_with_the_rules_of_its_tag() -> None:
+    one = NodeTable("r", "manager", "/r", "manager", (NodeRule("r", "manager", "a", "b", "", ""),))
+    rules = (NodeRule("r", "manager", "c", "d", "", ""),)
+    two = one._replace(rules=rules, home=Home(plugin="acme", written=True))
+    ((_, stub),) = stub_nodes(Table("both", (one, two), (), (), NEWEST_LTS), {})
+    assert stub.arguments == ("--ros-args", "-r", "__ns:=/r", "-r", "c:=d")
+
+
+@pytest.mark.parametrize(
+    ("release", "given"), [("humble", True), ("jazzy", True), ("lyrical", False)]
+)
+def test_a_manager_that_stands_in_for_controllers_has_their_rules(
+    release: str, given: bool
+) -> None:
+    fleet = make_fleet(str(ROBOTS / "rover_gz.urdf"), ["r"], [], {"layout": "L1"}, release=release)
+    found = {stub.name: stub for _, stub in stub_nodes(fleet.table, {})}
+    assert "/tf" in {it.name for it in found["controller_manager"].endpoints}
+    assert ("/tf:=tf" in found["controller_manager"].arguments) == given
+    assert "/tf:=tf" in found["robot_state_publisher"].arguments
+
+
+def test_robots_share_processes_when_they_are_many() -> None:
+    some = [
+        (f"robot{at}", StubNode(f"node{at}", (), (), (), ())) for at in range(3 * PROCESSES + 1)
+    ]
+    processes = split_over_processes(some)
+    assert len(processes) == PROCESSES
+    assert sorted(len(process) for process in processes) == [3] * (PROCESSES - 1) + [4]
+    assert [len(process) for process in split_over_processes(some[:3])] == [1, 1, 1]
+
+
+def test_an_order_survives_the_pipe() -> None:
+    import json
+
+    stub = drive()._replace(edges=(SentEdge("odom", "base", False),))
+    assert from_order(json.loads(json.dumps(to_order([stub])))) == [stub]
+
+
+@pytest.mark.parametrize(("role", "parts"), [(SERVES, PUBLISHES), (CALLS, SUBSCRIBES)])
+def test_an_action_without_its_type_is_three_services_and_two_topics(role: str, parts: str) -> None:
+    made = list(action_parts(StubEndpoint(ACTION, role, "go", "x/action/Go", False)))
+    assert [(part.kind, part.role, part.name) for part in made] == [
+        (SERVICE, role, "go/_action/send_goal"),
+        (SERVICE, role, "go/_action/cancel_goal"),
+        (SERVICE, role, "go/_action/get_result"),
+        (TOPIC, parts, "go/_action/feedback"),
+        (TOPIC, parts, "go/_action/status"),
+    ]
+
+
+@pytest.mark.parametrize("layout", ["L2", "L4"])
+def test_the_plan_has_the_substituted_types(layout: str) -> None:
+    plan = expect(table(layout), make_naming(layout), {})
+    replaced = {"nav2_msgs/action/Spin": "", LASER: substitute_type(TOPIC, LASER)}
+    played = with_substitutes(plan, replaced).ends
+    assert {it.type for it in played if "mapper" in it.node} == {"std_msgs/msg/Empty"}
+    there = [it for it in played if "_action" in it.name and "robot2" in it.node]
+    action = "/robot2/go" if layout == "L2" else "/go/robot2"
+    assert [it.name for it in there] == [
+        f"{action}/_action/{part}"
+        for part in ("send_goal", "cancel_goal", "get_result", "feedback", "status")
+    ]
+    assert not [it for it in played if it.kind == ACTION]
+
+
+def rewritten(layout: str) -> tuple[Inventory, Naming]:
+    text = rewrite(str(ROVER), "robot1", layout=layout).text
+    return collect(
+        read_document(text.encode(), "rover.urdf"), builtin_tree((), NEWEST_LTS)
+    ), make_naming(layout)
+
+
+def sent(layout: str, *stacks: str) -> dict[str, list[SentEdge]]:
+    inventory, naming = rewritten(layout)
+    nodes = [node for stack in stacks for node in stack_of(built_in(NEWEST_LTS), stack)]
+    reading = read(inventory.document.source, "rover.urdf", builtin_tree((), NEWEST_LTS).vocabulary)
+    plugins = [facts for facts, _ in plugin_nodes(reading, "robot1")]
+    found = edges_of("robot1", inventory, nodes, plugins, naming)
+    return {node.removesuffix("_robot1"): edges for (_, node), edges in found.items() if edges}
+
+
+@pytest.mark.parametrize(("layout", "end"), [("L1", ""), ("L2", "/robot1"), ("L4", "/robot1")])
+def test_description_odometry_and_map_are_one_tree(layout: str, end: str) -> None:
+    edges = sent(layout, "robot_state", "localization")
+    assert edges["amcl"] == [SentEdge("map", f"odom{end}", False)]
+    assert edges["diff_drive"] == [SentEdge(f"odom{end}", f"base_footprint{end}", False)]
+    tree = edges["robot_state_publisher"]
+    assert tree[0] == SentEdge(f"base_footprint{end}", f"base_link{end}", True)
+    assert SentEdge(f"base_link{end}", f"left_wheel{end}", False) in tree
+    parents = {edge.child: edge.parent for edges in edges.values() for edge in edges}
+    assert {parent for parent in parents.values() if parent not in parents} == {"map"}
+
+
+def test_odometry_leads_to_the_root_of_the_description() -> None:
+    assert sent("L2", "robot_localization")["ekf_filter_node"] == [
+        SentEdge("odom/robot1", "base_footprint/robot1", False)
+    ]
+
+
+def test_a_robots_frames_are_declared_or_sent_and_not_shared() -> None:
+    inventory, naming = rewritten("L2")
+    frames = frames_of(inventory, [SentEdge("map", "odom/robot1", False)], naming, "robot1")
+    assert "odom/robot1" in frames
+    assert "camera_link/robot1" in frames
+    assert "map" not in frames
+
+
+def test_missing_odometry_is_added_and_reported() -> None:
+    naming = make_naming("L2")
+    tree = [SentEdge("base", "arm", True)]
+    edges = {
+        ("r1", "robot_state_publisher"): tree,
+        ("r1", "amcl"): [SentEdge("map", "odom", False)],
+    }
+    filled, added = with_odometry(edges, "r1", naming)
+    assert added == "odom -> base"
+    assert filled["r1", "robot_state_publisher"] == [*tree, SentEdge("odom", "base", False)]
+    assert with_odometry(filled, "r1", naming) == (filled, "")
+    assert with_odometry({("r1", "robot_state_publisher"): tree}, "r1", naming)[1] == ""
+    assert with_odometry(edges, "r2", naming) == (edges, "")
+    standing = {**edges, ("r1", "robot_state_publisher"): [SentEdge("world", "base", True)]}
+    assert with_odometry(standing, "r1", naming) == (standing, "")
+
+
+def _without_endpoints(graph: System) -> System:
+    """Robot1's nodes are known, what they have is not: messages of the discovery were lost."""
+    left = tuple(end for end in graph.ends if not end.node.startswith("/robot1/"))
+    return graph._replace(ends=left)
+
+
+@pytest.mark.parametrize(
+    ("first", "looks"),
+    [
+        (lambda full: full, 1),
+        (lambda full: full._replace(nodes=(), ends=(), edges=()), 2),
+        (_without_endpoints, 2),
+        (lambda full: full._replace(edges=full.edges[1:]), 2),
+        # What is seen and is wrong does not go away.
+        (lambda _: _graph("MG320.json"), 1),
+    ],
+)
+def test_a_look_that_only_lacks_something_is_taken_again(
+    first: Callable[[System], System], looks: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    full = _graph("healthy.json")
+    plan = read_plan((FIXTURES / "graphs" / "plan.yaml").read_bytes(), "plan.yaml")
+    seen = [full, first(full)]
+    monkeypatch.setattr(rehearse, "observe", lambda *_: seen.pop())
+    graph = rehearse._look(Request(1.0), {}, plan)
+    assert len(seen) == 2 - looks
+    assert graph == (full if looks == 2 else first(full))
+
+
+def _graph(name: str) -> System:
+    return from_json((FIXTURES / "graphs" / name).read_bytes(), name)

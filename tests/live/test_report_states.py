@@ -1,0 +1,312 @@
+"""What the head of the report says, which robots a finding concerns, and all that a plan may have."""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+
+import nav2_graphs
+import pytest
+import report_pages
+from fault_changes import Fault
+from graph_faults import FAULTS
+from lxml import html
+from paths import ROOT
+from report_pages import FIRST, SECOND
+
+from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.cli import multibot
+from multibot_rewrite.cli.pictures import snippets
+from multibot_rewrite.lint.catalogue import rules
+from multibot_rewrite.live.rehearsal import with_substitutes
+from multibot_rewrite.pages.page import to_html
+from multibot_rewrite.pages.page_sections import ids_of, make_ids
+from multibot_rewrite.pages.scene import BRIDGE, Scene
+from multibot_rewrite.pages.states import CLASH, MISSING, OK, UNEXPECTED, robots_of
+from multibot_rewrite.rules.check import side_by_side
+from multibot_rewrite.spelling.plan_file import to_yaml
+from multibot_rewrite.system.json import to_json
+from multibot_rewrite.system.records import ACTION, SERVES, End, Node
+
+GRAPHS = ROOT / "fixtures" / "graphs"
+
+
+def page(scene: Scene) -> html.HtmlElement:
+    return html.document_fromstring(to_html(scene, rules()).decode())
+
+
+def head(scene: Scene) -> tuple[str, str]:
+    """The colour of the head, and what it says."""
+    tree = page(scene)
+    return tree.find(".//header").get("class"), tree.find(".//h1").text
+
+
+def cards(scene: Scene) -> dict[str, str]:
+    """The first robot of each card, and the card's look."""
+    found = page(scene).find_class("card")
+    return {it.find(".//h3/a").text: it.get("class").partition(" ")[2] for it in found}
+
+
+def edge_states(scene: Scene) -> dict[tuple[str, str], str]:
+    return {(it.node, it.name): it.state for group in scene.groups for it in group.edges}
+
+
+def node_states(scene: Scene) -> dict[str, str]:
+    return {it.name: it.state for group in scene.groups for it in group.nodes}
+
+
+# ---------------------------------------------------------------- the head
+
+
+def test_only_a_fleet_without_findings_is_green() -> None:
+    assert head(report_pages.healthy()) == ("good", "as planned")
+    assert head(report_pages.spoiled()) == ("bad", "not as planned")
+    doubt = ("unsure", "inconclusive, the view may be incomplete")
+    assert head(report_pages.inconclusive()) == doubt
+    open_plan = ("unsure", "as planned, but the plan does not close")
+    assert head(report_pages.not_closed()) == open_plan
+
+
+def test_an_open_end_of_the_plan_is_a_finding_with_its_explanation() -> None:
+    tree = page(report_pages.not_closed())
+    (found,) = tree.find_class("finding")
+    assert "reads scan2, which nothing sends" in found.text_content()
+    assert rules()["MF801"].why.replace("`", "") in found.text_content()
+    assert cards(report_pages.not_closed()) == {"robot2": "odd", "robot1": "good"}
+
+
+def test_a_fault_in_tf_makes_its_robots_red() -> None:
+    assert [it.finding.code for it in report_pages.tf_collision().rows] == ["MG402"]
+    assert cards(report_pages.tf_collision()) == {"robot1": "bad"}
+    (card,) = page(report_pages.tf_collision()).find_class("card")
+    assert card.get("data-robot") == "0 1"
+
+
+def test_the_tree_with_the_fault_is_above_the_nodes() -> None:
+    order = ["findings", "tf", "graph", "rules", "environment"]
+    assert page(report_pages.tf_collision()).xpath("//section/@id") == order
+    order = ["findings", "graph", "tf", "environment"]
+    assert page(report_pages.healthy()).xpath("//section/@id") == order
+
+
+def test_twenty_robots_with_the_same_faults_are_one_card_and_one_drawing() -> None:
+    tree = page(report_pages.twenty())
+    (card,) = tree.find_class("card")
+    assert card.find("p").text == "20 robots, 2 errors each; 40 nodes running"
+    assert [it.text for it in card.iterfind("h3/a")] == [f"robot{at}" for at in range(1, 9)]
+    assert len(card.xpath(".//h3//a")) == 20
+    opened = tree.xpath("//section[@id='graph']//details[@open]/@id")
+    assert opened == ["g0", "shared"]
+
+
+def test_of_a_large_fleet_the_robots_with_findings_are_drawn() -> None:
+    plan = nav2_graphs.fleet(40, 2)
+    graph = nav2_graphs.moved(nav2_graphs.healthy(plan), "/robot39/topic1", "/topic1")
+    tree = page(nav2_graphs.scene(plan, graph))
+    groups = tree.xpath("//section[@id='graph']//details[starts-with(@id, 'g')]")
+    drawn = [it.get("id") for it in groups if it.xpath(".//svg")]
+    assert sorted(drawn) == sorted(["g38", *(f"g{at}" for at in range(29))])
+    assert len(groups) == 40
+    assert all("Not drawn" in it.text_content() for it in groups if not it.xpath(".//svg"))
+
+
+def test_both_robots_of_cross_talk_are_concerned() -> None:
+    rows = {it.finding.code: it.robots for it in report_pages.spoiled().rows}
+    assert rows["MG321"] == ("robot1", "robot2")
+    assert rows["MG310"] == ("robot1",)
+    assert cards(report_pages.spoiled()) == {"robot1": "bad", "robot2": "bad"}
+
+
+def test_a_card_of_its_own_says_the_robots_own_names() -> None:
+    """robot2 has the fault of all, and one more: the fault of all is not said of robot1 there."""
+    plan = nav2_graphs.fleet(3, 2)
+    graph = nav2_graphs.healthy(plan)
+    for robot in ("robot1", "robot2", "robot3"):
+        graph = nav2_graphs.moved(graph, f"/{robot}/topic1", "/topic1")
+    graph = nav2_graphs.moved(graph, "/robot2/topic0", "/topic0")
+    first, second = page(nav2_graphs.scene(plan, graph)).find_class("card")[:2]
+    texts = [it.text_content() for it in (first, second)]
+    own = next(it for it in texts if it.startswith("robot2"))
+    assert "/robot2/topic1" in own and "/robot1" not in own
+
+
+def test_a_robot_is_not_concerned_by_a_robot_with_a_longer_name() -> None:
+    plan = nav2_graphs.fleet(11, 2)
+    graph = nav2_graphs.moved(nav2_graphs.healthy(plan), "/robot11/topic1", "/topic1")
+    assert {it.robots for it in nav2_graphs.scene(plan, graph).rows} == {("robot11",)}
+
+
+def test_a_frame_concerns_the_robot_that_has_its_word() -> None:
+    by_plan, _ = side_by_side(report_pages.rich_plan(), report_pages.rich_graph())
+    found = Finding("MG401", ERROR, "has two parents", names=("robot2/laser",))
+    assert robots_of(by_plan, found) == {"fleet_a/robot2"}
+
+
+@pytest.mark.parametrize("fault", FAULTS, ids=[it.name for it in FAULTS])
+def test_a_danger_is_drawn_and_concerns_a_robot(fault: Fault) -> None:
+    scene = report_pages.doctors(fault.change(fault.system()))
+    ids = make_ids(scene)
+    assert scene.rows
+    for row in scene.rows:
+        # What answers may have no node in a graph that is made up.
+        answers = row.finding.node and row.finding.node not in scene.running
+        assert answers or ids_of(row.targets, ids), row.finding
+        of_all = row.finding.names == ("/clock",) or row.finding.node == "/nav2_container"
+        assert row.robots or of_all, row.finding
+    nodes = {row.finding.node for row in scene.rows if row.finding.level == ERROR}
+    if nodes & {"", *scene.running}:
+        drawn = {*edge_states(scene).values(), *node_states(scene).values()}
+        in_tf = any(row.faults for tree in scene.trees for row in tree.rows)
+        assert in_tf or drawn - {OK, UNEXPECTED}
+
+
+# ---------------------------------------------------------------- what a plan may have
+
+
+def test_robots_in_namespaces_of_two_levels_with_all_that_a_plan_may_have() -> None:
+    scene = report_pages.rich(report_pages.rich_graph())
+    assert head(scene) == ("good", "as planned")
+    assert {*edge_states(scene).values(), *node_states(scene).values()} == {OK}
+    assert scene.robots == ("fleet_a/robot1", "fleet_a/robot2")
+    text = to_html(scene).decode()
+    assert f'<tspan class="dim">{FIRST}</tspan>/topic0' in text
+    first = re.search('<p class="one-of">(.*)</p>', text)
+    assert first and first[1].endswith(f'<em class="good">{FIRST}/amcl runs</em>')
+
+
+def test_a_topic_that_no_bridge_carries_is_dashed() -> None:
+    graph = report_pages.rich_graph()
+    ends = (it for it in graph.ends if it.name != f"{SECOND}/cmd_vel")
+    scene = report_pages.rich(graph._replace(ends=tuple(ends)))
+    assert [it.finding.code for it in scene.rows] == ["MG126"]
+    wrong = {key: state for key, state in edge_states(scene).items() if state != OK}
+    assert wrong == {(BRIDGE, f"{SECOND}/cmd_vel"): MISSING}
+    assert cards(scene) == {"fleet_a/robot2": "bad", "fleet_a/robot1": "good"}
+
+
+@pytest.mark.parametrize(("running", "state"), [((), MISSING), (("amcl", "slam_toolbox"), CLASH)])
+def test_of_alternatives_none_or_two_run(running: tuple[str, ...], state: str) -> None:
+    graph = nav2_graphs.without_node(report_pages.rich_graph(), f"{FIRST}/amcl")
+    nodes = (Node(f"{FIRST}/{it}", it) for it in running)
+    scene = report_pages.rich(graph._replace(nodes=(*graph.nodes, *nodes)))
+    wrong = {node for node, it in node_states(scene).items() if it != OK}
+    assert wrong == {f"{FIRST}/amcl", f"{FIRST}/slam_toolbox"}
+    assert node_states(scene)[f"{FIRST}/amcl"] == state
+    assert cards(scene)["fleet_a/robot1"] == "bad"
+
+
+def test_what_a_shared_node_lacks_is_dashed() -> None:
+    graph = report_pages.rich_graph()
+    ends = (it for it in graph.ends if it.name != "/map")
+    scene = report_pages.rich(graph._replace(ends=tuple(ends)))
+    assert edge_states(scene)["/map_server", "/map"] == MISSING
+    assert cards(scene) == {"shared, or of no robot": "bad", "fleet_a/robot1": "good"}
+
+
+def test_a_frame_that_is_not_received_is_drawn_with_its_finding() -> None:
+    plan = nav2_graphs.nav2()
+    graph = nav2_graphs.healthy(plan)
+    lost = [it for it in graph.edges if "robot2" not in it.child]
+    scene = nav2_graphs.scene(plan, graph._replace(edges=tuple(lost)))
+    assert "MG208" in {it.finding.code for it in scene.rows}
+    (tree,) = (it for it in scene.trees if not it.received)
+    assert {row.state for row in tree.rows} == {MISSING}
+    assert any("frame not received" in row.faults for row in tree.rows)
+    assert cards(scene)["robot2"] == "bad"
+
+
+def test_the_action_of_a_stand_in_is_as_planned() -> None:
+    """Where its type is not installed, a stub has the parts of an action, and rcl counts an action."""
+    plan = nav2_graphs.nav2()
+    types = {it.type: "std_msgs/msg/Empty" for it in plan.ends if it.kind == ACTION}
+    stubs = with_substitutes(plan, types)
+    node, name = "/robot1/behavior_server", "/robot1/backup"
+    action = End(ACTION, SERVES, name, "std_msgs/msg/Empty", "", node, None, "")
+    odd = action._replace(name="/robot1/fly")
+    graph = nav2_graphs.healthy(stubs)
+    scene = nav2_graphs.scene(stubs, graph._replace(ends=(*graph.ends, action, odd)))
+    assert edge_states(scene)[node, name] == OK
+    assert edge_states(scene)[node, "/robot1/fly"] == UNEXPECTED
+
+
+# ---------------------------------------------------------------- the command
+
+
+def drawn(tmp_path: Path, *given: str) -> tuple[int, html.HtmlElement]:
+    """The exit code and the page of a command."""
+    file = tmp_path / "page.html"
+    code = multibot.main([*given, "--report", str(file)])
+    return code, html.document_fromstring(file.read_text())
+
+
+@pytest.mark.parametrize(
+    ("case", "more", "words", "code"),
+    [
+        ("healthy", (), "as planned", 0),
+        ("MG102", (), "not as planned", 1),
+        ("MG108", (), "as planned", 0),
+        ("MG108", ("--fail-on", "warning"), "not as planned", 1),
+        ("MG102", ("--ignore", "MG1,MG3"), "as planned", 0),
+    ],
+)
+def test_page_and_command_say_the_same(
+    case: str,
+    more: tuple[str, ...],
+    words: str,
+    code: int,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    given = ("check", str(GRAPHS / "plan.yaml"), "--snapshot", str(GRAPHS / f"{case}.json"))
+    done, tree = drawn(tmp_path, *given, *more)
+    assert (done, tree.find(".//h1").text) == (code, words)
+    assert f": {words} (" in capsys.readouterr().err
+    listed = len(tree.find_class("finding"))
+    assert (tree.find(".//header").get("class") == "good") == (listed == 0)
+
+
+def test_the_open_ends_of_a_plan_are_on_the_page(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    plan, graph = tmp_path / "plan.yaml", tmp_path / "graph.json"
+    made = nav2_graphs.nav2()
+    plan.write_text(to_yaml(made._replace(gaps=(report_pages.OPEN_END,))))
+    graph.write_bytes(to_json(nav2_graphs.healthy(made)))
+    code, tree = drawn(tmp_path, "check", str(plan), "--snapshot", str(graph))
+    words = "as planned, but the plan does not close"
+    assert (code, tree.find(".//h1").text) == (0, words)
+    assert f": {words} (" in capsys.readouterr().err
+    assert [it.get("data-robot") for it in tree.find_class("finding")] == ["1"]
+    assert tree.find(".//header").get("class") == "unsure"
+
+
+def test_the_doctor_says_its_own_words(tmp_path: Path) -> None:
+    code, tree = drawn(tmp_path, "check", "--snapshot", str(GRAPHS / "healthy.json"), "-q")
+    assert (code, tree.find(".//h1").text) == (0, "nothing wrong seen")
+    assert tree.find(".//header/p").text == "multibot check"
+    assert "as planned" not in tree.find("body").text_content().partition('"use strict"')[0]
+
+
+def test_a_finding_shows_the_line_of_the_description(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(ROOT)
+    given = ("check", str(GRAPHS / "plan.yaml"), "--snapshot", str(GRAPHS / "MG102.json"))
+    _, tree = drawn(tmp_path, *given)
+    marked = {it.text.strip() for it in tree.xpath("//pre/b")}
+    assert '88     <plugin name="diff_drive" filename="libgazebo_ros_diff_drive.so">' in marked
+
+
+def test_snippets_are_short_and_of_files_that_are_there(tmp_path: Path) -> None:
+    file = tmp_path / "a.urdf"
+    file.write_text("\n".join(f"line {at} {'x' * 500}" for at in range(1, 10)))
+    (tmp_path / "binary.urdf").write_bytes(b"\xff\xfe\n" * 5)
+    (tmp_path / "secret").write_text("a\nb\n")
+    os.mkfifo(tmp_path / "pipe.urdf")
+    others = (f"{tmp_path}/{it}:2" for it in ("gone.urdf", "binary.urdf", "secret", "pipe.urdf"))
+    found = snippets([f"{file}:1", f"{file}:5", f"{file}:99", *others, "stack nav2", ""])
+    assert set(found) == {f"{file}:1", f"{file}:5"}
+    assert [line.split()[0] for line in found[f"{file}:1"]] == ["1", "2", "3"]
+    assert [line.split()[0] for line in found[f"{file}:5"]] == ["3", "4", "5", "6", "7"]
+    assert max(map(len, found[f"{file}:5"])) < 200

@@ -1,0 +1,247 @@
+"""Where the rules about a graph make an exception, and where the exception ends."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import pytest
+from graph_cases import CASES, Case, as_planned, environment, read_plan, sent, with_node
+from graph_cases import healthy as planned
+from plans import PlannedRobot
+from plans import planned as as_plan
+
+from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING
+from multibot_rewrite.live.watching import Verdict, WatchState, with_found
+from multibot_rewrite.rules.check import check
+from multibot_rewrite.spelling.plan import planned_end
+from multibot_rewrite.system.records import PUBLISHES, TOPIC, Caveat, Edge, System
+
+TEXT, TF = "std_msgs/msg/String", "tf2_msgs/msg/TFMessage"
+CUT_OFF = environment(Caveat("participants", True, "the view may be cut off"))
+
+
+def fleet(tf: str, **frames: Sequence[str]) -> System:
+    """A plan: each robot with one node, which publishes its tf topics, and its frames.
+
+    ``ROBOT`` in ``tf`` stands for the robot.
+    """
+    robots, ends = [], []
+    for name, own in frames.items():
+        node, topic = f"/{name}/driver", tf.replace("ROBOT", name)
+        robots.append(PlannedRobot(name, (node,), tuple(own), topic))
+        both = (topic, topic.replace("tf", "tf_static"))
+        ends += [planned_end(node, TOPIC, PUBLISHES, it, TF, it) for it in both]
+    return as_plan("frames-per-robot", tuple(robots), (), ("/rosout",), ("map",), tuple(ends))
+
+
+def graph(plan: System, *more: Edge) -> System:
+    """As planned: each robot's frames below its first one, and transforms besides."""
+    edges = [
+        Edge(frame, robot.frames[0], robot.tf_topic.replace("tf", "tf_static"), True, ())
+        for robot in plan.robots
+        for frame in robot.frames[1:]
+    ]
+    return sent(as_planned(plan)._replace(edges=(*edges, *more)))
+
+
+def below(parent: str, *frames: str, topic: str = "/tf_static") -> list[Edge]:
+    return [Edge(frame, parent, topic, True, ()) for frame in frames]
+
+
+def found(plan: System, seen: System) -> list[tuple[str, str, tuple[str, ...]]]:
+    return [(it.code, it.robot, tuple(it.names)) for it in check(plan, seen)]
+
+
+# Whose a name is, where one robot's name begins another's.
+
+
+ARMS = fleet("/ROBOT/tf", arm=("base",), arm_left=("base",))
+
+
+@pytest.mark.parametrize(
+    ("name", "owner"),
+    [
+        ("/x/arm_left_joint", "arm_left"),
+        ("/x/joint_arm_left", "arm_left"),
+        ("/x/arm_joint", "arm"),
+        ("/x/left_arm", "arm"),
+        ("/arm_left_joint", "arm_left"),
+    ],
+)
+def test_the_longer_robot_name_owns_a_name(name: str, owner: str) -> None:
+    """Who is not the owner and publishes there speaks under another robot's name."""
+    for robot in ("arm", "arm_left"):
+        seen = with_node(graph(ARMS), f"/{robot}/driver", (PUBLISHES, name, TEXT))
+        seen = seen._replace(nodes=seen.nodes[:-1])  # the node is there already
+        codes = {it.code for it in check(ARMS, seen)}
+        assert ("MG311" in codes) == (robot != owner)
+
+
+# A dot between a frame and its robot.
+
+
+DOTS = fleet(
+    "/tf",
+    robot1=("base.robot1", "camera.link.robot1"),
+    robot2=("base.robot2", "camera.link.robot2"),
+)
+
+
+def test_a_fleet_with_dots_is_silent() -> None:
+    assert check(DOTS, graph(DOTS)) == []
+
+
+def test_a_frame_behind_a_dot_is_its_robots() -> None:
+    seen = graph(DOTS, *below("base.robot2", "gripper.robot2"))
+    assert found(DOTS, seen) == [("MG204", "robot2", ("gripper.robot2",))]
+
+
+@pytest.mark.parametrize(
+    "twice", ["base.robot2.robot2", "robot2.base.robot2", "robot2/base.robot2"]
+)
+def test_a_robot_twice_with_a_dot_between(twice: str) -> None:
+    seen = graph(DOTS, *below("base.robot2", twice))
+    assert found(DOTS, seen) == [("MG407", "robot2", (twice,))]
+
+
+@pytest.mark.parametrize("twice", ["robot1.laser", "laser.robot1"])
+def test_a_robots_name_behind_a_dot_where_no_frame_has_it(twice: str) -> None:
+    plan = fleet("/ROBOT/tf", robot1=("base", "laser"), robot2=("base", "laser"))
+    seen = graph(plan, *below("base", twice, topic="/robot1/tf_static"))
+    assert found(plan, seen) == [("MG407", "robot1", (twice,))]
+
+
+@pytest.mark.parametrize("spelled", ["camera.ROBOT", "ROBOT.camera"])
+def test_a_frame_without_what_the_dot_puts_there(spelled: str) -> None:
+    own = {it: (f"base/{it}", spelled.replace("ROBOT", it)) for it in ("robot1", "robot2")}
+    plan = fleet("/tf", **own)
+    edges = [it for it in graph(plan).edges if it.child != own["robot1"][1]]
+    seen = sent(graph(plan)._replace(edges=(*edges, *below("base/robot1", "camera"))))
+    assert found(plan, seen) == [("MG207", "robot1", ("camera",))]
+
+
+def test_what_is_below_a_sensors_link_starts_with_its_word_up_to_the_dot() -> None:
+    driver = below("camera.link.robot1", "camera.depth.robot1")
+    assert check(DOTS, graph(DOTS, *driver)) == []
+    other = below("camera.link.robot1", "lidar.depth.robot1")
+    assert found(DOTS, graph(DOTS, *other)) == [("MG204", "robot1", ("lidar.depth.robot1",))]
+
+
+def test_a_disconnected_tree_has_the_frame_name_with_a_dot() -> None:
+    """The wheel's root is there as a child, once more with the robot's name behind a dot."""
+    seen = graph(
+        DOTS,
+        *below("base.robot1", "camera.link.robot1.robot1"),
+        *below("camera.link.robot1", "base.robot1.robot1"),
+    )
+    edges = [it for it in seen.edges if it.child != "camera.link.robot1"]
+    torn = [it for it in check(DOTS, seen._replace(edges=tuple(edges))) if it.code == "MG406"]
+    assert [it.robot for it in torn] == ["robot1"]
+    assert "base.robot1.robot1 and base.robot1 are one frame" in torn[0].hint
+
+
+# A copy of tf for those who look on.
+
+
+PREFIXED = fleet(
+    "/ROBOT/tf",
+    robot1=("robot1/base", "robot1/camera", "robot1/laser"),
+    robot2=("robot2/base", "robot2/camera", "robot2/laser"),
+)
+CAMERA, LASER = "robot1/camera", "robot1/laser"
+
+
+def copied(seen: System, node: str, *, at_home: bool = True) -> System:
+    """The tf of robot1 is sent to /tf by a node, too, or only there."""
+    kept = [it for it in seen.edges if at_home or not it.topic.startswith("/robot1/")]
+    copies = [
+        it._replace(topic="/tf_static") for it in seen.edges if it.topic.startswith("/robot1/")
+    ]
+    there = seen._replace(edges=(*kept, *copies))
+    if not node:
+        return sent(there)
+    return with_node(there, node, (PUBLISHES, "/tf", TF), (PUBLISHES, "/tf_static", TF))
+
+
+def test_a_relay_may_copy_a_robots_tf() -> None:
+    assert "MG405" not in {it.code for it in check(PREFIXED, copied(graph(PREFIXED), "/relay"))}
+
+
+def test_the_robots_own_node_on_another_tf_topic_is_no_copy() -> None:
+    seen = copied(graph(PREFIXED), "/robot1/sensor")
+    assert ("MG405", "robot1", (CAMERA, LASER)) in found(PREFIXED, seen)
+
+
+def test_what_is_not_at_home_is_not_copied() -> None:
+    seen = copied(graph(PREFIXED), "/relay", at_home=False)
+    assert ("MG405", "robot1", (CAMERA, LASER)) in found(PREFIXED, seen)
+
+
+def test_frames_without_a_known_sender_are_no_copy() -> None:
+    seen = copied(graph(PREFIXED), "")
+    assert ("MG405", "robot1", (CAMERA, LASER)) in found(PREFIXED, seen)
+
+
+def test_one_frame_more_than_at_home_is_no_copy() -> None:
+    """A relay that sends what the robot does not."""
+    seen = copied(graph(PREFIXED), "/relay")
+    kept = [it for it in seen.edges if (it.child, it.topic) != (LASER, "/robot1/tf_static")]
+    assert ("MG405", "robot1", (CAMERA, LASER)) in found(
+        PREFIXED, sent(seen._replace(edges=tuple(kept)))
+    )
+
+
+# A robot whose name is an ordinary word of its frames.
+
+
+@pytest.mark.parametrize(
+    ("robot", "code"),
+    [
+        pytest.param("amr", "MG407", id="no link of it is called amr"),
+        pytest.param(
+            "arm", "MG204", id="one is called arm_upper: an arm in a frame may be its own"
+        ),
+    ],
+)
+def test_a_robots_name_that_is_a_word_of_its_frames_is_not_there_twice(
+    robot: str, code: str
+) -> None:
+    own = {name: (f"base/{name}", f"arm_upper/{name}") for name in (robot, "other")}
+    plan = fleet("/ROBOT/tf", **own)
+    frame = f"{robot}_base_{robot}"
+    seen = graph(plan, *below(f"arm_upper/{robot}", frame, topic=f"/{robot}/tf_static"))
+    assert found(plan, seen) == [(code, robot, (frame,))]
+
+
+# What a view that may be incomplete cannot tell.
+
+
+# Each is told because something was not seen.
+NOT_SEEN = {"MG101", "MG102", "MG109", "MG303", "MG406", "MG207"}
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda it: it.stem)
+def test_nothing_is_called_missing_in_an_incomplete_view(case: Case) -> None:
+    plan, seen = read_plan(case.layout), case.broken(planned(case.layout))
+    whole = check(plan, seen)
+    partial = check(plan, seen._replace(environment=CUT_OFF))
+    assert [it.code for it in partial] == [it.code for it in whole]
+    assert all(it.level in (ERROR, WARNING) for it in whole)
+    expected = [INCONCLUSIVE if it.code in NOT_SEEN else it.level for it in whole]
+    assert [it.level for it in partial] == expected
+
+
+def _state(plan: System, graph: System, before: WatchState | None) -> WatchState:
+    return with_found(plan, graph, check(plan, graph), before)
+
+
+def test_a_frame_without_the_robots_name_may_still_come_while_a_fleet_starts() -> None:
+    """Before everything was there once it does not count as the worst that was seen."""
+    plan = read_plan("both")
+    broken = next(it for it in CASES if (it.layout, it.code) == ("both", "MG207"))
+    first = _state(plan, broken.broken(planned("both")), None)
+    assert {it.code for it in first.findings} == {"MG207"}
+    assert (first.complete, first.worst) == (False, Verdict.PLANNED)
+    later = _state(plan, planned("both"), first)
+    again = _state(plan, broken.broken(planned("both")), later)
+    assert (later.complete, again.worst) == (True, Verdict.WRONG)

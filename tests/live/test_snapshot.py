@@ -1,0 +1,594 @@
+"""The pure half of a snapshot: the file, the environment, how answers of the graph fit together."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, NamedTuple
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from paths import ROOT
+
+from multibot_rewrite.base.model import InputError, UsageError
+from multibot_rewrite.base.wording import SEVERAL, shorten
+from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.producers.ros import child
+from multibot_rewrite.producers.ros.assemble import (
+    LastChange,
+    ObservationClock,
+    ReceivedTransform,
+    endpoints_with_process,
+    frames,
+    merged,
+    nodes_with_process,
+    processes_by_node,
+    topics_to_query,
+    why_settled,
+)
+from multibot_rewrite.producers.ros.queries import TopicQueries, with_topic_details
+from multibot_rewrite.producers.ros.request import Request, from_text, to_text
+from multibot_rewrite.producers.ros.tf_subscriptions import TfSubscriptions
+from multibot_rewrite.system.environment import (
+    participants,
+    setting_caveats,
+    settings,
+    view_caveats,
+)
+from multibot_rewrite.system.json import from_json, to_json
+from multibot_rewrite.system.records import (
+    EXPECTED,
+    MAY,
+    QUIET,
+    RUNS,
+    TIMEOUT,
+    UNKNOWN_NODE,
+    Caveat,
+    Edge,
+    End,
+    Environment,
+    Node,
+    Qos,
+    System,
+    incomplete,
+)
+
+QOS = Qos("UNKNOWN", 0, "RELIABLE", "VOLATILE", math.inf, 10.0, "AUTOMATIC", math.inf)
+HIDDEN = Caveat("nothing-seen", True, "no node was seen")
+HARMLESS = Caveat("frames-not-read", False, "tf2_msgs is not there")
+AROUND = Environment(
+    7, "LOCALHOST", ("10.0.0.1",), "rmw_fastrtps_cpp", "", False, 2, QUIET, 3.61, (HARMLESS,)
+)
+CALM = settings({})
+
+
+def end(node: str, name: str, role: str = "publishes", **more: Any) -> End:
+    kind = {"publishes": "topic", "subscribes": "topic"}.get(role, "service")
+    type_ = "std_msgs/msg/String"
+    return End(kind, role, name, type_, "", node, None, "")._replace(**more)
+
+
+SNAPSHOT = System(
+    (Node("/robot1/amcl", "01aa"), Node("/robot1/amcl", "01bb")),
+    (
+        end("/robot1/amcl", "/robot1/scan", "subscribes", qos=QOS, process="01aa"),
+        end("/robot1/amcl", "/robot1/amcl/get_state", "serves"),
+        end("/robot1/amcl", "/robot1/go", "serves", kind="action"),
+    ),
+    (
+        Edge("base_link/ä", "odom", "/robot1/tf", False, ("/robot1/amcl",)),
+        Edge("imu", "base_link", "/robot1/tf", True, (), False, (0.5, -1, 2e-9, 0, 0, 0, 1)),
+    ),
+    AROUND,
+)
+
+
+# --- the file
+
+
+def test_a_snapshot_survives_the_file() -> None:
+    assert from_json(to_json(SNAPSHOT), "graph.json") == SNAPSHOT
+
+
+def test_an_empty_snapshot_survives_the_file() -> None:
+    empty = System((), (), (), AROUND._replace(caveats=(), static_peers=()))
+    assert from_json(to_json(empty), "graph.json") == empty
+
+
+TEXT = st.text(st.characters(codec="utf-8"), max_size=8)
+NAME = TEXT.map("/{}".format)
+SURE = st.sampled_from([RUNS, MAY])
+TIME = st.floats(0, 1e6) | st.just(math.inf)
+
+
+@pytest.mark.slow
+@given(
+    st.builds(Node, NAME, TEXT, sure=SURE),
+    st.builds(Qos, TEXT, st.integers(), TEXT, TEXT, TIME, TIME, TEXT, TIME),
+    st.builds(
+        Edge,
+        *(TEXT, TEXT, NAME, st.booleans(), st.lists(NAME).map(tuple), st.booleans()),
+        st.just(()) | st.tuples(*[st.floats(-1e3, 1e3)] * 7),
+        sure=SURE,
+    ),
+    st.builds(Caveat, TEXT, st.booleans(), TEXT),
+)
+def test_any_snapshot_survives_the_file(node: Node, qos: Qos, frame: Edge, caveat: Caveat) -> None:
+    ends = (end(node.name, "/x", qos=qos, process=node.process),)
+    any_ = System((node, node), ends, (frame,), AROUND._replace(caveats=(caveat,)))
+    assert from_json(to_json(any_), "graph.json") == any_
+
+
+def test_the_file_is_plain_json_with_null_for_no_limit() -> None:
+    value = json.loads(to_json(SNAPSHOT))
+    assert value["schema"] == 2
+    assert value["ends"][0]["qos"]["deadline"] is None
+    assert value["ends"][0]["qos"]["lifespan"] == 10.0
+    # A record a line, so that two snapshots can be compared line by line.
+    assert to_json(SNAPSHOT).count(b'{"name": "/robot1/amcl"') == 2
+
+
+def test_equal_texts_and_profiles_are_in_memory_once() -> None:
+    ends = tuple(end(f"/a{at}", "/x", qos=QOS) for at in range(3))
+    found = from_json(to_json(SNAPSHOT._replace(ends=ends)), "graph.json").ends
+    assert found == ends
+    assert len({id(it.name) for it in found}) == len({id(it.qos) for it in found}) == 1
+
+
+def changed(*path: str | int, to: Any = ...) -> bytes:
+    """The snapshot's JSON with the value at ``path`` replaced, or taken out."""
+    value = json.loads(to_json(SNAPSHOT))
+    inner = value
+    for key in path[:-1]:
+        inner = inner[key]
+    if to is ...:
+        del inner[path[-1]]
+    else:
+        inner[path[-1]] = to
+    return json.dumps(value).encode()
+
+
+# The keys of a node, wherever it stands.
+NODE_OBJECT = {"name": "/a", "process": ""}
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        (b"{", "g.json:1:2: not valid JSON"),
+        (b"\xff", "g.json: cannot be read as JSON"),
+        (b"[" * 100_000, "g.json:1:1: not valid JSON: it is nested deeper than 100 levels"),
+        (b"[]", "g.json: not a snapshot, but []"),
+        (changed("schema"), "g.json: schema: expected 2, not null; take the snapshot again"),
+        (changed("schema", to=3), "g.json: schema: expected 2, not 3"),
+        (changed("schema", to=True), "g.json: schema: expected 2, not true"),
+        (changed("nodes", to={}), "g.json: nodes: expected a list, not {}"),
+        (changed("nodes", 1, to="x"), 'g.json: nodes[1]: expected an object, not "x"'),
+        (changed("nodes", 1, "name"), "g.json: nodes[1].name: missing"),
+        (changed("nodes", 0, "name", to="a"), "nodes[0].name: expected a full name that starts"),
+        (changed("nodes", 0, "pid", to=3), "g.json: nodes[0].pid: unknown key"),
+        (changed("ends", 0, "kind", to="topik"), "one of topic, service, action, not"),
+        (changed("ends", 0, "role", to=None), "ends[0].role: expected one of publishes"),
+        (changed("ends", 0, "qos", "depth", to="1"), "qos.depth: expected a whole number"),
+        (changed("ends", 0, "qos", "depth", to=True), "qos.depth: expected a whole number"),
+        (changed("ends", 0, "qos", "deadline", to="x"), "deadline: expected a number or null"),
+        (
+            changed("ends", 0, "qos", "deadline", to=10**400),
+            "a number of 401 characters",
+        ),
+        (b"[" + b"1" * 5000 + b"]", "g.json:1:2: not valid JSON: a number of 5,000"),
+        (changed("ends", 0, "qos", "deadline", to=math.nan), "deadline: expected a number"),
+        (changed("edges", 0, "static", to=1), "edges[0].static: expected true or false, not 1"),
+        (changed("edges", 0, "publishers", 0, to=1), "edges[0].publishers[0]: expected text"),
+        (
+            changed("edges", 1, "transform", to=[1, 2, 3]),
+            "edges[1].transform: expected 7 numbers",
+        ),
+        (
+            changed("edges", 1, "transform", to=[None] * 7),
+            "edges[1].transform: expected 7 numbers",
+        ),
+        (changed("edges", 1, "transform", 0, to=1e200), "edges[1].transform: expected 7 numbers"),
+        (changed("edges", 1, "transform", 3, to="x"), "transform[3]: expected a number"),
+        (changed("ends", 0, to=NODE_OBJECT), "g.json: ends[0].kind: missing"),
+        (changed("edges", 0, to=NODE_OBJECT), "g.json: edges[0].child: missing"),
+        (changed("environment", to=NODE_OBJECT), "g.json: environment.name: unknown key"),
+        (changed("environment", to=None), "g.json: environment: expected an object"),
+        (changed("environment", "settled", to="yes"), "expected one of expected, quiet, timeout"),
+        (changed("environment", "caveats", 0, "code"), "environment.caveats[0].code: missing"),
+    ],
+)
+def test_a_wrong_file_is_reported_with_its_key(data: bytes, message: str) -> None:
+    with pytest.raises(InputError) as error:
+        from_json(data, "g.json")
+    assert str(error.value).startswith("g.json")
+    assert message in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_only_what_hides_something_makes_a_view_incomplete() -> None:
+    assert incomplete(SNAPSHOT) == ()
+    around = AROUND._replace(caveats=(HARMLESS, HIDDEN))
+    assert incomplete(SNAPSHOT._replace(environment=around)) == (HIDDEN,)
+
+
+# --- the environment
+
+
+@pytest.mark.parametrize(
+    ("word", "domain"),
+    [("", 0), ("0", 0), ("232", 232), (" 7", 7), ("+7", 7), ("0x1f", 31), ("010", 8)],
+)
+def test_a_domain_is_read_as_rcl_reads_it(word: str, domain: int) -> None:
+    assert settings({"ROS_DOMAIN_ID": word}).domain == domain
+
+
+@pytest.mark.parametrize("word", ["abc", "-1", "1.5", "233", "0x", "08", "7 ", "99999999999"])
+def test_a_wrong_domain_is_reported_before_rcl_exits(word: str) -> None:
+    with pytest.raises(UsageError, match=r"ROS_DOMAIN_ID.*give 0 to 232"):
+        settings({"ROS_DOMAIN_ID": word})
+
+
+@pytest.mark.parametrize(
+    ("environ", "range_"),
+    [
+        ({}, "SUBNET"),
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF"}, "OFF"),
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "subnet"}, "LOCALHOST"),
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET", "ROS_LOCALHOST_ONLY": "1"}, "LOCALHOST"),
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET", "ROS_LOCALHOST_ONLY": "0"}, "SUBNET"),
+    ],
+)
+def test_the_range_is_read_as_rcl_reads_it(environ: dict[str, str], range_: str) -> None:
+    assert settings(environ).range == range_
+
+
+def test_peers_and_server_are_read() -> None:
+    environ = {
+        "ROS_STATIC_PEERS": "10.0.0.1;;10.0.0.2",
+        "ROS_DISCOVERY_SERVER": "10.0.0.3:11811",
+        "ROS_SUPER_CLIENT": "TRUE",
+    }
+    asked = settings(environ)
+    assert asked.static_peers == ("10.0.0.1", "10.0.0.2")
+    assert (asked.discovery_server, asked.super_client) == ("10.0.0.3:11811", True)
+
+
+@pytest.mark.parametrize(
+    ("environ", "codes"),
+    [
+        ({}, []),
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}, []),
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "local"}, ["range-word"]),
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF"}, ["range-off"]),
+        ({"ROS_LOCALHOST_ONLY": "1"}, ["localhost-only"]),
+        ({"RMW_IMPLEMENTATION": "rmw_cyclonedds_cpp"}, []),
+        ({"RMW_IMPLEMENTATION": "rmw_cyclone"}, ["rmw-word"]),
+        ({"ROS_DISCOVERY_SERVER": "a:1"}, ["no-super-client"]),
+        ({"ROS_DISCOVERY_SERVER": "a:1", "ROS_SUPER_CLIENT": "FALSE"}, ["no-super-client"]),
+        ({"ROS_DISCOVERY_SERVER": "a:1", "ROS_SUPER_CLIENT": "TRUE"}, []),
+    ],
+)
+def test_problems_in_settings_are_caveats(environ: dict[str, str], codes: list[str]) -> None:
+    caveats = list(setting_caveats(environ))
+    assert [caveat.code for caveat in caveats] == codes
+    assert all("\n" not in caveat.message for caveat in caveats)
+
+
+# --- is the view whole?
+
+
+def codes_of(
+    nodes: list[str], ends: list[End], why: str = QUIET, **environ: str
+) -> list[tuple[str, bool]]:
+    records = [Node(name, "") for name in nodes]
+    found = view_caveats(records, ends, settings(environ), why)
+    return [(caveat.code, caveat.incomplete) for caveat in found]
+
+
+def fleet(count: int) -> tuple[list[str], list[End]]:
+    nodes = [f"/robot{number}/drive" for number in range(count)]
+    return nodes, [end(node, "/heartbeat", process=f"{at:024x}") for at, node in enumerate(nodes)]
+
+
+def test_a_whole_view_has_no_caveat() -> None:
+    assert codes_of(*fleet(3)) == []
+
+
+def test_32_participants_under_localhost_may_be_all_that_can_be_seen() -> None:
+    local = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+    assert codes_of(*fleet(31), **local) == []
+    assert codes_of(*fleet(32), **local) == [("participant-limit", True)]
+    assert codes_of(*fleet(32)) == []
+    assert codes_of(*fleet(32), **local, ROS_DISCOVERY_SERVER="a:1") == []
+
+
+def test_the_participants_are_counted_once() -> None:
+    ends = [end("/a", "/x", process="1"), end("/b", "/y", process="1"), end("/c", "/y")]
+    assert participants(ends) == 1
+
+
+def test_nodes_without_endpoints_are_an_unfinished_view() -> None:
+    assert codes_of(["/a", "/b"], [end("/a", "/x")]) == [("nodes-without-endpoints", True)]
+
+
+def test_endpoints_without_a_known_node_are_an_unfinished_view() -> None:
+    ends = [end("/a", "/x"), end(f"/{UNKNOWN_NODE}", "/y")]
+    assert codes_of(["/a"], ends) == [("node-name-unknown", True)]
+
+
+def test_timeout_nothing_seen_and_same_names_are_caveats() -> None:
+    assert codes_of([], []) == [("nothing-seen", True)]
+    assert codes_of(["/a"], [end("/a", "/x")], TIMEOUT) == [("not-settled", True)]
+    assert codes_of(["/a", "/a"], [end("/a", "/x")]) == [("same-name", False)]
+
+
+def test_expected_nodes_that_are_absent_are_named() -> None:
+    (caveat,) = view_caveats([Node("/a", "")], [end("/a", "/x")], CALM, QUIET, ["/a", "/b"])
+    assert (caveat.code, caveat.incomplete) == ("expected-not-seen", True)
+    assert "/b;" in caveat.message
+
+
+def test_every_caveat_is_documented() -> None:
+    root = ROOT
+    rooms = ("system", "live", *(f"producers/{it}" for it in ("bags", "ros", "rosgraph", "zenoh")))
+    files = (it for room in rooms for it in (root / "multibot_rewrite" / room).rglob("*.py"))
+    source = "".join(it.read_text() for it in files)
+    page = (root / "docs/snapshot.md").read_text().partition("## Caveats")[2]
+    assert set(re.findall(r'Caveat\(\s*"([\w-]+)"', source)) == set(
+        re.findall(r"`([a-z]+-[\w-]+)`", page)
+    )
+
+
+def test_a_long_list_is_cut() -> None:
+    assert shorten(["a", "b"], SEVERAL) == "a, b"
+    assert shorten(list("abcdefgh"), SEVERAL) == "a, b, c, d, e and 3 more"
+
+
+# --- when to stop, what to ask, how it fits together
+
+
+@pytest.mark.parametrize(
+    ("now", "changed_", "seen", "wanted", "why"),
+    [
+        (0.8, (0.7, 0.2), {"/a", "/b"}, ["/a"], EXPECTED),
+        (0.8, (0.7, 0.4), {"/a", "/b"}, ["/a"], ""),
+        (0.5, (0.2, 0.1), {"/a"}, ["/a", "/b"], ""),
+        (3.4, (0.0, 0.0), {"/a"}, [], ""),
+        (3.5, (0.0, 0.0), {"/a"}, [], QUIET),
+        (5.0, (2.0, 0.0), {"/a"}, ["/b"], ""),
+        (9.0, (8.0, 0.0), {"/a"}, ["/b"], TIMEOUT),
+        (9.0, (5.5, 0.0), set(), [], QUIET),
+    ],
+)
+def test_when_the_observation_ends(
+    now: float, changed_: tuple[float, float], seen: set[str], wanted: list[str], why: str
+) -> None:
+    assert why_settled(now, LastChange(*changed_), seen, wanted, 9.0) == why
+
+
+TOPICS = {
+    "/both": ["std_msgs/msg/String"],
+    "/one": ["std_msgs/msg/String"],
+    "/nobody": ["std_msgs/msg/String"],
+    "/robot1/tf": ["tf2_msgs/msg/TFMessage"],
+    "/rosout": ["rcl_interfaces/msg/Log"],
+}
+ENDS = [
+    end("/a", "/both"),
+    end("/b", "/both", "subscribes"),
+    *(end("/a", name) for name in ("/one", "/robot1/tf", "/rosout")),
+]
+
+
+def test_the_slow_query_is_made_only_where_it_is_worth_it() -> None:
+    asked = topics_to_query(["/a", "/b"], ENDS, TOPICS, [])
+    assert asked == ["/both", "/nobody", "/robot1/tf", "/rosout"]
+    assert "/one" in topics_to_query(["/a", "/b"], ENDS, TOPICS, ["/one"])
+    assert "/gone" not in topics_to_query(["/a"], ENDS, TOPICS, ["/gone"])
+
+
+def test_two_nodes_of_one_name_hide_topics_so_all_are_queried() -> None:
+    assert topics_to_query(["/a", "/a", "/b"], ENDS, TOPICS, []) == sorted(TOPICS)
+
+
+def test_endpoints_by_topic_replace_those_by_node() -> None:
+    better = [end("/a", "/both", qos=QOS), end("/a", "/both", qos=QOS, process="2")]
+    service = end("/a", "/both", "serves")
+    result = merged([*ENDS, service], {"/both": better, "/one": []})
+    assert [it for it in result if it.name == "/both"] == [service, *better]
+    assert not [it for it in result if it.name == "/one"]
+
+
+def test_nodes_of_one_name_are_spread_over_its_processes() -> None:
+    groups = processes_by_node([end("/a", "/x", process="1"), end("/a", "/x", process="2")])
+    assert nodes_with_process(["/a", "/b", "/a"], groups) == [
+        Node("/a", "1"),
+        Node("/a", "2"),
+        Node("/b", ""),
+    ]
+    # Both in one process: that is where they are.
+    assert nodes_with_process(["/a", "/a"], {"/a": ["1"]}) == [Node("/a", "1")] * 2
+
+
+def test_an_endpoint_gets_its_nodes_process_only_beyond_doubt() -> None:
+    ends = [end("/a", "/x"), end("/b", "/x"), end("/b", "/y", process="2")]
+    placed = endpoints_with_process(ends, {"/a": ["1"], "/b": ["1", "2"]})
+    assert [(it.node, it.name, it.process) for it in placed] == [
+        ("/a", "/x", "1"),
+        ("/b", "/x", ""),
+        ("/b", "/y", "2"),
+    ]
+
+
+def test_a_transform_is_there_once_a_topic_and_static_if_latched() -> None:
+    heard = [
+        ReceivedTransform("/tf", False, "odom", "base_link"),
+        ReceivedTransform("/tf", False, "odom", "base_link"),
+        ReceivedTransform("/tf_static", True, "base_link", "lidar"),
+        # A subscription that takes what is sent now hears what is kept, too.
+        ReceivedTransform("/tf_static", False, "base_link", "lidar"),
+    ]
+    ends = [end("/b", "/tf"), end("/a", "/tf"), end("/c", "/tf", "subscribes")]
+    assert list(frames(heard, ends)) == [
+        Edge("base_link", "odom", "/tf", False, ("/a", "/b")),
+        Edge("lidar", "base_link", "/tf_static", True, ()),
+    ]
+
+
+def test_a_transform_has_the_numbers_that_came_last() -> None:
+    session = TfSubscriptions(
+        lambda _topic, _type, _latched, callback: calls.append(callback) or bool
+    )
+    calls: list[Any] = []
+    qos = QOS._replace(durability="VOLATILE")
+    ends = [end("/a", "/tf", type="tf2_msgs/msg/TFMessage", qos=qos)]
+    session.update(ends, False)
+    for x in (1.0, 2.123456789123):
+        calls[0](SimpleNamespace(transforms=[stamped("odom", "base", x)]), None)
+    for name, x in {"imu": math.nan, "gps": math.inf, "lost": -1e13}.items():
+        calls[0](SimpleNamespace(transforms=[stamped("base", name, x)]), None)
+    found = frames(session.transforms(), ends, last=session.last)
+    assert {it.child: it.transform for it in found} == {
+        "base": (2.123456789, 0, 0, 0, 0, 0, 1),
+        **dict.fromkeys(("imu", "gps", "lost"), ()),
+    }
+
+
+def stamped(parent: str, child: str, x: float) -> SimpleNamespace:
+    """A transform as a message has it."""
+    at = SimpleNamespace(x=x, y=0.0, z=0.0)
+    turn = SimpleNamespace(x=0.0, y=0.0, z=0.0, w=1.0)
+    return SimpleNamespace(
+        header=SimpleNamespace(frame_id=parent), child_frame_id=child,
+        transform=SimpleNamespace(translation=at, rotation=turn),
+    )  # fmt: skip
+
+
+def test_a_request_survives_the_command_line() -> None:
+    request = Request(2.5, ("/a",), ("/x", "/y"))
+    assert from_text(to_text(request)) == request
+
+
+# --- the command, as far as it goes without ROS
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--domain", "233"], "'233' is not a domain, give 0 to 232"),
+        (["--timeout", "0"], "'0' is not a time"),
+        (["--timeout", "nan"], "'nan' is not a time"),
+        (["--expect", "drive"], "'drive' is not a full name, give for example /drive"),
+    ],
+)
+def test_a_wrong_option_is_one_line(
+    arguments: list[str], message: str, capfd: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as end_:
+        main(["snapshot", *arguments])
+    assert end_.value.code == 2
+    assert message in capfd.readouterr().err
+
+
+def test_a_wrong_domain_of_the_environment_is_one_line(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", "300")
+    file = tmp_path / "graph.json"
+    assert main(["snapshot", "-o", str(file)]) == 2
+    (line,) = capfd.readouterr().err.splitlines()
+    assert "ROS_DOMAIN_ID=300 is too high" in line
+    assert not file.exists()
+
+
+# --- a machine that is busy, a look that has no more time
+
+
+def late_by(*seconds: float) -> ObservationClock:
+    """The clock after polls of a tenth of a second that came so much later than planned."""
+    clock = ObservationClock()
+    for late in seconds:
+        clock = clock.after(clock.last + 0.1 + late, 0.1)
+    return clock
+
+
+def test_time_without_a_processor_is_not_observed() -> None:
+    assert late_by(*[0.0] * 10).observed == pytest.approx(1.0)
+    assert late_by(*[0.3] * 10).observed == pytest.approx(1.0)
+    assert late_by(60.0).observed == pytest.approx(0.1)
+
+
+def test_a_look_that_is_late_again_and_again_is_starved() -> None:
+    (caveat,) = late_by(*[0.3] * 40).starved()
+    assert (caveat.code, caveat.incomplete) == ("busy-machine", True)
+    assert "75% of its time" in caveat.message
+    assert not [*late_by(*[0.05] * 40).starved()]
+    # A laptop that was closed is no busy machine.
+    assert not [*late_by(60.0, *[0.0] * 40).starved()]
+
+
+class Rows(NamedTuple):
+    """What rclpy tells of a topic's publishers and subscriptions: nothing; ``asked`` counts."""
+
+    asked: list[str]
+
+    def get_topic_names_and_types(self) -> list[tuple[str, list[str]]]:
+        return [(f"/t{at}", ["std_msgs/msg/String"]) for at in range(9)]
+
+    def get_fully_qualified_name(self) -> str:
+        return "/look"
+
+    def get_publishers_info_by_topic(self, topic: str) -> list[object]:
+        self.asked.append(topic)
+        return []
+
+    def get_subscriptions_info_by_topic(self, topic: str) -> list[object]:
+        return []
+
+
+def test_slow_queries_end_with_the_time() -> None:
+    node = Rows([])
+    found = [end("/a", f"/t{at}", role) for at in range(9) for role in ("publishes", "subscribes")]
+    asked = TopicQueries((), {}, lambda: len(node.asked) >= 4)
+    left = with_topic_details(node, ["/a"], found, asked)
+    assert node.asked == ["/t0", "/t1", "/t2", "/t3"]
+    # What was not asked is as it was known before.
+    assert {it.name for it in left} == {f"/t{at}" for at in range(4, 9)}
+
+
+TWINS = SNAPSHOT._replace(nodes=(Node("/a", "p"), Node("/a", "q")))
+
+
+@pytest.mark.parametrize(("took", "looks"), [(5.0, [15.0, 10.0]), (8.0, [15.0]), (16.0, [15.0])])
+def test_a_second_look_has_the_time_that_is_left(
+    took: float, looks: list[float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    now, asked = [0.0], []
+
+    def look(request: Request, environ: object) -> System:
+        asked.append(request.timeout)
+        now[0] += took
+        return TWINS._replace(environment=AROUND._replace(seconds=took, caveats=()))
+
+    monkeypatch.setattr(child, "_observe_once", look)
+    monkeypatch.setattr(child.time, "monotonic", lambda: now[0])
+    seen = child.observe(Request(15.0), {})
+    assert asked == looks
+    assert [it.code for it in incomplete(seen)] == ["no-second-look"] * (len(looks) == 1)
+
+
+@pytest.mark.parametrize(("first", "looks"), [((), 2), ((Node("/a", "p"),), 1)])
+def test_an_empty_view_is_looked_at_again(
+    first: tuple[Node, ...], looks: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    around = AROUND._replace(seconds=3.0, caveats=())
+    full = SNAPSHOT._replace(nodes=(Node("/a", "p"),), ends=(), environment=around)
+    views = [full, full._replace(nodes=first)]
+    monkeypatch.setattr(child, "_observe_once", lambda *_: views.pop())
+    assert child.observe(Request(15.0), {}).nodes == full.nodes
+    assert len(views) == 2 - looks

@@ -1,0 +1,91 @@
+"""The hint to a name that no rule moved names the place where the node takes its rules."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from paths import ROBOTS
+
+from multibot_rewrite.fleet.fleet import expected, make_fleet
+from multibot_rewrite.rules.pair.causes import how_to_remap, why_other_name
+from multibot_rewrite.spelling.plan import planned_end
+from multibot_rewrite.spelling.plan_file import from_yaml, to_yaml
+from multibot_rewrite.system.records import System
+
+GZ = str(ROBOTS / "rover_gz.urdf")
+
+
+def plan(release: str, stack: str) -> System:
+    fleet = make_fleet(GZ, ["robot1"], [stack], {"layout": "tf-per-robot"}, release=release)
+    return from_yaml(to_yaml(expected(fleet)).encode(), "plan.yaml")
+
+
+def hint(of: System, node: str) -> str:
+    view: Any = SimpleNamespace(system=of, nodes={it.name: it for it in of.nodes})
+    end = planned_end(f"/robot1/{node}", "topic", "publishes", "/robot1/tf", "", "/tf")
+    return how_to_remap(view, end)
+
+
+@pytest.mark.parametrize(
+    ("release", "words"),
+    [
+        # On Humble, and made by the plugin of the description.
+        ("humble", "in the description: <remapping>/tf:=tf</remapping> of the plugin of "),
+        ("lyrical", '--controller-ros-args "-r /tf:=tf"'),
+    ],
+)
+def test_a_controllers_rule_is_for_its_spawner_since_that_takes_it(
+    release: str, words: str
+) -> None:
+    assert words in hint(plan(release, "ros2_control"), "diff_drive_controller")
+
+
+def test_a_components_rule_is_for_its_loading() -> None:
+    assert "ComposableNode" in hint(plan("lyrical", "nav2_composed"), "amcl")
+
+
+def test_a_process_takes_it_as_it_is_started() -> None:
+    assert "pass it with --ros-args -r /tf:=tf" in hint(plan("lyrical", "nav2"), "amcl")
+
+
+COSTMAP = "local_costmap/local_costmap"
+
+
+@pytest.mark.parametrize(
+    ("release", "stack", "words"),
+    [
+        ("jazzy", "nav2", "to /robot1/controller_server, whose process it is in: --ros-args -r "),
+        ("jazzy", "nav2_composed", "to /robot1/nav2_container, whose process it is in: --ros-args"),
+        ("lyrical", "nav2_composed", "remappings=[('local_costmap:/tf', '/robot1/tf')] of its "),
+    ],
+)
+def test_a_hosted_nodes_rule_is_for_what_its_host_is_started_with(
+    release: str, stack: str, words: str
+) -> None:
+    text = hint(plan(release, stack), COSTMAP)
+    assert words in text
+    assert "local_costmap:/tf" in text
+
+
+@pytest.mark.parametrize(
+    ("stack", "node", "words"),
+    [
+        ("nav2", "amcl", "--ros-args -r __ns:=/robot1"),
+        ("nav2_composed", "amcl", "namespace='/robot1' of its ComposableNode"),
+        ("nav2", COSTMAP, "/robot1/controller_server makes it"),
+    ],
+)
+def test_a_node_under_another_name_is_told_where_its_name_is_given(
+    stack: str, node: str, words: str
+) -> None:
+    of = plan("lyrical", stack)
+    ownership = SimpleNamespace(without_robot=lambda name, robot: name.removeprefix(f"/{robot}"))
+    view: Any = SimpleNamespace(
+        system=of,
+        nodes={it.name: it for it in of.nodes},
+        robot_of={f"/robot1/{node}": "robot1"},
+        names=ownership,
+    )
+    assert words in why_other_name(view, f"/robot1/{node}", f"/{node}").hint

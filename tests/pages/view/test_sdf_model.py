@@ -1,0 +1,111 @@
+"""An SDF as the view draws it. Where things are is worked out by hand, from SDFormat."""
+
+from __future__ import annotations
+
+from math import pi
+
+import pytest
+from lxml import etree
+
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.pages.view.models import Joint, Model
+from multibot_rewrite.pages.view.sdf_model import load_sdf
+
+SDF = """\
+<sdf version="1.9"><model name="m">
+  <link name="base"><pose>1 0 0 0 0 0</pose>
+    <visual name="v"><pose>0 0 0.5 0 0 0</pose><geometry><box><size>1 2 3</size></box></geometry>
+      <material><diffuse>1 0 0</diffuse></material></visual></link>
+  <link name="wheel"><pose relative_to="base">0 1 0 0 0 1.5707963267948966</pose>
+    <visual name="v"><pose>0.1 0 0 0 0 0</pose>
+      <geometry><cylinder><radius>0.1</radius><length>0.4</length></cylinder></geometry></visual></link>
+  <joint name="turn" type="revolute"><parent>mount</parent><child>wheel</child>
+    <pose>0.1 0 0 0 0 0</pose>
+    <axis><xyz expressed_in="base">1 0 0</xyz><limit><lower>-1</lower><upper>0.5</upper></limit></axis>
+  </joint>
+  <frame name="mount" attached_to="base"><pose>0 0 2 0 0 0</pose></frame>
+  <model name="head"><pose relative_to="mount">0 0 1 0 0 0</pose>
+    <link name="base"><pose>0 0 0.25 0 0 0</pose></link></model>
+  <joint name="neck" type="prismatic"><parent>mount</parent><child>head::base</child>
+    <axis><xyz>0 0 1</xyz></axis></joint>
+  <joint name="loop" type="revolute"><parent>head</parent><child>wheel</child></joint>
+  <joint name="to_world" type="fixed"><parent>world</parent><child>base</child></joint>
+</model></sdf>
+"""
+
+
+def load(text: str) -> Model:
+    return load_sdf(etree.fromstring(text), "m.sdf")
+
+
+@pytest.fixture
+def model() -> Model:
+    return load(SDF)
+
+
+def of(model: Model, name: str) -> Joint:
+    (found,) = [it for it in model.joints if it.name == name]
+    return found
+
+
+def at(pose: object) -> list[float]:
+    return [pytest.approx(row[3], abs=1e-6) for row in list(pose)[:3]]  # type: ignore[call-overload]
+
+
+def test_links_are_where_their_poses_say(model: Model) -> None:
+    assert list(model.links) == ["__model__", "base", "wheel", "head::base"]
+    assert at(of(model, "base in __model__").pose) == [1, 0, 0]
+    # The wheel's frame is that of its joint: 0.1 along the wheel's own x, which is base's y.
+    assert at(of(model, "turn").pose) == [0, 1.1, 0]
+    # From base: the mount is 2 up, the head 1 above it, its link 0.25 more.
+    assert at(of(model, "neck").pose) == [0, 0, 3.25]
+
+
+def test_a_joint_turns_about_its_axis_and_keeps_its_limits(model: Model) -> None:
+    turn, neck = of(model, "turn"), of(model, "neck")
+    assert (turn.type, turn.parent, turn.child) == ("revolute", "base", "wheel")
+    # base's x in a frame that is turned by 90 degrees about z.
+    assert turn.axis == pytest.approx((0, -1, 0), abs=1e-9)
+    assert (turn.lower, turn.upper) == (-1, 0.5)
+    assert (neck.parent, neck.child, neck.axis) == ("base", "head::base", (0, 0, 1))
+    assert neck.lower < 0 < neck.upper
+    assert not [it for it in model.joints if it.name in ("loop", "to_world")]
+
+
+def test_shapes_stay_where_their_link_is(model: Model) -> None:
+    (box,), (cylinder,) = model.links["base"], model.links["wheel"]
+    assert (box.kind, box.size, box.colour) == ("box", (1, 2, 3), (1, 0, 0, 1))
+    assert at(box.pose) == [0, 0, 0.5]
+    # The visual is where the joint is.
+    assert (cylinder.kind, cylinder.size) == ("cylinder", (0.1, 0.4))
+    assert at(cylinder.pose) == [0, 0, 0]
+
+
+@pytest.mark.parametrize(
+    ("pose", "turned"),
+    [
+        ("<pose>0 0 0 0 0 1.5707963267948966</pose>", pi / 2),
+        ('<pose degrees="true">0 0 0 0 0 90</pose>', pi / 2),
+        ('<pose rotation_format="quat_xyzw">0 0 0 0 0 0.70710678 0.70710678</pose>', pi / 2),
+        ("<pose>no number</pose>", 0),
+        ("<pose/>", 0),
+    ],
+)
+def test_a_pose_in_every_form(pose: str, turned: float) -> None:
+    made = load(
+        '<sdf version="1.9"><model name="m"><link name="a"/><link name="b">'
+        f"{pose}</link></model></sdf>"
+    )
+    if not turned:
+        assert of(made, "b in __model__").pose[1][:2] == [0, 1]
+        return
+    assert of(made, "b in __model__").pose[1][:2] == pytest.approx([1, 0], abs=1e-6)
+
+
+def test_what_cannot_be_shown_is_said() -> None:
+    with pytest.raises(InputError, match=r"m\.sdf: it has no <model> to show"):
+        load("<sdf/>")
+    text = '<link name="{0}"><pose relative_to="{1}"/></link>'
+    both = text.format("a", "b") + text.format("b", "a")
+    with pytest.raises(InputError, match="the pose of 'a' depends on itself"):
+        load(f'<sdf><model name="m">{both}</model></sdf>')

@@ -1,0 +1,81 @@
+"""A relay between a robot and its computer: what it carries is what its lists of names and types say.
+
+Expected from create3_republisher republisher.cpp: pairs of name and type; the robot has the names below
+robot_namespace, this node below its own namespace; messages are carried as they are.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import yaml
+
+from multibot_rewrite.fleet.build import Outputs, make_outputs
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
+
+REPUBLISHER = """\
+/**:
+  create3_repub:
+    ros__parameters:
+      robot_namespace: /_do_not_use
+      robot_publishers: ["odom", "nav_msgs/msg/Odometry", "tf", "tf2_msgs/msg/TFMessage"]
+      robot_subscriptions: ["cmd_vel", "geometry_msgs/msg/Twist"]
+      robot_services: ["e_stop", "irobot_create_msgs/srv/EStop"]
+      robot_actions: ["dock", "irobot_create_msgs/action/Dock"]
+"""
+
+
+def made(folder: Path, layout: str, params: str = REPUBLISHER) -> Outputs:
+    (folder / "p.yaml").write_text(params)
+    (folder / "r.urdf").write_text('<robot name="r"><link name="base_link"/></robot>')
+    (folder / "fleet.yaml").write_text(
+        f"layout: {layout}\naffix: prefix\ndescription: r.urdf\nstack: create3_repub\n"
+        "robots: [{name: robot1}, {name: robot2}]\ncompanions: {params: p.yaml}\n"
+    )
+    return make_outputs(plan_fleet(read_fleet(str(folder / "fleet.yaml"), "", {})))
+
+
+def text(outputs: Outputs, path: str) -> str:
+    return next(it.data.decode() for it in outputs.files if it.path == path)
+
+
+def test_a_relay_has_the_topics_of_its_lists_with_their_types(tmp_path: Path) -> None:
+    outputs = made(tmp_path, "tf-per-robot")
+    plan = yaml.safe_load(text(outputs, "plan.yaml"))
+    ends = plan["robots"]["robot2"]["nodes"]["/robot2/create3_repub"]
+    assert {tuple(it[:4]) for it in ends} == {
+        ("publishes", "topic", "/robot2/odom", "nav_msgs/msg/Odometry"),
+        ("publishes", "topic", "/robot2/tf", "tf2_msgs/msg/TFMessage"),
+        ("subscribes", "topic", "/robot2/cmd_vel", "geometry_msgs/msg/Twist"),
+        ("serves", "service", "/robot2/e_stop", "irobot_create_msgs/srv/EStop"),
+        ("serves", "action", "/robot2/dock", "irobot_create_msgs/action/Dock"),
+    }
+    params = yaml.safe_load(text(outputs, "robot2/p.yaml"))
+    (section,) = (it["create3_repub"]["ros__parameters"] for it in params.values())
+    # Two relays of one robot namespace would both drive one robot.
+    assert section["robot_namespace"] == "/robot2/_do_not_use"
+    assert section["robot_publishers"][:2] == ["odom", "nav_msgs/msg/Odometry"]
+
+
+def test_without_lists_it_carries_nothing(tmp_path: Path) -> None:
+    empty = "create3_repub: {ros__parameters: {robot_namespace: /own}}\n"
+    plan = yaml.safe_load(text(made(tmp_path, "tf-per-robot", empty), "plan.yaml"))
+    assert plan["robots"]["robot1"]["nodes"]["/robot1/create3_repub"] == []
+
+
+def test_in_one_tf_its_tf_is_that_of_all(tmp_path: Path) -> None:
+    table = text(made(tmp_path, "frames-per-robot"), "plan.yaml")
+    ends = yaml.safe_load(table)["robots"]["robot1"]["nodes"]["/robot1/create3_repub"]
+    assert "/tf" in {it[2] for it in ends}
+
+
+@pytest.mark.parametrize("wrong", ['["odom"]', '["odom", "tf", "tf2_msgs/msg/TFMessage"]'])
+def test_a_name_without_a_type_has_none(wrong: str, tmp_path: Path) -> None:
+    params = REPUBLISHER.replace(
+        '["odom", "nav_msgs/msg/Odometry", "tf", "tf2_msgs/msg/TFMessage"]', wrong
+    )
+    plan = yaml.safe_load(text(made(tmp_path, "tf-per-robot", params), "plan.yaml"))
+    ends = plan["robots"]["robot1"]["nodes"]["/robot1/create3_repub"]
+    assert {it[2]: it[3] for it in ends}["/robot1/odom"] == ""

@@ -1,0 +1,134 @@
+"""Nodes whose code sets their names: costmaps, and the servers of Nav2 that make them.
+
+Costmap2DROS gives its node ``__ns:=<namespace of the server>/<name>`` and ``<name>:__node:=<name>`` as
+arguments of the node itself (navigation2 1.1.20 and 1.4.2 nav2_costmap_2d/src/costmap_2d_ros.cpp, 1.5.1
+in getChildNodeOptions), and rcl takes a node's own arguments before those of its process.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.base.releases import RELEASES
+from multibot_rewrite.base.rosnames import bind, parse_remap, resolve_bound
+from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.knowledge.stacks import load_stack
+from multibot_rewrite.live.rehearsal import stub_nodes
+from multibot_rewrite.spelling.applied_rules import running_nodes
+from multibot_rewrite.spelling.records import NodeTable, Table
+from multibot_rewrite.spelling.started import arguments, started
+from multibot_rewrite.spelling.table import build_table
+
+ROBOTS = ("robot1", "robot2")
+
+
+def made(release: str, stack: str = "nav2") -> Table:
+    return build_table(ROBOTS, load_stack(stack, release), make_naming("L4"), release=release)
+
+
+def found(table: Table, node: str) -> NodeTable:
+    return next(it for it in table.nodes if it.node == node and it.robot == "robot1")
+
+
+@pytest.mark.parametrize("release", RELEASES)
+@pytest.mark.parametrize("stack", ["nav2", "nav2_composed"])
+def test_a_costmap_keeps_its_name_and_its_server_has_a_namespace(release: str, stack: str) -> None:
+    table = made(release, stack)
+    full = {it.node: it.full_name for it in table.nodes if it.robot == "robot1"}
+    assert full["controller_server"] == "/robot1/controller_server"
+    assert full["local_costmap/local_costmap"] == "/robot1/local_costmap/local_costmap"
+    assert full["global_costmap/global_costmap"] == "/robot1/global_costmap/global_costmap"
+    assert full["amcl"] == "/amcl_robot1"
+    assert table.problems == made(release, "no_robot_state_publisher").problems
+
+
+@pytest.mark.parametrize("release", RELEASES)
+@pytest.mark.parametrize("stack", ["nav2", "nav2_composed"])
+def test_topics_of_a_costmap_are_those_that_others_use(release: str, stack: str) -> None:
+    """With the rules that it has in its process, as rcl reads them."""
+    table = made(release, stack)
+    running = {it.node.node: it for it in running_nodes(table) if it.node.robot == "robot1"}
+
+    def name(node: str, topic: str, kind: str = "topic") -> str:
+        it = running[node]
+        rules = (parse_remap(f"{source}:={target}") for source, target in it.rules)
+        bound = bind(it.node.name, it.node.namespace, filter(None, rules))
+        return resolve_bound(topic, kind, bound)
+
+    behaviors, costmap = "behavior_server", "local_costmap/local_costmap"
+    raw = name(behaviors, "local_costmap/costmap_raw")
+    assert raw == "/local_costmap/costmap_raw/robot1"
+    assert name(costmap, "costmap_raw") == raw
+    clear = "clear_entirely_local_costmap"
+    asked = name("bt_navigator", f"local_costmap/{clear}", "service")
+    assert name(costmap, clear, "service") == asked == f"/local_costmap/{clear}/robot1"
+    assert name("controller_server", "cmd_vel") == name("velocity_smoother", "cmd_vel")
+    # The static layer joins "map" with the namespace above its own (layer.cpp joinWithParentNamespace).
+    assert name(costmap, "/robot1/map") == name(costmap, "/map") == "/map/robot1"
+    assert name(costmap, "/tf") == name("amcl", "/tf") == "/tf/robot1"
+
+
+@pytest.mark.parametrize("release", RELEASES)
+def test_the_lifecycle_manager_finds_a_server_in_its_namespace(release: str) -> None:
+    rules = {
+        it.source: it.target for it in found(made(release), "lifecycle_manager_navigation").rules
+    }
+    assert rules["controller_server/change_state"] == "/robot1/controller_server/change_state"
+    assert rules["smoother_server/change_state"] == "smoother_server_robot1/change_state"
+
+
+def test_the_command_puts_the_server_into_the_namespace() -> None:
+    it = next(it for it in started(made("lyrical")) if it.node.node == "controller_server")
+    words = arguments(it)
+    assert words[:3] == ["--ros-args", "-r", "__ns:=/robot1"]
+    assert not any("__node" in word for word in words)
+    assert any(word.startswith("local_costmap:costmap:=") for word in words)
+
+
+def test_a_shared_name_stays_the_same_from_a_namespace() -> None:
+    node = NodeFacts("driver", "acme", load_stack("amcl", "jazzy")[0].endpoints, apart=True)
+    naming = make_naming("L4", shared_topics=["map"])
+    table = build_table(ROBOTS, [node], naming, release="jazzy")
+    heard = {it.name for it in table.names if it.endpoint.name == "map"}
+    assert heard == {"/map"}
+
+
+def test_nodes_of_two_robots_with_one_name_are_reported() -> None:
+    nodes = [NodeFacts("driver_left", "acme", ()), NodeFacts("driver", "acme", ())]
+    table = build_table(("robot1", "left_robot1"), nodes, make_naming("L4"), release="jazzy")
+    assert [it.code for it in table.problems] == ["MR106"]
+    assert "/driver_left_robot1" in table.problems[0].message
+
+
+def test_nodes_of_one_robot_alone_share_nothing() -> None:
+    nodes = [NodeFacts("driver_left", "acme", ()), NodeFacts("driver", "acme", ())]
+    assert not build_table(("robot1",), nodes, make_naming("L4"), release="jazzy").problems
+
+
+def test_a_rehearsal_places_a_costmap_as_its_code_does() -> None:
+    """A plan that says another name of it is found out."""
+    table = made("jazzy")
+    costmap = found(table, "local_costmap/local_costmap")
+    nodes = [
+        it._replace(namespace="/elsewhere", name="costmap_robot1") if it == costmap else it
+        for it in table.nodes
+    ]
+    stubs = [stub for robot, stub in stub_nodes(table._replace(nodes=tuple(nodes)), {})]
+    own = next(it for it in stubs if it.name == "local_costmap" and "robot1" in it.arguments[2])
+    assert own.arguments[:3] == ("--ros-args", "-r", "__ns:=/robot1/local_costmap")
+    assert not any("__node" in word for word in own.arguments)
+
+
+@pytest.mark.parametrize(
+    ("release", "rule"),
+    [("jazzy", None), ("kilted", "/speed_limit/robot1"), ("lyrical", "/speed_limit/robot1")],
+)
+def test_a_name_that_is_joined_with_the_namespace_above(release: str, rule: str | None) -> None:
+    """SpeedFilter: from Kilted on it publishes where the controller_server listens."""
+    table = made(release)
+    rules = {it.source: it.target for it in found(table, "global_costmap/global_costmap").rules}
+    assert rules.get("/robot1/speed_limit") == rule
+    assert rules["speed_limit"] == "/global_costmap/speed_limit/robot1"
+    server = {it.source: it.target for it in found(table, "controller_server").rules}
+    assert server["speed_limit"] == "/speed_limit/robot1"

@@ -1,0 +1,190 @@
+"""The bridge of a fleet carries each robot's gz topics once, under the names ROS nodes use."""
+
+from __future__ import annotations
+
+import pytest
+import yaml
+from paths import FIXTURES
+
+from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.description.library import rewrite_all
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
+from multibot_rewrite.description.steps.collect import collect
+from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.spelling.bridged_topics import (
+    BridgedTopic,
+    as_yaml,
+    bridge_data,
+    bridged_topics,
+)
+
+ROBOTS = ("robot1", "robot2")
+ROBOT = """\
+<robot name="rover">
+  <link name="base"/>
+  <gazebo reference="base">
+    <sensor name="lidar" type="gpu_lidar"><topic>scan</topic></sensor>
+    <sensor name="eye" type="camera"><topic>eye/image</topic></sensor>
+    <sensor name="mute" type="imu"/>
+    <sensor name="old" type="imu"><plugin name="old" filename="libgazebo_ros_imu_sensor.so"/></sensor>
+  </gazebo>
+  <gazebo>
+    <plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive">
+      <odom_topic>odom</odom_topic>
+    </plugin>
+    <plugin filename="gz-sim-joint-state-publisher-system" name="gz::sim::systems::JointState"/>
+  </gazebo>
+</robot>
+"""
+
+
+def fleet(layout: str, source: str | bytes = ROBOT):
+    rewrites = rewrite_all(source, ROBOTS, layout=layout)
+    inventories = {
+        one.robot: collect(read_document(one.data, "rover"), builtin_tree((), NEWEST_LTS))
+        for one in rewrites
+    }
+    return bridged_topics(inventories, make_naming(layout))
+
+
+CLASSIC = """<robot name="rover"><link name="base"/><gazebo reference="base">
+<sensor name="imu" type="imu"/>{}</gazebo><gazebo>
+<plugin name="drive" filename="libgazebo_ros_diff_drive.so"/>{}</gazebo></robot>"""
+
+
+@pytest.mark.parametrize(
+    ("sensor", "plugin", "left"),
+    [
+        # Gazebo Classic publishes it on a topic of its own, which no ros_gz_bridge can read.
+        ("", "", []),
+        ('<sensor name="eye" type="camera"><topic>eye</topic></sensor>', "", []),
+        ('<sensor name="lidar" type="gpu_lidar"/>', "", ["sensor lidar_robot1"]),
+        (
+            "",
+            '<plugin name="p" filename="gz-sim-pose-publisher-system"/>',
+            ["sensor imu_robot1"],
+        ),
+    ],
+)
+def test_a_robot_of_gazebo_classic_has_no_gz_topics(
+    sensor: str, plugin: str, left: list[str]
+) -> None:
+    bridged, unbridged = fleet("L4", CLASSIC.format(sensor, plugin))
+    assert [it.what for it in unbridged if it.robot == "robot1"] == left
+    assert {it.robot for it in bridged} == {""}
+
+
+NAMESPACED = """<sdf version="1.12"><model name="rover" namespace="{}"><link name="base"/>
+<plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive">
+<odom_topic>odom</odom_topic><tf_topic>/tf</tf_topic></plugin></model></sdf>"""
+
+
+@pytest.mark.parametrize(
+    ("release", "namespace", "cmd_vel", "odom"),
+    [
+        ("rolling", "fleet", "/robot1/fleet/cmd_vel", "/robot1/fleet/odom"),
+        ("rolling", "{name}", "", ""),
+        ("lyrical", "fleet", "/model/robot1/cmd_vel", "robot1/odom"),
+    ],
+)
+def test_topics_below_the_namespace_of_a_model(
+    release: str, namespace: str, cmd_vel: str, odom: str
+) -> None:
+    source = NAMESPACED.format(namespace)
+    (made,) = rewrite_all(source, ["robot1"], layout="L1", distro=release)
+    tree = builtin_tree((), release)
+    inventories = {"robot1": collect(read_document(made.data, "rover"), tree)}
+    bridged, left = bridged_topics(inventories, make_naming("L1"))
+    found = {it.gz_type: it.gz for it in bridged if it.robot}
+    assert (found.get("gz.msgs.Twist", ""), found.get("gz.msgs.Odometry", "")) == (cmd_vel, odom)
+    assert found["gz.msgs.Pose_V"] == "/robot1/tf"
+    assert len(left) == (0 if cmd_vel else 2)
+
+
+def names(layout: str) -> dict[str, str]:
+    """gz name -> ROS name of robot1's topics."""
+    return {item.gz: item.ros for item in fleet(layout)[0] if item.robot == "robot1"}
+
+
+def test_topics_of_the_default_layout() -> None:
+    assert names("L4") == {
+        "scan/robot1": "/scan/robot1",
+        "scan/robot1/points": "/scan/robot1/points",
+        "eye/image/robot1": "/eye/image/robot1",
+        "eye/camera_info/robot1": "/eye/camera_info/robot1",
+        "/model/rover_robot1/cmd_vel": "/cmd_vel/robot1",
+        "odom/robot1": "/odom/robot1",
+        "/model/rover_robot1/tf": "/tf/robot1",
+    }
+
+
+@pytest.mark.parametrize(
+    ("layout", "model", "tf"),
+    [
+        ("L1", "robot1", "/robot1/tf"),
+        ("L2", "rover_robot1", "/tf"),
+        ("L3", "rover_robot1", "/robot1/tf"),
+    ],
+)
+def test_topics_below_a_namespace(layout: str, model: str, tf: str) -> None:
+    found = names(layout)
+    assert found["robot1/scan"] == "/robot1/scan"
+    assert found["robot1/eye/camera_info"] == "/robot1/eye/camera_info"
+    assert found[f"/model/{model}/cmd_vel"] == "/robot1/cmd_vel"
+    assert found[f"/model/{model}/tf"] == tf
+
+
+@pytest.mark.parametrize("layout", ["L1", "L2", "L3", "L4"])
+def test_two_robots_share_the_clock_and_nothing_else(layout: str) -> None:
+    carried, _ = fleet(layout)
+    shared = [item for item in carried if not item.robot]
+    assert shared == [
+        BridgedTopic(
+            "", "/clock", "/clock", "rosgraph_msgs/msg/Clock", "gz.msgs.Clock", "GZ_TO_ROS"
+        )
+    ]
+    gz = {robot: {item.gz for item in carried if item.robot == robot} for robot in ROBOTS}
+    assert gz["robot1"].isdisjoint(gz["robot2"])
+    assert all(gz.values())
+
+
+def test_one_tf_for_all_is_carried_once() -> None:
+    source = ROBOT.replace("<odom_topic>", "<tf_topic>/tf</tf_topic><odom_topic>")
+    carried = [item for item in fleet("L2", source)[0] if item.ros == "/tf"]
+    assert [(item.robot, item.gz) for item in carried] == [("", "/tf")]
+    apart = [item for item in fleet("L3", source)[0] if item.ros.endswith("/tf")]
+    assert [(item.robot, item.gz) for item in apart] == [(it, f"/{it}/tf") for it in ROBOTS]
+
+
+def test_the_info_of_an_rgbd_camera_is_below_its_topic() -> None:
+    source = ROBOT.replace('type="camera"><topic>eye/image', 'type="rgbd_camera"><topic>eye')
+    carried = [item.gz for item in fleet("L2", source)[0] if item.robot == "robot1"]
+    assert "robot1/eye/camera_info" in carried
+    assert "robot1/eye/depth_image" in carried
+
+
+def test_what_hangs_on_the_world_is_said() -> None:
+    _, left = fleet("L2")
+    assert [(item.robot, item.line, item.what) for item in left if item.robot == "robot1"] == [
+        ("robot1", 6, "sensor mute_robot1"),
+        ("robot1", 16, "<topic> of gz-sim-joint-state-publisher-system"),
+    ]
+
+
+def test_the_file_is_what_the_bridge_reads() -> None:
+    rows = yaml.safe_load(
+        as_yaml(fleet("L4", (FIXTURES / "robots" / "rover_gz.urdf").read_bytes())[0])
+    )
+    keys = {"ros_topic_name", "gz_topic_name", "ros_type_name", "gz_type_name", "direction"}
+    assert rows and all(row.keys() == keys for row in rows)
+    assert {row["direction"] for row in rows} <= {"GZ_TO_ROS", "ROS_TO_GZ"}
+    assert len({row["ros_topic_name"] for row in rows}) == len(rows)
+
+
+def test_the_data_names_sections_and_elements_that_the_vocabulary_has() -> None:
+    vocabulary = load_vocabulary((), NEWEST_LTS, packages=False)
+    for section, topics in bridge_data()["plugins"].items():
+        (rewriter,) = vocabulary.find("plugin", section)
+        assert {topic[0] for topic in topics} <= {site.path for site in rewriter.sites}, section

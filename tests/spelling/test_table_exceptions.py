@@ -1,0 +1,147 @@
+"""Names a remap table treats in a way of their own: image transports, names made at run time, kinds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import pytest
+
+from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
+from multibot_rewrite.spelling.records import NodeTable, Table
+from multibot_rewrite.spelling.table import build_table
+from multibot_rewrite.system.records import (
+    ACTION,
+    CALLS,
+    PUBLISHES,
+    SERVES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+)
+
+ROBOTS = ("robot1", "robot2")
+# The packages of image_transport_plugins; raw is the topic itself.
+TRANSPORTS = ("compressed", "compressedDepth", "theora", "zstd")
+NAMESPACED = ("tf-per-robot", "frames-per-robot", "both")
+
+
+def node(name: str, *endpoints: Endpoint) -> NodeFacts:
+    return NodeFacts(name, "pack", endpoints)
+
+
+def table(layout: str, *nodes: NodeFacts) -> Table:
+    return build_table(ROBOTS, nodes, make_naming(layout), release=NEWEST_LTS)
+
+
+def rules(made: Table, robot: str = "robot1") -> dict[str, str]:
+    return {it.source: it.target for one in made.nodes if one.robot == robot for it in one.rules}
+
+
+def problems(made: Table) -> list[tuple[str, str]]:
+    return [(it.code, it.node) for it in made.problems]
+
+
+# Image transports.
+
+
+@pytest.mark.parametrize("transport", TRANSPORTS)
+def test_every_image_transport_is_moved_with_its_topic(transport: str) -> None:
+    camera = node("camera", Endpoint(TOPIC, PUBLISHES, "image_raw", transport=True))
+    made = rules(table("postfix", camera))
+    assert made["image_raw"] == "image_raw/robot1"
+    assert made[f"image_raw/{transport}"] == f"image_raw/robot1/{transport}"
+    camera = node("camera", Endpoint(TOPIC, PUBLISHES, "/image_raw", transport=True))
+    assert rules(table("both", camera))[f"/image_raw/{transport}"] == f"image_raw/{transport}"
+
+
+@pytest.mark.parametrize("transport", TRANSPORTS)
+def test_who_asks_for_one_image_transport_by_name_meets_the_camera(transport: str) -> None:
+    asked = f"image_raw/{transport}"
+    camera = node("camera", Endpoint(TOPIC, PUBLISHES, "image_raw", transport=True))
+    viewer = node("viewer", Endpoint(TOPIC, SUBSCRIBES, asked))
+    made = table("postfix", camera, viewer)
+    sent, heard = (
+        [it.rules for it in made.nodes if it.node == name] for name in ("camera", "viewer")
+    )
+    for one, other in zip(sent, heard, strict=True):
+        targets = {it.source: it.target for it in one}
+        assert [(it.source, it.target) for it in other] == [(asked, targets[asked])]
+
+
+def test_what_is_no_image_transport_is_a_name_of_its_own() -> None:
+    camera = node("camera", Endpoint(TOPIC, PUBLISHES, "image_raw", transport=True))
+    assert len(rules(table("postfix", camera))) == 1 + len(TRANSPORTS)
+    viewer = node("viewer", Endpoint(TOPIC, SUBSCRIBES, "image_raw/rectified"))
+    assert rules(table("postfix", viewer)) == {"image_raw/rectified": "image_raw/rectified/robot1"}
+
+
+# Names that are made at run time.
+
+
+@pytest.mark.parametrize("layout", NAMESPACED)
+def test_a_relative_name_made_at_run_time_follows_its_namespace(layout: str) -> None:
+    made = table(layout, node("driver", Endpoint(TOPIC, PUBLISHES, "<sensor>/image")))
+    assert problems(made) == []
+
+
+@pytest.mark.parametrize("layout", NAMESPACED)
+def test_an_absolute_name_made_at_run_time_leaves_its_namespace(layout: str) -> None:
+    made = table(layout, node("driver", Endpoint(TOPIC, PUBLISHES, "/<sensor>/image")))
+    assert problems(made) == [("MR101", "driver")]
+    assert "/<sensor>/image" in made.problems[0].message
+
+
+@pytest.mark.parametrize("name", ["<sensor>/image", "/<sensor>/image"])
+def test_a_name_made_at_run_time_gets_no_postfix(name: str) -> None:
+    made = table("postfix", node("driver", Endpoint(TOPIC, PUBLISHES, name)))
+    assert problems(made) == [("MR101", "driver")]
+
+
+def test_a_name_made_at_run_time_under_a_condition_is_not_told() -> None:
+    endpoint = Endpoint(TOPIC, PUBLISHES, "<sensor>/image", when="debug")
+    assert problems(table("postfix", node("driver", endpoint))) == []
+
+
+# Names of two robots that are alike.
+
+
+def alike(*pairs: tuple[str, Sequence[Endpoint]]) -> Table:
+    """What two robots' descriptions start: each a node that asks for names which no rule moves."""
+    plugins = {
+        robot: [(node(f"{robot}_plugin", *ends), NodeTable(robot, "p", "/", f"{robot}_plugin", ()))]
+        for robot, ends in pairs
+    }
+    return build_table(ROBOTS, (), make_naming("both"), plugins, release=NEWEST_LTS)
+
+
+def both(first: Endpoint, second: Endpoint) -> list[tuple[str, str]]:
+    return problems(alike(("robot1", [first]), ("robot2", [second])))
+
+
+MEETING = [("MR102", "/robot2_plugin")]
+
+
+@pytest.mark.parametrize("name", ["/reset", "reset"])
+def test_a_topic_and_a_service_of_one_name_do_not_meet(name: str) -> None:
+    topic, service = Endpoint(TOPIC, PUBLISHES, name), Endpoint(SERVICE, SERVES, name)
+    assert both(topic, service) == []
+    assert both(service, topic) == []
+
+
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [
+        (Endpoint(TOPIC, PUBLISHES, "/reset"), Endpoint(TOPIC, SUBSCRIBES, "/reset")),
+        (Endpoint(SERVICE, SERVES, "/reset"), Endpoint(SERVICE, CALLS, "/reset")),
+        (Endpoint(ACTION, SERVES, "/reset"), Endpoint(ACTION, CALLS, "/reset")),
+    ],
+)
+def test_names_of_one_kind_meet(first: Endpoint, second: Endpoint) -> None:
+    assert both(first, second) == MEETING
+
+
+def test_a_topic_and_a_service_that_each_meet_are_two_problems() -> None:
+    ends = [Endpoint(TOPIC, PUBLISHES, "/reset"), Endpoint(SERVICE, SERVES, "/reset")]
+    assert problems(alike(("robot1", ends), ("robot2", ends))) == MEETING * 2

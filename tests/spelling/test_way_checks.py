@@ -1,0 +1,99 @@
+"""MR105 and MR103 by release: a rule in a plugin's tag that is meant for a controller."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from multibot_rewrite.base.policy import Policy
+from multibot_rewrite.fleet.fleet import make_fleet, merge
+
+LAYOUT: Policy = {"layout": "tf-per-robot"}
+NEITHER: Policy = {"layout": "postfix"}
+
+
+def description(*rules: str) -> bytes:
+    tags = "".join(f"<remapping>{rule}</remapping>" for rule in rules)
+    return (
+        '<robot name="rover"><link name="base_link"/><gazebo>'
+        '<plugin name="control" filename="gz_ros2_control-system"><parameters>c.yaml</parameters>'
+        f"<ros>{tags}</ros></plugin></gazebo></robot>"
+    ).encode()
+
+
+def codes(
+    release: str, *rules: str, stack: str = "", policy: Policy = LAYOUT
+) -> list[tuple[str, str]]:
+    stacks = [stack] if stack else []
+    made = make_fleet(description(*rules), ["robot1", "robot2"], stacks, policy, release=release)
+    return [
+        (it.code, it.robot) for it in made.table.problems if it.code.startswith(("MR1", "MB435"))
+    ]
+
+
+@pytest.mark.parametrize(
+    ("release", "found"),
+    [("humble", []), ("jazzy", []), ("kilted", []), ("lyrical", ["MB435"]), ("rolling", ["MB435"])],
+)
+def test_the_tag_alone_is_not_enough_since_lyrical(release: str, found: list[str]) -> None:
+    # The rewrite puts /tf:=tf into the tag.
+    made = make_fleet(description(), ["robot1", "robot2"], [], LAYOUT, release=release)
+    about_tf = [it.code for it in made.table.problems if re.search(r"/tf\b", it.message)]
+    assert about_tf == found
+
+
+@pytest.mark.parametrize("release", ["humble", "jazzy", "lyrical"])
+def test_with_the_controllers_stack_a_spawner_has_the_rule(release: str) -> None:
+    assert codes(release, stack="gz_ros2_control") == []
+
+
+def test_on_humble_the_second_robot_has_the_rules_of_the_first() -> None:
+    wanted = [("MR105", "robot2")]
+    found = codes("humble", stack="gz_ros2_control", policy=NEITHER)
+    assert found and set(found) <= {("MR105", "robot1"), *wanted}
+    assert wanted[0] in found
+
+
+@pytest.mark.parametrize(
+    ("release", "rule", "stack", "found"),
+    [
+        # Forwarded to the controllers, one of which has the name.
+        ("jazzy", "~/odom:=odom", "gz_ros2_control", []),
+        ("humble", "~/odom:=odom", "gz_ros2_control", []),
+        ("lyrical", "~/odom:=odom", "gz_ros2_control", ["MR103"]),
+        ("jazzy", "diff_drive_controller:~/odom:=odom", "gz_ros2_control", []),
+        ("jazzy", "joint_trajectory_controller:~/odom:=odom", "gz_ros2_control", ["MR103"]),
+        ("jazzy", "~/odmo:=odom", "gz_ros2_control", ["MR103"]),
+        # For a controller that other robots of the description have, or of another release.
+        ("jazzy", "~/reference:=cmd_vel", "gz_ros2_control", []),
+        ("jazzy", "drive_controller/cmd_vel:=cmd_vel", "gz_ros2_control", []),
+        ("jazzy", "~/cmd_vel_unstamped:=cmd_vel", "gz_ros2_control", []),
+        ("jazzy", "/diagnostics:=diagnostics", "gz_ros2_control", []),
+        ("jazzy", "drive_controller/cmd_vle:=cmd_vel", "gz_ros2_control", ["MR103"]),
+        ("lyrical", "drive_controller/cmd_vel:=cmd_vel", "gz_ros2_control", ["MR103"]),
+        # Nobody knows the controllers.
+        ("jazzy", "~/odom:=odom", "", []),
+        ("lyrical", "~/odom:=odom", "", ["MB435", "MR103", "MR105"]),
+    ],
+)
+def test_a_rule_for_a_controller(release: str, rule: str, stack: str, found: list[str]) -> None:
+    assert sorted({code for code, _ in codes(release, rule, stack=stack)}) == found
+
+
+def test_robots_of_different_stacks_are_looked_at_together() -> None:
+    alone = [
+        make_fleet(description(), [robot], [stack], NEITHER, release="humble")
+        for robot, stack in (("robot1", "gz_ros2_control"), ("robot2", "ros2_control"))
+    ]
+    assert not [it for made in alone for it in made.table.problems if it.robot == "robot2"]
+    found = merge(alone).table.problems
+    assert {it.robot for it in found if it.code == "MR105"} == {"robot2"}
+
+
+def test_each_robot_of_a_description_is_looked_at() -> None:
+    robots = [f"robot{at}" for at in range(1, 6)]
+    stacks = ["gz_ros2_control"]
+    made = make_fleet(description(), robots, stacks, NEITHER, release="humble")
+    found = {it.robot for it in made.table.problems if it.code == "MR105"}
+    assert found - {"robot1"} == {*robots[1:]}
