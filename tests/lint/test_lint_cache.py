@@ -400,7 +400,14 @@ def test_a_file_of_the_cache_is_bounded(here: Path, monkeypatch: pytest.MonkeyPa
 
 LOOKS = ("stat", "lstat", "readlink", "listdir", "scandir", "access")
 # Program text, and what Python itself asks.
-OWN = (sys.prefix, sys.base_prefix, str(Path(outside.__file__).parent.parent), "/proc", "/dev", "/sys")
+OWN = (
+    sys.prefix,
+    sys.base_prefix,
+    str(Path(outside.__file__).parent.parent),
+    "/proc",
+    "/dev",
+    "/sys",
+)
 
 
 @pytest.fixture
