@@ -30,12 +30,13 @@ from multibot_rewrite.companions.kinds import (
 from multibot_rewrite.companions.lua import read_lua, rewrite_lua
 from multibot_rewrite.companions.moveit.file_kind import find_kind
 from multibot_rewrite.companions.moveit.rewrite import rewrite_moveit
+from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.names.rename_map import KINDS, is_declared, spell
 from multibot_rewrite.companions.params.rewrite import rewrite_params
 from multibot_rewrite.companions.rviz.read import read_rviz
 from multibot_rewrite.companions.rviz.rewrite import rewrite_rviz
 from multibot_rewrite.companions.rviz.values import RvizRobot
-from multibot_rewrite.companions.sites import NamedFile, Site
+from multibot_rewrite.companions.sites import Site
 from multibot_rewrite.companions.template import FileTemplate, fill_template
 from multibot_rewrite.companions.yaml_text import read_yaml
 

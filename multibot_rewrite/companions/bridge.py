@@ -33,12 +33,15 @@ from multibot_rewrite.companions.bridge_entry import (
 )
 from multibot_rewrite.companions.companion import Companion
 from multibot_rewrite.companions.context import Context
+from multibot_rewrite.companions.engine import splices_of
+from multibot_rewrite.companions.engine import text_of as spelled_text
 from multibot_rewrite.companions.kinds import BRIDGE
+from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.names.placeholders import without_robot
 from multibot_rewrite.companions.names.rename_map import is_declared, spell
 from multibot_rewrite.companions.names.robot_topics import NOTHING, robot_topic
 from multibot_rewrite.companions.rviz.read_config import text_of
-from multibot_rewrite.companions.sites import GZ_TOPIC, NamedFile, Site, site_at
+from multibot_rewrite.companions.sites import GZ_TOPIC, Site, site_at
 from multibot_rewrite.companions.template import FileTemplate, make_template
 from multibot_rewrite.companions.yaml_blocks import Block, blocks, cut_out, is_block, newline
 from multibot_rewrite.companions.yaml_text import (
@@ -79,7 +82,11 @@ def rewrite_bridge(
     entries = _entries(document, context, known, above)
     own = [it for it in entries if it.own]
     shared = [it for it in entries if not it.own]
-    splices = [splice for it in own for splice in _splices(document, it, context)]
+    named = _named(document, context, entries)
+    frames = [site for it in own for site in _sites(it) if site.kind == "frame"]
+    made = ((it, spelled_text(context, {}, it)) for it in frames)
+    splices = [splice for it in own for splice in _splices(document, it)]
+    splices += splices_of(document.text, document.file, made)
     template = (
         make_template(document.text, [*_only(document, own), *splices])
         if own
@@ -88,7 +95,7 @@ def rewrite_bridge(
     text = cut_out(document, 0, len(document.text), _only(document, shared)) if shared else ""
     found = (*other_models(document, model_of(document)), *shared_services(document, entries))
     whole = make_template(document.text, [*_only(document, entries), *splices])
-    return BridgeFile(Companion(template, found, _named(document, context, entries)), text, whole)
+    return BridgeFile(Companion(template, found, named), text, whole)
 
 
 def read_bridge(document: YamlText, context: Context) -> NamedFile:
@@ -220,7 +227,7 @@ def _family(name: str, gz_type: str) -> tuple[str, str]:
     )
 
 
-def _splices(document: YamlText, entry: BridgeEntry, context: Context) -> Iterator[Splice]:
+def _splices(document: YamlText, entry: BridgeEntry) -> Iterator[Splice]:
     ends = ", " if entry.node.flow_style else newline(document) + " " * entry.node.start_mark.column
     for key, node in pairs(entry.node):
         if not isinstance(node, yaml.ScalarNode):
@@ -234,8 +241,6 @@ def _splices(document: YamlText, entry: BridgeEntry, context: Context) -> Iterat
             yield replaced(node, entry.new_ros)
         elif key.value in names:
             yield from _side(entry, key.value, node, names, ends)
-        elif key.value == FRAME:
-            yield from _frame(node, context)
 
 
 def _side(
@@ -248,12 +253,6 @@ def _side(
     if single or new != node.value:
         text = names[key] + (f"{ends}{other}: {names[other]}" if single else "")
         yield Splice(node.start_mark.index, node.end_mark.index, text)
-
-
-def _frame(node: yaml.ScalarNode, context: Context) -> Iterator[Splice]:
-    new = spell(context.names, "frame", node.value)
-    if new != node.value:
-        yield replaced(node, new)
 
 
 def _only(document: YamlText, kept: Sequence[BridgeEntry]) -> list[Splice]:

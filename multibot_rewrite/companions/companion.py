@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.companions.sites import NamedFile
+from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.template import FileTemplate
 
 

@@ -8,9 +8,9 @@ from multibot_rewrite.companions.bridge import read_bridge
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.kinds import BRIDGE, MOVEIT, PARAMS, RVIZ
 from multibot_rewrite.companions.moveit.read import read_moveit
+from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.read import read_params
 from multibot_rewrite.companions.rviz.read import read_rviz
-from multibot_rewrite.companions.sites import NamedFile
 from multibot_rewrite.companions.yaml_text import YamlText
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 

@@ -7,23 +7,24 @@ topics are fixed relative names that remap rules move. Comments and other string
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
+from functools import partial
 
-from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.findings.finding import WARNING
 from multibot_rewrite.base.findings.rule import Rule, declare
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.companion import Companion
 from multibot_rewrite.companions.context import Context
+from multibot_rewrite.companions.engine import name_splices, text_of
 from multibot_rewrite.companions.kinds import LUA
+from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.names.by_kind import frames_differ
-from multibot_rewrite.companions.names.rename_map import spell
-from multibot_rewrite.companions.sites import NamedFile, Site
+from multibot_rewrite.companions.sites import AS_IS, Site, Slot
 from multibot_rewrite.companions.template import (
     check_no_slots,
     make_template,
 )
-from multibot_rewrite.companions.yaml_text import Splice
 
 FRAMES = frozenset({"map_frame", "tracking_frame", "published_frame", "odom_frame"})
 # Cartographer's own files, which set no frames (cartographer/configuration_files).
@@ -77,13 +78,15 @@ def rewrite_lua(text: str, file: str, context: Context) -> Companion:
     check_no_slots(text, file)
     tokens = list(tokens_of(text, file))
     options = list(_options(tokens))
-    splices = [_splice(context, it.value) for it in options if it.value]
-    found = _in_order(
-        _finding(text, file, it) for it in (*_about(context, options), *_includes(tokens))
-    )
     named = _named(text, file, context, tokens, options)
-    template = make_template(text, [it for it in splices if it])
-    return Companion(template, found, named)
+    found = [
+        rule.finding(message, hint, file=file, line=line, column=column)
+        for at, rule, message, hint in (*_about(context, options), *_includes(tokens))
+        for line, column in [_place(text, at)]
+    ]
+    found.sort(key=lambda it: (it.line, it.column, it.code))
+    splices = name_splices(named, partial(text_of, context, {}))
+    return Companion(make_template(text, splices), tuple(found), named)
 
 
 def read_lua(text: str, file: str, context: Context) -> NamedFile:
@@ -128,13 +131,6 @@ def _ends(tokens: Sequence[Token], at: int) -> bool:
     if at >= len(tokens) or tokens[at].text in (",", ";", "}"):
         return True
     return tokens[at].kind == "name" and tokens[at].text not in ("and", "or")
-
-
-def _splice(context: Context, value: Token) -> Splice | None:
-    old = value.text[1:-1]
-    new = spell(context.names, "frame", old)
-    end = value.at + len(value.text) - 1
-    return Splice(value.at + 1, end, new) if new != old else None
 
 
 class _Problem(NamedTuple):
@@ -212,23 +208,19 @@ def _named(
     text: str, file: str, context: Context, tokens: Sequence[Token], options: Sequence[LuaOption]
 ) -> NamedFile:
     values = {it.value.at: (it.name.text, it.value) for it in options if it.value}
-    names = tuple(
-        Site("frame", it.text[1:-1], key, *_place(text, at)) for at, (key, it) in values.items()
-    )
+    names = tuple(_site(text, "frame", it, key) for key, it in values.values())
     strings = (it for it in tokens if it.kind in ("string", "long") and it.at not in values)
-    others = tuple(Site("", it.text.strip("\"'[]="), "", *_place(text, it.at)) for it in strings)
+    others = tuple(_site(text, "", it) for it in strings)
     return NamedFile(LUA, file, text, context, {}, names, others)
+
+
+def _site(text: str, kind: str, token: Token, key: str = "") -> Site:
+    end = token.at + len(token.text)
+    value = token.text[1:-1] if kind else token.text.strip("\"'[]=")
+    return Site(
+        kind, value, key, Slot(*_place(text, token.at), token.at + 1, end - 1, value, AS_IS)
+    )
 
 
 def _place(text: str, at: int) -> tuple[int, int]:
     return text.count("\n", 0, at) + 1, at - text.rfind("\n", 0, at)
-
-
-def _finding(text: str, file: str, problem: _Problem) -> Finding:
-    at, rule, message, hint = problem
-    line, column = _place(text, at)
-    return rule.finding(message, hint, file=file, line=line, column=column)
-
-
-def _in_order(findings: Iterable[Finding]) -> tuple[Finding, ...]:
-    return tuple(sorted(findings, key=lambda it: (it.line, it.column, it.code)))

@@ -1,85 +1,100 @@
-"""A file beside a description as a list of names: what each is, where it is, what is known of it."""
+"""Names in a file beside a description: what each is, where it is, what is known of it."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import yaml
 
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.record import NamedTuple
 
 if TYPE_CHECKING:
-    from multibot_rewrite.companions.context import Context
-    from multibot_rewrite.companions.params.name_sites import Page
-    from multibot_rewrite.companions.rviz.read_config import RvizItem
-    from multibot_rewrite.companions.yaml_text import YamlText
-    from multibot_rewrite.knowledge.parameters import KnownNodes
+    from multibot_rewrite.knowledge.records import Param
 
 # The name of a section of parameters, which is that of a node.
 SECTION = "section"
 # What Gazebo calls a topic.
 GZ_TOPIC = "gz topic"
+# Where a relative name is resolved: in the node's namespace, in the one above it (the node joins the
+# two itself), or outside of the robot's namespace, so that it has to be made absolute.
+FROM_NODE, FROM_PARENT, IN_FULL = "node", "parent", "full"
+
+
+class Slot(NamedTuple):
+    """A value as it is written: its place, its characters in the text, with their quotes, and what they
+    say. ``style`` is how YAML writes it, or one of those here."""
+
+    line: int
+    column: int
+    start: int
+    end: int
+    value: str
+    style: str = ""
+
+    @property
+    def is_block(self) -> bool:
+        """Is it written over several lines, where no name can be? Raises nothing."""
+        return self.style in ("|", ">")
+
+
+# Between its quotes: as it is, with XML's entities, and where it cannot be told from them.
+AS_IS, XML, UNCLEAR = "as it is", "xml", "unclear"
 
 
 class Site(NamedTuple):
     """A text in a file: its kind (empty where its use is not known), the name as it is for one robot,
-    what it stands at, and its place.
+    what it stands at, and its slot, of whose value it is the ``size`` characters from ``at``.
 
     ``is_sure`` is false for a kind that is only guessed; ``in_key`` is true for a name in a key.
     ``together`` is the same for names of one list. ``bare`` says that the reader takes a slash in
-    front off; ``own`` that the node makes the name itself.
+    front off. ``node`` is the node that reads it, as the stacks call it, ``reach`` where that resolves
+    a relative name, ``param`` what is known of the parameter.
     """
 
     kind: str
     text: str
     key: str
-    line: int
-    column: int
+    slot: Slot
+    at: int = 0
+    size: int = -1
     is_sure: bool = True
     in_key: bool = False
     together: int = 0
     bare: bool = False
-    own: bool = False
-
-
-class NamedFile(NamedTuple):
-    """A file beside a description, as rules ask it.
-
-    ``names`` are those of known kinds, ``others`` the texts of unknown use, ``twice`` the keys that
-    are repeated in one map. ``context`` has what is declared: by the robot that the file is for where
-    that ``is_certain``, else by any of a package, ``is_whole`` if all of these could be read.
-    ``sent`` are frames that nodes send, ``robots`` the words that stand for robots. ``own`` stand for
-    the one robot that a file is for. ``pages`` are the sections of a parameter file, ``known``
-    the nodes that it may be for, ``shown`` the displays of RViz. ``roots`` are folders with packages,
-    ``memo`` is what rules have found out of it.
-    """
-
-    kind: str
-    file: str
-    text: str
-    context: Context
-    memo: dict[object, Any]
-    names: tuple[Site, ...] = ()
-    others: tuple[Site, ...] = ()
-    twice: tuple[Site, ...] = ()
-    document: YamlText | None = None
-    pages: tuple[Page, ...] = ()
-    known: KnownNodes | None = None
-    shown: tuple[RvizItem, ...] = ()
-    is_certain: bool = True
-    is_whole: bool = True
-    sent: frozenset[str] = frozenset()
-    robots: frozenset[str] = frozenset()
-    roots: tuple[str, ...] = ()
+    node: str = ""
+    reach: str = FROM_NODE
+    param: Param | None = None
 
     @property
-    def declared(self) -> Mapping[str, Mapping[str, object]]:
-        """The names that the description declares, by kind; raises nothing."""
-        return self.context.names.declared
+    def line(self) -> int:
+        """The line of its slot; raises nothing."""
+        return self.slot.line
+
+    @property
+    def column(self) -> int:
+        """The column of its slot; raises nothing."""
+        return self.slot.column
+
+    @property
+    def own(self) -> bool:
+        """Does the node make the name itself? Raises nothing."""
+        return self.param is not None and self.param.own
+
+
+def slot_of(node: yaml.Node) -> Slot:
+    """Where a node of YAML is written, with its anchor and tag."""
+    start, end = node.start_mark, node.end_mark
+    style = getattr(node, "style", None) or ""
+    return Slot(start.line + 1, start.column + 1, start.index, end.index, str(node.value), style)
 
 
 def site_at(node: yaml.Node, kind: str, text: str, key: str = "", in_key: bool = False) -> Site:
-    """The site of a node of YAML."""
-    mark = node.start_mark
-    return Site(kind, text, key, mark.line + 1, mark.column + 1, in_key=in_key)
+    """The site that is the whole of a node of YAML."""
+    return Site(kind, text, key, slot_of(node), in_key=in_key)
+
+
+def found_in(file: str, slot: Slot, rule: Rule, message: str, hint: str) -> Finding:
+    """A finding of ``rule`` at a slot."""
+    return rule.finding(message, hint, file=file, line=slot.line, column=slot.column)

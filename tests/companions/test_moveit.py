@@ -114,10 +114,6 @@ def test_a_kind_by_name_or_by_dots(text: str, file: str, kind: str) -> None:
         ("arm: {kinematics_solver: multibotTagSlot}\n", "reserved for this tool"),
         ("joint_limits: {? |\n  j1\n : 1}\n", "not YAML"),
         ("controller_list:\n  - joints: [*a]\n", "not YAML"),
-        (
-            "hardware_interface:\n  joints:\n    - >-\n      j1\n",
-            "3: a name is written as a block",
-        ),
     ],
 )
 def test_what_is_no_file_of_moveit_is_one_line(text: str, said: str) -> None:
@@ -385,6 +381,7 @@ def test_a_name_that_the_description_lacks_is_reported_once_with_the_nearest() -
         ("octomap_frame: $(arg p)map\nsensors: []\n", [("MB862", 1)]),
         ("joint_limits:\n  j1: {}\n  j2: {}\n  j1: {}\n", [("MB859", 4)]),
         ("joint_limits:\n  $(arg p)j1: {}\n", [("MB862", 2)]),
+        ("hardware_interface:\n  joints:\n    - >-\n      j1\n", [("MB876", 3)]),
         ("sensors: [a]\na: {sensor_plugin: b/C, image_topic: a b/}\n", [("MB861", 2)]),
         ("sensors: [a]\na: {sensor_plugin: b/C, image_topic: 1/b}\n", [("MB861", 2)]),
     ],

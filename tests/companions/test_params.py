@@ -607,7 +607,8 @@ def test_what_is_no_interface_of_the_robot_is_not_reported(value: str) -> None:
         ("ekf_filter_node", "debug_out_file: /tmp/x", "MF118", "the same for all robots"),
         ("amcl", "scan_topic: $(var s)", "MB862", "a launch file must replace it"),
         ("amcl", "scan_topic:", "MB868", "rcl rejects"),
-        ("amcl", "base_frame_id: |\n      base_link", "MF119", "on one line"),
+        ("amcl", "base_frame_id: |\n      base_link", "MB876", "on one line"),
+        ("amcl", "base_frame_id: >-\n      base_link", "MB876", "on one line"),
     ],
 )
 def test_mistakes_in_names_are_reported(node: str, line: str, code: str, words: str) -> None:

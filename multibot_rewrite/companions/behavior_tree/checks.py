@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.findings.rule import declare
-from multibot_rewrite.companions.behavior_tree.ports import Port, place_of
+from multibot_rewrite.companions.behavior_tree.ports import ports_of
+from multibot_rewrite.companions.sites import found_in
 from multibot_rewrite.description.steps.document import Document
 
 INCLUDE = declare(
@@ -32,10 +33,10 @@ INCLUDE = declare(
 )
 
 
-def included_files(document: Document, ports: Iterable[Port]) -> Iterator[Finding]:
+def included_files(document: Document) -> Iterator[Finding]:
     """The files that are included, in their order."""
-    for port in (it for it in ports if it.element.tag == "include"):
-        line, column = place_of(document, port)
-        message = f"includes another tree, {port.value!r}"
-        hint = "list that file under behavior_trees as well"
-        yield INCLUDE.finding(message, hint, file=document.file, line=line, column=column)
+    for element, site in ports_of(document):
+        if element.tag == "include":
+            message = f"includes another tree, {site.text!r}"
+            hint = "list that file under behavior_trees as well"
+            yield found_in(document.file, site.slot, INCLUDE, message, hint)

@@ -10,27 +10,20 @@ from typing import TYPE_CHECKING, Any
 from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.findings.place import locate
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.names.placeholders import without_robot
+from multibot_rewrite.companions.sites import UNCLEAR, XML, Site, Slot
 from multibot_rewrite.description.steps.document import Document, value_slot
 
 if TYPE_CHECKING:
     from lxml.etree import _Element
 
+NAVIGATOR = "bt_navigator"
 GRAPH_KINDS = {"service": "service", "topic": "topic", "action": "topic"}
 # <Action ID="Spin"/> is <Spin/>.
 _FORMS = frozenset({"Action", "Condition", "Decorator", "Control"})
 _SUBTREES = frozenset({"SubTree", "SubTreePlus"})
 _SHARED = ("_autoremap", "__autoremap", "__shared_blackboard")
 _MODEL = "TreeNodesModel"
-
-
-class Port(NamedTuple):
-    """A value: its element, where that starts, and the kind of name; empty if that is not known."""
-
-    element: _Element
-    start: int
-    attribute: str
-    value: str
-    kind: str
 
 
 class _Trees(NamedTuple):
@@ -51,23 +44,33 @@ def port_data() -> Mapping[str, Any]:
     return dict(load_yaml(text))
 
 
-def ports_of(document: Document) -> Iterator[Port]:
+def ports_of(document: Document) -> Iterator[tuple[_Element, Site]]:
     """Every literal with the kind of name it is; models for editors are left out."""
     trees = _trees(document.root)
     for element, start in zip(document.root.iter("*"), document.starts, strict=True):
         if is_model(element):
-            yield from _model_default(element, start, trees)
+            yield from _model_default(document, element, start, trees)
             continue
         for attribute, value in element.items():
             if not _blackboard_entry(element, str(value), trees):
                 kind = _kind(element, str(attribute), trees)
-                yield Port(element, start, str(attribute), str(value), kind)
+                yield element, _site(document, start, str(attribute), str(value), kind)
 
 
-def place_of(document: Document, port: Port) -> tuple[int, int]:
-    """Line and column of a value, or of its element."""
-    slot = value_slot(document.source, port.start, port.attribute, port.value)
-    return locate(document.source, slot[0] if slot else port.start)
+def _site(document: Document, start: int, attribute: str, value: str, kind: str) -> Site:
+    slot = value_slot(document.source, start, attribute, value)
+    first, last = slot or (start, start)
+    style = UNCLEAR if slot is None else XML
+    place = locate(document.source, first)
+    written = Slot(*place, character(document, first), character(document, last), value, style)
+    text = without_robot(value, "/" if kind in GRAPH_KINDS else "") if kind else value
+    return Site(GRAPH_KINDS.get(kind, kind), text, attribute, written, node=NAVIGATOR)
+
+
+def character(document: Document, at: int) -> int:
+    """Templates count characters, documents bytes."""
+    source = document.source
+    return at if source.isascii() else len(source[:at].decode())
 
 
 def _trees(root: _Element) -> _Trees:
@@ -79,7 +82,9 @@ def is_model(element: _Element) -> bool:
     return element.tag == _MODEL or any(it.tag == _MODEL for it in element.iterancestors())
 
 
-def _model_default(element: _Element, start: int, trees: _Trees) -> Iterator[Port]:
+def _model_default(
+    document: Document, element: _Element, start: int, trees: _Trees
+) -> Iterator[tuple[_Element, Site]]:
     """BT.CPP takes defaults from models of subtrees; other models are for editors."""
     above = element.getparent()
     if above is None or above.tag not in _SUBTREES or "default" not in element.attrib:
@@ -88,7 +93,7 @@ def _model_default(element: _Element, start: int, trees: _Trees) -> Iterator[Por
     kind = _entry_kinds(trees, str(above.get("ID", "")), ()).get(name) or port_data()["ports"].get(
         name
     )
-    yield Port(element, start, "default", value, kind or "")
+    yield element, _site(document, start, "default", value, kind or "")
 
 
 def _kind(element: _Element, attribute: str, trees: _Trees) -> str:

@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.companions.behavior_tree.ports import (
-    GRAPH_KINDS,
-    Port,
-    place_of,
-    port_data,
-    ports_of,
-)
+from multibot_rewrite.companions.behavior_tree.ports import port_data, ports_of
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.kinds import TREE
-from multibot_rewrite.companions.names.placeholders import without_robot
-from multibot_rewrite.companions.sites import NamedFile, Site
+from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.sites import Site
 from multibot_rewrite.description.steps.document import Document, read_document
 
 
@@ -32,32 +26,24 @@ def read_tree(data: bytes, file: str) -> Document:
 
 def named_tree(data: bytes, file: str, context: Context) -> NamedFile:
     """The names of a tree; raises as ``read_tree``."""
-    document = read_tree(data, file)
-    return named_ports(document, context, list(ports_of(document)))
+    return named_ports(read_tree(data, file), context)
 
 
-def named_ports(document: Document, context: Context, ports: Iterable[Port]) -> NamedFile:
+def named_ports(document: Document, context: Context) -> NamedFile:
     """What was found in a tree."""
-    free = [it for it in ports if it.element.tag != "include"]
-    names = tuple(_site(document, it) for it in free if it.kind)
-    others = tuple(site for it in free if not it.kind for site in _others(document, it))
+    free = [it for element, it in ports_of(document) if element.tag != "include"]
+    names = tuple(it for it in free if it.kind)
+    others = tuple(site for it in free if not it.kind for site in _others(it))
     text = document.source.decode()
     return NamedFile(TREE, document.file, text, context, {}, names, others)
 
 
-def _site(document: Document, port: Port) -> Site:
-    kind = GRAPH_KINDS.get(port.kind, port.kind)
-    text = without_robot(port.value, "/" if port.kind in GRAPH_KINDS else "")
-    return Site(kind, text, port.attribute, *place_of(document, port))
-
-
-def _others(document: Document, port: Port) -> Iterator[Site]:
+def _others(site: Site) -> Iterator[Site]:
     """What may be a name: the whole value, or the strings of a script."""
     known = port_data()
-    if port.attribute in known["keep"]:
+    if site.key in known["keep"]:
         return
-    texts = [port.value]
-    if port.attribute in known["scripts"]:
-        texts = [it.strip() for it in port.value.replace('"', "'").split("'")[1::2]]
-    place = place_of(document, port)
-    yield from (Site("", it, port.attribute, *place) for it in texts)
+    texts = [site.text]
+    if site.key in known["scripts"]:
+        texts = [it.strip() for it in site.text.replace('"', "'").split("'")[1::2]]
+    yield from (site._replace(text=it) for it in texts)

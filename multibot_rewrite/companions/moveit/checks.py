@@ -2,42 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.findings.rule import Rule, declare
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.moveit.controller_manager import unreachable_managers
-from multibot_rewrite.companions.moveit.name_sites import MoveitName, MoveitNames
+from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.names.by_kind import expressible
 from multibot_rewrite.companions.params import name_checks
-from multibot_rewrite.companions.yaml_text import YamlText, found_at
+from multibot_rewrite.companions.sites import Site, found_in
+from multibot_rewrite.companions.yaml_text import YamlText
 
-GRAPH_WORDS = ("topic", "service")
 # The rule, the message and the hint.
 _Problem = tuple[Rule, str, str]
 
 
-def file_findings(document: YamlText, context: Context, sites: MoveitNames) -> tuple[Finding, ...]:
+def file_findings(document: YamlText, file: NamedFile) -> tuple[Finding, ...]:
     """The findings about the rewrite of a file, each once, in the order of the lines."""
-    found = [
-        *unreachable_managers(document, context, sites.names),
-        *_name_findings(document, context, sites.names),
-    ]
+    found = [*unreachable_managers(document, file), *_name_findings(file)]
     return tuple(sorted(dict.fromkeys(found), key=lambda it: (it.line, it.column)))
 
 
-def _name_findings(
-    document: YamlText, context: Context, sites: Iterable[MoveitName]
-) -> Iterator[Finding]:
+def _name_findings(file: NamedFile) -> Iterator[Finding]:
     """What is wrong with each name, at its first place."""
-    first: dict[tuple[str, str], MoveitName] = {}
-    for site in sites:
-        first.setdefault((site.word, site.text), site)
-    for (word, text), site in first.items():
-        problems = (check(context, word, text) for check in _CHECKS)
+    first: dict[tuple[str, str], Site] = {}
+    for site in file.names:
+        first.setdefault((site.kind, site.text), site)
+    for (kind, text), site in first.items():
+        problems = (check(file.context, kind, text) for check in _CHECKS)
         if problem := next(filter(None, problems), None):
-            yield found_at(document, site.scalar, *problem)
+            yield found_in(file.file, site.slot, *problem)
 
 
 GROUPS_WITHOUT_SRDF = declare(

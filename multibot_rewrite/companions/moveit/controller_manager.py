@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 import yaml
 
@@ -10,9 +10,11 @@ from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.companions.context import Context
-from multibot_rewrite.companions.moveit.name_sites import MoveitName, entries
+from multibot_rewrite.companions.moveit.name_sites import entries
+from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.names.by_kind import SPELLERS
-from multibot_rewrite.companions.yaml_text import Splice, YamlText, found_at
+from multibot_rewrite.companions.sites import found_in, slot_of
+from multibot_rewrite.companions.yaml_text import Splice, YamlText
 
 # moveit_ros_control_interface looks for the manager below the root unless the namespace is set.
 _MANAGER = "moveit_controller_manager"
@@ -57,17 +59,16 @@ moveit_controller_manager: moveit_simple_controller_manager/MoveItSimpleControll
 )
 
 
-def unreachable_managers(
-    document: YamlText, context: Context, names: Iterable[MoveitName]
-) -> Iterator[Finding]:
+def unreachable_managers(document: YamlText, file: NamedFile) -> Iterator[Finding]:
     """Places that select a controller manager which no robot has."""
-    if context.names.naming.topics == NAMESPACE:
+    if file.context.names.naming.topics == NAMESPACE:
         return
-    keys = [_asks_below_root(document), *(it.scalar for it in names if it.word == "namespace")]
-    for key in filter(None, keys):
+    key = _asks_below_root(document)
+    slots = [slot_of(key)] if key else []
+    for slot in (*slots, *(it.slot for it in file.names if it.kind == "namespace")):
         message = "MoveIt looks for /controller_manager, but each robot's has a different name"
         hint = "use moveit_simple_controller_manager or a layout with namespaces"
-        yield found_at(document, key, ONE_CONTROLLER_MANAGER, message, hint)
+        yield found_in(file.file, slot, ONE_CONTROLLER_MANAGER, message, hint)
 
 
 def _asks_below_root(document: YamlText) -> yaml.ScalarNode | None:

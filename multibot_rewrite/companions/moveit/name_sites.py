@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from importlib.resources import files
@@ -12,6 +13,7 @@ import yaml
 from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.rename_map import KINDS, CompanionNames, is_declared
+from multibot_rewrite.companions.sites import Site, site_at, slot_of
 from multibot_rewrite.companions.yaml_text import is_text, pairs
 
 KEEP = "keep"
@@ -19,6 +21,9 @@ KEEP = "keep"
 Shape = Any
 Shapes = Mapping[str, Shape]
 _MERGE = "<<"
+# What OMPL projects on: joints(a, b).
+_EVALUATOR = re.compile(r"\s*(?P<kind>joint|link)s?\s*\((?P<names>[^()]*)\)\s*")
+_NAME = re.compile(r"[^\s,](?:[^,]*[^\s,])?")
 
 
 class FileKind(NamedTuple):
@@ -30,26 +35,9 @@ class FileKind(NamedTuple):
     names: Shapes
 
 
-class MoveitName(NamedTuple):
-    """A name: its scalar, its place in the value, its text and its kind."""
-
-    scalar: yaml.ScalarNode
-    at: int
-    text: str
-    word: str
-
-
-class MoveitNames(NamedTuple):
-    """The names of a file, the scalars of unknown use, and repeated keys."""
-
-    names: list[MoveitName]
-    unclaimed: list[yaml.ScalarNode]
-    twice: list[yaml.ScalarNode]
-
-
 class _Walk(NamedTuple):
     names: CompanionNames
-    found: list[MoveitName]
+    found: list[Site]
     claimed: set[int]
     seen: set[tuple[int, int]]
 
@@ -73,14 +61,17 @@ def kinds() -> tuple[FileKind, ...]:
     )
 
 
-def find_names(root: yaml.Node | None, rules: Shapes, names: CompanionNames) -> MoveitNames:
-    """Every name below ``root``; an aliased value counts once for every shape that reaches it."""
+def find_names(
+    root: yaml.Node | None, rules: Shapes, names: CompanionNames
+) -> tuple[list[Site], list[Site], list[Site]]:
+    """Every name below ``root``, the texts of unknown use, and repeated keys; an aliased value counts
+    once for every shape that reaches it."""
     walk = _Walk(names, [], set(), set())
     if root is not None:
         _below(root, rules, walk)
-    scalars = list(_scalars(root))
-    unclaimed = [it for it in scalars if id(it) not in walk.claimed]
-    return MoveitNames(walk.found, unclaimed, list(_twice(root)))
+    free = (it for it in _scalars(root) if id(it) not in walk.claimed and is_text(it))
+    others = [site_at(it, "", str(it.value)) for it in free]
+    return walk.found, others, [site_at(it, "", str(it.value)) for it in _twice(root)]
 
 
 def entries(node: yaml.Node | None) -> Iterator[tuple[yaml.ScalarNode, yaml.Node]]:
@@ -118,7 +109,18 @@ def _below(node: yaml.Node, rule: Shape, walk: _Walk) -> None:
 def _value(node: yaml.ScalarNode, rule: Shape, walk: _Walk) -> None:
     if isinstance(rule, str) and is_text(node):
         walk.claimed.add(id(node))
-        walk.found.append(MoveitName(node, 0, str(node.value), rule))
+        walk.found.extend(_named(node, rule))
+
+
+def _named(node: yaml.ScalarNode, kind: str) -> Iterator[Site]:
+    """The names in a value: those in ``joints(a, b)``, else its text."""
+    slot = slot_of(node)
+    found = _EVALUATOR.fullmatch(slot.value) if kind == "words" else None
+    if found is None:
+        yield Site(kind, slot.value, "", slot)
+        return
+    for it in _NAME.finditer(slot.value, *found.span("names")):
+        yield Site(found["kind"], it[0], "", slot, it.start(), len(it[0]))
 
 
 def _entry(key: yaml.ScalarNode, value: yaml.Node, rules: Shapes, walk: _Walk) -> None:
@@ -127,7 +129,8 @@ def _entry(key: yaml.ScalarNode, value: yaml.Node, rules: Shapes, walk: _Walk) -
         return
     marks, rule = match
     walk.claimed.add(id(key))
-    walk.found.extend(MoveitName(key, at, text, word) for at, text, word in marks)
+    slot = slot_of(key)
+    walk.found.extend(Site(kind, text, "", slot, at, len(text)) for at, text, kind in marks)
     _below(value, rule, walk)
 
 

@@ -15,6 +15,7 @@ from multibot_rewrite.base.rosnames import bind, check_topic_name, expand, resol
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.names.by_kind import is_plain
 from multibot_rewrite.companions.names.rename_map import spell
+from multibot_rewrite.companions.sites import FROM_NODE, FROM_PARENT, IN_FULL
 from multibot_rewrite.companions.template import NAMESPACE_SLOT
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in, is_apart
@@ -22,9 +23,6 @@ from multibot_rewrite.spelling.table import node_table, parsed
 from multibot_rewrite.spelling.targets import placed, target_of
 
 Facts = Mapping[str, NodeFacts]
-# Where a relative name is resolved: in the node's namespace, in the one above it (the node joins the
-# two itself), or outside of the robot's namespace, so that it has to be made absolute.
-FROM_NODE, FROM_PARENT, IN_FULL = "node", "parent", "full"
 
 
 class TopicText(NamedTuple):

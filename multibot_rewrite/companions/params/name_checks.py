@@ -16,8 +16,8 @@ from multibot_rewrite.companions.names.by_kind import (
 )
 from multibot_rewrite.companions.names.placeholders import is_robot
 from multibot_rewrite.companions.names.rename_map import is_declared
-from multibot_rewrite.companions.params.name_sites import NameSite
 from multibot_rewrite.companions.params.values import ParamsJob
+from multibot_rewrite.companions.sites import Site, found_in
 from multibot_rewrite.companions.yaml_text import YamlText, found_at
 from multibot_rewrite.knowledge.parameter_entries import PREFIX_KINDS, RUN_TIME
 
@@ -25,7 +25,7 @@ from multibot_rewrite.knowledge.parameter_entries import PREFIX_KINDS, RUN_TIME
 _OPEN_PATTERNS = frozenset({".*", "*", "[*]", "(?!)", "^$"})
 
 
-def name_findings(job: ParamsJob, site: NameSite) -> Iterator[Finding]:
+def name_findings(job: ParamsJob, site: Site) -> Iterator[Finding]:
     """The finding about the rewrite of one name, if any."""
     if site.kind in ("stem", "link_prefix", *PREFIX_KINDS):
         yield from _inexpressible(job, site)
@@ -72,9 +72,9 @@ def prefix_only_message(name: str) -> tuple[str, str]:
     return f"{name} can only add a prefix, but the fleet uses a postfix", "set affix: prefix"
 
 
-def _inexpressible(job: ParamsJob, site: NameSite) -> Iterator[Finding]:
+def _inexpressible(job: ParamsJob, site: Site) -> Iterator[Finding]:
     if not expressible(job.context, site.kind):
-        yield prefix_only(job.document, site.scalar, site.key.value)
+        yield found_in(job.document.file, site.slot, PREFIX_ONLY, *prefix_only_message(site.key))
 
 
 PREFIX_TWICE = declare(
@@ -101,12 +101,12 @@ robot_state_publisher:
 )
 
 
-def _prefix_twice(job: ParamsJob, site: NameSite) -> Iterator[Finding]:
-    if not site.value or is_robot(site.value):
+def _prefix_twice(job: ParamsJob, site: Site) -> Iterator[Finding]:
+    if not site.text or is_robot(site.text):
         return  # there is none, or none is filled in
-    certain = frames_differ(job.context) and is_plain(site.value)
-    message = f"{site.key.value} {site.value!r} adds a prefix to frames a second time"
-    found = found_at(job.document, site.scalar, PREFIX_TWICE, message, 'write ""')
+    certain = frames_differ(job.context) and is_plain(site.text)
+    message = f"{site.key} {site.text!r} adds a prefix to frames a second time"
+    found = found_in(job.document.file, site.slot, PREFIX_TWICE, message, 'write ""')
     yield found if certain else found._replace(level=WARNING)
 
 
@@ -132,11 +132,11 @@ rosbridge_websocket:
 )
 
 
-def _same_for_all(job: ParamsJob, site: NameSite) -> Iterator[Finding]:
-    if site.value and site.value.lower() not in ("false", "no", "off"):
-        message = f"{site.key.value} {site.value} is the same for all robots"
+def _same_for_all(job: ParamsJob, site: Site) -> Iterator[Finding]:
+    if site.text and site.text.lower() not in ("false", "no", "off"):
+        message = f"{site.key} {site.text} is the same for all robots"
         hint = "set it for each robot, in a parameter file that is loaded after this one"
-        yield found_at(job.document, site.scalar, SAME_FOR_ALL, message, hint)
+        yield found_in(job.document.file, site.slot, SAME_FOR_ALL, message, hint)
 
 
 NOT_REWRITTEN = declare(
@@ -162,12 +162,12 @@ foxglove_bridge:
 )
 
 
-def _not_rewritten(job: ParamsJob, site: NameSite) -> Iterator[Finding]:
-    sure = site.kind == "pattern" or _mentions(job.context, site.value)
-    if sure and site.value not in _OPEN_PATTERNS:
-        message = f"names in {site.key.value} {site.value!r} are not rewritten"
+def _not_rewritten(job: ParamsJob, site: Site) -> Iterator[Finding]:
+    sure = site.kind == "pattern" or _mentions(job.context, site.text)
+    if sure and site.text not in _OPEN_PATTERNS:
+        message = f"names in {site.key} {site.text!r} are not rewritten"
         hint = "check that it works for each robot"
-        yield found_at(job.document, site.scalar, NOT_REWRITTEN, message, hint)
+        yield found_in(job.document.file, site.slot, NOT_REWRITTEN, message, hint)
 
 
 def _mentions(context: Context, value: str) -> bool:

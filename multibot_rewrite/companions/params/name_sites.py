@@ -8,11 +8,13 @@ import yaml
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.companions.names.placeholders import is_robot, without_robot
 from multibot_rewrite.companions.params.sections import ParamSection
+from multibot_rewrite.companions.sites import FROM_NODE, FROM_PARENT, IN_FULL, Site, slot_of
 from multibot_rewrite.companions.yaml_text import YamlText, items, line_of
 from multibot_rewrite.knowledge.parameter_entries import PREFIX_KINDS
-from multibot_rewrite.knowledge.parameters import Branch, KnownNode, KnownNodes, guess
+from multibot_rewrite.knowledge.parameters import Branch, KnownNode, KnownNodes, guess, is_absolute
 from multibot_rewrite.knowledge.records import Param
 
 STRING = "tag:yaml.org,2002:str"
@@ -33,29 +35,13 @@ _ANY_TYPE = ("off", "no_prefix", "exclusive")
 _NO_NAMES = frozenset(f"tag:yaml.org,2002:{it}" for it in ("int", "float", "bool"))
 
 
-class NameSite(NamedTuple):
-    """A name: its scalar, the key of its parameter, its kind and what is known of the parameter.
-
-    ``param`` is None if the kind is a guess. ``at`` is the segment of a key, -1 for a value.
-    ``layer`` is the mapping that the parameter is in.
-    """
-
-    scalar: yaml.ScalarNode
-    key: yaml.ScalarNode
-    kind: str
-    param: Param | None
-    value: str
-    at: int
-    layer: yaml.MappingNode
-
-
 class SectionNames(NamedTuple):
     """What a section holds: names, known parameters by path, scalars of unknown parameters, keys
     without a value, keys that are twice in one mapping, keys of unknown parameters, and scalars of
     parameters that hold no names.
     """
 
-    sites: list[NameSite]
+    sites: list[Site]
     known: set[str]
     unclaimed: list[yaml.ScalarNode]
     empty: list[yaml.ScalarNode]
@@ -73,11 +59,29 @@ _Mark = tuple[yaml.ScalarNode, int, str]
 _State = tuple[Branch, tuple[_Mark, ...]]
 
 
-def find_names(document: YamlText, section: ParamSection, known: KnownNodes) -> SectionNames:
+class _Job(NamedTuple):
+    """A section that is looked at: what is known, the release, and what was found."""
+
+    document: YamlText
+    section: ParamSection
+    known: KnownNodes
+    release: str
+    names: SectionNames
+
+    @property
+    def node(self) -> str:
+        """The node as the stacks call it: a pattern such as /**/amcl is for the node of that name."""
+        path = self.section.path
+        return path.rpartition("/")[2] if self.section.wild else path
+
+
+def find_names(
+    document: YamlText, section: ParamSection, known: KnownNodes, release: str
+) -> SectionNames:
     """Look at every parameter of a section; InputError for keys that are not scalars."""
     names = SectionNames([], set(), [], [], [], [], [])
     tree = section.node.tree if section.node else known.anywhere
-    _walk(document, section.body, [(tree, ())], known, names)
+    _walk(_Job(document, section, known, release, names), section.body, [(tree, ())])
     return names
 
 
@@ -86,29 +90,23 @@ def params_at(node: KnownNode, name: str, key: yaml.ScalarNode) -> list[Param]:
     return [param for branch, _ in _below([(node.tree, ())], name, key) for param in branch.params]
 
 
-def _walk(
-    document: YamlText,
-    body: yaml.MappingNode,
-    states: list[_State],
-    known: KnownNodes,
-    names: SectionNames,
-) -> None:
+def _walk(job: _Job, body: yaml.MappingNode, states: list[_State]) -> None:
     seen = set()
     for key, value in body.value:
         if not isinstance(key, yaml.ScalarNode):
-            place = f"{document.file}:{line_of(key)}"
+            place = f"{job.document.file}:{line_of(key)}"
             raise InputError(f"{place}: a key is a mapping or a list; use a name as key")
         if key.value in seen:
-            names.twice.append(key)
+            job.names.twice.append(key)
         seen.add(key.value)
         below = _below(states, key.value, key) if states else states
         if not below:
-            names.keys.append(key)
+            job.names.keys.append(key)
         if isinstance(value, yaml.MappingNode):
-            _walk(document, value, below, known, names)
+            _walk(job, value, below)
         # Most parameters are numbers that hold no name.
         elif below or value.tag not in _NO_NAMES:
-            _claim(key, value, below, body, known, names)
+            _claim(job, key, value, below, body)
 
 
 def _below(states: list[_State], word: str, key: yaml.ScalarNode, at: int = 0) -> list[_State]:
@@ -129,14 +127,14 @@ def _below(states: list[_State], word: str, key: yaml.ScalarNode, at: int = 0) -
 
 
 def _claim(
+    job: _Job,
     key: yaml.ScalarNode,
     value: yaml.Node,
     states: list[_State],
     layer: yaml.MappingNode,
-    known: KnownNodes,
-    names: SectionNames,
 ) -> None:
     """What one parameter holds: known, guessed from its name, or unclaimed."""
+    names = job.names
     if value.tag == NULL and not value.value:
         names.empty.append(key)
     param = None
@@ -144,23 +142,33 @@ def _claim(
         if branch.params:
             param = branch.params[0]
             names.known.add(param.path)
-            for mark, at, kind in marks:
-                word = _without_robot(mark.value.split(".")[at], kind)
-                names.sites.append(NameSite(mark, mark, kind, param, word, at, layer))
+            names.sites.extend(_in_key(it, param) for it in marks)
             break
     if param is None or param.kind != "keep":
-        _values(key, items(value), param, layer, known, names)
+        _values(job, key, items(value), param, _reach(param, layer, job.release))
     else:
         names.kept.extend(it for it in items(value) if isinstance(it, yaml.ScalarNode))
 
 
+def _in_key(mark: _Mark, param: Param) -> Site:
+    key, segment, kind = mark
+    words = str(key.value).split(".")
+    at, size = sum(len(it) + 1 for it in words[:segment]), len(words[segment])
+    text = _without_robot(words[segment], kind)
+    site = Site(kind, text, str(key.value), slot_of(key), at, size, in_key=True, param=param)
+    return site._replace(together=id(key))
+
+
+def _reach(param: Param | None, layer: yaml.MappingNode, release: str) -> str:
+    if param is None or not param.absolute:
+        return FROM_NODE
+    # The one filter that does not resolve its topics in the robot's namespace.
+    plugin = next((str(it.value) for key, it in layer.value if key.value == "plugin"), "")
+    return IN_FULL if is_absolute(param, release) or "BinaryFilter" in plugin else FROM_PARENT
+
+
 def _values(
-    key: yaml.ScalarNode,
-    scalars: list[yaml.Node],
-    param: Param | None,
-    layer: yaml.MappingNode,
-    known: KnownNodes,
-    names: SectionNames,
+    job: _Job, key: yaml.ScalarNode, scalars: list[yaml.Node], param: Param | None, reach: str
 ) -> None:
     kind = param.kind if param else ""
     for scalar in scalars:
@@ -170,12 +178,20 @@ def _values(
         text = str(scalar.value) if kind in _ANY_TYPE else name_in(scalar)
         if not text and not (scalar.style and kind in _TAKE_EMPTY):
             continue
-        kind = kind or guess(known, key.value)
-        text = _without_robot(text, kind)
-        if kind:
-            names.sites.append(NameSite(scalar, key, kind, param, text, -1, layer))
-        else:
-            names.unclaimed.append(scalar)
+        kind = kind or guess(job.known, key.value)
+        if not kind:
+            job.names.unclaimed.append(scalar)
+            continue
+        made = Site(kind, _without_robot(text, kind), str(key.value), slot_of(scalar))
+        bare = kind == "frame" and _is_stripped(job)
+        site = made._replace(is_sure=param is not None, together=id(key), bare=bare, param=param)
+        job.names.sites.append(site._replace(node=job.node, reach=reach))
+
+
+def _is_stripped(job: _Job) -> bool:
+    """Does the node take off a slash that a frame starts with?"""
+    words = job.section.node.facts.strips if job.section.node else ""
+    return bool(words) and has_release(words, job.release)
 
 
 def _without_robot(text: str, kind: str) -> str:

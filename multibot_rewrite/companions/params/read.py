@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
 
-from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.kinds import PARAMS
+from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.names.placeholders import without_robot
 from multibot_rewrite.companions.params.name_sites import (
     NO_NAMES,
-    NameSite,
     Page,
     SectionNames,
     find_names,
@@ -21,7 +20,7 @@ from multibot_rewrite.companions.params.sections import (
     raw_sections,
     without_own,
 )
-from multibot_rewrite.companions.sites import SECTION, NamedFile, Site, site_at
+from multibot_rewrite.companions.sites import SECTION, Site, site_at
 from multibot_rewrite.companions.yaml_text import YamlText
 from multibot_rewrite.knowledge.parameters import KnownNodes
 
@@ -34,11 +33,12 @@ def read_params(
     found = without_own(raw_sections(document), own)
     sections = identify_sections(found, context, known)
     pages = tuple(
-        (it, NO_NAMES if it.shared else find_names(document, it, known)) for it in sections
+        (it, NO_NAMES if it.shared else find_names(document, it, known, context.distro))
+        for it in sections
     )
     names = (
         *(site for it in sections for site in _keys(it, own)),
-        *(_site(page, it, context.distro) for page, names in pages for it in names.sites),
+        *(it for _, names in pages for it in names.sites),
     )
     return NamedFile(
         PARAMS,
@@ -59,7 +59,7 @@ def read_params(
 def _own_frames(pages: Iterable[Page]) -> frozenset[str]:
     """The frames that nodes of the file make themselves: no description has them."""
     sites = (site for _, names in pages for site in names.sites)
-    return frozenset(it.value.lstrip("/") for it in sites if it.param and it.param.own)
+    return frozenset(it.text.lstrip("/") for it in sites if it.own)
 
 
 def _keys(section: ParamSection, own: Collection[str]) -> Iterator[Site]:
@@ -74,17 +74,6 @@ def _without(key: str, own: Collection[str]) -> str:
     bare = key.strip("/")
     words = (it for it in own if f"{bare}/".startswith(f"{it}/"))
     return next((bare.removeprefix(it).strip("/") for it in words), key)
-
-
-def _site(section: ParamSection, it: NameSite, release: str) -> Site:
-    strips = section.node.facts.strips if section.node and it.kind == "frame" else ""
-    site = site_at(it.scalar, it.kind, it.value, str(it.key.value), it.at >= 0)
-    return site._replace(
-        is_sure=it.param is not None,
-        together=id(it.key),
-        bare=bool(strips) and it.at < 0 and has_release(strips, release),
-        own=it.param is not None and it.param.own,
-    )
 
 
 def _others(names: SectionNames) -> Iterator[Site]:

@@ -6,10 +6,11 @@ from collections.abc import Iterator
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.findings.rule import declare
-from multibot_rewrite.companions.params.name_sites import NameSite, SectionNames
+from multibot_rewrite.companions.engine import GRAPH
+from multibot_rewrite.companions.params.name_sites import SectionNames
 from multibot_rewrite.companions.params.sections import ParamSection
 from multibot_rewrite.companions.params.values import ParamsJob, renamed
-from multibot_rewrite.companions.yaml_text import found_at
+from multibot_rewrite.companions.sites import Site, found_in
 
 UNKNOWN_NODE = declare(
     "MF114",
@@ -39,16 +40,16 @@ def guessed_names(job: ParamsJob, section: ParamSection, names: SectionNames) ->
     """Guesses that change the section of an unknown node, as one finding."""
     if section.node is not None or section.wild:
         return
-    guessed = [site.key for site in names.sites if site.param is None and _is_taken(job, site)]
+    guessed = [it for it in names.sites if not it.is_sure and _is_taken(job, it)]
     if guessed:
-        words = ", ".join(dict.fromkeys(key.value for key in guessed))
+        words = ", ".join(dict.fromkeys(it.key for it in guessed))
         message = (
             f"node {section.path} is not known; parameters that hold names are guessed: {words}"
         )
         hint = "describe the node in a file under nodes:"
-        yield found_at(job.document, guessed[0], UNKNOWN_NODE, message, hint)
+        yield found_in(job.document.file, guessed[0].slot, UNKNOWN_NODE, message, hint)
 
 
-def _is_taken(job: ParamsJob, site: NameSite) -> bool:
+def _is_taken(job: ParamsJob, site: Site) -> bool:
     """Does the guess change the value?"""
-    return site.kind in ("topic", "service") or renamed(job.context, site) != site.value
+    return site.kind in GRAPH or renamed(job.context, site) != site.text

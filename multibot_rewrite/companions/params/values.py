@@ -10,22 +10,18 @@ from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.base.releases import RELEASES, has_release
+from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.companions.context import Context
+from multibot_rewrite.companions.engine import GRAPH, spell_site, splices_of, written
 from multibot_rewrite.companions.names.by_kind import SPELLERS, is_component, is_plain
-from multibot_rewrite.companions.names.node_topics import (
-    FROM_NODE,
-    FROM_PARENT,
-    IN_FULL,
-    Facts,
-    spell_topic,
-)
+from multibot_rewrite.companions.names.node_topics import Facts, TopicText
 from multibot_rewrite.companions.names.placeholders import filled, is_robot
 from multibot_rewrite.companions.names.rename_map import is_declared
-from multibot_rewrite.companions.params.name_sites import NameSite, SectionNames
+from multibot_rewrite.companions.params.name_sites import SectionNames
 from multibot_rewrite.companions.params.sections import ParamSection
+from multibot_rewrite.companions.sites import Site, found_in
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT
-from multibot_rewrite.companions.yaml_text import Splice, YamlText, found_at, pairs, replaced
+from multibot_rewrite.companions.yaml_text import Splice, YamlText, pairs, replaced
 from multibot_rewrite.knowledge.parameter_entries import GRAPH_NAME_KINDS, RUN_TIME, SWITCH_KINDS
 from multibot_rewrite.knowledge.parameters import KnownNodes, is_absolute
 from multibot_rewrite.knowledge.records import Param
@@ -35,6 +31,7 @@ NO_PREFIX = "/"
 SIM_TIME = "use_sim_time"
 # Kinds that are only guessed where the description declares the name.
 _UNSURE = ("frame", "sensor", "interface")
+_SPELLED = frozenset((*GRAPH, *SPELLERS))
 
 
 class ParamsJob(NamedTuple):
@@ -70,39 +67,38 @@ def name_splices(
     job: ParamsJob, section: ParamSection, names: SectionNames
 ) -> Iterator[Splice | Finding]:
     """A splice for every name of a section that changes, and a finding where that is not possible."""
-    keys: dict[int, tuple[yaml.ScalarNode, list[str]]] = {}
-    bare = frames_stay(job, section)
+    stay = frames_stay(job, section)
+    sites = [it for it in names.sites if it.in_key or is_filled(it) or it.kind in _SPELLED]
+    made = [(it, _spelled(job, it, stay)) for it in sites]
+    document = job.document
+    yield from splices_of(document.text, document.file, ((it, new.text) for it, new in made))
+    for site, new in made:
+        yield from _about_topic(job, site, new)
     for site in names.sites:
-        if bare and site.kind == "frame":
-            yield from _replaced(job, site, site.value)
-            continue
-        if site.at >= 0:
-            words = keys.setdefault(
-                id(site.scalar), (site.scalar, str(site.scalar.value).split("."))
-            )[1]
-            words[site.at] = renamed(job.context, site)
-        elif is_filled(site):
-            yield from _replaced(job, site, _as_robot(job, site))
-        elif site.kind in ("topic", "service"):
-            yield from _topic(job, section, site)
-        elif site.kind in SPELLERS:
-            yield from _replaced(job, site, renamed(job.context, _as_read(job, section, site)))
-        elif site.kind == "off":
-            yield from _off(job, site)
-        elif site.kind == "no_prefix":
-            yield from _no_prefix(job, site)
+        if site.kind in SWITCH_KINDS:
+            yield from (_off if site.kind == "off" else _no_prefix)(job, site)
     yield from _filled(job, names)
-    for key, words in keys.values():
-        if (text := ".".join(words)) != key.value:
-            yield replaced(key, text)
 
 
-def is_filled(site: NameSite) -> bool:
+def is_filled(site: Site) -> bool:
     """Does a value stand for the robot alone? A switch for a prefix has an answer of its own."""
-    return is_robot(site.value) and site.kind not in SWITCH_KINDS
+    return is_robot(site.text) and site.kind not in SWITCH_KINDS
 
 
-def _as_robot(job: ParamsJob, site: NameSite) -> str:
+def _spelled(job: ParamsJob, site: Site, stays: bool) -> TopicText:
+    """What a name becomes; ``stays`` if the node puts the robot's name before its frames."""
+    if stays and site.kind == "frame":
+        return TopicText(site.text)
+    if is_filled(site) and not site.in_key:
+        return TopicText(_as_robot(job, site))
+    if site.bare and is_plain(site.text):
+        site = site._replace(text=site.text.removeprefix("/"))
+    if site.in_key or site.kind not in GRAPH:
+        return TopicText(renamed(job.context, site))
+    return spell_site(job.context, job.facts, site)
+
+
+def _as_robot(job: ParamsJob, site: Site) -> str:
     """What stands for the robot alone: its name, and no prefix where frames have it already."""
     if site.kind in RUN_TIME:
         run_time = job.context.names.naming.layout.at_run_time
@@ -123,67 +119,19 @@ def frames_stay(job: ParamsJob, section: ParamSection) -> bool:
     return section.path.rpartition("/")[2] in job.at_run_time
 
 
-def renamed(context: Context, site: NameSite) -> str:
+def renamed(context: Context, site: Site) -> str:
     """The name of a site for a robot; topics and services also depend on the node's remap rules."""
     # A value that is a frame only by its parameter's name may be a word such as enu.
-    guessed = site.param is None and site.kind in _UNSURE
-    if guessed and not _is_certain(context, site):
-        return site.value
-    speller = SPELLERS.get(site.kind)
-    return speller(context, site.value) if speller else site.value
+    guessed = not site.is_sure and site.kind in _UNSURE
+    if site.kind in GRAPH or (guessed and not _is_certain(context, site)):
+        return site.text
+    return spell_site(context, {}, site).text
 
 
-def is_stripped(job: ParamsJob, section: ParamSection, site: NameSite) -> bool:
-    """Does the node take off a slash that this frame starts with?"""
-    words = section.node.facts.strips if section.node and site.kind == "frame" else ""
-    return bool(words) and site.at < 0 and has_release(words, job.context.distro)
-
-
-def _as_read(job: ParamsJob, section: ParamSection, site: NameSite) -> NameSite:
-    if not is_stripped(job, section, site) or not is_plain(site.value):
-        return site
-    return site._replace(value=site.value.removeprefix("/"))
-
-
-def _is_certain(context: Context, site: NameSite) -> bool:
+def _is_certain(context: Context, site: Site) -> bool:
     if site.kind == "interface":
-        return any(is_component(context, it) for it in site.value.split("/")[:-1])
-    return is_declared(context.names, site.kind, site.value.lstrip("/")) or site.value == "odom"
-
-
-TEXT_BLOCK = declare(
-    "MF119",
-    "name-in-text-block",
-    WARNING,
-    what="A name is written as a block of text (| or >), so it is not rewritten.",
-    why="The name stays that of one robot, and a block adds a line break to it, which no frame or "
-    "topic has.",
-    fix="Write the name on one line.",
-    bad="""\
-amcl:
-  ros__parameters:
-    base_frame_id: |
-      base_link
-""",
-    good="""\
-amcl:
-  ros__parameters:
-    base_frame_id: base_link
-""",
-    line=3,
-    formats=("params",),
-)
-
-
-def _replaced(job: ParamsJob, site: NameSite, text: str) -> Iterator[Splice | Finding]:
-    if text == site.scalar.value:
-        return
-    if site.scalar.style in ("|", ">"):
-        message = f"{site.key.value} is a block of text, so the name in it is not rewritten"
-        hint = f"write it on one line: {site.key.value}: {site.value.strip()}"
-        yield found_at(job.document, site.scalar, TEXT_BLOCK, message, hint)
-        return
-    yield replaced(site.scalar, text)
+        return any(is_component(context, it) for it in site.text.split("/")[:-1])
+    return is_declared(context.names, site.kind, site.text.lstrip("/")) or site.text == "odom"
 
 
 WRONG_TARGET = declare(
@@ -239,40 +187,21 @@ local_costmap:
 )
 
 
-def _topic(job: ParamsJob, section: ParamSection, site: NameSite) -> Iterator[Splice | Finding]:
-    # A pattern such as /**/amcl is for the node of that name.
-    node = section.path.rpartition("/")[2] if section.wild else section.path
-    reach = _reach(job, section, site)
-    result = spell_topic(job.context, node, site.kind, site.value, reach, job.facts)
-    yield from _replaced(job, site, result.text)
-    if result.wrong_target:
-        message = f"{site.key.value}: remap rules turn {result.text} into {result.wrong_target}"
+def _about_topic(job: ParamsJob, site: Site, made: TopicText) -> Iterator[Finding]:
+    if made.wrong_target:
+        message = f"{site.key}: remap rules turn {made.text} into {made.wrong_target}"
         hint = "remove the name from the remap rules of this node or from this file"
-        yield found_at(job.document, site.scalar, WRONG_TARGET, message, hint)
-    if result.made_absolute and result.text != site.value:
+        yield found_in(job.document.file, site.slot, WRONG_TARGET, message, hint)
+    if made.made_absolute and made.text != site.text:
         message = "relative topics of a costmap are resolved below the costmap: made absolute"
         hint = f"{_others(site.param)} resolve them below the robot: set distro: if the file is for one"
-        yield found_at(job.document, site.scalar, MADE_ABSOLUTE, message, hint)
-
-
-def _reach(job: ParamsJob, section: ParamSection, site: NameSite) -> str:
-    if site.param is None or not site.param.absolute:
-        return FROM_NODE
-    if is_absolute(site.param, job.context.distro) or _is_binary_filter(site):
-        return IN_FULL
-    return FROM_PARENT
+        yield found_in(job.document.file, site.slot, MADE_ABSOLUTE, message, hint)
 
 
 def _others(param: Param | None) -> str:
     """The releases that resolve a relative topic in the robot's namespace."""
     found = [it for it in RELEASES if param and not is_absolute(param, it)]
     return f"{', '.join(found[:-1])} and {found[-1]}" if len(found) > 1 else "".join(found)
-
-
-def _is_binary_filter(site: NameSite) -> bool:
-    """The one filter that does not resolve its topics in the robot's namespace."""
-    layer = {key.value: value.value for key, value in pairs(site.layer)}
-    return "BinaryFilter" in str(layer.get("plugin", ""))
 
 
 UNCLEAR_SWITCH = declare(
@@ -300,26 +229,29 @@ diff_drive_controller:
 )
 
 
-def _off(job: ParamsJob, site: NameSite) -> Iterator[Splice | Finding]:
+def _off(job: ParamsJob, site: Site) -> Iterator[Splice | Finding]:
     """A switch that makes the node put a namespace before frames that are renamed already."""
-    if site.value.lower() in ("true", "yes", "on", "y"):
-        yield Splice(site.scalar.start_mark.index, site.scalar.end_mark.index, "false")
+    if site.text.lower() in ("true", "yes", "on", "y"):
+        yield Splice(site.slot.start, site.slot.end, "false")
     elif _is_open(site):
-        message = f"{site.key.value} is {site.value} and must turn out false"
         hint = "true adds the namespace to frames that already have the robot's name"
-        yield found_at(job.document, site.scalar, UNCLEAR_SWITCH, message, hint)
+        yield _unclear(job, site, "false", hint)
 
 
-def _no_prefix(job: ParamsJob, site: NameSite) -> Iterator[Splice | Finding]:
+def _no_prefix(job: ParamsJob, site: Site) -> Iterator[Splice | Finding]:
     """A prefix for frames that are renamed already; a default says what an empty one stands for."""
     if _is_open(site):
-        message = f"{site.key.value} is {site.value} and must turn out {NO_PREFIX}"
         hint = "a prefix is put before frames that already have the robot's name"
-        yield found_at(job.document, site.scalar, UNCLEAR_SWITCH, message, hint)
-    elif site.value != NO_PREFIX and (site.value or (site.param and site.param.default)):
-        yield replaced(site.scalar, NO_PREFIX)
+        yield _unclear(job, site, NO_PREFIX, hint)
+    elif site.text != NO_PREFIX and (site.text or (site.param and site.param.default)):
+        yield written(job.document.text, job.document.file, site.slot, NO_PREFIX)
 
 
-def _is_open(site: NameSite) -> bool:
+def _unclear(job: ParamsJob, site: Site, wanted: str, hint: str) -> Finding:
+    message = f"{site.key} is {site.text} and must turn out {wanted}"
+    return found_in(job.document.file, site.slot, UNCLEAR_SWITCH, message, hint)
+
+
+def _is_open(site: Site) -> bool:
     """Does only a launch file tell the value?"""
-    return "$" in site.value or "<" in site.value
+    return "$" in site.text or "<" in site.text

@@ -13,9 +13,9 @@ from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.base.naming import PREFIX, make_naming
 from multibot_rewrite.companions.rviz.display_groups import leaves
-from multibot_rewrite.companions.rviz.read_config import RvizItem, read_config
+from multibot_rewrite.companions.rviz.read_config import TOPIC, RvizItem, read_config
 from multibot_rewrite.companions.rviz.rewrite import RvizText, rewrite_rviz
-from multibot_rewrite.companions.rviz.values import TF_PREFIX, TOPIC, RvizRobot
+from multibot_rewrite.companions.rviz.values import TF_PREFIX, RvizRobot
 from multibot_rewrite.companions.yaml_text import YamlText, found_at
 
 AT_RUN_TIME = "frame-prefix"
@@ -83,5 +83,5 @@ def _bare_headers(document: YamlText) -> Iterator[Finding]:
 
 
 def _shows_messages(one: RvizItem) -> bool:
-    words = {place.word for place in one.places}
-    return TOPIC in words and TF_PREFIX not in words
+    kinds = {it.kind for it in one.places}
+    return TOPIC in kinds and TF_PREFIX not in kinds

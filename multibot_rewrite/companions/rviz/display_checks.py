@@ -10,12 +10,13 @@ from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.companions.rviz.display_groups import Robots
 from multibot_rewrite.companions.rviz.read_config import (
     DOCK,
+    GRAPH_NAMESPACE,
     RvizConfig,
     RvizItem,
-    ValuePlace,
     text_of,
 )
-from multibot_rewrite.companions.rviz.values import GRAPH_NAMESPACE, LINK, TF_PREFIX, RvizRobot
+from multibot_rewrite.companions.rviz.values import LINK, TF_PREFIX, RvizRobot
+from multibot_rewrite.companions.sites import Site, found_in
 from multibot_rewrite.companions.yaml_text import found_at, pairs
 
 
@@ -89,15 +90,15 @@ Visualization Manager:
 )
 
 
-def _tf_prefix(config: RvizConfig, place: ValuePlace, robot: RvizRobot) -> Iterator[Finding]:
-    given = str(place.node.value)
-    if place.word != TF_PREFIX or not robot.names.naming.layout.frames or robot.tf_prefix:
+def _tf_prefix(config: RvizConfig, place: Site, robot: RvizRobot) -> Iterator[Finding]:
+    given = place.slot.value
+    if place.kind != TF_PREFIX or not robot.names.naming.layout.frames or robot.tf_prefix:
         return
     if given and given != robot.tf_prefix:
         name = _named(place)
         message = f"{name} is emptied: the links of a rewritten description have the prefix already"
         hint = "nothing to do; RViz would add the prefix a second time"
-        yield found_at(config.document, place.node, TF_PREFIX_TWICE, message, hint)
+        yield found_in(config.document.file, place.slot, TF_PREFIX_TWICE, message, hint)
 
 
 NOT_RENAMED = declare(
@@ -129,33 +130,33 @@ Visualization Manager:
 
 
 def _not_renamed(
-    config: RvizConfig, one: RvizItem, place: ValuePlace, robot: RvizRobot
+    config: RvizConfig, one: RvizItem, place: Site, robot: RvizRobot
 ) -> Iterator[Finding]:
-    there = _why_not(one, place, robot) if place.node.value else None
+    there = _why_not(one, place, robot) if place.slot.value else None
     if there:
         message, hint = there
         message = f"{_named(place)} {message}"
-        yield found_at(config.document, place.node, NOT_RENAMED, message, hint)
+        yield found_in(config.document.file, place.slot, NOT_RENAMED, message, hint)
 
 
-def _why_not(one: RvizItem, place: ValuePlace, robot: RvizRobot) -> tuple[str, str] | None:
+def _why_not(one: RvizItem, place: Site, robot: RvizRobot) -> tuple[str, str] | None:
     """Why a value stays unchanged, and what to do; None for a value that may."""
     naming = robot.names.naming
     frames = naming.layout.frames
-    if place.word == "regex" and frames:
+    if place.kind == "regex" and frames:
         return "is a pattern for frames and stays unchanged", "make it match the robots' frames"
-    if place.word == "file" and text_of(one.node, "Description Source") == "File":
+    if place.kind == "file" and text_of(one.node, "Description Source") == "File":
         renamed = LINK in naming.separators
         hint = "set Description Source to Topic" if renamed else "fine if all robots look the same"
         return "is one description file, shown for every robot", hint
-    if place.word == GRAPH_NAMESPACE and naming.topics != NAMESPACE:
+    if place.kind == GRAPH_NAMESPACE and naming.topics != NAMESPACE:
         problem = "is a namespace of topics, but this layout renames each topic instead"
         return problem, "use a layout with namespaces"
     return None
 
 
-def _named(place: ValuePlace) -> str:
-    return f"{place.path.rstrip('.*')} {str(place.node.value)!r}"
+def _named(place: Site) -> str:
+    return f"{place.key.rstrip('.*')} {place.slot.value!r}"
 
 
 VISIBILITY_RESET = declare(

@@ -13,6 +13,7 @@ from multibot_rewrite.companions.rviz.colours import Colour
 from multibot_rewrite.companions.rviz.read_config import (
     ABSOLUTE,
     DOCK,
+    FRAME,
     GROUP,
     PROCESS,
     SHARED,
@@ -22,7 +23,6 @@ from multibot_rewrite.companions.rviz.read_config import (
     value,
 )
 from multibot_rewrite.companions.rviz.values import (
-    FRAME,
     RvizRobot,
     changed_values,
     is_name,
@@ -123,7 +123,7 @@ def _group(job: RvizJob, at: int) -> str:
         return one.block.start in job.own and not for_one_process(one)
 
     def made(one: RvizItem) -> Iterator[Splice]:
-        yield from item_splices(one, robot, job.colours[at])
+        yield from item_splices(document, one, robot, job.colours[at])
         yield from _renamed(one, robot)
 
     copies = [
@@ -178,14 +178,16 @@ def entries(document: YamlText, one: RvizItem, robots: Robots) -> Iterator[Splic
 
 
 def _moves(one: RvizItem, key: str, robot: RvizRobot) -> bool:
-    return any(place.path.startswith(key) for place, _ in changed_values(one, robot))
+    return any(place.key.startswith(key) for place, _ in changed_values(one, robot))
 
 
 def _for_all(
     document: YamlText, one: RvizItem, key: yaml.ScalarNode, block: Block, robots: Robots
 ) -> str:
-    place = next((it for it in one.places if it.node is key and is_name(it)), None)
-    if place is None or place.word != FRAME:
+    place = next(
+        (it for it in one.places if it.slot.start == key.start_mark.index and is_name(it)), None
+    )
+    if place is None or place.kind != FRAME:
         return cut_out(document, block.start, block.end)
     made = dict.fromkeys(replaced(key, robot_value(place, robot)) for robot in robots)
     return "".join(cut_out(document, block.start, block.end, [one]) for one in made)
@@ -206,7 +208,7 @@ def tools(job: RvizJob) -> Iterator[Splice]:
 
 def tool_edits(document: YamlText, tool: RvizItem, robot: RvizRobot) -> Iterator[Splice]:
     """The splices that make a tool publish for the robot, even if the file leaves the topic out."""
-    yield from item_splices(tool, robot, None)
+    yield from item_splices(document, tool, robot, None)
     default = rviz_data()["tools"].get(tool.cls, "")
     if value(tool.node, "Topic") is not None or not default:
         return

@@ -8,24 +8,19 @@ import yaml
 
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.kinds import RVIZ
+from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.names.placeholders import without_robot
 from multibot_rewrite.companions.rviz.display_groups import leaves
 from multibot_rewrite.companions.rviz.read_config import (
+    FRAME,
     RvizConfig,
     RvizItem,
-    ValuePlace,
     fixed_frame,
     read_config,
     targets,
 )
-from multibot_rewrite.companions.rviz.values import (
-    FRAME,
-    GRAPH_NAMESPACE,
-    TOPIC,
-    RvizRobot,
-    is_name,
-)
-from multibot_rewrite.companions.sites import NamedFile, Site, site_at
+from multibot_rewrite.companions.rviz.values import RvizRobot, is_name
+from multibot_rewrite.companions.sites import Site, site_at
 from multibot_rewrite.companions.yaml_text import YamlText, is_text, pairs
 
 # Titles of displays and windows: never names of links.
@@ -36,7 +31,7 @@ def read_rviz(document: YamlText, context: Context) -> NamedFile:
     """The names of a config; raises InputError for one that is not for RViz 2."""
     config = read_config(document)
     shown = (*leaves(config.displays), *config.tools)
-    names = (*_frames(config), *(_site(it) for one in shown for it in filter(is_name, one.places)))
+    names = (*_frames(config), *(it for one in shown for it in filter(is_name, one.places)))
     others = tuple(site for one in shown for site in _others(one))
     return NamedFile(
         RVIZ,
@@ -68,17 +63,10 @@ def _frames(config: RvizConfig) -> Iterator[Site]:
             yield site_at(node, FRAME, without_robot(str(node.value), ""))
 
 
-def _site(place: ValuePlace) -> Site:
-    """RViz keeps links and frames that it has seen once: those are keys."""
-    lead = "/" if place.word in (TOPIC, GRAPH_NAMESPACE) else ""
-    text = without_robot(str(place.node.value), lead)
-    return site_at(place.node, place.word, text, place.path, "*" in place.path)
-
-
 def _others(one: RvizItem) -> Iterator[Site]:
-    claimed = {id(place.node) for place in one.places}
+    claimed = {it.slot.start for it in one.places}
     for node in _scalars(one.node):
-        if id(node) not in claimed and is_text(node):
+        if node.start_mark.index not in claimed and is_text(node):
             yield site_at(node, "", str(node.value))
 
 

@@ -12,22 +12,18 @@ import yaml
 from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.names.placeholders import without_robot
+from multibot_rewrite.companions.sites import Site, site_at
 from multibot_rewrite.companions.yaml_blocks import Block, blocks, is_block
 from multibot_rewrite.companions.yaml_text import YamlText, line_of, pairs, refuse_anchors
 
 MANAGER = "Visualization Manager"
 GROUP = "rviz_common/Group"
 DOCK, SHARED, PROCESS, ABSOLUTE = "dock", "shared", "process", "absolute"
+TOPIC, GRAPH_NAMESPACE, FRAME = "topic", "namespace", "frame"
+_NULL = "tag:yaml.org,2002:null"
 # Classes of ROS 1, which pluginlib of ROS 2 does not find.
 ROS1 = "rviz/"
-
-
-class ValuePlace(NamedTuple):
-    """A scalar (a value or a key) of the kind ``word``, such as a topic or a frame."""
-
-    node: yaml.ScalarNode
-    word: str
-    path: str
 
 
 class RvizItem(NamedTuple):
@@ -42,7 +38,7 @@ class RvizItem(NamedTuple):
     name: str
     flag: str
     known: bool
-    places: tuple[ValuePlace, ...]
+    places: tuple[Site, ...]
     children: tuple[RvizItem, ...] = ()
 
 
@@ -119,17 +115,19 @@ def _shown(document: YamlText, node: yaml.Node | None, what: str) -> Iterator[Rv
         yield RvizItem(block, item, cls, text_of(item, "Name"), flag, known, places, tuple(below))
 
 
-def _places(item: yaml.Node, names: Mapping[str, str]) -> Iterator[ValuePlace]:
-    for path, word in names.items():
+def _places(item: yaml.Node, names: Mapping[str, str]) -> Iterator[Site]:
+    """RViz keeps links and frames that it has seen once: those are keys."""
+    for path, kind in names.items():
         for node in _found(item, path.split(".")):
-            yield ValuePlace(node, word, path)
+            lead = "/" if kind in (TOPIC, GRAPH_NAMESPACE) else ""
+            yield site_at(node, kind, without_robot(str(node.value), lead), path, "*" in path)
 
 
 def _found(node: yaml.Node | None, path: Sequence[str]) -> Iterator[yaml.ScalarNode]:
     """The scalars at a path; ``*`` gives keys."""
     if not path:
         node = value(node, "Value") if isinstance(node, yaml.MappingNode) else node
-        if isinstance(node, yaml.ScalarNode):
+        if isinstance(node, yaml.ScalarNode) and node.tag != _NULL:
             yield node
     elif path[0] in ("*", "**"):
         for key, below in pairs(node):

@@ -158,7 +158,7 @@ def _for_one(config: RvizConfig, robot: RvizRobot, colour: Colour | None) -> Rvi
         if one.flag in gone:
             splices.append(Splice(one.block.start, one.block.end, remark(document, one)))
         else:
-            splices += item_splices(one, robot, colour if robot.colour else None)
+            splices += item_splices(document, one, robot, colour if robot.colour else None)
     for tool in config.tools:
         if tool.flag in gone:
             splices.append(Splice(tool.block.start, tool.block.end, remark(document, tool)))

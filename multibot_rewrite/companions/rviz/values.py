@@ -8,18 +8,24 @@ import yaml
 
 from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.engine import splices_of
 from multibot_rewrite.companions.names.placeholders import is_robot, without_robot
 from multibot_rewrite.companions.names.rename_map import CompanionNames, spell
 from multibot_rewrite.companions.names.robot_topics import NOTHING, robot_topic
 from multibot_rewrite.companions.rviz.colours import Colour
-from multibot_rewrite.companions.rviz.read_config import RvizItem, ValuePlace, text_of
-from multibot_rewrite.companions.yaml_text import Splice, replaced
+from multibot_rewrite.companions.rviz.read_config import (
+    FRAME,
+    GRAPH_NAMESPACE,
+    TOPIC,
+    RvizItem,
+    text_of,
+)
+from multibot_rewrite.companions.sites import Site
+from multibot_rewrite.companions.yaml_text import Splice, YamlText
 
-TOPIC, GRAPH_NAMESPACE, FRAME = "topic", "namespace", "frame"
 LINK, JOINT, GROUP = "link", "joint", "group"
 COLOUR, FLAT_COLOUR, TF_PREFIX = "colour", "flat_colour", "tf_prefix"
 NAMED = frozenset({TOPIC, GRAPH_NAMESPACE, FRAME, LINK, JOINT, GROUP, TF_PREFIX})
-_NULL = "tag:yaml.org,2002:null"
 
 
 class RvizRobot(NamedTuple):
@@ -46,53 +52,46 @@ class RvizRobot(NamedTuple):
         return self.names.naming.layout.namespaced or bool(self.rules)
 
 
-def is_name(place: ValuePlace) -> bool:
-    """Does this place hold a name? Null values and blocks of text do not."""
-    node = place.node
-    return place.word in NAMED and node.tag != _NULL and node.style not in ("|", ">")
+def is_name(site: Site) -> bool:
+    """Does this place hold a name? Blocks of text do not."""
+    return site.kind in NAMED and not site.slot.is_block
 
 
-def robot_value(place: ValuePlace, robot: RvizRobot) -> str:
+def robot_value(site: Site, robot: RvizRobot) -> str:
     """The value of a place for the robot."""
-    value = str(place.node.value)
-    if place.word == TF_PREFIX:
+    if site.kind == TF_PREFIX:
         # Where frames have no prefix, one that stands for the robot is none.
-        own = robot.names.naming.layout.frames or is_robot(value)
-        return robot.tf_prefix if own else value
-    if place.word == TOPIC:
-        return robot_topic(robot.topics, without_robot(value, "/"), robot.known)
-    if place.word == GRAPH_NAMESPACE:
+        own = robot.names.naming.layout.frames or is_robot(site.slot.value)
+        return robot.tf_prefix if own else site.slot.value
+    if site.kind == TOPIC:
+        return robot_topic(robot.topics, site.text, robot.known)
+    if site.kind == GRAPH_NAMESPACE:
         reached = robot.topics.naming.topics == NAMESPACE
-        return robot_topic(robot.topics, without_robot(value, "/")) if reached else value
-    return spell(robot.names, place.word, without_robot(value, ""))
+        return robot_topic(robot.topics, site.text) if reached else site.slot.value
+    return spell(robot.names, site.kind, site.text)
 
 
-def changed_values(one: RvizItem, robot: RvizRobot) -> Iterator[tuple[ValuePlace, str]]:
+def changed_values(one: RvizItem, robot: RvizRobot) -> Iterator[tuple[Site, str]]:
     """The places of a display or tool whose value differs for the robot, and the new value."""
-    for place in filter(is_name, one.places):
-        new = robot_value(place, robot)
-        if new != place.node.value:
-            yield place, new
+    made = ((it, robot_value(it, robot)) for it in filter(is_name, one.places))
+    yield from ((it, new) for it, new in made if new != it.slot.value)
 
 
-def item_splices(one: RvizItem, robot: RvizRobot, colour: Colour | None) -> list[Splice]:
+def item_splices(
+    document: YamlText, one: RvizItem, robot: RvizRobot, colour: Colour | None
+) -> list[Splice]:
     """The splices that make a display or tool show the robot."""
-    made = [replaced(place.node, new) for place, new in changed_values(one, robot)]
+    made = [*splices_of(document.text, document.file, changed_values(one, robot))]
     return made + ([*_painted(one, colour)] if colour else [])
 
 
 def _painted(one: RvizItem, colour: Colour) -> Iterator[Splice]:
-    """The robot's colour, if the display has one colour for all its data."""
+    """The robot's colour as RViz writes it, if the display has one colour for all its data."""
     flat = text_of(one.node, "Color Transformer") == "FlatColor"
-    for place in one.places:
-        if place.word == COLOUR or (place.word == FLAT_COLOUR and flat):
-            yield painted(place.node, colour)
-
-
-def painted(node: yaml.ScalarNode, colour: Colour) -> Splice:
-    """The splice of a colour as RViz writes it."""
     text = "; ".join(map(str, colour))
-    return Splice(node.start_mark.index, node.end_mark.index, text)
+    for it in one.places:
+        if it.kind == COLOUR or (it.kind == FLAT_COLOUR and flat):
+            yield Splice(it.slot.start, it.slot.end, text)
 
 
 def frame_of(node: yaml.Node | None, robot: RvizRobot) -> str:

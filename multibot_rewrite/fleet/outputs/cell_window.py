@@ -10,6 +10,7 @@ from collections.abc import Iterator
 
 import yaml
 
+from multibot_rewrite.companions.engine import splices_of
 from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.companions.rviz.read_config import every, fixed_frame, read_config, targets
 from multibot_rewrite.companions.rviz.rewrite import RvizText
@@ -27,12 +28,12 @@ def cell_window(
     ``first`` arm. None for a config without planning groups; raises as ``read_config``."""
     config = read_config(document)
     shown = (place for it in every(config.displays) for place in it.places)
-    groups = [it.node for it in shown if it.word == _GROUP]
+    groups = [it for it in shown if it.kind == _GROUP]
     if not groups:
         return None
-    own = spell(first.names, _GROUP, groups[0].value)
+    own = spell(first.names, _GROUP, groups[0].slot.value)
     group = next(iter(cell.groups), own)
-    splices = [replaced(it, group) for it in groups]
+    splices = [*splices_of(document.text, document.file, ((it, group) for it in groups))]
     splices += _seen_from((fixed_frame(config), *targets(config)), world)
     return RvizText(cell.name, spliced(document, splices))
 

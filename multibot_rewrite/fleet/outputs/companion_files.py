@@ -10,8 +10,8 @@ from multibot_rewrite.companions.behavior_tree.rewrite import rewrite_behavior_t
 from multibot_rewrite.companions.companion import Companion
 from multibot_rewrite.companions.lua import rewrite_lua
 from multibot_rewrite.companions.moveit.rewrite import rewrite_moveit
+from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.rewrite import nodes_without_section, rewrite_params
-from multibot_rewrite.companions.sites import NamedFile
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT, fill_template
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.fleet.fleet_plan import FleetPlan

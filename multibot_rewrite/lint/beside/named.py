@@ -7,8 +7,8 @@ from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.formats import read_named
 from multibot_rewrite.companions.kinds import MOVEIT
+from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.names.rename_map import KINDS, CompanionNames
-from multibot_rewrite.companions.sites import NamedFile
 from multibot_rewrite.companions.yaml_text import YamlText
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.lint.beside.robots import robots_of

@@ -14,7 +14,7 @@ from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.nearest import did_you_mean
 from multibot_rewrite.companions.bridge_entry import KEYS, TYPES, faults, row_of, text_in
 from multibot_rewrite.companions.kinds import BRIDGE
-from multibot_rewrite.companions.sites import NamedFile
+from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.yaml_text import items
 from multibot_rewrite.rules.files.examples import a_row
 from multibot_rewrite.rules.files.records import Remark, remark_at

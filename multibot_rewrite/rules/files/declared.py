@@ -11,6 +11,7 @@ from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import MISTYPED, Guesses, meant_name
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.name_sites import params_at
 from multibot_rewrite.companions.params.rcl_parameters import Value, value_of
 from multibot_rewrite.companions.params.sections import (
@@ -18,7 +19,6 @@ from multibot_rewrite.companions.params.sections import (
     RawSection,
     controller_types,
 )
-from multibot_rewrite.companions.sites import NamedFile
 from multibot_rewrite.companions.yaml_text import YamlText, pairs
 from multibot_rewrite.knowledge.declared import READ, YAML, Declared
 from multibot_rewrite.knowledge.parameters import KnownNode

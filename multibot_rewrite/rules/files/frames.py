@@ -7,8 +7,9 @@ from collections.abc import Iterator
 from multibot_rewrite.base.findings.finding import NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.companions.kinds import EVERY
+from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.names.by_kind import is_filled, is_plain
-from multibot_rewrite.companions.sites import NamedFile, Site
+from multibot_rewrite.companions.sites import Site
 from multibot_rewrite.rules.files.examples import a_section
 from multibot_rewrite.rules.files.records import Remark, remark
 

@@ -8,7 +8,7 @@ from functools import cache
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.companions.sites import NamedFile
+from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.rules.files import (
     bridges,
     frames,

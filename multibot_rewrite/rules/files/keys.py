@@ -8,8 +8,8 @@ from collections.abc import Iterator
 from multibot_rewrite.base.findings.finding import WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
+from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.sections import ParamSection, flattened, pattern_of
-from multibot_rewrite.companions.sites import NamedFile
 from multibot_rewrite.companions.yaml_text import line_of
 from multibot_rewrite.rules.files.examples import a_section
 from multibot_rewrite.rules.files.records import Remark, remark, remark_at

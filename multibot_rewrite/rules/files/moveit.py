@@ -10,7 +10,7 @@ import yaml
 from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.companions.kinds import PARAMS, is_beside, kind_of
-from multibot_rewrite.companions.sites import NamedFile
+from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.yaml_text import YamlText, line_of, read_yaml
 from multibot_rewrite.description.sources.packages import entries
 from multibot_rewrite.description.sources.read import read_file

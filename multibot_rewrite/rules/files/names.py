@@ -9,9 +9,10 @@ from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.nearest import HINTED, MISTYPED, did_you_mean, meant_name
 from multibot_rewrite.base.rosnames import check_topic_name
 from multibot_rewrite.companions.kinds import BRIDGE, EVERY, LUA, MOVEIT, PARAMS, RVIZ, TREE
+from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.names.by_kind import is_component, is_plain, is_shared_frame
 from multibot_rewrite.companions.names.rename_map import KINDS, is_declared, spell
-from multibot_rewrite.companions.sites import NamedFile, Site
+from multibot_rewrite.companions.sites import Site
 from multibot_rewrite.description.checks.mentions import mentioned
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.rules.files.declared import unknown_parameters

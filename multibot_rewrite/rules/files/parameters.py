@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from multibot_rewrite.base.findings.finding import WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.companions.kinds import PARAMS
-from multibot_rewrite.companions.sites import NamedFile
+from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.rules.files import declared
 from multibot_rewrite.rules.files.records import Remark
 

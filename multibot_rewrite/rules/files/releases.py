@@ -10,9 +10,9 @@ from multibot_rewrite.base.findings.finding import NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.releases import has_release, releases_with
 from multibot_rewrite.companions.kinds import PARAMS
+from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.name_sites import params_at
 from multibot_rewrite.companions.params.sections import ParamSection, flattened
-from multibot_rewrite.companions.sites import NamedFile
 from multibot_rewrite.companions.yaml_text import items, pairs
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import NodeParameters, Param

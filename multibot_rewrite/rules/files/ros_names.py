@@ -8,15 +8,16 @@ from collections.abc import Iterator
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.rosnames import check_node_name, check_topic_name
-from multibot_rewrite.companions.kinds import EVERY, RVIZ
-from multibot_rewrite.companions.names.by_kind import is_filled, is_plain
+from multibot_rewrite.companions.engine import GRAPH
+from multibot_rewrite.companions.kinds import EVERY, MOVEIT, PARAMS, RVIZ
+from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.names.by_kind import SPELLERS, is_filled, is_plain
 from multibot_rewrite.companions.names.placeholders import is_robot
-from multibot_rewrite.companions.sites import GZ_TOPIC, SECTION, NamedFile, Site
+from multibot_rewrite.companions.sites import GZ_TOPIC, SECTION, Site
 from multibot_rewrite.rules.files.examples import a_section
 from multibot_rewrite.rules.files.records import Remark, remark
 
 _IN_VALUE = re.compile(r"<[^>]*>|\$\([^)]*\)|\$?\{[^}]*\}|%\w+")
-_GRAPH = ("topic", "service")
 # Stand for whole names of nodes.
 _ANY = ("*", "**")
 # What RViz calls the frame that everything is shown in.
@@ -48,7 +49,7 @@ def invalid_name(file: NamedFile) -> Iterator[Remark]:
 
 
 def _fault(site: Site) -> str:
-    if site.kind not in _GRAPH or not site.text or not is_filled(site.text):
+    if site.kind not in GRAPH or not site.text or not is_filled(site.text):
         return ""
     found = check_topic_name(site.text)
     return found.reason if found else ""
@@ -64,6 +65,30 @@ def _section_fault(site: Site) -> str:
     names = (it for it in site.text.strip("/").split("/") if it not in _ANY)
     faults = ((it, check_node_name(it)) for it in names)
     return next((f"{it!r}: {fault.reason}" for it, fault in faults if fault), "")
+
+
+@rule(
+    "MB876",
+    "name-in-text-block",
+    WARNING,
+    what="A name is written as a block of text (| or >), so it is not rewritten. It is a note where "
+    "the name is right for one robot.",
+    why="The name stays that of one robot, and without a dash the block adds a line break to it, which "
+    "no frame or topic has.",
+    fix="Write the name on one line.",
+    bad=a_section("amcl", "base_frame_id: |\n      base_link"),
+    good=a_section("amcl", "base_frame_id: base_link"),
+    line=3,
+    formats=(PARAMS, MOVEIT),
+)
+def text_block(file: NamedFile) -> Iterator[Remark]:
+    """Each name in a block."""
+    for site in file.names:
+        if site.slot.is_block and site.kind in (*GRAPH, *SPELLERS):
+            name = site.text.strip()
+            message = f"the name {name!r} is in a block of text, so it is not rewritten"
+            level = "" if file.is_certain or site.text != name else NOTE
+            yield remark(site, message, f"write it on one line: {name}", level)
 
 
 @rule(

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from multibot_rewrite.base.findings.finding import WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.companions.kinds import RVIZ
+from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.rviz.read_config import rviz_data, text_of, value
-from multibot_rewrite.companions.sites import NamedFile
 from multibot_rewrite.companions.yaml_text import pairs
 from multibot_rewrite.rules.files.records import Remark, remark_at
 

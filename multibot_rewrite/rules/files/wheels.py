@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import yaml
 
-from multibot_rewrite.companions.sites import NamedFile
+from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.rules.facts.drives import (
     Wheel,
     are_opposite,

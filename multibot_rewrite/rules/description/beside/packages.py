@@ -11,7 +11,7 @@ from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
 from multibot_rewrite.rules.description.physics.shared import a_rover
 
 if TYPE_CHECKING:
-    from multibot_rewrite.companions.sites import NamedFile
+    from multibot_rewrite.companions.named_file import NamedFile
     from multibot_rewrite.rules.files.records import Remark
 
 

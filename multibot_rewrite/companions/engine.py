@@ -1,0 +1,98 @@
+"""Every kind of file beside a description, rewritten: its sites and their new texts -> splices."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Iterator
+from xml.sax.saxutils import escape
+
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.naming import NAMESPACE
+from multibot_rewrite.companions.context import Context
+from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.names.by_kind import SPELLERS, is_plain
+from multibot_rewrite.companions.names.node_topics import Facts, TopicText, spell_topic
+from multibot_rewrite.companions.names.rename_map import spell
+from multibot_rewrite.companions.sites import AS_IS, UNCLEAR, XML, Site, Slot
+from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT
+from multibot_rewrite.companions.yaml_text import Splice, quoted
+
+Speller = Callable[[Site], str]
+# Names that the remap rules of their node move, too.
+GRAPH = ("topic", "service")
+_XML_QUOTES = {'"': "&quot;", "'": "&apos;"}
+# An anchor or a tag before the value.
+_MARKS = re.compile(r"(?:[&!][^\s,\[\]{}]*\s+)*")
+
+
+def spell_site(context: Context, facts: Facts, site: Site) -> TopicText:
+    """What the name of a site becomes for a robot; ``facts`` are the robot's nodes, whose remap rules
+    move topics too."""
+    if site.kind in GRAPH:
+        return spell_topic(context, site.node, site.kind, site.text, site.reach, facts)
+    if site.kind == "controller_topic":
+        return _controller_topic(context, facts, site)
+    speller = SPELLERS.get(site.kind)
+    return TopicText(speller(context, site.text) if speller else site.text)
+
+
+def _controller_topic(context: Context, facts: Facts, site: Site) -> TopicText:
+    """``/arm_controller/joint_trajectory``: a topic below a node is renamed with the node."""
+    head, slash, rest = site.text.rpartition("/")
+    if not is_plain(site.text) or not head or head.startswith("~"):
+        return spell_site(context, facts, site._replace(kind="topic"))
+    if context.topics.naming.topics == NAMESPACE:
+        return TopicText(spell(context.topics, "topic", site.text))
+    return TopicText(SPELLERS["node"](context, head) + slash + rest)
+
+
+def text_of(context: Context, facts: Facts, site: Site) -> str:
+    """The text alone; raises nothing."""
+    return spell_site(context, facts, site).text
+
+
+def name_splices(file: NamedFile, speller: Speller) -> Iterator[Splice]:
+    """The splices that give each name of a file its text for a robot; raises as ``splices_of``."""
+    yield from splices_of(file.text, file.file, ((it, speller(it)) for it in file.names))
+
+
+def splices_of(text: str, file: str, made: Iterable[tuple[Site, str]]) -> Iterator[Splice]:
+    """The splices that give each site its new text. A value may hold several names, and an alias may
+    reach one twice; a block of text stays.
+
+    Raises InputError for one text that would need two names, and for a value that cannot be edited.
+    """
+    values: dict[int, dict[int, tuple[Site, str]]] = {}
+    for site, new in made:
+        _, other = values.setdefault(site.slot.start, {}).setdefault(site.at, (site, new))
+        if other != new:
+            raise InputError(_two(file, site, other, new))
+    for parts in values.values():
+        slot = next(iter(parts.values()))[0].slot
+        value = slot.value
+        for at, (site, new) in sorted(parts.items(), reverse=True):
+            value = value[:at] + new + (value[at + site.size :] if site.size >= 0 else "")
+        if value != slot.value and not slot.is_block:
+            yield written(text, file, slot, value)
+
+
+def _two(file: str, site: Site, *names: str) -> str:
+    one, other = names
+    kinds = f"two kinds of name, {one!r} and {other!r}"
+    told = f"{file}:{site.line}: an alias uses {site.text!r} as {kinds};"
+    for slot in (NAMESPACE_SLOT, TAG_SLOT):
+        told = told.replace(slot, "ROBOT")
+    return f"{told} write the value out in both places"
+
+
+def written(text: str, file: str, slot: Slot, new: str) -> Splice:
+    """The splice that gives a slot another value; an anchor and a tag before it stay."""
+    if slot.style == UNCLEAR:
+        place = f"{file}:{slot.line}"
+        raise InputError(f"{place}: {slot.value!r} cannot be edited in place; write it on one line")
+    if slot.style == AS_IS:
+        return Splice(slot.start, slot.end, new)
+    if slot.style == XML:
+        return Splice(slot.start, slot.end, escape(new, _XML_QUOTES))
+    marks = _MARKS.match(text, slot.start, slot.end)
+    return Splice(marks.end() if marks else slot.start, slot.end, quoted(new, slot.style))
