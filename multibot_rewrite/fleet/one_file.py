@@ -25,9 +25,9 @@ from multibot_rewrite.rules.files.judge import judged_once
 REASONS = {
     "MB853": ("frame", "in no description"),
     "MB854": ("joint", "in no description"),
-    "MB860": ("name", "not understood"),
+    "MB901": ("name", "not understood"),
     "MB876": ("name", "in a block of text"),
-    "MB862": ("placeholder", "that a launch file has to replace"),
+    "MB105": ("placeholder", "that a launch file has to replace"),
     "MF114": ("node", "not known"),
     "MF117": ("prefix parameter", "that no postfix reaches"),
     "MF118": ("port or file", "shared by all robots"),

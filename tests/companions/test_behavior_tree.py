@@ -162,7 +162,7 @@ def test_literals_are_followed_into_subtrees() -> None:
     wanted = wanted.replace('="tool"', '="sp/tool"').replace('value="odom"', 'value="sp/odom"')
     assert new == wanted
     column = SUBTREES.splitlines()[3].index('other="') + len('other="') + 1
-    assert [(it.code, it.line, it.column) for it in found] == [("MB860", 4, column)]
+    assert [(it.code, it.line, it.column) for it in found] == [("MB901", 4, column)]
 
 
 def test_subtrees_that_share_the_blackboard() -> None:
@@ -226,13 +226,13 @@ def test_what_is_no_tree_is_one_line(data: bytes, said: str) -> None:
     [
         ('<A robot_base_frame="base_lnk"/><B robot_base_frame="base_lnk"/>', ["MB853"]),
         ('<A global_frame="odom"/><B global_frame="map"/>', []),
-        ('<A target="base_link"/>', ["MB860"]),
-        ('<A target="/scan"/>', ["MB860"]),
-        ('<A target="a/base_link"/>', ["MB860"]),
+        ('<A target="base_link"/>', ["MB901"]),
+        ('<A target="/scan"/>', ["MB901"]),
+        ('<A target="a/base_link"/>', ["MB901"]),
         ('<A target="/tmp/a.yaml" planner_id="base_link" behavior_tree="/a/b"/>', []),
-        ("<Script code=\" frame:='base_link' \"/>", ["MB860"]),
+        ("<Script code=\" frame:='base_link' \"/>", ["MB901"]),
         ("<A _skipIf=\"frame == 'odom'\"/>", []),
-        ('<A service_name="1/b"/>', ["MB861"]),
+        ('<A service_name="1/b"/>', ["MB312"]),
     ],
 )
 def test_findings(body: str, found: list[str]) -> None:

@@ -93,10 +93,10 @@ def test_what_is_not_a_plain_string_is_only_reported(value: str) -> None:
         ('tracking_frame = "odom"', []),
         ('include "my_base.lua"', [("MF453", 1)]),
         ("\ninclude('my_base.lua')", [("MF453", 2)]),
-        ('local frame = "base_link"', [("MB860", 1)]),
+        ('local frame = "base_link"', [("MB901", 1)]),
         ('-- "base_link"\nlocal a = "base"', []),
-        ('x.published_frame == "base_link"', [("MB860", 1)]),
-        ('my_published_frame = "base_link"', [("MB860", 1)]),
+        ('x.published_frame == "base_link"', [("MB901", 1)]),
+        ('my_published_frame = "base_link"', [("MB901", 1)]),
     ],
 )
 def test_findings(text: str, found: list[tuple[str, int]]) -> None:

@@ -372,18 +372,18 @@ def test_a_name_that_the_description_lacks_is_reported_once_with_the_nearest() -
 @pytest.mark.parametrize(
     ("text", "found"),
     [
-        ("arm:\n  kinematics_solver: a/B\n  favourite: j1\n", [("MB860", 3)]),
-        ("arm:\n  kinematics_solver: a/B\n  spot: /eye/points\n", [("MB860", 3)]),
+        ("arm:\n  kinematics_solver: a/B\n  favourite: j1\n", [("MB901", 3)]),
+        ("arm:\n  kinematics_solver: a/B\n  spot: /eye/points\n", [("MB901", 3)]),
         ("arm:\n  kinematics_solver: a/B\n  weights: [1, 2]\n  mode: global\n", []),
         ("arm: {kinematics_solver: a/B}\nsolver: fast\n", []),
         ("arm: {kinematics_solver: a/B}\nhand: {}\n", [("MB854", 2)]),
         ("arm: {kinematics_solver: a/B}\nhand:\n", [("MB854", 2)]),
-        ("octomap_frame: $(arg p)map\nsensors: []\n", [("MB862", 1)]),
+        ("octomap_frame: $(arg p)map\nsensors: []\n", [("MB105", 1)]),
         ("joint_limits:\n  j1: {}\n  j2: {}\n  j1: {}\n", [("MB859", 4)]),
-        ("joint_limits:\n  $(arg p)j1: {}\n", [("MB862", 2)]),
+        ("joint_limits:\n  $(arg p)j1: {}\n", [("MB105", 2)]),
         ("hardware_interface:\n  joints:\n    - >-\n      j1\n", [("MB876", 3)]),
-        ("sensors: [a]\na: {sensor_plugin: b/C, image_topic: a b/}\n", [("MB861", 2)]),
-        ("sensors: [a]\na: {sensor_plugin: b/C, image_topic: 1/b}\n", [("MB861", 2)]),
+        ("sensors: [a]\na: {sensor_plugin: b/C, image_topic: a b/}\n", [("MB312", 2)]),
+        ("sensors: [a]\na: {sensor_plugin: b/C, image_topic: 1/b}\n", [("MB312", 2)]),
     ],
 )
 def test_findings(text: str, found: list[tuple[str, int]]) -> None:

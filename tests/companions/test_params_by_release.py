@@ -104,14 +104,14 @@ def test_a_slash_is_taken_off_where_the_node_does(
 ) -> None:
     text, findings = made(section(node, "odom_frame_id: /odom"), distro=release)
     assert line in text
-    assert [(it.code, it.level) for it in findings] == [("MB864", level)]
+    assert [(it.code, it.level) for it in findings] == [("MB301", level)]
 
 
 @pytest.mark.parametrize(
     "line", ["scan_topic: /scan", "odom_frame_id: odom", "odom_frame_id: $(var x)"]
 )
 def test_other_slashes_are_not_reported(line: str) -> None:
-    assert "MB864" not in codes(made(section("amcl", line))[1])
+    assert "MB301" not in codes(made(section("amcl", line))[1])
 
 
 def test_a_joint_group_controller_is_deprecated_from_lyrical_on() -> None:

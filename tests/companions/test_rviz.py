@@ -422,7 +422,7 @@ def test_the_postfix_layout_adds_postfixes_to_topics() -> None:
     ("display", "code"),
     [
         ("Class: acme/Show\nTopic: /t", "MF204"),
-        ("Class: acme/Show\nBody: base_link", "MB860"),
+        ("Class: acme/Show\nBody: base_link", "MB901"),
         ("Class: rviz_default_plugins/Axes\nReference Frame: base_lin", "MB853"),
         ("Class: rviz_default_plugins/TF\nFilter (whitelist): ^base", "MF208"),
         (
@@ -430,7 +430,7 @@ def test_the_postfix_layout_adds_postfixes_to_topics() -> None:
             "MF208",
         ),
         ("Class: rviz_default_plugins/Image\nImage Topic: /i", "MB872"),
-        ("Class: rviz_default_plugins/Path\nTopic: /a/<name>/b", "MB862"),
+        ("Class: rviz_default_plugins/Path\nTopic: /a/<name>/b", "MB105"),
         ("Class: rviz_default_plugins/Camera\nTopic: /i\nVisibility:\n  it: false", "MF212"),
         (
             "Class: rviz_default_plugins/RobotModel\nDescription Topic:\n  Durability Policy: Volatile",

@@ -148,10 +148,10 @@ def test_a_file_with_nothing_shared_or_nothing_own() -> None:
         (f"- topic_name: a\n  direction: IN\n{TYPES}", "MB855"),
         ("- just text\n", "MB855"),
         (f"- topic_name: a\n  gz_ros_topic_name: b\n{TYPES}", "MB858"),
-        (f"- ros_topic_name: a/$(var b)\n{TYPES}", "MB862"),
-        (f"- gz_topic_name: /model/x/joint/hip/0/cmd_pos\n{TYPES}", "MB861"),
+        (f"- ros_topic_name: a/$(var b)\n{TYPES}", "MB105"),
+        (f"- gz_topic_name: /model/x/joint/hip/0/cmd_pos\n{TYPES}", "MB312"),
         (f"- topic_name: /model/x/a\n{TYPES}- topic_name: /model/door/b\n{TYPES}", "MF505"),
-        (f"- topic_name: a\n  lazy: base\n{TYPES}", "MB860"),
+        (f"- topic_name: a\n  lazy: base\n{TYPES}", "MB901"),
         (f"- ros_topic_name: a\n  gz_topic_name: /model/x/link/bas/a\n{TYPES}", "MB853"),
     ],
 )

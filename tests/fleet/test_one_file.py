@@ -85,7 +85,7 @@ def test_what_is_wrong_in_it_is_told_and_it_is_not_proved() -> None:
     made = rewrite_file(text.encode(), "robot1", urdf=ROVER, layout="both", file="nav.yaml")
     assert [(it.code, it.file, it.line) for it in made.findings] == [
         ("MB853", "nav.yaml", 3),
-        ("MB862", "nav.yaml", 4),
+        ("MB105", "nav.yaml", 4),
     ]
     assert made.not_proved == (
         "1 frame in no description",

@@ -225,7 +225,7 @@ PLANTED = {
         "[right_wheel_joint]\n    right_wheel_names: [left_wheel_joint]",
         "MB856:9",
     ),
-    "a frame with a slash": (VIEW, "base_link", "/base_link", "MB864:3"),
+    "a frame with a slash": (VIEW, "base_link", "/base_link", "MB301:3"),
     "a direction": (ROW, "GZ_TO_ROS", "GZ_TO_ROSS", "MB855:5"),
     "a direction in small letters": (ROW, "GZ_TO_ROS", "gz_to_ros", "MB855:5"),
     "a type's key": (ROW, "ros_type_name", "ros_type", "MB855:1 MB858:3"),
@@ -238,7 +238,7 @@ PLANTED = {
     "no type": (ROW, "  gz_type_name: gz.msgs.LaserScan\n", "", "MB855:1"),
 }
 # Notes about what a rewrite for several robots would leave as it is.
-OF_REWRITES = ("MB860", "MB862")
+OF_REWRITES = ("MB901", "MB105")
 HEALTHY = {
     "nothing": (CONTROLLERS, "", ""),
     "nothing of Nav2": (NAV, "", ""),

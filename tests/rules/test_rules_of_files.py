@@ -15,7 +15,7 @@ from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.rules.files.examples import ROVER
-from multibot_rewrite.rules.files.judge import THEMES
+from multibot_rewrite.rules.files.judge import SHARED, THEMES
 from multibot_rewrite.rules.settings import Settings
 
 ROBOTS = ("robot1", "robot2")
@@ -44,16 +44,16 @@ BROKEN = {
     "a misspelt parameter": ("params", EKF.format("frequncy: 30.0"), "MB850:3:5"),
     "a text for a switch": ("params", EKF.format('publish_tf: "yes"'), "MB851:3:17"),
     "a fraction of a beam": ("params", AMCL.format("max_beams: 60.5"), "MB851:3:16"),
-    "a topic with a digit": ("params", AMCL.format("scan_topic: 1scan"), "MB861:3:17"),
+    "a topic with a digit": ("params", AMCL.format("scan_topic: 1scan"), "MB312:3:17"),
     "a misspelt frame": ("params", AMCL.format("base_frame_id: base_lnik"), "MB853:3:20"),
     "a misspelt joint": ("params", ARM.format("left_whel_joint"), "MB854:3:14"),
-    "a slash": ("params", AMCL.format("odom_frame_id: /odom"), "MB864:3:20"),
+    "a slash": ("params", AMCL.format("odom_frame_id: /odom"), "MB301:3:20"),
     "white space": ("params", AMCL.format('odom_frame_id: "odom "'), "MB865:3:20"),
-    "a placeholder": ("params", AMCL.format("scan_topic: $(var side)/scan"), "MB862:3:17"),
+    "a placeholder": ("params", AMCL.format("scan_topic: $(var side)/scan"), "MB105:3:17"),
     "another robot": ("params", AMCL.format("scan_topic: /robot2/scan"), "MB863:3:17"),
     "no value": ("params", AMCL.format("scan_topic:"), "MB868:3:5"),
     "a key twice": ("params", AMCL.format("max_beams: 1\n    max_beams: 2"), "MB859:4:5"),
-    "a node's name": ("params", AMCL.format("alpha1: 0.1").replace("amcl", "2d"), "MB861:1:1"),
+    "a node's name": ("params", AMCL.format("alpha1: 0.1").replace("amcl", "2d"), "MB312:1:1"),
     "MoveIt's joint": ("moveit", MANAGER.format("joints: [left_whel_joint]"), "MB854:4:14"),
     "MoveIt's frame": (
         "moveit",
@@ -61,13 +61,13 @@ BROKEN = {
         "MB853:5:20",
     ),
     "RViz's frame": ("rviz", AXES.format("Reference Frame: lidar_lnk"), "MB853:4:24"),
-    "RViz's slash": ("rviz", AXES.format("Reference Frame: /lidar_link"), "MB864:4:24"),
-    "RViz's topic": ("rviz", SCAN.format("Topic: 1/scan"), "MB861:4:14"),
+    "RViz's slash": ("rviz", AXES.format("Reference Frame: /lidar_link"), "MB301:4:24"),
+    "RViz's topic": ("rviz", SCAN.format("Topic: 1/scan"), "MB312:4:14"),
     "RViz's robot": ("rviz", SCAN.format("Topic: /robot1/scan"), "MB863:4:14"),
     "a bridge's key": ("bridge", ROW.format("lazzy: true"), "MB858:5:3"),
     "a bridge's direction": ("bridge", ROW.format("direction: GZ_TO_ROSS"), "MB855:5:14"),
     "a bridge's frame": ("bridge", ROW.format("frame_id: lidar_lnk"), "MB853:5:13"),
-    "a bridge's topic": ("bridge", ROW.replace("e: scan\n", "e: 2d\n", 1).format(""), "MB861:1:19"),
+    "a bridge's topic": ("bridge", ROW.replace("e: scan\n", "e: 2d\n", 1).format(""), "MB312:1:19"),
 }
 
 
@@ -92,7 +92,7 @@ def by_both(kind: str, text: str, folder: Path, rules: set[str]) -> tuple[list[s
 
 EVERY = [it for theme in THEMES for it in vars(theme).values() if isinstance(it, Rule)]
 IN_BOTH = [it for it in EVERY if BUILT not in it.options]
-CODES = {it.code for it in EVERY}
+CODES = {it.code for it in (*EVERY, *SHARED)}
 
 
 @pytest.mark.parametrize("name", BROKEN)
@@ -101,9 +101,7 @@ def test_lint_and_build_say_the_same(name: str, tmp_path: Path) -> None:
     assert by_both(kind, text, tmp_path, CODES) == ([expected], [expected])
 
 
-@pytest.mark.parametrize(
-    "rule", [it for it in EVERY if BUILT not in it.options], ids=lambda it: it.code
-)
+@pytest.mark.parametrize("rule", IN_BOTH, ids=lambda it: it.code)
 def test_an_example_is_found_by_both(rule: Rule, tmp_path: Path) -> None:
     linted, built = by_both(rule.formats[0], rule.bad, tmp_path, {rule.code})
     assert linted == built

@@ -73,7 +73,7 @@ def leading_slashes(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
         if claim.site.form != "whole" or kinds[0] not in FRAME_KINDS:
             continue
         if claim.value[:1] == "/" and claim.value[1:] not in naming.shared_frames:
-            message = f"frame {claim.value!r} starts with a slash, tf2 look-ups reject it"
+            message = f"frame {claim.value!r} starts with a slash, which tf2 refuses"
             yield about(claim, "MB301", message, "drop the slash")
 
 

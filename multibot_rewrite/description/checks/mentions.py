@@ -215,6 +215,6 @@ def as_problem(mention: Mention) -> Problem:
     element, _, attribute, value, name = mention
     where = f"{element.tag}@{attribute}" if attribute else f"<{element.tag}>"
     text = f"{where} holds {value!r}" if value == name else f"{where} holds {name!r} in {value!r}"
-    message = f"unclaimed mention: {text}, which the vocabulary does not know: it is not renamed"
+    message = f"{text}, but its use here is not known: it is not renamed"
     hint = "add a line to a vocabulary file: a uses/declares site, or keep"
     return Problem(element, message, attribute, hint, (), "MB901")

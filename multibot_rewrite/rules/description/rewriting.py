@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import partial
+from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING
 from multibot_rewrite.base.findings.rule import SRDF, URDF, rule
+from multibot_rewrite.companions.kinds import EVERY
 from multibot_rewrite.description.checks.audit import (
     included_models,
     other_releases,
@@ -21,29 +23,45 @@ from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.description.steps.document import slot_values
 from multibot_rewrite.rules.subject import Subject
 
+if TYPE_CHECKING:
+    from multibot_rewrite.companions.named_file import NamedFile
+    from multibot_rewrite.rules.files.records import Remark
+
 
 @rule(
     "MB901",
-    "unclaimed-mention",
+    "name-of-unknown-use",
     WARNING,
-    what="A value holds the name of a link, joint or light, and the vocabulary does not say what the "
-    "value means.",
-    why="Where these are renamed for each robot, this value keeps the old name: the plugin that "
-    "reads it looks for a link, joint or light that no longer exists.",
-    fix="Add a line to a vocabulary file that says it is a name, or that it must stay as it is.",
+    what="The name of a link, joint, light, frame or topic of the robot is at a value, key, parameter "
+    "or port that is not known to hold names. Of a file it is a note where it is not sure which robot "
+    "it is for.",
+    why="It stays as it is when the file is written for several robots. If it is a name, a plugin or "
+    "node looks for a link, frame or joint that no longer has that name, or two robots use the same "
+    "topic.",
+    fix="Say that it is a name, or that it stays: of a description in a vocabulary file, of a "
+    "parameter in a file under `nodes:` of the fleet file; in other files rename it by hand for "
+    "each robot.",
     bad='<link name="gripper_left"/><custom><grasp part="gripper_left"/></custom>',
     good='<link name="gripper_left"/><custom><grasp part="left"/></custom>',
-    formats=(URDF, SRDF),
+    formats=(URDF, SRDF, *EVERY),
 )
-def unclaimed_mention(subject: Subject) -> Iterator[Problem]:
+def unclaimed_mention(asked: Subject | NamedFile) -> Iterator[Problem | Remark]:
+    """In both."""
+    if isinstance(asked, Subject):
+        return _mentions(asked)
+    from multibot_rewrite.rules.files.names import unknown_uses  # a description needs none of it
+
+    return unknown_uses(asked)
+
+
+def _mentions(subject: Subject) -> Iterator[Problem]:
     """Values that no site claims and that hold a declared name."""
     inventory = subject.inventory
     names = {name for kind in MENTIONED for name in inventory.declared[kind]}
-    if not names:
-        return
-    values = slot_values(subject.document.root)
-    mentions = unclaimed_mentions(inventory, values, names, subject.tree)
-    yield from map(as_problem, mentions)
+    if names:
+        values = slot_values(subject.document.root)
+        mentions = unclaimed_mentions(inventory, values, names, subject.tree)
+        yield from map(as_problem, mentions)
 
 
 Audit = Callable[[Inventory, Tree], Iterator[Problem]]

@@ -14,22 +14,7 @@ from multibot_rewrite.rules.files.examples import a_section
 from multibot_rewrite.rules.files.records import Remark, remark
 
 
-@rule(
-    "MB864",
-    "frame-with-slash",
-    WARNING,
-    what="A file names a frame with a slash at its start. It is a note where the node takes the slash "
-    "off in this release; then it is written without it.",
-    why="tf2 sends the frame without the slash and refuses to look up one that has it (Invalid "
-    'argument "/odom" passed to lookupTransform): nobody finds the transform. Some nodes took the '
-    "slash off up to Kilted and no longer do.",
-    fix="Remove the slash.",
-    bad=a_section("diff_drive_controller", "odom_frame_id: /odom"),
-    good=a_section("diff_drive_controller", "odom_frame_id: odom"),
-    line=3,
-    formats=EVERY,
-)
-def frame_with_slash(file: NamedFile) -> Iterator[Remark]:
+def slashes(file: NamedFile) -> Iterator[Remark]:
     """Values that are known to be frames."""
     for site in _frames(file):
         if site.text.startswith("/") and is_plain(site.text) and not _is_spaced(site.text):

@@ -9,6 +9,9 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.rules.description import rewriting
+from multibot_rewrite.rules.description.files import reading
+from multibot_rewrite.rules.description.names import ros_names as description_names
 from multibot_rewrite.rules.files import (
     bridges,
     frames,
@@ -21,6 +24,13 @@ from multibot_rewrite.rules.files import (
 )
 
 THEMES = (parameters, names, ros_names, frames, keys, releases, bridges, rviz)
+# They are asked of a description as well.
+SHARED: tuple[Rule, ...] = (
+    reading.leftover,
+    description_names.invalid_ros_name,
+    description_names.leading_slash,
+    rewriting.unclaimed_mention,
+)
 # Up to a reason, which is behind a dash.
 _COMMENT = lazy_compile(r"#\s*urdf-lint:\s*ignore\s+((?:MB\d+[,\s]*)+)(?:$|[-:])")
 
@@ -28,8 +38,9 @@ _COMMENT = lazy_compile(r"#\s*urdf-lint:\s*ignore\s+((?:MB\d+[,\s]*)+)(?:$|[-:])
 @cache
 def rules_for(kind: str) -> tuple[Rule, ...]:
     """The rules for files of a kind, by their codes."""
-    every = (it for theme in THEMES for it in vars(theme).values() if isinstance(it, Rule))
-    return tuple(sorted((it for it in every if kind in it.formats), key=lambda it: it.code))
+    themes = (it for theme in THEMES for it in vars(theme).values() if isinstance(it, Rule))
+    every = (it for it in (*themes, *SHARED) if kind in it.formats)
+    return tuple(sorted(every, key=lambda it: it.code))
 
 
 def judged(file: NamedFile, rules: Iterable[Rule]) -> Iterator[Finding]:

@@ -204,23 +204,7 @@ def _foreign(file: NamedFile) -> tuple[list[tuple[str, str]], int, Site | None]:
     return missing, len(closed), closed[missing[0]]
 
 
-@rule(
-    "MB860",
-    "name-of-unknown-use",
-    WARNING,
-    what="The name of a link, joint, frame or topic of the robot is at a key, parameter or port that "
-    "is not known to hold names. It is a note where it is not sure which robot the file is for.",
-    why="It stays as it is when the file is written for several robots. If it is a name, a node looks "
-    "for a frame or joint that no longer has that name, or two robots use the same topic.",
-    fix="If it is a name, describe the parameter in a file under `nodes:` of the fleet file; in "
-    "other files rename it by hand for each robot.",
-    bad=a_section("mast_driver", "mounted_on: lidar_link"),
-    good=a_section("mast_driver", "frame_id: lidar_link"),
-    line=3,
-    formats=EVERY,
-    beside=ROVER,
-)
-def unknown_use(file: NamedFile) -> Iterator[Remark]:
+def unknown_uses(file: NamedFile) -> Iterator[Remark]:
     """Texts of unknown use that are names, and in files of plugins those that hold one."""
     if not file.others:
         return

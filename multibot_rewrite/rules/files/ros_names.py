@@ -24,21 +24,7 @@ _ANY = ("*", "**")
 _FIXED = "<Fixed Frame>"
 
 
-@rule(
-    "MB861",
-    "invalid-name-beside",
-    WARNING,
-    what="A topic, a service or the node of a section has a name that ROS refuses. Without "
-    "ros_topic_name the topic of a bridge is the gz topic, where a part may be a number.",
-    why="The node fails when it creates the publisher, subscription or service; rcl rejects a file "
-    "with such a section, or no node has the name; a topic is not bridged.",
-    fix="Correct the name: its parts have letters, digits and underscores, and start with no digit.",
-    bad=a_section("amcl", "scan_topic: 2d/scan"),
-    good=a_section("amcl", "scan_topic: lidar/scan"),
-    line=3,
-    formats=EVERY,
-)
-def invalid_name(file: NamedFile) -> Iterator[Remark]:
+def invalid_names(file: NamedFile) -> Iterator[Remark]:
     """Names in the graph, and those of sections."""
     for site in file.names:
         fault = _section_fault(site) if site.kind == SECTION else _fault(site)
@@ -91,22 +77,7 @@ def text_block(file: NamedFile) -> Iterator[Remark]:
             yield remark(site, message, f"write it on one line: {name}", level)
 
 
-@rule(
-    "MB862",
-    "placeholder-beside",
-    WARNING,
-    what="A section or a name holds a placeholder, such as $(var area) or <area>, that does not stand "
-    "for the robot, and stays as it is. It is a note where only the file is looked at.",
-    why="Only a launch file can replace it. Until it does, no node has the section, and the name is "
-    "the placeholder itself; what it is replaced by does not get the robot's name from the build.",
-    fix="If it stands for the robot, call it so: <robot_namespace>, <robot_name>, $(var namespace) and "
-    "the like are filled in. Otherwise let the launch file replace it (ParameterFile, allow_substs).",
-    bad=a_section("amcl", "scan_topic: <area>/scan"),
-    good=a_section("amcl", "scan_topic: /scan"),
-    line=3,
-    formats=EVERY,
-)
-def placeholder(file: NamedFile) -> Iterator[Remark]:
+def placeholders(file: NamedFile) -> Iterator[Remark]:
     """The first placeholder of each name."""
     level = "" if file.is_certain else NOTE
     for site in file.names:

@@ -4,13 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import islice
+from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
-from multibot_rewrite.base.findings.rule import declare, rule
+from multibot_rewrite.base.findings.rule import URDF, declare, rule
+from multibot_rewrite.companions.kinds import EVERY
 from multibot_rewrite.description.checks.audit import leftover_xacro, worlds
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.twice import already_rewritten
 from multibot_rewrite.rules.subject import Subject
+
+if TYPE_CHECKING:
+    from multibot_rewrite.companions.named_file import NamedFile
+    from multibot_rewrite.rules.files.records import Remark
 
 # These five are reported where a file is read or expanded: see ``failures``.
 not_xml = declare(
@@ -98,18 +104,30 @@ package_not_found = declare(
 
 @rule(
     "MB105",
-    "leftover-xacro",
+    "placeholder-left",
     WARNING,
-    what="A file that is not named .xacro holds xacro elements or ${...} and $(arg ...).",
-    why="A program that loads it as a plain URDF does not expand macros, and urdfdom rejects the "
-    "joint, and with it the robot, where ${...} is in place of a number.",
-    fix="Name the file .urdf.xacro and load it through xacro, or store the expanded text.",
+    what="A description that is not named .xacro holds xacro elements or ${...} and $(arg ...). Or a "
+    "file beside it holds a placeholder, such as $(var area) or <area>, in a section or a name, that "
+    "does not stand for the robot, and stays; it is a note where only the file is looked at.",
+    why="A program that loads it as it is does not expand it: urdfdom rejects the joint, and with it "
+    "the robot, where ${...} is in place of a number; in a file no node has the section, and what a "
+    "launch file puts there does not get the robot's name from the build.",
+    fix="Name a description .urdf.xacro and load it through xacro. In a file call what stands for the "
+    "robot <robot_namespace>, <robot_name>, $(var namespace) and the like, which are filled in; else "
+    "let the launch file replace it (ParameterFile, allow_substs).",
     bad='<link name="a"/><link name="${prefix}b"/>',
     good='<link name="a"/><link name="b"/>',
+    formats=(URDF, *EVERY),
 )
-def leftover(subject: Subject) -> Iterator[Problem]:
-    """One finding per file, at the first of them."""
-    return leftover_xacro(subject.inventory)
+def leftover(asked: Subject | NamedFile) -> Iterator[Problem | Remark]:
+    """One finding for a description, at the first of them; the first of each name of a file."""
+    if isinstance(asked, Subject):
+        return leftover_xacro(asked.inventory)
+    from multibot_rewrite.rules.files.ros_names import (
+        placeholders,  # a description needs none of it
+    )
+
+    return placeholders(asked)
 
 
 @rule(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterator
+from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING
 from multibot_rewrite.base.findings.rule import SRDF, URDF, rule
@@ -11,10 +12,15 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import Claim, Edit
 from multibot_rewrite.base.naming import FRAME_KINDS, NOT_PLAIN
 from multibot_rewrite.base.rosnames import check_topic_name, propose_token, split_remap
+from multibot_rewrite.companions.kinds import EVERY
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.steps.document import value_slot
 from multibot_rewrite.rules.description.names.shared import SUBSTITUTION, TOKEN, name_of_robot
 from multibot_rewrite.rules.subject import Subject
+
+if TYPE_CHECKING:
+    from multibot_rewrite.companions.named_file import NamedFile
+    from multibot_rewrite.rules.files.records import Remark
 
 # Interfaces that ros2_control has names for (hardware_interface_type_values.hpp).
 STANDARD = frozenset(("position", "velocity", "effort", "acceleration"))
@@ -27,9 +33,11 @@ _ALLOWED_EVERYWHERE = lazy_compile(r"[\w/~]*", re.ASCII)
     "MB301",
     "leading-slash",
     WARNING,
-    what="A frame starts with a slash.",
+    what="A frame starts with a slash, in a description or a file beside it. In a file it is a note "
+    "where the node takes the slash off in this release; then it is written without it.",
     why="tf2 lookups throw: \"tf2 frame_ids cannot start with a '/'\"; robot_state_publisher sends a "
-    "link's name as it is, so a link with a leading slash is a frame that cannot be looked up.",
+    "link's name as it is, so a link with a leading slash is a frame that cannot be looked up. Some "
+    "nodes took the slash off up to Kilted and no longer do.",
     fix="Delete the slash.",
     bad='<link name="lidar"/>\n'
     "<gazebo>\n"
@@ -50,9 +58,18 @@ _ALLOWED_EVERYWHERE = lazy_compile(r"[\w/~]*", re.ASCII)
     "    <frame_name>lidar</frame_name>\n"
     "  </plugin>\n"
     "</gazebo>\n",
-    formats=(URDF, SRDF),
+    formats=(URDF, SRDF, *EVERY),
 )
-def leading_slash(subject: Subject) -> Iterator[Problem]:
+def leading_slash(asked: Subject | NamedFile) -> Iterator[Problem | Remark]:
+    """In both."""
+    if isinstance(asked, Subject):
+        return _slashes(asked)
+    from multibot_rewrite.rules.files.frames import slashes  # a description needs none of it
+
+    return slashes(asked)
+
+
+def _slashes(subject: Subject) -> Iterator[Problem]:
     """With a fix where the frame without the slash is a link. Plugins know /world."""
     shared = subject.settings.naming.shared_frames
     for claim in subject.inventory.claims:
@@ -61,7 +78,7 @@ def leading_slash(subject: Subject) -> Iterator[Problem]:
         name = claim.value[1:]
         if claim.site.kinds[0] in FRAME_KINDS and name and name not in shared:
             known = name in subject.inventory.declared["link"]
-            message = f"frame {claim.value!r} starts with a slash"
+            message = f"frame {claim.value!r} starts with a slash, which tf2 refuses"
             edits = _without_slash(subject, claim) if known else ()
             yield Problem(claim.element, message, claim.attribute, "delete the slash", edits)
 
@@ -131,9 +148,11 @@ def robot_name(subject: Subject) -> Iterator[Problem]:
     "MB312",
     "invalid-ros-name",
     WARNING,
-    what="A topic, service, namespace or node name of a plugin is not a valid ROS name.",
+    what="A topic, service, namespace or node name, of a plugin or in a file beside the description, "
+    "is not a valid ROS name. Without ros_topic_name the topic of a bridge is the gz topic, where a "
+    "part may be a number.",
     why="rcl throws InvalidTopicNameError, or the node is not created: the plugin does not load, "
-    "or publishes nothing.",
+    "or publishes nothing; rcl rejects a file with such a section, and a topic is not bridged.",
     fix="Use letters, digits, underscores and slashes, without a leading digit.",
     bad="<gazebo>\n"
     '  <plugin name="p" filename="libgazebo_ros_imu_sensor.so">\n'
@@ -146,8 +165,18 @@ def robot_name(subject: Subject) -> Iterator[Problem]:
     "  </plugin>\n"
     "</gazebo>\n",
     line=3,
+    formats=(URDF, *EVERY),
 )
-def invalid_ros_name(subject: Subject) -> Iterator[Problem]:
+def invalid_ros_name(asked: Subject | NamedFile) -> Iterator[Problem | Remark]:
+    """In both."""
+    if isinstance(asked, Subject):
+        return _invalid_names(asked)
+    from multibot_rewrite.rules.files.ros_names import invalid_names  # a description needs none
+
+    return invalid_names(asked)
+
+
+def _invalid_names(subject: Subject) -> Iterator[Problem]:
     """Values that are relative to a ROS namespace; those with a substitution are skipped."""
     for claim in subject.inventory.claims:
         site = claim.site
