@@ -120,6 +120,11 @@ running: /robot1/ekf_node subscribes /clock rosgraph_msgs/msg/Clock
 )
 def clocks_mixed(seen: Index) -> Iterator[Finding]:
     """Also a robot that is not on simulated time as the others are."""
+    return mixed_clocks(seen)
+
+
+def mixed_clocks(seen: Index) -> Iterator[Finding]:
+    """The findings of MG503."""
     simulated = {node for nodes in _on_simulated_time(seen).values() for node in nodes}
     if not simulated or not _clocks(seen):
         return
