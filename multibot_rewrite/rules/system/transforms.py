@@ -10,7 +10,8 @@ from multibot_rewrite.base.conventions import WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.rules.index import (
+from multibot_rewrite.rules.places import see, where
+from multibot_rewrite.system.index import (
     Index,
     Tree,
     and_then,
@@ -19,7 +20,6 @@ from multibot_rewrite.rules.index import (
     robots_of,
     unique,
 )
-from multibot_rewrite.rules.places import see, where
 from multibot_rewrite.system.records import Edge
 
 _STATIC = "static_transform_publisher"
