@@ -8,9 +8,9 @@ from collections.abc import Iterable, Iterator
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.rules.index import Index, is_viewer, last_word
 from multibot_rewrite.rules.places import see, where
 from multibot_rewrite.rules.system.clocks import mixed_clocks
+from multibot_rewrite.system.index import Index, is_viewer, last_word
 from multibot_rewrite.system.records import (
     CLAIMS,
     COMMAND,
