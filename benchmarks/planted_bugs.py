@@ -33,15 +33,12 @@ PAGE = ROOT / "docs" / "planted-bugs.md"
 HARMLESS = ROOT / "fixtures" / "harmless_bugs.tsv"
 PACKAGE = "multibot_rewrite"
 # "." are the modules that are in no room.
-ROOMS = (
-    *sorted(it.parent.name for it in (ROOT / PACKAGE).glob("*/__init__.py")),
-    *("naming.py", "."),
-)
+ROOMS = (*sorted(it.parent.name for it in (ROOT / PACKAGE).glob("*/__init__.py")), ".")
 # A bug in a file with one of these could reach beyond the copy: it ends processes or deletes folders.
 UNSAFE = re.compile(r"\b(?:os\.kill|killpg|os\.fork|os\._exit|rmtree|subprocess|signal)\b")
 AT_ONCE, MOST_TESTS, FEW_TESTS = 80, 600, 10
 # Exit codes of pytest.
-WRONG_USE, NO_TESTS = 4, 5
+WRONG_USE, NO_TESTS, TOO_LONG = 4, 5, -1
 FAST = ("-q", "-x", "-m", "not live and not slow", "-p", "no:cacheprovider", "--tb=no")
 
 
@@ -146,11 +143,9 @@ def _tests_of(bug: Bug, bench: Bench, chance: random.Random) -> list[str]:
 
 def _files(room: str, home: Path) -> Iterator[str]:
     found = (home / room).rglob("*.py") if (home / room).is_dir() and room != "." else ()
-    alone = [home / room] if room.endswith(".py") else home.glob("*.py") if room == "." else ()
-    for path in sorted((*found, *alone)):
+    for path in sorted((*found, *(home.glob("*.py") if room == "." else ()))):
         file = path.relative_to(home).as_posix()
-        unsafe = "child" in file or UNSAFE.search(path.read_text())
-        if not unsafe and not (room == "." and file in ROOMS):
+        if not ("child" in file or UNSAFE.search(path.read_text())):
             yield file
 
 
@@ -159,25 +154,27 @@ def _is_noticed(bug: Bug, tests: list[str], bench: Bench) -> bool:
     source = target.read_bytes()
     target.write_bytes(planted(source, bug))
     try:
-        return bool(tests) and _fails(tests, bench)
+        ended = _run(tests, bench) if tests else NO_TESTS
     finally:
         target.write_bytes(source)
+    # Tests that are not found: the module with the bug cannot be imported, or the notes are old.
+    if ended == WRONG_USE and _run(tests, bench, "--collect-only") == WRONG_USE:
+        sys.exit("the notes name tests that are not there: make them anew")
+    return ended not in (0, NO_TESTS)
 
 
-def _fails(tests: list[str], bench: Bench) -> bool:
+def _run(tests: list[str], bench: Bench, *words: str) -> int:
+    """What pytest ends with, or that it did not end in time."""
     run = subprocess.Popen(
-        [*_pytest(), *FAST, *tests], cwd=bench.copy, env=_environment(bench.copy),
+        [*_pytest(), *FAST, *words, *tests], cwd=bench.copy, env=_environment(bench.copy),
         start_new_session=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
     )  # fmt: skip
     try:
-        ended = run.wait(bench.seconds)
+        return run.wait(bench.seconds)
     except subprocess.TimeoutExpired:
-        return True
+        return TOO_LONG
     finally:
         _end(run)
-    if ended == WRONG_USE:
-        sys.exit("the notes name tests that are not there: make them anew")
-    return ended not in (0, NO_TESTS)
 
 
 def _end(run: subprocess.Popen[bytes]) -> None:

@@ -26,9 +26,9 @@ from multibot_rewrite.producers.bags.read import BagsUnusable, read_bag
 from multibot_rewrite.producers.bags.recording import as_snapshot, counted
 from multibot_rewrite.producers.ros.request import RosUnusable
 from multibot_rewrite.rules.check import check, doubts
-from multibot_rewrite.rules.index import NO_COUNTS
 from multibot_rewrite.spelling.plan import robot_words
 from multibot_rewrite.spelling.plan_file import is_json, read_plan
+from multibot_rewrite.system.index import NO_COUNTS
 from multibot_rewrite.system.records import System, answering
 
 

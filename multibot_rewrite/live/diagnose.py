@@ -12,8 +12,8 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.producers.bags.recording import RECORDER, is_recorded
 from multibot_rewrite.rules.check import inconclusive_where_in_doubt, judge
-from multibot_rewrite.rules.guess import GuessedRobot, guess_robots, whose_by_guess
-from multibot_rewrite.rules.index import NO_COUNTS, TF, Index, Known, index, tree_topic
+from multibot_rewrite.system.guess import GuessedRobot, guess_robots, whose_by_guess
+from multibot_rewrite.system.index import NO_COUNTS, TF, Index, Known, index, tree_topic
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, System
 
 

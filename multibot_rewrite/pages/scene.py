@@ -25,10 +25,10 @@ from multibot_rewrite.pages.states import (
 )
 from multibot_rewrite.pages.tf_tree_rows import FrameTree, make_frame_trees
 from multibot_rewrite.rules.check import side_by_side
-from multibot_rewrite.rules.index import EndKey, Index, by_node, types
 from multibot_rewrite.rules.pair.meeting import matches
-from multibot_rewrite.rules.planned import Planned
 from multibot_rewrite.spelling.plan import robot_words
+from multibot_rewrite.system.index import EndKey, Index, by_node, types
+from multibot_rewrite.system.planned import Planned
 from multibot_rewrite.system.records import (
     ACTION,
     SERVICE,

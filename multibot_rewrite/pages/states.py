@@ -8,9 +8,9 @@ from itertools import chain
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.rules.check import RULES
-from multibot_rewrite.rules.index import Index, ends_of, tree_topic
 from multibot_rewrite.rules.pair.tf_trees import tf_trees
-from multibot_rewrite.rules.planned import Planned
+from multibot_rewrite.system.index import Index, ends_of, tree_topic
+from multibot_rewrite.system.planned import Planned
 from multibot_rewrite.system.records import alternatives
 
 OK, LEAK, CROSS_TALK, MISSING = "ok", "leak", "cross-talk", "missing"

@@ -8,9 +8,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.pages.states import CLASH, MISSING, OK, States
 from multibot_rewrite.rules.check import RULES
-from multibot_rewrite.rules.index import Index, tree_topic
 from multibot_rewrite.rules.pair.tf_trees import tf_trees
-from multibot_rewrite.rules.planned import Planned
+from multibot_rewrite.system.index import Index, tree_topic
+from multibot_rewrite.system.planned import Planned
 from multibot_rewrite.system.records import Edge, Robot
 
 

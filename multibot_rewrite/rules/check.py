@@ -15,7 +15,6 @@ from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.producers.bags.recording import is_recorded
 from multibot_rewrite.rules.declaration import PAIR, SYSTEM, Finder
-from multibot_rewrite.rules.index import NO_COUNTS, Index, ends_of
 from multibot_rewrite.rules.pair import (
     demands,
     endpoints,
@@ -30,8 +29,6 @@ from multibot_rewrite.rules.pair import (
     types,
 )
 from multibot_rewrite.rules.pair.meeting import missing
-from multibot_rewrite.rules.pair.tf_copies import without_bridged
-from multibot_rewrite.rules.planned import Planned, beside, planned
 from multibot_rewrite.rules.system import (
     clocks,
     commands,
@@ -48,8 +45,11 @@ from multibot_rewrite.rules.system import (
 )
 from multibot_rewrite.rules.system import nodes as running_nodes
 from multibot_rewrite.rules.system import transforms as any_transforms
+from multibot_rewrite.system.index import NO_COUNTS, Index, ends_of
 from multibot_rewrite.system.patterns import fitted
+from multibot_rewrite.system.planned import Planned, beside, planned
 from multibot_rewrite.system.records import PUBLISHES, SIM_TIME, Caveat, End, System, incomplete
+from multibot_rewrite.system.tf_copies import without_bridged
 
 _SYSTEM = (
     *(running_nodes, names, matching, commands, relays, sharing, any_transforms, tf_topics),

@@ -10,8 +10,8 @@ from multibot_rewrite.base.findings.rule import Rule, rule
 from multibot_rewrite.base.record import NamedTuple
 
 if TYPE_CHECKING:
-    from multibot_rewrite.rules.index import Index
-    from multibot_rewrite.rules.planned import Planned
+    from multibot_rewrite.system.index import Index
+    from multibot_rewrite.system.planned import Planned
 
 _Check = TypeVar("_Check", bound=Callable[..., Any])
 _Pair = Callable[["Planned", "Index"], Iterator[Finding]]

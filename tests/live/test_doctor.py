@@ -6,10 +6,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from fault_changes import Fault, added, nav, shared_tf
+from fault_changes import added, nav, shared_tf
 from graph_cases import environment, qos, sent
 from graph_faults import FAULTS
-from graph_faults_page import lines
 from healthy_systems import (
     CLOCK,
     SCAN,
@@ -25,7 +24,6 @@ from healthy_systems import (
     with_node,
 )
 from node_answers import told
-from paths import ROOT
 
 from multibot_rewrite.base.findings.finding import INCONCLUSIVE
 from multibot_rewrite.cli import multibot
@@ -33,9 +31,9 @@ from multibot_rewrite.live.diagnose import diagnose, survey
 from multibot_rewrite.live.seen_plan import seen_plan
 from multibot_rewrite.producers.ros.voices import Voices
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.rules.guess import guess_robots
 from multibot_rewrite.spelling.plan_file import from_yaml, to_yaml
 from multibot_rewrite.system.answers import with_answers
+from multibot_rewrite.system.guess import guess_robots
 from multibot_rewrite.system.json import from_json, to_json
 from multibot_rewrite.system.questions import questions
 from multibot_rewrite.system.records import (
@@ -48,29 +46,6 @@ from multibot_rewrite.system.records import (
 )
 
 EMPTY = System((), (), (), environment())
-
-
-@pytest.mark.parametrize("name", SYSTEMS)
-def test_a_healthy_system_has_no_finding(name: str) -> None:
-    assert [str(it) for it in diagnose(SYSTEMS[name]()).findings] == []
-
-
-@pytest.mark.parametrize("fault", FAULTS, ids=[it.name for it in FAULTS])
-def test_a_fault_is_found_with_its_cause(fault: Fault) -> None:
-    found = diagnose(fault.change(fault.system())).findings
-    said = [str(it) for it in found if (it.code, it.level) == (fault.code, fault.level)]
-    assert any(all(word in line for word in fault.words) for line in said), list(map(str, found))
-    # One fault is not ten findings.
-    assert {it.code for it in found} <= {fault.code, *fault.also}
-
-
-def test_there_are_faults_enough() -> None:
-    assert len(FAULTS) >= 60
-    assert len({it.name for it in FAULTS}) == len(FAULTS)
-
-
-def test_the_page_of_faults_is_that_of_today() -> None:
-    assert (ROOT / "docs" / "graph-faults.md").read_text() == "".join(f"{it}\n" for it in lines())
 
 
 # ---------------------------------------------------------------- whose names

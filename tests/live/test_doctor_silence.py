@@ -23,7 +23,7 @@ from healthy_systems import (
 
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.live.seen_plan import seen_plan
-from multibot_rewrite.rules.guess import guess_robots
+from multibot_rewrite.system.guess import guess_robots
 from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES, Edge, Node, System
 
 IMU = "sensor_msgs/msg/Imu"

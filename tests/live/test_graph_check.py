@@ -30,10 +30,10 @@ from multibot_rewrite.base.findings.finding import INCONCLUSIVE
 from multibot_rewrite.base.naming import make_naming, spelled
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.rules.check import ABSENCE, RULES, check, side_by_side
-from multibot_rewrite.rules.ownership import name_ownership
 from multibot_rewrite.rules.pair.in_enclaves import without_enclave
 from multibot_rewrite.spelling.plan import expect, planned_end
 from multibot_rewrite.spelling.table import build_table
+from multibot_rewrite.system.ownership import name_ownership
 from multibot_rewrite.system.records import (
     MAY,
     PUBLISHES,

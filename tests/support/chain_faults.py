@@ -178,8 +178,9 @@ def _read_below(name: str, node: str) -> Change:
 
 def _two_versions(graph: System) -> System:
     """The lidar's computer has other messages than that of its robot."""
+    hashes = {PUBLISHES: "ab", SUBSCRIBES: "cd"}
     ends = (
-        it._replace(type_hash=f"RIHS01_{it.role}") if it.name == "/robot2/scan" else it
+        it._replace(type_hash=f"RIHS01_{hashes[it.role] * 32}") if it.name == "/robot2/scan" else it
         for it in graph.ends
     )
     return graph._replace(ends=tuple(ends))

@@ -350,7 +350,7 @@ CASES = (
         reframed(lambda f: prefixed(f, "robot1") if of("robot1", f) and f.static else f),
     ),
     Case(
-        L2, "MG207", ("MG207", "MG406"),
+        L2, "MG207", ("MG207", "MG402", "MG406"),
         reframed(lambda f: bare(f) if of("robot1", f) and f.static else f),
     ),
     Case(

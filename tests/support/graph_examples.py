@@ -40,10 +40,10 @@ from plans import PlannedRobot, planned
 from plans import told as planned_told
 
 from multibot_rewrite.base.conventions import SENT_BY_EVERY_NODE
-from multibot_rewrite.rules.guess import GuessedRobot, whose_by_guess, with_frames
-from multibot_rewrite.rules.index import Index, Known, index
 from multibot_rewrite.spelling.plan import planned_end
 from multibot_rewrite.system.answers import Answer, with_answers
+from multibot_rewrite.system.guess import GuessedRobot, whose_by_guess, with_frames
+from multibot_rewrite.system.index import Index, Known, index
 from multibot_rewrite.system.records import (
     ACTION,
     MAY,

@@ -8,6 +8,19 @@ from __future__ import annotations
 
 from answered_faults import header_rows, state_rows
 from chain_faults import chain_rows
+from fault_changes import Fault
+from fault_sources import (
+    HASHES,
+    HEADERS,
+    NODES,
+    PARAMETERS,
+    QOS,
+    READERS,
+    SENDERS,
+    SERVICES,
+    STATES,
+    TRANSFORMS,
+)
 from moving_faults import command_rows, tf_rows
 from naming_faults import clock_rows, data_rows, name_rows
 
@@ -21,6 +34,29 @@ FAULTS = (
     *state_rows(),
     *chain_rows(),
 )
+# What a fault with this code cannot be seen without.
+NEEDS = {
+    **dict.fromkeys(("MG301", "MG302", "MG311", "MG312", "MG313", "MG314", "MG405"), (NODES,)),
+    **dict.fromkeys(("MG502", "MG503"), (NODES,)),
+    **dict.fromkeys(("MG303", "MG306", "MG308", "MG310", "MG315", "MG321", "MG501"), (READERS,)),
+    **dict.fromkeys(("MG304", "MG305"), (SERVICES,)),
+    **dict.fromkeys(("MG320", "MG323", "MG324", "MG325"), (SENDERS,)),
+    **dict.fromkeys(("MG401", "MG403", "MG404", "MG406", "MG407"), (TRANSFORMS,)),
+    **dict.fromkeys(("MG402", "MG408"), (TRANSFORMS, SENDERS)),
+    **dict.fromkeys(("MG411", "MG412"), (HEADERS,)),
+    **dict.fromkeys(("MG511", "MG512", "MG513"), (STATES,)),
+    "MG307": (QOS, READERS),
+    "MG514": (PARAMETERS,),
+}
+# Of single faults.
+MORE_NEEDS = {"two versions of a message": (HASHES, READERS)}
+
+
+def needed(fault: Fault) -> tuple[str, ...]:
+    """What a source must have of a system to show the fault."""
+    return MORE_NEEDS.get(fault.name, NEEDS[fault.code])
+
+
 # Those whose types are on PyPI; a fault in an action needs nav2_msgs.
 LIVE = (
     "a joystick in the root",

@@ -3,33 +3,39 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from typing import NamedTuple
 
+from built_faults import BUILT, in_a_build, why_not
 from fault_changes import Fault, nav, shared_tf, simulation
-from graph_faults import FAULTS, LIVE
+from fault_sources import SOURCES
+from graph_faults import FAULTS, LIVE, needed
 from healthy_systems import SYSTEMS, plan
 
 from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.plural import plural
 from multibot_rewrite.live.diagnose import diagnose
-from multibot_rewrite.producers.bags.recording import RECORDER, ROSBAG
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.system.records import PUBLISHES, System
+from multibot_rewrite.system.records import System
 
 HEAD = """\
 # Seeded faults
 
 Made by `python tests/support/graph_faults_page.py > docs/graph-faults.md`. Each row is a fault that was
-put into a system in which nothing was wrong (`tests/support/graph_faults.py`): what `multibot check`
-finds without a plan, its exit code, whether the finding names who did it and what to do (*cause*),
-which codes `multibot check` adds with the plan of the system, and which are found in a recording of it
-without a plan. `-`: nothing more than in the healthy system; no entry: the system has no plan.
-`check-launch` asks the same of the system that a launch file makes. With a plan nothing is hidden
-(`tests/live/test_inclusion.py`): a name that a node lacks by its plan is MG102 or MG101 there. A
-recording has neither nodes nor who reads: faults of these alone are not in it.
-*Live*: played by real nodes as well (`tests/live/test_live_doctor.py`).
+put into a system in which nothing was wrong (`tests/support/graph_faults.py`), each column a command
+and what it reads the system from (`tests/support/fault_sources.py`). A fault has one code in all of
+them; where a source cannot show it, the cell says what is not in the source.
+
+- *no plan*: `multibot check` of a snapshot; its *exit* code; *cause*: the finding names who did it and
+  what to do; *live*: played by real nodes as well (`tests/live/test_live_doctor.py`).
+- *with the plan*: the codes that `check` adds with the plan of the system; no entry: it has no plan. A
+  name that a node lacks by its plan is MG102 there, or MG101 a node, in place of what reads it in vain.
+- *Zenoh*: `check --zenoh`, by the tokens of a router. *rosgraph*: a message of `rosgraph_msgs`.
+  *recorded*: a bag. *check-launch*: a launch file that starts these nodes.
+- *build*: the fault put into the files of a built fleet (`tests/support/built_faults.py`), and what
+  `build` says of the folder that it reads back. *others may start it*: what is missing there is no
+  fault yet. *not of a fleet*: a tool that somebody starts, or another fleet.
 """
 # The systems that are those of a plan.
 PLANS = {
@@ -37,52 +43,49 @@ PLANS = {
     shared_tf: lambda: plan(("nav2",), "L2"),
     simulation: lambda: plan(("nav2",), "L1", ("robot1", "robot2", "robot3")),
 }
+# What a plan has and is not there: what reads it waits for that.
+LACKS = {"MG101", "MG102", "MG109"}
+Asked = Callable[[System], tuple[Finding, ...]]
 
 
-class Outcome(NamedTuple):
-    """What came of a fault."""
+class Cell(NamedTuple):
+    """What one command finds of a fault: the codes, whether the finding of the fault's own code has its
+    words, and what the source lacks if that code is not among them."""
 
-    found: bool
-    code: str
-    level: str
-    exit: int
+    codes: tuple[str, ...]
     cause: bool
-    checked: str
-    recorded: str
+    lacks: str = ""
+
+    @property
+    def text(self) -> str:
+        return ": ".join(filter(None, (", ".join(self.codes), self.lacks and f"no {self.lacks}")))
 
 
-def outcome(fault: Fault) -> Outcome:
-    """Look at the faulty system with and without its plan."""
-    graph = fault.change(fault.system())
-    findings = diagnose(graph).findings
-    hits = [it for it in findings if it.code == fault.code and it.level == fault.level]
-    named = any(all(word in str(it) for word in fault.words) for it in hits)
-    failed = any(it.level == ERROR for it in findings)
-    both = _checked(fault, graph), _recorded(fault, graph)
-    return Outcome(bool(hits), fault.code, fault.level, int(failed), named, *both)
+@cache
+def cell(fault: Fault, column: str) -> Cell:
+    """What is found of the fault in a source."""
+    source = SOURCES[column]
+    found = diagnose(source.read(fault.change(fault.system()))).findings
+    lacks = next((it for it in needed(fault) if it in source.lacks), "")
+    return _cell(fault, found, lacks)
 
 
-def _checked(fault: Fault, graph: System) -> str:
+def _cell(fault: Fault, found: tuple[Finding, ...], lacks: str = "") -> Cell:
+    own = [it for it in found if (it.code, it.level) == (fault.code, fault.level)]
+    cause = any(all(word in str(it) for word in fault.words) for it in own)
+    codes = sorted({it.code for it in found})
+    return Cell(tuple(codes), cause, "" if fault.code in codes else lacks)
+
+
+@cache
+def planned_cell(fault: Fault) -> Cell | None:
+    """What is found besides with the plan of the system; None for a system without one."""
     if fault.system not in PLANS:
-        return ""
+        return None
     planned = PLANS[fault.system]()
     before = _healthy_findings(planned, fault.system())
-    new = {it.code for it in check(planned, graph) if it not in before}
-    return ", ".join(sorted(new)) or "-"
-
-
-def _recorded(fault: Fault, graph: System) -> str:
-    before = {it.code for it in diagnose(recording(fault.system())).findings}
-    new = {it.code for it in diagnose(recording(graph)).findings} - before
-    return ", ".join(sorted(new)) or "-"
-
-
-def recording(graph: System) -> System:
-    """What a bag of the system holds: what was sent, and not by whom."""
-    sent = (it._replace(node=RECORDER) for it in graph.ends if it.role == PUBLISHES)
-    edges = (it._replace(publishers=(RECORDER,), several=False) for it in graph.edges)
-    around = graph.environment._replace(rmw=ROSBAG)
-    return System((), tuple(sent), tuple(edges), around, graph.heard)
+    found = check(planned, fault.change(fault.system()))
+    return _cell(fault, tuple(it for it in found if it not in before))
 
 
 @cache
@@ -93,23 +96,43 @@ def _healthy_findings(planned: System, graph: System) -> frozenset[Finding]:
 def lines() -> Iterator[str]:
     """The page."""
     yield HEAD
-    found = [(fault, outcome(fault)) for fault in FAULTS]
-    causes = sum(it.cause for _, it in found)
-    yield f"{plural(len(found), 'fault')}, {sum(it.found for _, it in found)} found, {causes} with the"
-    yield f"cause; {len(LIVE)} of them live. {len(SYSTEMS)} healthy systems: 0 findings each."
+    rows = {fault: {name: cell(fault, name) for name in SOURCES} for fault in FAULTS}
+    causes = sum(it["file"].cause for it in rows.values())
+    yield f"{plural(len(rows), 'fault')}, {causes} found with the cause; {len(LIVE)} of them live."
+    yield f"{len(SYSTEMS)} healthy systems: 0 findings each, in each source."
     yield ""
-    yield "| fault | no plan | level | exit | cause | live | with the plan | recorded |"
-    yield "|---|---|---|--:|---|---|---|---|"
-    for fault, it in found:
-        code = it.code if it.found else "not found"
-        live = "yes" if fault.name in LIVE else ""
-        cause = "yes" if it.cause else "no"
-        said = f"{code} | {it.level} | {it.exit} | {cause} | {live} | {it.checked} | {it.recorded}"
-        yield f"| {fault.name} | {said} |"
+    others = [name for name in SOURCES if name != "file"]
+    columns = (
+        "fault",
+        "no plan",
+        "level",
+        "exit",
+        "cause",
+        "live",
+        "with the plan",
+        *others,
+        "build",
+    )
+    yield f"| {' | '.join(columns)} |"
+    yield "|---" * 3 + "|--:" + "|---" * (len(columns) - 4) + "|"
+    for fault, cells in rows.items():
+        yield f"| {' | '.join((fault.name, *_words(fault, cells)))} |"
     yield ""
     yield "Healthy systems:"
     yield ""
     yield from (f"- {name}" for name in SYSTEMS)
+
+
+def _words(fault: Fault, cells: Mapping[str, Cell]) -> Iterator[str]:
+    seen, planned = cells["file"], planned_cell(fault)
+    yield seen.text or "not found"
+    yield fault.level
+    yield str(int(fault.level == ERROR))
+    yield "yes" if seen.cause else "no"
+    yield "yes" if fault.name in LIVE else ""
+    yield planned.text if planned else ""
+    yield from (it.text or "not found" for name, it in cells.items() if name != "file")
+    yield ", ".join(in_a_build(fault)) if fault.name in BUILT else why_not(fault)
 
 
 if __name__ == "__main__":

@@ -103,7 +103,7 @@ def name_rows() -> tuple[Fault, ...]:
         Fault(
             "a map that is not latched", nav,
             offered("/robot2/map", VOLATILE, LATCHED, "durability"),
-            "MG307", ("/robot2/amcl", LATCHED, VOLATILE),
+            "MG307", ("/robot2/amcl", LATCHED, VOLATILE), ERROR, ("MG309",),
         ),
     )  # fmt: skip
 

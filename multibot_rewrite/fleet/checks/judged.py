@@ -13,14 +13,6 @@ from multibot_rewrite.fleet.outputs.output_values import OutputText, line_in_sou
 from multibot_rewrite.fleet.robots.rewritten_robots import SET_PREFIX, RewrittenRobot
 from multibot_rewrite.producers.ends import NEEDS
 from multibot_rewrite.rules.check import absences, contradictions
-from multibot_rewrite.rules.index import Index, index
-from multibot_rewrite.rules.ownership import (
-    ALONE,
-    Whose,
-    frame_ownership,
-    name_ownership,
-    whose_by_plan,
-)
 from multibot_rewrite.rules.system.interfaces import (
     interface_claimed_twice,
     interface_not_exported,
@@ -29,6 +21,14 @@ from multibot_rewrite.rules.system.interfaces import (
 from multibot_rewrite.rules.system.states import interface_commanded_twice
 from multibot_rewrite.rules.system.tf_topics import tf_tree_in_pieces
 from multibot_rewrite.rules.system.unsent import no_longer_sent, open_ends
+from multibot_rewrite.system.index import Index, index
+from multibot_rewrite.system.ownership import (
+    ALONE,
+    Whose,
+    frame_ownership,
+    name_ownership,
+    whose_by_plan,
+)
 from multibot_rewrite.system.records import CLAIMS, EXPORTS, NOWHERE, RUNS, End, Interface, System
 
 Key = tuple[str, ...]

@@ -11,7 +11,7 @@ from multibot_rewrite.base.conventions import WORLD_FRAMES
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.rotation import inverse, matrix_of_quaternion, product
 from multibot_rewrite.pages.view.models import Joint
-from multibot_rewrite.rules.index import tree_topic
+from multibot_rewrite.system.index import tree_topic
 from multibot_rewrite.system.records import Edge
 
 # Frames that are where the world is, whoever has them (REP 105).

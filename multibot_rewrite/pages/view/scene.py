@@ -17,8 +17,8 @@ from multibot_rewrite.fleet.robots.rewritten_robots import GRAPH_KINDS, Rewritte
 from multibot_rewrite.pages.view.heard import HeardTree, LinkFrames, heard_trees
 from multibot_rewrite.pages.view.models import Model, load_model
 from multibot_rewrite.pages.view.sdf_model import declared, line_of, load_sdf
-from multibot_rewrite.rules.index import tree_topic
 from multibot_rewrite.spelling.plan import tf_topic
+from multibot_rewrite.system.index import tree_topic
 from multibot_rewrite.system.records import Edge, System
 
 HEARD, ELSEWHERE, SILENT = "heard", "elsewhere", "silent"

@@ -37,15 +37,19 @@ _CANCEL, _STATUS = "action_msgs/srv/CancelGoal", "action_msgs/msg/GoalStatusArra
 
 
 def to_yaml(snapshot: System) -> bytes:
-    """The snapshot as a message; what a message cannot hold is left out."""
+    """The snapshot as a message in YAML."""
     import yaml
 
+    return str(yaml.safe_dump(to_message(snapshot), sort_keys=False)).encode() + b"---\n"
+
+
+def to_message(snapshot: System) -> dict[str, object]:
+    """The snapshot as the fields of a message; what a message cannot hold is left out."""
     ends: dict[str, list[End]] = defaultdict(list)
     for end in snapshot.ends:
         ends[end.node].append(end)
     # Of two nodes with a name the first gets all: a message does not say whose an endpoint is.
-    nodes = [_node(node.name, ends.pop(node.name, [])) for node in snapshot.nodes]
-    return str(yaml.safe_dump({"nodes": nodes}, sort_keys=False)).encode() + b"---\n"
+    return {"nodes": [_node(it.name, ends.pop(it.name, [])) for it in snapshot.nodes]}
 
 
 def _node(name: str, ends: Sequence[End]) -> dict[str, object]:

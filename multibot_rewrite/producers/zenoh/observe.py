@@ -182,7 +182,8 @@ def _lost(router: Router) -> Caveat:
 def _snapshot(router: Router, seen: _Seen, seconds: float, caveats: Iterable[Caveat]) -> System:
     nodes = tuple(tokens.nodes(seen.tokens))
     ends = tuple(tokens.endpoints(seen.tokens))
-    heard = frames(seen.tf.transforms(), ends, last=seen.tf.last) if seen.tf else ()
+    tf = seen.tf
+    heard = frames(tf.transforms(), ends, tf.of_several(), tf.last) if tf else ()
     around = Environment(
         router.domain,
         "",

@@ -6,8 +6,8 @@ import re
 
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import check_topic_name, expand
-from multibot_rewrite.rules.planned import Planned
 from multibot_rewrite.spelling.ways import COMPONENT, HOST, PLUGIN, SPAWNER
+from multibot_rewrite.system.planned import Planned
 from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SERVES, SUBSCRIBES, End, Robot
 
 # What a node does with a name, by the role of its endpoint.

@@ -10,10 +10,10 @@ from multibot_rewrite.base.conventions import ANY
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import found_by_plan, pair_rule
-from multibot_rewrite.rules.index import Index, ends_of
 from multibot_rewrite.rules.pair.causes import DOES
-from multibot_rewrite.rules.planned import Planned
 from multibot_rewrite.rules.system.matching import not_latched
+from multibot_rewrite.system.index import Index, ends_of
+from multibot_rewrite.system.planned import Planned
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, End, Topic, alternatives
 
 # How the nodes of ros_gz_bridge are called.

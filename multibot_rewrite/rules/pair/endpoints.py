@@ -9,7 +9,6 @@ from multibot_rewrite.base.conventions import EVERYBODYS
 from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import found_by_plan, pair_rule
-from multibot_rewrite.rules.index import Index, by_node, in_namespaces_above
 from multibot_rewrite.rules.pair.causes import (
     DOES,
     Cause,
@@ -20,7 +19,8 @@ from multibot_rewrite.rules.pair.causes import (
 )
 from multibot_rewrite.rules.pair.meeting import missing
 from multibot_rewrite.rules.pair.similar_names import similar
-from multibot_rewrite.rules.planned import Planned
+from multibot_rewrite.system.index import Index, by_node, in_namespaces_above
+from multibot_rewrite.system.planned import Planned
 from multibot_rewrite.system.records import (
     CALLS,
     PUBLISHES,

@@ -8,15 +8,15 @@ from collections.abc import Iterator, Mapping, Sequence
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import found_by_plan, pair_rule
-from multibot_rewrite.rules.index import Index
-from multibot_rewrite.rules.ownership import SEPARATORS, without_tag_once
 from multibot_rewrite.rules.pair.causes import Cause, caused
 from multibot_rewrite.rules.pair.frame_prefixes import added_prefixes, robot_behind_prefix
 from multibot_rewrite.rules.pair.similar_names import similar
 from multibot_rewrite.rules.pair.tf_senders import sent_by_robot, state_publisher, where_set
 from multibot_rewrite.rules.pair.tf_trees import TfTree, frames_in, tf_trees
-from multibot_rewrite.rules.planned import Planned
 from multibot_rewrite.rules.system.transforms import robots_name_twice
+from multibot_rewrite.system.index import Index
+from multibot_rewrite.system.ownership import SEPARATORS, without_tag_once
+from multibot_rewrite.system.planned import Planned
 from multibot_rewrite.system.records import Edge, Robot
 
 

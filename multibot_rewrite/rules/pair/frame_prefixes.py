@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable
 
-from multibot_rewrite.rules.ownership import NameOwnership
+from multibot_rewrite.system.ownership import NameOwnership
 from multibot_rewrite.system.records import Robot
 
 

@@ -9,15 +9,15 @@ from multibot_rewrite.base.conventions import USUAL_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import pair_rule
-from multibot_rewrite.rules.index import Index
 from multibot_rewrite.rules.pair.frame_prefixes import added_prefixes, robot_behind_prefix
 from multibot_rewrite.rules.pair.name_variants import name_variants
 from multibot_rewrite.rules.pair.silent_topics import silent_topics
 from multibot_rewrite.rules.pair.tf_causes import JOINT_STATES
 from multibot_rewrite.rules.pair.tf_senders import described_robots, sent_by_robot, state_publisher
 from multibot_rewrite.rules.pair.tf_trees import frames_in, tf_trees
-from multibot_rewrite.rules.planned import Planned
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
+from multibot_rewrite.system.index import Index
+from multibot_rewrite.system.planned import Planned
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, Robot
 
 

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import pair_rule
-from multibot_rewrite.rules.index import Index
-from multibot_rewrite.rules.planned import Planned
 from multibot_rewrite.spelling.enclaves import enclave_of
+from multibot_rewrite.system.index import Index
+from multibot_rewrite.system.planned import Planned
 from multibot_rewrite.system.records import Node
 
 

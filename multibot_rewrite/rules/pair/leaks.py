@@ -10,7 +10,6 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import found_by_plan
-from multibot_rewrite.rules.index import TF, Index, ends_of, types
 from multibot_rewrite.rules.pair.causes import (
     DOES,
     Cause,
@@ -21,16 +20,17 @@ from multibot_rewrite.rules.pair.causes import (
     why_not_remapped,
 )
 from multibot_rewrite.rules.pair.meeting import missing, unplanned_ends
-from multibot_rewrite.rules.pair.tf_copies import copying_nodes
-from multibot_rewrite.rules.planned import Planned
 from multibot_rewrite.rules.system.commands import (
     command_for_several_robots,
     command_from_another_robot,
 )
 from multibot_rewrite.rules.system.names import service_of_two_nodes
 from multibot_rewrite.rules.system.sharing import data_of_another_robot, topic_of_several_robots
-from multibot_rewrite.rules.words import is_order
+from multibot_rewrite.system.index import TF, Index, ends_of, types
+from multibot_rewrite.system.planned import Planned
 from multibot_rewrite.system.records import SUBSCRIBES, TOPIC, End
+from multibot_rewrite.system.tf_copies import copying_nodes
+from multibot_rewrite.system.words import is_order
 
 
 @found_by_plan(

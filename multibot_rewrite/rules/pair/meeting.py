@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Mapping, Sequence, Set
 
-from multibot_rewrite.rules.index import EndKey, Index, once, types
 from multibot_rewrite.rules.pair.similar_names import probable_matches
-from multibot_rewrite.rules.planned import Planned
+from multibot_rewrite.system.index import EndKey, Index, once, types
+from multibot_rewrite.system.planned import Planned
 from multibot_rewrite.system.records import End
 
 

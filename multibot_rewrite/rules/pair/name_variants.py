@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from multibot_rewrite.rules.ownership import SEPARATORS
+from multibot_rewrite.system.ownership import SEPARATORS
 
 
 def name_variants(plain: str, frame: str, tag: str) -> Iterator[str]:

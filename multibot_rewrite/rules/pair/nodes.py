@@ -8,10 +8,10 @@ from multibot_rewrite.base.conventions import EVERYBODYS
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import pair_rule
-from multibot_rewrite.rules.index import Index, by_node
 from multibot_rewrite.rules.pair.causes import Cause, caused, plugin_of, why_other_name
 from multibot_rewrite.rules.pair.meeting import matches, unplanned_nodes
-from multibot_rewrite.rules.planned import Planned
+from multibot_rewrite.system.index import Index, by_node
+from multibot_rewrite.system.planned import Planned
 from multibot_rewrite.system.reach import hidden_from_here, why_not_seen
 from multibot_rewrite.system.records import Robot
 

@@ -9,11 +9,11 @@ from multibot_rewrite.base.conventions import CLOCK
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.wording import FEW, SEVERAL, shorten
 from multibot_rewrite.rules.declaration import found_by_plan, pair_rule
-from multibot_rewrite.rules.index import Index, ends_of
-from multibot_rewrite.rules.planned import Planned
 from multibot_rewrite.rules.system.clocks import clocks_mixed
 from multibot_rewrite.rules.system.states import not_active
+from multibot_rewrite.system.index import Index, ends_of
 from multibot_rewrite.system.parameters import parameter_text, parameter_value
+from multibot_rewrite.system.planned import Planned
 from multibot_rewrite.system.reach import machines
 from multibot_rewrite.system.records import SIM_TIME, SUBSCRIBES, Parameter, System, clocks
 

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.rules.declaration import found_by_plan
-from multibot_rewrite.rules.index import Index, by_node, in_namespaces_above, published
 from multibot_rewrite.rules.pair.causes import use_absolute
 from multibot_rewrite.rules.pair.meeting import unplanned_ends, unplanned_nodes
-from multibot_rewrite.rules.planned import Planned
 from multibot_rewrite.rules.system.names import topic_names_miss
+from multibot_rewrite.system.index import Index, by_node, in_namespaces_above, published
+from multibot_rewrite.system.planned import Planned
 from multibot_rewrite.system.records import SUBSCRIBES, TOPIC, End
 
 # In the names of Nav2's costmap nodes.

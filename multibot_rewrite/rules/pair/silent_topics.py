@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from multibot_rewrite.rules.index import Index, published
-from multibot_rewrite.rules.planned import Planned
+from multibot_rewrite.system.index import Index, published
+from multibot_rewrite.system.planned import Planned
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, Robot
 
 

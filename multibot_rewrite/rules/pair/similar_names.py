@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.rules.ownership import NameOwnership
+from multibot_rewrite.system.ownership import NameOwnership
 
 # With more names than these, some name is always similar.
 MOST_CANDIDATES = 50

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence, Set
 
 from multibot_rewrite.base.wording import shorten
-from multibot_rewrite.rules.index import Index, ends_of, tree_topic
 from multibot_rewrite.rules.pair.causes import Cause, caused
 from multibot_rewrite.rules.pair.name_variants import name_variants
 from multibot_rewrite.rules.pair.silent_topics import silent_topics
@@ -16,7 +15,8 @@ from multibot_rewrite.rules.pair.tf_senders import (
     where_set,
 )
 from multibot_rewrite.rules.pair.tf_trees import TfTree, tf_trees
-from multibot_rewrite.rules.planned import Planned, Sent
+from multibot_rewrite.system.index import Index, ends_of, tree_topic
+from multibot_rewrite.system.planned import Planned, Sent
 from multibot_rewrite.system.records import PUBLISHES, Edge, Robot
 
 JOINT_STATES, TF = "sensor_msgs/msg/JointState", "tf2_msgs/msg/TFMessage"

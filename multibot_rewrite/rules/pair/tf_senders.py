@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from multibot_rewrite.rules.index import Index, tree_topic
 from multibot_rewrite.rules.pair.tf_trees import tf_trees
-from multibot_rewrite.rules.planned import Planned, Sent
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
+from multibot_rewrite.system.index import Index, tree_topic
+from multibot_rewrite.system.planned import Planned, Sent
 from multibot_rewrite.system.records import Edge, Robot
 
 

@@ -6,8 +6,8 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.rules.index import Index, Tree, once, tree_topic
-from multibot_rewrite.rules.planned import Planned
+from multibot_rewrite.system.index import Index, Tree, once, tree_topic
+from multibot_rewrite.system.planned import Planned
 from multibot_rewrite.system.records import Edge
 
 

@@ -8,12 +8,12 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import found_by_plan
-from multibot_rewrite.rules.index import Index, tree_topic
 from multibot_rewrite.rules.pair.causes import Cause, caused, plugin_of, tf_rule
 from multibot_rewrite.rules.pair.tf_causes import why_disconnected
 from multibot_rewrite.rules.pair.tf_trees import TfTree, tf_trees
-from multibot_rewrite.rules.planned import Planned
 from multibot_rewrite.rules.system.tf_topics import in_pieces, tf_on_two_topics, tf_tree_in_pieces
+from multibot_rewrite.system.index import Index, tree_topic
+from multibot_rewrite.system.planned import Planned
 from multibot_rewrite.system.records import PUBLISHES, Edge, Robot
 
 

@@ -7,10 +7,10 @@ from collections.abc import Iterator, Mapping, Set
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.rules.declaration import found_by_plan
-from multibot_rewrite.rules.index import Index
 from multibot_rewrite.rules.pair.causes import caused, plugin_of
-from multibot_rewrite.rules.planned import Planned
 from multibot_rewrite.rules.system.matching import STAMPED, types_differ
+from multibot_rewrite.system.index import Index
+from multibot_rewrite.system.planned import Planned
 from multibot_rewrite.system.records import End
 
 

@@ -11,7 +11,7 @@ from multibot_rewrite.base.conventions import CLOCK
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.rules.index import Index, and_then, is_viewer, last_word, nodes_of
+from multibot_rewrite.system.index import Index, and_then, is_viewer, last_word, nodes_of
 from multibot_rewrite.system.records import TOPIC
 from multibot_rewrite.system.tool_nodes import is_tool
 
@@ -120,6 +120,11 @@ running: /robot1/ekf_node subscribes /clock rosgraph_msgs/msg/Clock
 )
 def clocks_mixed(seen: Index) -> Iterator[Finding]:
     """Also a robot that is not on simulated time as the others are."""
+    return mixed_clocks(seen)
+
+
+def mixed_clocks(seen: Index) -> Iterator[Finding]:
+    """The findings of MG503."""
     simulated = {node for nodes in _on_simulated_time(seen).values() for node in nodes}
     if not simulated or not _clocks(seen):
         return

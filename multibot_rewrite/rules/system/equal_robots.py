@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.rules.index import Index
+from multibot_rewrite.system.index import Index
 
 # Topics of one robot and of another are as often, unless something is wrong: so many times.
 RATIO = 3.0

@@ -11,7 +11,7 @@ from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.rules.index import (
+from multibot_rewrite.system.index import (
     Index,
     Tree,
     and_then,

@@ -15,8 +15,8 @@ from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.nearest import Guesses
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.rules.index import Index, last_word
 from multibot_rewrite.rules.places import see, where
+from multibot_rewrite.system.index import Index, last_word
 from multibot_rewrite.system.records import CLAIMS, COMMAND, EXPORTS, Interface, Place
 
 

@@ -11,7 +11,9 @@ from multibot_rewrite.base.conventions import EVERYBODYS, chooses
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.nearest import CHOICE, COMPARED, MISTYPED, nearest
 from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.rules.index import (
+from multibot_rewrite.rules.places import see, where
+from multibot_rewrite.rules.system.unsent import meant
+from multibot_rewrite.system.index import (
     TF,
     Ends,
     Index,
@@ -24,8 +26,6 @@ from multibot_rewrite.rules.index import (
     nodes_of,
     robots_of,
 )
-from multibot_rewrite.rules.places import see, where
-from multibot_rewrite.rules.system.unsent import meant
 from multibot_rewrite.system.records import ACTION, SERVES, SERVICE, TOPIC, End
 
 ABSENT = "is that robot started, and is its name right?"

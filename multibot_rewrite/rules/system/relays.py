@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 from multibot_rewrite.base.conventions import chooses
 from multibot_rewrite.base.findings.finding import ERROR, Finding
-from multibot_rewrite.rules import words
 from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.rules.index import Ends, Index, at_work, last_word, nodes_of
+from multibot_rewrite.system import words
+from multibot_rewrite.system.index import Ends, Index, at_work, last_word, nodes_of
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
 
 # Of Nav2, between its controller and the robot: they limit velocities, and stop before obstacles.

@@ -6,9 +6,9 @@ from collections.abc import Iterator, Sequence
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.wording import shorten
-from multibot_rewrite.rules import words
 from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.rules.index import (
+from multibot_rewrite.system import words
+from multibot_rewrite.system.index import (
     Ends,
     Index,
     and_then,

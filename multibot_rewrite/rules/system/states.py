@@ -8,8 +8,9 @@ from collections.abc import Iterable, Iterator
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.rules.index import Index, is_viewer, last_word
 from multibot_rewrite.rules.places import see, where
+from multibot_rewrite.rules.system.clocks import mixed_clocks
+from multibot_rewrite.system.index import Index, is_viewer, last_word
 from multibot_rewrite.system.records import (
     CLAIMS,
     COMMAND,
@@ -161,13 +162,14 @@ running: /robot1/driver has use_sim_time true
 """,
 )
 def use_sim_time_differs(seen: Index) -> Iterator[Finding]:
-    """Tools and bridges have the machine's time beside any robot."""
+    """Tools and bridges have the machine's time beside any robot. MG503 says it of a whole robot."""
+    told = {it.robot for it in mixed_clocks(seen)}
     by_robot: dict[str, dict[bool, list[str]]] = defaultdict(lambda: defaultdict(list))
     for node, simulated in clocks(seen.system).items():
         if not is_tool(node):
             by_robot[seen.robot(node)][simulated].append(node)
     for robot, found in by_robot.items():
-        if len(found) < 2:
+        if len(found) < 2 or robot in told:
             continue
         odd = min((True, False), key=lambda it: len(found[it]))
         message = (

@@ -9,7 +9,9 @@ from multibot_rewrite.base.conventions import BODY_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.rules.index import (
+from multibot_rewrite.rules.places import see, where
+from multibot_rewrite.rules.system.transforms import collide
+from multibot_rewrite.system.index import (
     Index,
     Tree,
     is_viewer,
@@ -19,8 +21,6 @@ from multibot_rewrite.rules.index import (
     tree_topic,
     unique,
 )
-from multibot_rewrite.rules.places import see, where
-from multibot_rewrite.rules.system.transforms import collide
 from multibot_rewrite.system.records import (
     NOWHERE,
     OFF,

@@ -10,7 +10,8 @@ from multibot_rewrite.base.conventions import WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.rules.index import (
+from multibot_rewrite.rules.places import see, where
+from multibot_rewrite.system.index import (
     Index,
     Tree,
     and_then,
@@ -19,7 +20,6 @@ from multibot_rewrite.rules.index import (
     robots_of,
     unique,
 )
-from multibot_rewrite.rules.places import see, where
 from multibot_rewrite.system.records import Edge
 
 _STATIC = "static_transform_publisher"
@@ -131,8 +131,10 @@ def collide(seen: Index, tree: Tree) -> str:
         of_all = {seen.plain_frame(it) for it in _named_frames(seen, tree)}
         without = {robot for robot in robots if robot not in {it for it, _ in named}}
         who = nameless or robots
-        if len(who) > 1 and (len(without) > 1 or (not without and of_all & bare)):
-            return f"{and_then(who)} send frames without a robot's name"
+        # In a recording nobody is known to have sent them.
+        if who and (len(without) > 1 or (not without and of_all & bare)):
+            send = "sends" if len(who) == 1 else "send"
+            return f"{and_then(who)} {send} frames without a robot's name"
     if bare and _twice(seen, senders):
         return "two nodes of one name send the same frames"
     return ""

@@ -9,8 +9,8 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.rules.index import Ends, Index, is_viewer, last_word, unique
 from multibot_rewrite.rules.places import where
+from multibot_rewrite.system.index import Ends, Index, is_viewer, last_word, unique
 from multibot_rewrite.system.records import ACTION, CALLS, RUNS, SUBSCRIBES, TOPIC, End
 
 # The server of an action sends its status.

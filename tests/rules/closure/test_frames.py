@@ -16,10 +16,10 @@ from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.producers.evidence.records import Given, GivenNode
 from multibot_rewrite.producers.transforms import edge, edges_off, joint_edges
-from multibot_rewrite.rules.index import index
-from multibot_rewrite.rules.ownership import ALONE
 from multibot_rewrite.rules.system.tf_topics import tf_tree_in_pieces
 from multibot_rewrite.spelling.transforms import Edge as Pair
+from multibot_rewrite.system.index import index
+from multibot_rewrite.system.ownership import ALONE
 from multibot_rewrite.system.records import NOWHERE, Edge, Place, System
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from multibot_rewrite.rules.ownership import NameOwnership
+from multibot_rewrite.system.ownership import NameOwnership
 
 
 def test_a_name_below_a_node_is_of_the_robot_of_the_node() -> None:

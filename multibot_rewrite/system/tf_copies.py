@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
 
-from multibot_rewrite.rules.index import tree_topic
+from multibot_rewrite.system.index import tree_topic
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, Edge, System, nodes_by_robot
 
 _TF, _GLOBAL = "/tf", ("/tf", "/tf_static")

@@ -14,7 +14,7 @@ from functools import cache
 
 from multibot_rewrite.base.conventions import USUAL_FRAMES
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.rules.ownership import SEPARATORS, Whose
+from multibot_rewrite.system.ownership import SEPARATORS, Whose
 from multibot_rewrite.system.records import TOPIC, System
 from multibot_rewrite.system.tool_nodes import is_tool
 

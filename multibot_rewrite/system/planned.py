@@ -6,14 +6,13 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.rules.index import NO_COUNTS, EndKey, Index, Known, index, tree_topic
-from multibot_rewrite.rules.ownership import (
+from multibot_rewrite.system.index import NO_COUNTS, EndKey, Index, Known, index, tree_topic
+from multibot_rewrite.system.ownership import (
     NameOwnership,
     frame_ownership,
     name_ownership,
     whose_by_plan,
 )
-from multibot_rewrite.rules.pair.tf_copies import copying_nodes
 from multibot_rewrite.system.records import (
     SIM_TIME,
     End,
@@ -23,6 +22,7 @@ from multibot_rewrite.system.records import (
     may_miss,
     nodes_by_robot,
 )
+from multibot_rewrite.system.tf_copies import copying_nodes
 
 
 class Sent(NamedTuple):

@@ -9,8 +9,8 @@ from typing import Any, TypeVar, cast
 
 from multibot_rewrite.base.conventions import EVERYBODYS, only_looks
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.rules import words
-from multibot_rewrite.rules.ownership import Whose
+from multibot_rewrite.system import words
+from multibot_rewrite.system.ownership import Whose
 from multibot_rewrite.system.records import (
     CALLS,
     KINDS,

@@ -1,0 +1,130 @@
+"""Healthy and broken systems through every source: silent, or one code for a fault wherever it is met.
+
+The faults come from thought (``graph_faults.py``), what a source lacks from its format.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from built_faults import BUILT, OUT, fleet, in_a_build, read_back
+from fault_changes import Fault
+from fault_sources import NODES, SOURCES, recording, written
+from graph_faults import FAULTS, MORE_NEEDS, NEEDS, needed
+from graph_faults_page import LACKS, PLANS, cell, lines, planned_cell
+from healthy_systems import SYSTEMS
+from paths import ROOT
+
+from multibot_rewrite.cli import multibot
+from multibot_rewrite.live.diagnose import diagnose
+from multibot_rewrite.producers.bags.recording import RecordedTopic, as_snapshot
+from multibot_rewrite.rules.check import ABSENCE
+from multibot_rewrite.system.json import to_json
+
+# Of each source but a file the fast tests have one row of so many.
+EACH = 4
+NAMED = {it.name: it for it in FAULTS}
+
+
+def rows(names: Iterator[str]) -> list[object]:
+    """Each name with each source."""
+    return [
+        pytest.param(name, source, marks=() if is_fast(at, number) else pytest.mark.slow)
+        for at, name in enumerate(names)
+        for number, source in enumerate(SOURCES)
+    ]
+
+
+def is_fast(row: int, source: int) -> bool:
+    return source == 0 or (row + source) % EACH == 0
+
+
+@pytest.mark.parametrize(("name", "source"), rows(iter(SYSTEMS)))
+def test_a_healthy_system_has_no_finding(name: str, source: str) -> None:
+    read = SOURCES[source].read(SYSTEMS[name]())
+    assert [str(it) for it in diagnose(read).findings] == []
+
+
+@pytest.mark.parametrize(("name", "source"), rows(iter(NAMED)))
+def test_a_fault_has_its_code_and_cause_in_every_source(name: str, source: str) -> None:
+    """Where the source lacks what the fault rests on, it is not made up either."""
+    fault = NAMED[name]
+    seen = cell(fault, source)
+    lacks = {*needed(fault)} & {*SOURCES[source].lacks}
+    assert (fault.code in seen.codes) is not bool(lacks), seen
+    # A finding of a recording cannot name the node.
+    assert seen.cause or lacks or NODES in SOURCES[source].lacks
+    # One fault is not ten findings.
+    assert {*seen.codes} <= {fault.code, *fault.also}
+
+
+@pytest.mark.parametrize(
+    "fault", [it for it in FAULTS if it.system in PLANS], ids=lambda it: it.name
+)
+def test_with_its_plan_it_is_the_same_or_what_the_plan_has_and_is_not_there(fault: Fault) -> None:
+    found = planned_cell(fault)
+    assert found
+    lost = fault.code in ABSENCE and LACKS & {*found.codes}
+    assert fault.code in found.codes or lost, found
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", BUILT)
+def test_a_build_reads_it_back(name: str) -> None:
+    fault = NAMED[name]
+    planned = planned_cell(fault)
+    assert planned
+    own = {fault.code} if fault.code in planned.codes else {*planned.codes} - LACKS
+    assert own <= {*in_a_build(fault)}
+
+
+def test_a_whole_fleet_is_silent_when_it_is_read_back() -> None:
+    plan, files = fleet()
+    assert [str(it) for it in read_back(plan, files, OUT)] == []
+
+
+def test_there_are_faults_enough_and_no_need_without_a_fault() -> None:
+    assert len(NAMED) == len(FAULTS) >= 60
+    assert NEEDS.keys() == {it.code for it in FAULTS}
+    assert NAMED.keys() >= {*MORE_NEEDS, *BUILT}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("at", range(0, len(FAULTS), 40))
+def test_a_bag_that_is_written_is_the_recording(at: int, tmp_path: Path) -> None:
+    """The columns of the table rest on records; this is the file."""
+    bags = pytest.importorskip("multibot_rewrite.producers.bags.read")
+    pytest.importorskip("rosbags")
+    fault = FAULTS[at]
+    graph = fault.change(fault.system())
+    found = bags.read_bag(str(written(tmp_path / "bag", graph)))
+    known = {it.name for it in found.topics}
+    wanted = recording(graph)._replace(caveats=found.caveats)
+    topics = [_topic(it) for it in wanted.topics if it.name in known]
+    assert topics == [_topic(it) for it in found.topics]
+    assert {it[:4] for it in wanted.transforms} == {it[:4] for it in found.transforms}
+    codes = [{it.code for it in diagnose(as_snapshot(one)).findings} for one in (wanted, found)]
+    assert codes[0] == codes[1]
+
+
+def _topic(it: RecordedTopic) -> tuple[object, ...]:
+    """Its name, type, frames that are not empty, and senders."""
+    return it.name, it.type, tuple(filter(None, it.frames)), len(it.qos)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("at", range(0, len(FAULTS), 8))
+def test_the_command_ends_with_the_level_of_the_fault(
+    at: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    fault, file = FAULTS[at], tmp_path / "graph.json"
+    file.write_bytes(to_json(fault.change(fault.system())))
+    assert multibot.main(["check", "--snapshot", str(file)]) == int(fault.level == "error")
+    assert fault.code in capsys.readouterr().out
+
+
+@pytest.mark.slow
+def test_the_page_is_that_of_today() -> None:
+    assert (ROOT / "docs" / "graph-faults.md").read_text() == "".join(f"{it}\n" for it in lines())

@@ -1,0 +1,191 @@
+"""Seeded faults put into the files of a built fleet, and what its read-back says of them."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable, Mapping
+from functools import cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from fault_changes import Fault
+from fault_sources import SOURCES
+from graph_faults import needed
+from paths import ROOT
+
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.fleet.checks.read_back import read_back
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleet.outputs.output_file import OutputFile
+from multibot_rewrite.rules.check import ABSENCE
+
+LAUNCH, OUT = "fleet.launch.py", "/anywhere/out"
+EXAMPLE = ROOT / "examples" / "namespace_and_prefix"
+FLEET = f"""\
+layout: tf-per-robot
+distro: jazzy
+description: {EXAMPLE}/hexbase.urdf.xacro
+stack: [nav2]
+robots: [{{name: robot1, pose: {{x: 1}}}}, {{name: robot2, pose: {{x: 2}}}}]
+companions: {{params: {EXAMPLE}/nav2_params.yaml, bridge: {EXAMPLE}/bridge.yaml}}
+"""
+# A file and its text -> the text with a fault.
+Edit = Callable[[str, str], str]
+
+
+@cache
+def fleet() -> tuple[FleetPlan, tuple[OutputFile, ...]]:
+    """Two robots with Nav2, as `build` makes them."""
+    with TemporaryDirectory() as folder:
+        file = Path(folder) / "fleet.yaml"
+        file.write_text(FLEET)
+        plan = plan_fleet(read_fleet(str(file), "", os.environ), trust=True)
+        return plan, tuple(make_outputs(plan, OUT).files)
+
+
+def read(edit: Edit) -> list[Finding]:
+    """What is found of the files with a fault in them."""
+    plan, files = fleet()
+    texts = {it.path: edit(it.path, it.data.decode()) for it in files}
+    assert any(texts[it.path] != it.data.decode() for it in files), "nothing was changed"
+    return read_back(plan, [it._replace(data=texts[it.path].encode()) for it in files], OUT)
+
+
+@cache
+def in_a_build(fault: Fault) -> tuple[str, ...]:
+    """The codes that the build has for a fault."""
+    return tuple(sorted({it.code for it in read(BUILT[fault.name])}))
+
+
+def why_not(fault: Fault) -> str:
+    """Why no file of a fleet shows it."""
+    lacking = next((it for it in needed(fault) if it in SOURCES["check-launch"].lacks), "")
+    if lacking:
+        return f"no {lacking}"
+    return "others may start it" if fault.code in ABSENCE else "not of a fleet"
+
+
+def in_launch(change: Callable[[str], str]) -> Edit:
+    return lambda path, text: change(text) if path == LAUNCH else text
+
+
+def node(robot: str, name: str, change: Callable[[str], str]) -> Edit:
+    """Another text of one node of a robot in the launch file."""
+
+    def edit(text: str) -> str:
+        robots = re.split(r"(?=^def start_)", text, flags=re.M)
+        return "".join(
+            _changed(it) if it.startswith(f"def start_{robot}(") else it for it in robots
+        )
+
+    def _changed(text: str) -> str:
+        blocks = re.split(r"(?=^        Node\($)", text, flags=re.M)
+        return "".join(change(it) if f'name="{name}",' in it else it for it in blocks)
+
+    return in_launch(edit)
+
+
+def rules(*pairs: tuple[str, str]) -> Callable[[str], str]:
+    """A node with these rules before its own."""
+    lines = "".join(f'                ("{old}", "{new}"),\n' for old, new in pairs)
+
+    def change(text: str) -> str:
+        if "remappings=[\n" in text:
+            return text.replace("remappings=[\n", f"remappings=[\n{lines}", 1)
+        return text.replace(
+            "            output=", f"            remappings=[\n{lines}],\n            output=", 1
+        )
+
+    return change
+
+
+def without(pattern: str) -> Callable[[str], str]:
+    """A text without the rules of which a name is like this."""
+    return lambda text: re.sub(rf' *\("{pattern}", "[^"]*"\),\n', "", text)
+
+
+def more(robot: str, words: str) -> Edit:
+    """One node more in a robot's part of the launch file."""
+    begin = re.compile(rf"(?s)(def start_{robot}\(.*?    return \[\n)")
+    return in_launch(lambda text: begin.sub(rf"\1        Node({words}),\n", text, count=1))
+
+
+def both(*edits: Edit) -> Edit:
+    def edit(path: str, text: str) -> str:
+        for one in edits:
+            text = one(path, text)
+        return text
+
+    return edit
+
+
+def each(name: str, change: Callable[[str], str]) -> Edit:
+    return both(node("robot1", name, change), node("robot2", name, change))
+
+
+TELEOP = 'package="teleop_twist_keyboard", executable="teleop_twist_keyboard"'
+STATIC = 'package="tf2_ros", executable="static_transform_publisher", namespace="/robot1", '
+BUILT: Mapping[str, Edit] = {
+    "nobody passed /tf:=tf: both trees on /tf": in_launch(without(r"(?:\w+:)?/tf(?:_static)?")),
+    "one robot_state_publisher lacks /tf:=tf": node(
+        "robot2", "robot_state_publisher", without("/tf(?:_static)?")
+    ),
+    "bt_navigator listens to /tf": node("robot1", "bt_navigator", without("/tf")),
+    "robot2's amcl sends tf to robot1": node("robot2", "amcl", rules(("/tf", "/robot1/tf"))),
+    "a static map -> odom beside amcl": more(
+        "robot1",
+        f'{STATIC}name="static_transform_publisher_x", remappings=[("/tf_static", "tf_static")],'
+        ' arguments=["--frame-id", "map", "--child-frame-id", "odom"]',
+    ),
+    "the EKF sends the controller's odometry as well": more(
+        "robot1",
+        'package="robot_localization", executable="ekf_node", name="ekf_node", namespace="/robot1",'
+        ' remappings=[("/tf", "tf"), ("/tf_static", "tf_static")], parameters=[CLOCK,'
+        ' {"odom_frame": "odom", "base_link_frame": "base_footprint", "world_frame": "odom"}]',
+    ),
+    "robot2's teleop drives robot1": more(
+        "robot2", f'{TELEOP}, namespace="/robot2", remappings=[("cmd_vel", "/robot1/cmd_vel")]'
+    ),
+    "both robots obey /goal_pose": each("bt_navigator", rules(("goal_pose", "/goal_pose"))),
+    "both amcl take /initialpose": each("amcl", rules(("initialpose", "/initialpose"))),
+    "amcl has an absolute scan topic": node("robot2", "amcl", rules(("scan", "/scan"))),
+    "stamped velocities on one side": node(
+        "robot1",
+        "collision_monitor",
+        lambda it: it.replace("*params,", '*params, {"enable_stamped_cmd_vel": True},'),
+    ),
+    "both lidars on /scan": lambda path, text: (
+        re.sub(r"/robot\d/scan", "/scan", text) if path.endswith("bridge.yaml") else text
+    ),
+    "both map servers on /map": both(
+        each("map_server", rules(("map", "/map"))), each("amcl", rules(("map", "/map")))
+    ),
+    "map_server beside SLAM": more(
+        "robot1",
+        'package="slam_toolbox", executable="async_slam_toolbox_node", name="slam_toolbox",'
+        ' namespace="/robot1", parameters=[CLOCK], remappings=[("/tf", "tf"), ("/map", "map")]',
+    ),
+    "robot2's amcl reads robot1's scan": node("robot2", "amcl", rules(("scan", "/robot1/scan"))),
+    "amcl started twice": node("robot1", "amcl", lambda it: it + it),
+    "a second lifecycle manager": more(
+        "robot1",
+        'package="nav2_lifecycle_manager", executable="lifecycle_manager", namespace="/robot1",'
+        ' name="lifecycle_manager_2", parameters=[{"node_names": ["amcl"]}, CLOCK]',
+    ),
+    "a clock bridge for each robot": both(
+        *(
+            more(
+                it,
+                f'package="ros_gz_bridge", executable="parameter_bridge", namespace="/{it}",'
+                ' arguments=["/clock@rosgraph_msgs/msg/Clock[gz.msgs.Clock"]',
+            )
+            for it in ("robot1", "robot2")
+        )
+    ),
+    "the controller sends past collision_monitor": node(
+        "robot2", "controller_server", without("cmd_vel")
+    ),
+}
