@@ -14,6 +14,7 @@ if TYPE_CHECKING:
         InputError,
         MultibotError,
         ProofError,
+        Unusable,
         UsageError,
         VocabularyError,
     )
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
         system_of_description,
         system_of_files,
         system_of_fleet,
+        system_of_folder,
         system_of_graph,
         system_of_launch,
     )
@@ -45,6 +47,7 @@ __all__ = [
     "RewriteRefused",
     "RewrittenFile",
     "System",
+    "Unusable",
     "UsageError",
     "VocabularyError",
     "compare",
@@ -60,6 +63,7 @@ __all__ = [
     "system_of_description",
     "system_of_files",
     "system_of_fleet",
+    "system_of_folder",
     "system_of_graph",
     "system_of_launch",
 ]
@@ -74,7 +78,10 @@ _HOMES = {
     "System": "system.records",
     **dict.fromkeys(("compare", "judge"), "fleet.file.system_sources"),
     **dict.fromkeys(
-        (f"system_of_{it}" for it in ("bag", "description", "files", "fleet", "graph", "launch")),
+        (
+            f"system_of_{it}"
+            for it in ("bag", "description", "files", "fleet", "folder", "graph", "launch")
+        ),
         "fleet.file.system_sources",
     ),
 }

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import gc
+import os
 import signal
+import sys
 from collections import Counter
 from collections.abc import Iterator
 from importlib.util import find_spec
@@ -41,16 +43,30 @@ settings.load_profile("repeatable")
 # Thousands of tests and the syntax trees of the package live to the end: without this every second
 # of four goes into looking through them for what could be thrown away.
 gc.set_threshold(100_000, 50, 100)
+# Hundreds of processes import the package: each would compile it anew where no compiled files may be
+# beside the sources. They are kept with those of pytest's cache instead.
+COMPILED = Path(__file__).parents[1] / ".pytest_cache" / "compiled"
+if sys.dont_write_bytecode:
+    sys.dont_write_bytecode, sys.pycache_prefix = False, str(COMPILED)
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+    os.environ["PYTHONPYCACHEPREFIX"] = str(COMPILED)
 # A shell that starts the tests with & has it ignored, and so would every process that they interrupt.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """What is deep is slow: ``-m "not slow"`` takes the place of the usual ``-m "not deep"``."""
+    """What is deep is slow: ``-m "not slow"`` takes the place of the usual ``-m "not deep"``.
+
+    Of the rows of a test with ``sample(n)`` the first of every n is quick, the others are slow.
+    """
+    rows: Counter[str] = Counter()
     for item in items:
-        if item.get_closest_marker("deep"):
+        sample = item.get_closest_marker("sample")
+        name = item.nodeid.partition("[")[0]
+        if item.get_closest_marker("deep") or (sample and rows[name] % sample.args[0]):
             item.add_marker("slow")
+        rows[name] += 1
 
 
 def pytest_collection_finish() -> None:

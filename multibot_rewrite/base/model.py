@@ -105,3 +105,8 @@ class VocabularyError(MultibotError):
 
 class ProofError(MultibotError):
     """The rewritten text failed its proof: a fault of this package, never of the user's file."""
+
+
+class Unusable(MultibotError):
+    """What a job needs besides, such as rclpy, is not there or does not start; the message says what to
+    do."""

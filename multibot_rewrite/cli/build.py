@@ -48,7 +48,7 @@ def run(options: argparse.Namespace) -> int:
     plan = plan_fleet(fleet, trust=options.trust)
     note_interfaces(options, plan.fleet.facts)
     made = make_outputs(plan, os.path.abspath(options.output))
-    back = read_back(plan, made.files, os.path.abspath(options.output))
+    back = read_back(plan, made, os.path.abspath(options.output))
     if _reported(options, plan, (*made.findings, *back)):
         say("nothing was written", PROGRAM)
         return STOPPED

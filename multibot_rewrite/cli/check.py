@@ -20,14 +20,12 @@ from multibot_rewrite.cli.report import TEXT, About, check_report, chosen, repor
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.cli.watch import follow
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.fleet.file.fleet_or_plan import is_fleet
 from multibot_rewrite.live.watching import WORDS, Outcome, Verdict, final
-from multibot_rewrite.producers.bags.read import BagsUnusable, read_bag
+from multibot_rewrite.producers.bags.read import read_bag
 from multibot_rewrite.producers.bags.recording import as_snapshot, counted
-from multibot_rewrite.producers.ros.request import RosUnusable
 from multibot_rewrite.rules.check import check, doubts
 from multibot_rewrite.spelling.plan import robot_words
-from multibot_rewrite.spelling.plan_file import is_json, read_plan
+from multibot_rewrite.spelling.plan_file import is_fleet, is_json, read_plan
 from multibot_rewrite.system.index import NO_COUNTS
 from multibot_rewrite.system.records import System, answering
 
@@ -40,25 +38,21 @@ def run(options: argparse.Namespace) -> int:
         return unplanned.run(options)
     _check_use(options)
     plan = plan_of(options)
-    try:
-        if options.watch:
-            return _watch(options, _with_files(options, plan) if options.state else plan)
-        if options.bag:
-            return _recorded(options, plan)
-        graph = live.graph(options)
-        if options.state or answering(graph):
-            plan = _with_files(options, plan)
-        return conclude(options, plan, live.with_states(options, graph, _parameters(plan)))
-    except (RosUnusable, BagsUnusable) as error:
-        say(str(error), PROGRAM)
-        return live.NO_ROS
+    if options.watch:
+        return _watch(options, _with_files(options, plan) if options.state else plan)
+    if options.bag:
+        return _recorded(options, plan)
+    graph = live.graph(options)
+    if options.state or answering(graph):
+        plan = _with_files(options, plan)
+    return conclude(options, plan, live.with_states(options, graph, _parameters(plan)))
 
 
 def _with_files(options: argparse.Namespace, plan: System) -> System:
     """The plan with the parameters in the files beside it."""
     from multibot_rewrite.fleet.outputs.built_states import with_built
 
-    return with_built(plan, options.built or os.path.dirname(options.plan))
+    return with_built(plan, os.path.dirname(options.plan))
 
 
 def _parameters(plan: System) -> dict[str, list[str]]:
@@ -78,21 +72,12 @@ def _check_use(options: argparse.Namespace) -> None:
     live.check_source(options)
     if options.watch and (options.select or options.ignore or options.format != TEXT):
         raise UsageError("--watch shows every finding: leave out --select, --ignore and --format")
-    if options.built:
-        _check_built(options)
     if options.suggest:
         raise UsageError("--suggest begins a plan: leave out PLAN")
     check_report(options, printed=False)
     pictures.check(options)
     if options.output:
         check_target(options.output, [options.plan, *options.snapshot])
-
-
-def _check_built(options: argparse.Namespace) -> None:
-    if not os.path.isdir(options.built):
-        raise UsageError(f"{options.built}: no folder; name the one that multibot build wrote")
-    if not (options.state or options.snapshot):
-        raise UsageError("--built is compared with what nodes answer: add --state")
 
 
 def plan_of(options: argparse.Namespace) -> System:
@@ -181,10 +166,7 @@ def _outcome(options: argparse.Namespace, verdict: Verdict, gaps: Sequence[Findi
 
 
 def _sum_up(
-    options: argparse.Namespace,
-    plan: System,
-    findings: Sequence[Finding],
-    outcome: Outcome,
+    options: argparse.Namespace, plan: System, findings: Sequence[Finding], outcome: Outcome
 ) -> None:
     counted = f"{plural(len(plan.robots), 'robot')}, {plural(len(findings), 'finding')}"
     note(options, f"{counted}: {outcome.words}{facts_of_release(plan.release)}")

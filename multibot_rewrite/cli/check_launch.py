@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.cli import check, pictures, unplanned
+from multibot_rewrite.cli.fleet import own_nodes
 from multibot_rewrite.cli.output import note
 from multibot_rewrite.cli.report import check_report
 from multibot_rewrite.cli.walk import check_target
@@ -46,8 +47,9 @@ def order_of(options: argparse.Namespace, words: Sequence[str]) -> LaunchOrder:
 def graph_of(options: argparse.Namespace, order: LaunchOrder) -> System:
     """What the launch file would start; raises InputError for one that cannot be read."""
     release = release_here(options.distro)
-    library = known_nodes(options.nodes, release, options.nodl).library
-    known = Knowledge(library.nodes, load_known_nodes(options.nodes or "", release), release)
+    nodes, nodl = own_nodes(options)
+    library = known_nodes(nodes, release, nodl).library
+    known = Knowledge(library.nodes, load_known_nodes(nodes or "", release), release)
     return would_run(launch_graph(order), known)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import shlex
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from multibot_rewrite.base.config import configured_vocabulary
@@ -11,11 +12,11 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import facts_of_release, release_here
-from multibot_rewrite.cli.arguments import arguments_of, xacro_parts
+from multibot_rewrite.base.wording import clip
 from multibot_rewrite.cli.output import deliver, say, watched
 from multibot_rewrite.cli.parser import UNUSABLE
 from multibot_rewrite.cli.process import DONE, PROGRAM
-from multibot_rewrite.cli.tables import JSON, Grid, clip, deliver_report, json_bytes
+from multibot_rewrite.cli.tables import JSON, Grid, deliver_report, json_bytes
 from multibot_rewrite.cli.usage import check_xacro, plain_words, xacro_args
 from multibot_rewrite.cli.walk import check_target, find_files
 from multibot_rewrite.description.reports.survey import (
@@ -28,17 +29,24 @@ from multibot_rewrite.description.reports.survey import (
     share,
     survey,
 )
+from multibot_rewrite.description.reports.xacro_arguments import (
+    Argument,
+    XacroArguments,
+    find_arguments,
+)
 from multibot_rewrite.description.reports.xacro_arguments import as_json as xacro_json
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.tree import Tree
+from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.own_names import filled
-from multibot_rewrite.description.sources.read import read_whole
+from multibot_rewrite.description.sources.read import is_xacro, read_whole
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import read_document
 
 SUFFIXES = (".urdf", ".sdf")
 # So many rows has a table.
 TOP = 20
+COLUMNS = ("argument", "default", "goes into", "as", "count", "example")
 
 
 class Unreadable(NamedTuple):
@@ -202,17 +210,63 @@ def _mention_parts(
     what: str, mentions: Sequence[tuple[MentionPlace, Tally]]
 ) -> Iterator[str | Grid]:
     yield ""
-    yield f"{_times(mentions)} {what}"
+    yield f"{sum(row[1].times for row in mentions)} {what}"
     rows = [(str(t.times), str(t.files), m.path, clip(t.value), t.place) for m, t in mentions]
     if rows:
         yield Grid(("count", "files", "path", "value", "first seen"), rows[:TOP])
         yield from _rest(rows)
 
 
-def _times(rows: Iterable[tuple[MentionPlace, Tally]]) -> int:
-    return sum(row[1].times for row in rows)
-
-
 def _rest(rows: Sequence[object]) -> Iterator[str]:
     if len(rows) > TOP:
         yield f"  and {plural(len(rows) - TOP, 'more row')}; --form json shows all"
+
+
+def arguments_of(
+    options: argparse.Namespace, paths: Sequence[str], tree: Tree
+) -> XacroArguments | None:
+    """The arguments of a xacro that is looked at alone."""
+    if len(paths) != 1 or not is_xacro(paths[0]):
+        return None
+    found = find_arguments(
+        paths[0], filled(xacro_args(options)), tree, reach=Reach(trust=options.trust)
+    )
+    if options.output:
+        check_target(options.output, found.read)
+    return found
+
+
+def xacro_parts(found: XacroArguments) -> Iterator[str | Grid]:
+    """What is printed of them."""
+    rows = [row for it in found.arguments for row in _rows(it)]
+    if rows:
+        yield Grid(COLUMNS, rows)
+        yield ""
+    without = [it.name for it in found.arguments if not it.uses and not it.fault]
+    if without:
+        yield f"go into no names: {', '.join(without)}"
+    refused = [it.name for it in found.arguments if it.fault]
+    if refused:
+        yield f"take no name of a robot: {', '.join(refused)}"
+    if found.untried:
+        yield f"too many to try: {', '.join(found.untried)}"
+    yield from _advice(found)
+
+
+def _rows(it: Argument) -> Iterator[tuple[str, ...]]:
+    first = it.name, clip(it.default)
+    for use in it.uses:
+        how = f"{use.how} {use.separator}".rstrip()
+        yield *first, use.kind, how, f"{use.names} of {use.total}", use.example
+        first = "", ""
+
+
+def _advice(found: XacroArguments) -> Iterator[str]:
+    """The command that uses the arguments for robots."""
+    command = ["urdf-postfix", found.file, "robot1", "robot2", "-o", "out/{robot}.urdf"]
+    line = shlex.join([*command, *found.words])
+    if found.words:
+        yield "each robot by its own argument, and everything else rewritten as usual:"
+    else:
+        yield "no argument gives each robot its own names; the rewrite does it:"
+    yield f"  {line}"

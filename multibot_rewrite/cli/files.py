@@ -9,14 +9,10 @@ from __future__ import annotations
 
 import os
 import stat
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
-from typing import ParamSpec, TypeVar
 
 from multibot_rewrite.base.model import UsageError
-
-P = ParamSpec("P")
-R = TypeVar("R")
 
 
 def write_all(items: Iterable[tuple[str, bytes]]) -> None:
@@ -32,11 +28,14 @@ def write_all(items: Iterable[tuple[str, bytes]]) -> None:
         for path, data in items:
             folder = os.path.dirname(path)
             if folder not in known:
-                _tried(path, make_folders, folder, made)
+                with explained(path):
+                    make_folders(folder, made)
                 known.add(folder)
-            _tried(path, _stage, path, data, staged)
+            with explained(path):
+                _stage(path, data, staged)
         for target, temporary in staged.items():
-            _tried(target, see_on_disk, temporary)
+            with explained(target):
+                see_on_disk(temporary)
         known |= {os.path.dirname(path) for path in made}
         known |= {os.path.dirname(path) for path in staged}
         _commit(staged)
@@ -71,7 +70,8 @@ def _commit(staged: dict[str, str]) -> None:
     done: list[tuple[str, str]] = []
     try:
         for target, temporary in list(staged.items()):
-            _tried(target, _take_place, target, temporary, done)
+            with explained(target):
+                _take_place(target, temporary, done)
             del staged[target]
     except BaseException:
         for target, backup in reversed(done):
@@ -148,14 +148,6 @@ def see_on_disk(path: str) -> None:
         os.fsync(handle)
     finally:
         os.close(handle)
-
-
-def _tried(path: str, action: Callable[P, R], *given: P.args, **named: P.kwargs) -> R:
-    """``action``; what the system refuses is a UsageError about ``path``, in one line."""
-    try:
-        return action(*given, **named)
-    except OSError as error:
-        raise UsageError(f"{path}: cannot be written: {_reason(error, path)}") from None
 
 
 @contextmanager

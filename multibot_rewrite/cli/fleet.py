@@ -15,6 +15,7 @@ from multibot_rewrite.cli.report import About, check_report, chosen, report_besi
 from multibot_rewrite.cli.usage import check_xacro, given_options, policy, robots, xacro_args
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.fleet.fleet import Fleet, make_fleet
+from multibot_rewrite.knowledge.nodl.lookup import NO_DOCUMENTS, SUFFIXES
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.launch.records import launch_order
 
@@ -22,22 +23,13 @@ from multibot_rewrite.producers.launch.records import launch_order
 WRITTEN = ("output", "sros2", "save_snapshot", "report")
 FLEET_FILES = (".yaml", ".yml")
 # What a fleet file says itself, and how the option is written.
+_OF_FLEET_FILE = (
+    *("robots", "stack", "nodes", "layout", "affix", "topics", "separator", "shared_frames"),
+    *("shared_topics", "groups", "vocabulary", "launch", "roots"),
+)
 OF_FLEET_FILE = {
     "words": "ROBOT",
-    "robots": "--robots",
-    "stack": "--stack",
-    "nodes": "--nodes",
-    "nodl": "--nodl",
-    "layout": "--layout",
-    "affix": "--affix",
-    "topics": "--topics",
-    "separator": "--separator",
-    "shared_frames": "--shared-frames",
-    "shared_topics": "--shared-topics",
-    "groups": "--groups",
-    "vocabulary": "--vocabulary",
-    "launch": "--launch",
-    "roots": "--roots",
+    **{it: f"--{it.replace('_', '-')}" for it in _OF_FLEET_FILE},
 }
 
 
@@ -92,19 +84,33 @@ def _from_words(options: argparse.Namespace) -> Fleet:
     if not names:
         raise UsageError("no ROBOT given, and the input is no fleet file (*.yaml)")
     check_xacro(options, [options.input])
+    nodes, nodl = own_nodes(options)
     return make_fleet(
         options.input,
         names,
         options.stack,
         policy(options),
-        nodes=options.nodes,
-        nodl=options.nodl,
+        nodes=nodes,
+        nodl=nodl,
         vocabulary=[*configured_vocabulary(options.input), *options.vocabulary],
         xacro_args=xacro_args(options),
         trust=options.trust,
         launch=[launch_order(it, options.roots)._replace(trusted=True) for it in options.launch],
         release=release_here(options.distro),
     )
+
+
+def own_nodes(options: argparse.Namespace) -> tuple[str | None, list[str]]:
+    """What ``--nodes`` names: the user's file of nodes and stacks, and NoDL files or folders."""
+    nodl = [it for it in options.nodes if _is_nodl(it)]
+    files = [it for it in options.nodes if it not in nodl]
+    if len(files) > 1:
+        raise UsageError(f"--nodes: {files[0]} and {files[1]} are two files of nodes; give one")
+    return next(iter(files), None), nodl
+
+
+def _is_nodl(path: str) -> bool:
+    return path == NO_DOCUMENTS or path.endswith(SUFFIXES) or os.path.isdir(path)
 
 
 def about(options: argparse.Namespace, made: Fleet) -> About:

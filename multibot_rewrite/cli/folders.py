@@ -121,7 +121,9 @@ def clear_leftovers(folder: str) -> None:
 
 def _swap(folder: str, write: Mapping[str, bytes], remove: Collection[str], note: str) -> None:
     above, name = os.path.split(folder)
-    if os.path.ismount(folder) or _is_inside(os.getcwd(), folder):
+    if os.path.ismount(folder) or (
+        os.path.commonpath([os.path.realpath(os.getcwd()), folder]) == folder
+    ):
         raise _CannotSwapError
     stage = os.path.join(above, f".{name}.{os.getpid()}{STAGE}")
     try:
@@ -137,10 +139,6 @@ def _swap(folder: str, write: Mapping[str, bytes], remove: Collection[str], note
         _bring_late(stage, folder, {*write, *remove, note})
     finally:
         shutil.rmtree(stage, ignore_errors=True)
-
-
-def _is_inside(place: str, folder: str) -> bool:
-    return os.path.commonpath([os.path.realpath(place), folder]) == folder
 
 
 def _link_all(folder: str, stage: str, but: Collection[str]) -> None:

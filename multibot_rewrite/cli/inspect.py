@@ -4,9 +4,30 @@ from __future__ import annotations
 
 import argparse
 import os
+from collections.abc import Iterator, Sequence
 
-from multibot_rewrite.cli import coverage, vocabulary
-from multibot_rewrite.cli.usage import plain_words, xacro_args
+from multibot_rewrite.base.config import configured_vocabulary
+from multibot_rewrite.base.model import Site, UsageError
+from multibot_rewrite.base.releases import release_here
+from multibot_rewrite.cli import coverage
+from multibot_rewrite.cli.output import deliver, note
+from multibot_rewrite.cli.process import DONE
+from multibot_rewrite.cli.tables import JSON, Grid, deliver_report, json_bytes
+from multibot_rewrite.cli.usage import check_xacro, plain_words, xacro_args
+from multibot_rewrite.cli.walk import check_target
+from multibot_rewrite.description.reports.suggest import suggest, vocabulary_text
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.lookup import block_of, facts, look_up, near_names
+from multibot_rewrite.description.rewriters.vocabulary import (
+    TYPES,
+    Vocabulary,
+    VocabularySection,
+    load_vocabulary,
+)
+from multibot_rewrite.description.sources.own_names import filled
+from multibot_rewrite.description.sources.read import read_whole
+from multibot_rewrite.description.steps.collect import collect
+from multibot_rewrite.description.steps.document import read_document
 
 # A word that ends so is a file, there or not.
 _FILES = (".urdf", ".sdf", ".srdf", ".xacro", ".xml")
@@ -15,12 +36,138 @@ _FILES = (".urdf", ".sdf", ".srdf", ".xacro", ".xml")
 def run(options: argparse.Namespace) -> int:
     """Look up a name, look at files, or draft what is missing; returns the exit code."""
     if options.suggest is not None:
-        return vocabulary.draft(options)
+        return draft(options)
     words = plain_words(options)
     if len(words) > 1 or xacro_args(options) or any(map(_is_path, words)):
         return coverage.run(options)
-    return vocabulary.show(options, next(iter(words), None))
+    return show(options, next(iter(words), None))
 
 
 def _is_path(word: str) -> bool:
     return os.path.lexists(word) or word.endswith(_FILES)
+
+
+def show(options: argparse.Namespace, name: str | None) -> int:
+    """List all sections, or show those of a name; returns the exit code."""
+    files = (*configured_vocabulary("-"), *options.vocabulary)
+    if options.output:
+        check_target(options.output, files)
+    builtin_tree(files, release_here(options.distro))
+    # Without a release the rows of all are shown, each with its own.
+    vocabulary = load_vocabulary(files, options.distro or "")
+    found = vocabulary.sections(*TYPES) if name is None else _found(vocabulary, name, TYPES)
+    if options.form == JSON:
+        deliver(options, json_bytes({"sections": [as_json(it) for it in found]}))
+    else:
+        deliver_report(options, _list(found) if name is None else _details(found))
+    return DONE
+
+
+def _found(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> list[VocabularySection]:
+    found = look_up(vocabulary, name, types)
+    if found:
+        return found
+    others = [it for type_ in types for it in vocabulary.releases_elsewhere(type_, name)]
+    if others:
+        where = f"is not in {vocabulary.release}, only in {', '.join(dict.fromkeys(others))}"
+        raise UsageError(f"{name!r} {where}; name one of them with --distro")
+    near = near_names(vocabulary, name, types)
+    hint = f"the nearest known: {', '.join(near)}" if near else "multibot inspect lists all"
+    what = "plugin, class, element, sensor type or block of the vocabulary"
+    raise UsageError(f"{name!r} is no {what}, and no file or folder; {hint}")
+
+
+def _list(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
+    """One line a section."""
+    columns = ("type", "name", "ROS", "also called", "rows", "source")
+    rows = [
+        (it.type, it.names[0], it.ros, " ".join(it.names[1:]), str(len(it.sites)), it.source)
+        for it in sections
+    ]
+    yield Grid(columns, rows)
+
+
+def _details(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
+    """Everything known, a block of lines a section."""
+    for number, section in enumerate(sections):
+        yield from [""] * (number > 0)
+        yield f"{section.name}  {section.file}:{section.line}"
+        yield from (f"  {what}: {text}" for what, text in facts(section).items())
+        rows = [_row(site, section) for site in section.sites]
+        if rows:
+            yield Grid(("path", "role", "kinds", "form", "default", "note", "from"), rows)
+
+
+def _row(site: Site, section: VocabularySection) -> tuple[str, ...]:
+    not_inserted = " (not inserted)" if site.default and not section.inserts else ""
+    block = block_of(site)
+    shared = f" [block {block}]" if block else ""
+    here = f"in {site.releases}:" if site.releases else ""
+    note = " ".join(filter(None, [here, site.note, f"(when {site.when})" if site.when else ""]))
+    return (
+        site.path,
+        site.role,
+        " ".join(site.kinds),
+        "" if site.form == "whole" else site.form,
+        f"{site.default}{not_inserted}",
+        note,
+        f"{site.file}:{site.line}{shared}",
+    )
+
+
+def as_json(section: VocabularySection) -> dict[str, object]:
+    """A section as ``--form json`` writes it; docs/inspect.md describes it."""
+    return {
+        "type": section.type,
+        "names": section.names,
+        "ros": section.ros,
+        "about": section.about,
+        "source": section.source,
+        "releases": section.releases,
+        "file": section.file,
+        "line": section.line,
+        "at": section.at,
+        "blocks": section.blocks,
+        "remap_only": section.topics,
+        "topics": [it._asdict() for it in section.wired],
+        "rows": [_row_json(site, section) for site in section.sites],
+    }
+
+
+def _row_json(site: Site, section: VocabularySection) -> dict[str, object]:
+    return {
+        "path": site.path,
+        "role": site.role,
+        "kinds": site.kinds,
+        "form": site.form,
+        "default": site.default,
+        "inserted": bool(site.default) and section.inserts,
+        "when": site.when,
+        "note": site.note,
+        "releases": site.releases,
+        "block": block_of(site),
+        "file": site.file,
+        "line": site.line,
+    }
+
+
+def draft(options: argparse.Namespace) -> int:
+    """Write a vocabulary for what a description loads and nothing knows; returns the exit code."""
+    if plain_words(options) or options.form == JSON:
+        raise UsageError("--suggest goes with --vocabulary only: leave out NAME and --form")
+    check_xacro(options, [options.suggest])
+    if options.output:
+        check_target(options.output, [options.suggest, *options.vocabulary])
+    read = read_whole(options.suggest, filled(xacro_args(options)), options.trust)
+    if options.output:
+        check_target(options.output, read.read)
+    files = (*configured_vocabulary(options.suggest), *options.vocabulary)
+    tree = builtin_tree(files, release_here(options.distro))
+    sections = suggest(collect(read_document(read.data, read.file), tree))
+    text = vocabulary_text(sections, options.suggest)
+    deliver(options, text.encode("utf-8", "backslashreplace"))
+    if not sections:
+        note(
+            options, f"{options.suggest}: everything it loads is known, there is nothing to suggest"
+        )
+    return DONE

@@ -21,7 +21,6 @@ from multibot_rewrite.live.learning.choosing import choose_nodes, helpers_withou
 from multibot_rewrite.live.learning.learn import LearnedNode, learn
 from multibot_rewrite.live.learning.nodes_file import to_yaml
 from multibot_rewrite.live.learning.nodl_file import to_nodl
-from multibot_rewrite.producers.ros.request import RosUnusable
 from multibot_rewrite.rules.check import doubts
 from multibot_rewrite.system.records import System
 
@@ -31,11 +30,7 @@ NODES, NODL = "nodes", "nodl"
 def run(options: argparse.Namespace) -> int:
     """Look, learn, write, note what is left out; returns the exit code."""
     _check_use(options)
-    try:
-        graph = live.graph(options)
-    except RosUnusable as error:
-        say(str(error), PROGRAM)
-        return live.NO_ROS
+    graph = live.graph(options)
     doubtful = doubts(graph)
     for caveat in doubtful:
         say(f"incomplete: {caveat.message}", PROGRAM)
@@ -74,10 +69,7 @@ def _is_nodl(options: argparse.Namespace) -> bool:
 
 
 def _as_nodl(
-    options: argparse.Namespace,
-    graph: System,
-    learned: Sequence[LearnedNode],
-    library: NodeLibrary,
+    options: argparse.Namespace, graph: System, learned: Sequence[LearnedNode], library: NodeLibrary
 ) -> list[NodlFile]:
     in_json = (options.output or "").endswith(".json")
     return [to_nodl(it, graph, options.namespace or "/", library, in_json) for it in learned]

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import argparse
-from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from functools import partial
+from typing import TYPE_CHECKING
 
-from multibot_rewrite.base.findings.finding import LEVELS, Finding
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.formats.shared import counts, in_words
 from multibot_rewrite.base.findings.selection import fails
-from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.model import UsageError, VocabularyError
 from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.releases import facts_of_release, release_here
-from multibot_rewrite.cli.lint_use import cached, check_use, given
 from multibot_rewrite.cli.output import (
+    detail,
     note,
     print_bytes,
     prints_colour,
@@ -23,10 +25,11 @@ from multibot_rewrite.cli.output import (
 from multibot_rewrite.cli.parser import UNUSABLE
 from multibot_rewrite.cli.process import DONE, STOPPED
 from multibot_rewrite.cli.report import NO_RULES, TEXT, About, by_themselves, report_first
-from multibot_rewrite.cli.usage import plain_words
+from multibot_rewrite.cli.usage import plain_words, policy, xacro_args
 from multibot_rewrite.cli.walk import check_folder, check_target, find_files, standard_input
 from multibot_rewrite.companions.kinds import SUFFIXES as BESIDE
 from multibot_rewrite.companions.kinds import is_linted
+from multibot_rewrite.description.sources.own_names import filled
 from multibot_rewrite.lint.config.configured import (
     Configured,
     configured,
@@ -36,17 +39,19 @@ from multibot_rewrite.lint.config.configured import (
 from multibot_rewrite.lint.run import among, lint_files
 from multibot_rewrite.rules.settings import Settings
 
+if TYPE_CHECKING:
+    from multibot_rewrite.lint.cache.cache import Cache
+
+
 SUFFIXES = (".urdf", ".xacro", ".srdf", *BESIDE)
 STDIN = "-"
 CRASHED = "MB001"
+_LISTS = ("select", "ignore", "robots", "roots", "target", "vocabulary")
+_PLAIN = ("urdf", "baseline", "fail_on", "trust")
 
 
 def run(options: argparse.Namespace) -> int:
-    """Lint, fix or explain; returns the exit code."""
-    if options.explain:
-        from multibot_rewrite.cli import explain  # a lint does not need it
-
-        return explain.of_option(options)
+    """Lint or fix; returns the exit code."""
     check_use(options)
     config = configured(".", options.config)
     release = release_here(options.distro or config.distro)
@@ -112,7 +117,7 @@ def _lint(options: argparse.Namespace, settings: Settings, paths: Sequence[str])
 
 def _fixed(options: argparse.Namespace, settings: Settings, findings: list[Finding]) -> list[str]:
     """The files that are fixed. With --diff none is, and the changes are printed."""
-    from multibot_rewrite.cli.diffs import diff
+    from multibot_rewrite.cli.output import diff
     from multibot_rewrite.description.sources.read import read_file
     from multibot_rewrite.lint.fix import fix
 
@@ -164,12 +169,7 @@ def _conclude(
 
 
 def _report(options: argparse.Namespace, findings: Sequence[Finding], about: About) -> bool:
-    """Write what was found, or how often; are there findings at the level of ``--fail-on``?"""
-    if options.statistics:
-        from multibot_rewrite.cli.lint_statistics import deliver_statistics
-
-        deliver_statistics(options, findings)
-        return fails(findings, options.fail_on)
+    """Write what was found; are there findings at the level of ``--fail-on``?"""
     if options.format == TEXT:
         return report_first(options, findings, about, NO_RULES)
     from multibot_rewrite.lint.registry import (
@@ -191,5 +191,53 @@ def _summary(
 
 
 def _count(findings: Sequence[Finding]) -> str:
-    counts = Counter(it.level for it in findings)
-    return ", ".join(plural(counts[it], it) for it in LEVELS if counts[it]) or "no findings"
+    return in_words(counts(findings)) or "no findings"
+
+
+def check_use(options: argparse.Namespace) -> None:
+    """Raise UsageError for what cannot be meant."""
+    paths = plain_words(options)
+    if not paths:
+        raise UsageError("no PATH given; for example: urdf-lint urdf/")
+    if "" in paths:
+        raise UsageError("the name of a file is empty")
+    if "-" in paths and (len(paths) > 1 or options.fix or options.changed_since):
+        raise UsageError("standard input is linted alone, without --fix and --changed-since")
+    if options.diff and not options.fix:
+        raise UsageError("--diff shows what --fix would change: give both")
+    if options.diff and options.output:
+        raise UsageError("--diff prints to standard output: leave out --output")
+    if options.write_baseline and (options.fix or options.baseline or options.output):
+        raise UsageError("--write-baseline takes neither --fix, --baseline nor --output")
+
+
+@contextmanager
+def cached(options: argparse.Namespace, settings: Settings) -> Iterator[Cache | None]:
+    """The cache for a lint, which is saved at the end; a folder that cannot be written is no error."""
+    # What trusted files look at is not known.
+    if options.no_cache or options.trust:
+        yield None
+        return
+    from multibot_rewrite.lint.cache.cache import Cache, cache_folder
+    from multibot_rewrite.lint.cache.identity import identity
+
+    try:
+        cache = Cache(cache_folder(), identity(settings))
+    except (OSError, ValueError, VocabularyError):  # reported where it is read
+        cache = None
+    yield cache
+    if cache:
+        try:
+            cache.save()
+        except OSError as error:
+            detail(options, f"the cache is not kept: {cache.folder}: {error.strerror}")
+
+
+def given(options: argparse.Namespace) -> dict[str, object]:
+    """What the command line says about the settings, by the names of ``with_options``."""
+    said: dict[str, object] = {
+        name: tuple(value) for name in _LISTS if (value := getattr(options, name))
+    }
+    said |= {name: value for name in _PLAIN if (value := getattr(options, name))}
+    arguments = filled(xacro_args(options), *options.robots[:1])
+    return {**policy(options), **said, "arguments": tuple(arguments.items())}

@@ -26,7 +26,7 @@ from multibot_rewrite.system.records import System, answering
 if TYPE_CHECKING:
     from multibot_rewrite.producers.zenoh.observe import Router
 
-INCONCLUSIVE, NO_ROS = 3, 4
+INCONCLUSIVE = 3
 CODES = {Verdict.PLANNED: DONE, Verdict.WRONG: STOPPED, Verdict.INCONCLUSIVE: INCONCLUSIVE}
 # How long a single look takes at most.
 LOOK_SECONDS = 15.0
@@ -36,7 +36,10 @@ def check_source(options: argparse.Namespace) -> None:
     """Raises UsageError where options name two sources, or a saved one is to be watched."""
     saved, watching = bool(options.snapshot), getattr(options, "watch", False)
     if getattr(options, "bag", None):
-        _check_bag(options)
+        given = vars(options)
+        for name in ("snapshot", "zenoh", "watch", "state", "suggest", "report"):
+            if given.get(name):
+                raise UsageError(f"--bag is a recording, which has no nodes: leave out --{name}")
     if saved and watching:
         raise UsageError("--watch is for the live graph, leave out --snapshot")
     if getattr(options, "state", False) and (saved or options.zenoh):
@@ -45,15 +48,8 @@ def check_source(options: argparse.Namespace) -> None:
         raise UsageError("saved snapshots and --zenoh are two sources: give one of them")
 
 
-def _check_bag(options: argparse.Namespace) -> None:
-    given = vars(options)
-    for name in ("snapshot", "zenoh", "watch", "state", "suggest", "report"):
-        if given.get(name):
-            raise UsageError(f"--bag is a recording, which has no nodes: leave out --{name}")
-
-
 def graph(options: argparse.Namespace, request: Request | None = None) -> System:
-    """The graph that the options name; raises RosUnusable, UsageError, InputError.
+    """The graph that the options name; raises Unusable, UsageError, InputError.
 
     A live one is looked at until it is quiet, unless ``request`` says otherwise: a second node of a
     name or a leak may come after the planned nodes.
@@ -79,9 +75,7 @@ def graph(options: argparse.Namespace, request: Request | None = None) -> System
 
 
 def with_states(
-    options: argparse.Namespace,
-    seen: System,
-    parameters: Mapping[str, Collection[str]] = NO_MORE,
+    options: argparse.Namespace, seen: System, parameters: Mapping[str, Collection[str]] = NO_MORE
 ) -> System:
     """The live graph with what its nodes answer to ``--state``, and a line of how many did; without it
     the graph as it is. ``parameters`` are asked of the nodes besides."""

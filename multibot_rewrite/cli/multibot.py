@@ -6,8 +6,72 @@ import sys
 from collections.abc import Sequence
 from functools import partial
 
-from multibot_rewrite.cli.dispatch import run
-from multibot_rewrite.cli.process import PROGRAM, guarded
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.nearest import did_you_mean_one_of
+from multibot_rewrite.cli.declared.commands import COMMANDS, INSTEAD
+from multibot_rewrite.cli.options import Command
+from multibot_rewrite.cli.output import AUTO, is_coloured, print_bytes
+from multibot_rewrite.cli.parser import painted
+from multibot_rewrite.cli.process import DONE, PROGRAM, guarded, start
+from multibot_rewrite.version import __version__
+
+# The same as --help behind the next word.
+HELP_WORD = "help"
+HELP, VERSION = ("-h", "--help"), ("-V", "--version")
+
+
+def run(words: Sequence[str]) -> int:
+    """Run the command of the first word; returns the exit code, raises UsageError."""
+    if not words:
+        raise UsageError(f"no COMMAND given, use one of {', '.join(COMMANDS)}")
+    first, *others = words
+    if first in HELP:
+        print_bytes(overview(AUTO).encode())
+        return DONE
+    if first in VERSION:
+        print_bytes(f"{PROGRAM} {__version__}\n".encode())
+        return DONE
+    if first == HELP_WORD:
+        return run([*others[:1], HELP[-1], *others[1:]])
+    command = find_command(first)
+    return start(command, others, f"{PROGRAM} {command.name}")
+
+
+def find_command(word: str) -> Command:
+    """The command of that name; UsageError with the nearest one."""
+    if word in COMMANDS:
+        return COMMANDS[word]
+    if word.startswith("-"):
+        raise UsageError(f"{word}: write the command first, for example: multibot check {word}")
+    if word in INSTEAD:
+        raise UsageError(f"there is no command {word!r}; use {INSTEAD[word]}")
+    near = did_you_mean_one_of(word, COMMANDS)
+    raise UsageError(f"unknown command {word!r}; {near or 'see multibot --help'}")
+
+
+def overview(colour: str) -> str:
+    """The help of ``multibot`` itself."""
+    rows = [f"  {it.name:<14}{it.about}" for it in COMMANDS.values()]
+    text = "\n".join(
+        (
+            "usage: multibot COMMAND [options]",
+            "",
+            "Many robots in one ROS 2 system: rewrite, plan, build and check a fleet.",
+            "",
+            "examples:",
+            "  multibot init rover.urdf",
+            "  multibot build fleet.yaml -o out/",
+            "  multibot plan rover.urdf robot1 robot2 --stack nav2 --form table",
+            "",
+            "commands:",
+            *rows,
+            "",
+            "multibot COMMAND -h shows each in short, --help all of it; urdf-postfix and",
+            "urdf-lint are commands of their own.",
+            "",
+        )
+    )
+    return painted(text, is_coloured(colour, sys.stdout))
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -69,6 +69,11 @@ def value(*names: str, metavar: str, about: str, **more: Any) -> Option:
     return Option(names, about, {"metavar": metavar, **more})
 
 
+def path_option(name: str, about: str, metavar: str = "FILE") -> Option:
+    """An option with the name of a file or folder."""
+    return value(name, metavar=metavar, about=about, type=values.path)
+
+
 def switch(*names: str, about: str) -> Option:
     """An option without a value."""
     return Option(names, about, {"action": "store_true"})

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import io
 import os
 import stat
 import sys
@@ -11,17 +12,30 @@ from typing import TextIO, TypeVar
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.printable import for_terminal, one_line
-from multibot_rewrite.cli.terminal import is_coloured
 from multibot_rewrite.cli.walk import check_target
 
+AUTO, ALWAYS, NEVER = "auto", "always", "never"
 MANY = 20
 STANDARD = "-"
 # Options and arguments that name files to read.
 READ = (
-    *("input", "plan", "fleet", "snapshot", "urdf", "xacro", "vocabulary", "nodes", "nodl"),
-    *("explained", "suggest", "config", "baseline"),
+    *("input", "plan", "fleet", "snapshot", "urdf", "xacro", "vocabulary", "nodes"),
+    *("suggest", "config", "baseline"),
 )
 _T = TypeVar("_T")
+_PAINT = {b"+": b"\033[32m", b"-": b"\033[31m", b"@": b"\033[36m"}
+_PLAIN = b"\033[0m"
+
+
+def is_coloured(when: str, stream: TextIO | None) -> bool:
+    """``--color``, else NO_COLOR, else FORCE_COLOR, else whether a terminal reads the stream."""
+    if when != AUTO:
+        return when == ALWAYS
+    if os.environ.get("NO_COLOR"):
+        return False
+    if os.environ.get("FORCE_COLOR"):
+        return True
+    return stream is not None and stream.isatty() and os.environ.get("TERM") != "dumb"
 
 
 def deliver(options: argparse.Namespace, data: bytes) -> None:
@@ -138,3 +152,25 @@ def detail(options: argparse.Namespace, text: str) -> None:
     """A line to standard error that only ``--verbose`` asks for."""
     if options.verbose and not options.quiet:
         say(text, options.program)
+
+
+def diff(old: bytes, new: bytes, name: str, new_name: str, colour: bool = False) -> bytes:
+    """A unified diff that patch reads."""
+    from difflib import diff_bytes, unified_diff
+
+    # Unlike splitlines, this ends lines at line feeds only, as patch does.
+    before, after = io.BytesIO(old).readlines(), io.BytesIO(new).readlines()
+    lines = diff_bytes(unified_diff, before, after, _named(name), _named(new_name))
+    cut_short = b"\n\\ No newline at end of file\n"
+    whole = (line if line.endswith(b"\n") else line + cut_short for line in lines)
+    return b"".join(map(_painted, whole) if colour else whole)
+
+
+def _named(path: str) -> bytes:
+    """The bytes of a path; what would end its line is escaped."""
+    return os.fsencode("".join(it if it >= " " else one_line(it) for it in path))
+
+
+def _painted(line: bytes) -> bytes:
+    paint = _PAINT.get(line[:1], b"")
+    return paint + line[:-1] + _PLAIN + b"\n" if paint else line

@@ -14,7 +14,7 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.printable import one_line
 from multibot_rewrite.cli.options import Command, Example, OptionGroup
-from multibot_rewrite.cli.terminal import AUTO, is_coloured
+from multibot_rewrite.cli.output import AUTO, is_coloured
 from multibot_rewrite.version import __version__
 
 UNUSABLE = 2

@@ -4,21 +4,25 @@ from __future__ import annotations
 
 import argparse
 import re
+from collections.abc import Iterator
 
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.releases import release_here
+from multibot_rewrite.base.releases import facts_of_release, release_here
 from multibot_rewrite.cli import check_launch, fleet
-from multibot_rewrite.cli.output import deliver, goes_to_file, say
+from multibot_rewrite.cli.output import deliver, goes_to_file, note, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
-from multibot_rewrite.cli.remap import deliver_rules
+from multibot_rewrite.cli.tables import Grid, deliver_report
 from multibot_rewrite.cli.usage import given_options
 from multibot_rewrite.cli.walk import check_folder, check_target
-from multibot_rewrite.fleet.fleet import expected, possible
+from multibot_rewrite.fleet.fleet import NO_STATE_PUBLISHER, Fleet, expected, possible
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.live.seen_plan import seen_plan
 from multibot_rewrite.rules.check import doubts
+from multibot_rewrite.spelling.bridged_topics import as_yaml, bridged_topics
 from multibot_rewrite.spelling.enclaves import to_policy
 from multibot_rewrite.spelling.plan_file import to_json, to_yaml
+from multibot_rewrite.spelling.records import Table
+from multibot_rewrite.spelling.table_formats import FORMS, given_to, standing_by_robot
 from multibot_rewrite.system.records import System
 
 PLAN, POLICY = "plan", "sros2"
@@ -30,6 +34,7 @@ NOT_OF_LAUNCH = {
 }
 # A launch file is told by its name: no description or fleet file is called so.
 _LAUNCH = re.compile(r".*(\.py|[._]launch(\.\w+)?|system_model\.yaml)")
+TABLE, BRIDGE = "table", "bridge"
 
 
 def run(options: argparse.Namespace) -> int:
@@ -73,3 +78,37 @@ def _of_launch(options: argparse.Namespace) -> int:
         say(f"incomplete: {caveat.message}", PROGRAM)
     _write(options, seen_plan(seen)._replace(release=release_here(options.distro)))
     return DONE
+
+
+def deliver_rules(options: argparse.Namespace, made: Fleet) -> None:
+    """Write the rules in the form that is asked for."""
+    known = {node.robot for node in made.table.nodes}
+    nothing = [robot for robot in made.inventories if robot not in known]
+    if nothing:
+        hint = f"name a stack of its nodes, or leave out {NO_STATE_PUBLISHER}"
+        note(options, f"no node of {', '.join(nothing)} is known, so no rule is for it; {hint}")
+    if options.form == TABLE:
+        deliver_report(options, _parts(made.table))
+    elif options.form == BRIDGE:
+        deliver(options, _bridge(options, made).encode())
+    else:
+        deliver(options, FORMS[options.form](made.table).encode())
+
+
+def _bridge(options: argparse.Namespace, made: Fleet) -> str:
+    carried, left = bridged_topics(made.inventories, made.naming)
+    for item in left:
+        message = f"line {item.line}: {item.what} has no topic, its default depends on the world"
+        note(options, f"{item.robot}: warning: {message} (write the element)")
+    return as_yaml(carried)
+
+
+def _parts(table: Table) -> Iterator[str | Grid]:
+    yield f"layout {table.layout}{facts_of_release(table.release)}"
+    rows = [
+        (robot, it.node.node, it.node.full_name, text, given_to(it))
+        for robot, given in standing_by_robot(table)
+        for it in given
+        for text in ([f"{source} -> {target}" for source, target in it.rules] or ["no rule"])
+    ]
+    yield Grid(("robot", "node", "runs as", "rule", "given to"), rows)

@@ -4,22 +4,24 @@ from __future__ import annotations
 
 import argparse
 import atexit
+import gc
 import io
 import os
 import signal
 import sys
 import time
 from collections.abc import Callable, Sequence
+from functools import partial
 from importlib import import_module
 from typing import NoReturn
 
 from multibot_rewrite.base.findings.finding import RewriteRefused
-from multibot_rewrite.base.model import MultibotError, ProofError
+from multibot_rewrite.base.model import MultibotError, ProofError, Unusable
 from multibot_rewrite.cli.options import Command
 from multibot_rewrite.cli.output import detail, say
 from multibot_rewrite.cli.parser import UNUSABLE, make_parser, parsed
 
-DONE, STOPPED, INTERRUPTED = 0, 1, 130
+DONE, STOPPED, MISSING, INTERRUPTED = 0, 1, 4, 130
 PROGRAM = "multibot"
 
 
@@ -66,6 +68,16 @@ def _refused(options: argparse.Namespace, error: RewriteRefused) -> int:
     return STOPPED
 
 
+def run_alone(command: Command, arguments: Sequence[str] | None) -> int:
+    """A command that is a program; ``arguments`` are those of the process if they are None."""
+    own_process = arguments is None
+    if own_process:
+        # A short process of its own: nothing it makes needs the collector of cycles.
+        gc.disable()
+    words = sys.argv[1:] if arguments is None else arguments
+    return guarded(command.name, partial(start, command, words), own_process)
+
+
 def guarded(program: str, run: Callable[[], int], own_process: bool) -> int:
     """The exit code of ``run``; its errors are reported in the name of ``program``.
 
@@ -91,7 +103,7 @@ def _guarded(program: str, run: Callable[[], int], own_process: bool) -> int:
         return STOPPED
     except MultibotError as error:
         say(str(error), program)
-        return UNUSABLE
+        return MISSING if isinstance(error, Unusable) else UNUSABLE
     except BrokenPipeError:
         say("standard output was closed before everything was written", program)
         return STOPPED

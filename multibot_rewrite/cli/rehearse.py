@@ -13,8 +13,7 @@ from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.cli import fleet, live, pictures
 from multibot_rewrite.cli.check import conclude
 from multibot_rewrite.cli.declared.fleet import EVERY_WAY
-from multibot_rewrite.cli.output import note, say, write_files
-from multibot_rewrite.cli.process import PROGRAM
+from multibot_rewrite.cli.output import note, write_files
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.fleet.fleet import Fleet, expected
 from multibot_rewrite.live.rehearsal import (
@@ -26,7 +25,7 @@ from multibot_rewrite.live.rehearsal import (
     with_substitutes,
 )
 from multibot_rewrite.producers.ros.child import RUN_STUBS, observe, running
-from multibot_rewrite.producers.ros.request import Request, RosUnusable, to_text
+from multibot_rewrite.producers.ros.request import Request, to_text
 from multibot_rewrite.rules.check import check
 from multibot_rewrite.spelling.transforms import Edges, with_odometry
 from multibot_rewrite.spelling.ways import WAYS
@@ -46,24 +45,15 @@ def run(options: argparse.Namespace) -> int:
     # Nodes that stand in for others have none of their parameters.
     plan, table = expected(made)._replace(parameters=()), fleet.findings(options, made)
     edges, added = _edges(made)
-    nodes = [
-        *stub_nodes(made.table, edges, _left_out(options)),
-        *bridge_stub(plan.topics),
-    ]
+    nodes = [*stub_nodes(made.table, edges, _left_out(options)), *bridge_stub(plan.topics)]
     environ = stage(options.domain)
-    try:
-        with _running(split_over_processes(nodes), environ) as replaced:
-            for it in added:
-                note(
-                    options, f"note: {it} comes from a driver or simulator; the rehearsal sends it"
-                )
-            note(options, f"{plural(len(nodes), 'node')} in domain {environ['ROS_DOMAIN_ID']}")
-            plan = with_substitutes(plan, replaced)
-            request = Request(options.timeout or live.LOOK_SECONDS, substitutes=True)
-            graph = _without_places(_look(request, environ, plan))
-    except RosUnusable as error:
-        say(str(error), PROGRAM)
-        return live.NO_ROS
+    with _running(split_over_processes(nodes), environ) as replaced:
+        for it in added:
+            note(options, f"note: {it} comes from a driver or simulator; the rehearsal sends it")
+        note(options, f"{plural(len(nodes), 'node')} in domain {environ['ROS_DOMAIN_ID']}")
+        plan = with_substitutes(plan, replaced)
+        request = Request(options.timeout or live.LOOK_SECONDS, substitutes=True)
+        graph = _without_places(_look(request, environ, plan))
     if options.save_snapshot:
         write_files(options, [(options.save_snapshot, to_json(graph))])
     _note_substitutes(options, replaced)

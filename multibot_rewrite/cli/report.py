@@ -7,16 +7,14 @@ import sys
 from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
 
-from multibot_rewrite.base.findings.codes import known_beginnings, no_rule
+from multibot_rewrite.base.findings.codes import check_codes
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.findings.formats import Report, rendered
-from multibot_rewrite.base.findings.grouping import grouped
 from multibot_rewrite.base.findings.rule import Rule
-from multibot_rewrite.base.findings.selection import Selection, fails, selected
+from multibot_rewrite.base.findings.selection import Selection, fails, grouped, selected
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.cli.output import deliver, print_bytes, prints_colour
-from multibot_rewrite.cli.terminal import is_coloured
+from multibot_rewrite.cli.output import deliver, is_coloured, print_bytes, prints_colour
 
 TEXT = "text"
 NO_ROBOTS: Mapping[str, str] = MappingProxyType({})
@@ -41,22 +39,14 @@ def check_report(options: argparse.Namespace, printed: bool) -> None:
     """Raise UsageError for a code that no rule has, or where findings and a result would both go to
     standard output; ``printed`` is whether the result does."""
     for option, codes in (("--select", options.select), ("--ignore", options.ignore)):
-        _check_codes(option, codes)
+        if codes:
+            from multibot_rewrite.lint.catalogue import rules  # it imports every check
+
+            check_codes(codes, option, rules())
     if printed and options.format != TEXT:
         raise UsageError(
             f"--format {options.format} prints the findings; name a file for the result with -o"
         )
-
-
-def _check_codes(option: str, codes: Sequence[str]) -> None:
-    if not codes:
-        return
-    from multibot_rewrite.lint.catalogue import rules  # it imports every check
-
-    known = known_beginnings(rules())
-    for code in codes:
-        if code not in known:
-            raise UsageError(f"{option}: {no_rule(code, rules(), 'multibot explain')}")
 
 
 def chosen(options: argparse.Namespace, findings: Iterable[Finding]) -> list[Finding]:

@@ -11,23 +11,19 @@ from multibot_rewrite.base.config import configured_vocabulary
 from multibot_rewrite.base.naming import SEPARATORS
 from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.releases import facts_of_release
-from multibot_rewrite.cli.output import (
-    STANDARD,
-    say,
-    serves_a_program,
-)
+from multibot_rewrite.cli.output import STANDARD, serves_a_program
 from multibot_rewrite.cli.process import DONE, STOPPED
-from multibot_rewrite.cli.report import (
-    About,
-    by_themselves,
-    chosen,
-    report_beside,
+from multibot_rewrite.cli.rewrite_use import (
+    check_unread,
+    check_use,
+    deliver,
+    input_name,
+    is_stopped,
+    tell,
 )
-from multibot_rewrite.cli.rewrite_output import deliver, tell, told
-from multibot_rewrite.cli.rewrite_use import check_unread, check_use, input_name
-from multibot_rewrite.cli.usage import policy, robots, xacro_args
+from multibot_rewrite.cli.usage import rewriting, robots, xacro_args
 from multibot_rewrite.cli.walk import standard_input
-from multibot_rewrite.companions.kinds import is_text_beside
+from multibot_rewrite.companions.kinds import is_beside
 from multibot_rewrite.description.checks.verdict import not_proved
 from multibot_rewrite.description.library import Rewrite, rewrite_all, strip
 from multibot_rewrite.description.sources.own_names import filled, name_robot
@@ -39,10 +35,6 @@ WORDS = {"stem": "topic word"}
 
 def run(options: argparse.Namespace) -> int:
     """Rewrite, undo or explain; returns the exit code."""
-    if options.explain is not None:
-        from multibot_rewrite.cli import explain  # a rewrite does not need it
-
-        return explain.of_option(options)
     if options.why is not None:
         from multibot_rewrite.cli import why
 
@@ -53,7 +45,7 @@ def run(options: argparse.Namespace) -> int:
     check_use(options, names)
     options.vocabulary = [*configured_vocabulary(options.input), *options.vocabulary]
     source: Source = standard_input() if options.input == "-" else options.input
-    if is_text_beside(source):
+    if is_beside(source):
         from multibot_rewrite.cli import rewrite_file  # a description needs none of it
 
         return rewrite_file.run(options, source, names)
@@ -74,27 +66,15 @@ def _undo(options: argparse.Namespace, source: Source, names: list[str]) -> int:
 
 
 def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> int:
-    rewrites = rewrite_all(
-        source,
-        names,
-        **policy(options),
-        urdf=options.urdf,
-        xacro_args=xacro_args(options),
-        vocabulary=options.vocabulary,
-        again=options.again,
-        file=input_name(options),
-        trust=options.trust,
-        distro=options.distro or "",
-    )
+    file, given = input_name(options), rewriting(options)
+    rewrites = rewrite_all(source, names, again=options.again, file=file, **given)
     first = next(rewrites)
     # Robots with descriptions of their own are all made before the first is here.
     others = list(rewrites) if first.prepared.job.naming.own else []
     jobs = dict.fromkeys(it.prepared for it in (first, *others))
     check_unread(options, names, (path for it in jobs for path in it.job.read.files))
-    about = About([input_name(options)], by_themselves(names), first.distro)
-    found = dict.fromkeys(finding for it in (first, *others) for finding in it.findings)
-    if report_beside(options, told(options, chosen(options, found)), about):
-        say(f"--fail-on {options.fail_on}: nothing was written", options.program)
+    found = (finding for it in (first, *others) for finding in it.findings)
+    if is_stopped(options, found, names, first.distro):
         return STOPPED
     results = ((it.robot, it.prepared.job.data, it.data) for it in chain([first], others, rewrites))
     own = {it.robot: it for it in others}
@@ -106,20 +86,10 @@ def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> i
 
 
 def _strip(options: argparse.Namespace, source: bytes, robot: str) -> bytes:
-    name, vocabulary = input_name(options), options.vocabulary
-    extra = policy(options)
-    return strip(
-        source,
-        robot,
-        urdf=options.urdf,
-        xacro=options.xacro,
-        xacro_args=xacro_args(options) if options.xacro else None,
-        vocabulary=vocabulary,
-        file=name,
-        trust=options.trust,
-        distro=options.distro or "",
-        **extra,
-    )
+    given = rewriting(options)
+    if not options.xacro:
+        given["xacro_args"] = None
+    return strip(source, robot, xacro=options.xacro, file=input_name(options), **given)
 
 
 def changes_json(rewrites: Sequence[Rewrite]) -> bytes:

@@ -7,12 +7,9 @@ import argparse
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.releases import facts_of_release, release_here
-from multibot_rewrite.cli.output import say
 from multibot_rewrite.cli.process import DONE, STOPPED
-from multibot_rewrite.cli.report import About, by_themselves, chosen, report_beside
-from multibot_rewrite.cli.rewrite_output import deliver, tell, told
-from multibot_rewrite.cli.rewrite_use import check_unread, input_name
-from multibot_rewrite.cli.usage import policy, xacro_args
+from multibot_rewrite.cli.rewrite_use import check_unread, deliver, input_name, is_stopped, tell
+from multibot_rewrite.cli.usage import rewriting
 from multibot_rewrite.companions.kinds import BRIDGE, LUA, MOVEIT, PARAMS, RVIZ, TREE
 from multibot_rewrite.description.sources.read import Source, read_whole
 from multibot_rewrite.fleet.one_file import RewrittenFile, rewrite_files
@@ -33,24 +30,10 @@ def run(options: argparse.Namespace, source: Source, names: list[str]) -> int:
         if getattr(options, option):
             raise UsageError(f"--{option} is for descriptions, {input_name(options)} is none")
     before = read_whole(source, {}, options.trust)
-    made = rewrite_files(
-        before.data,
-        names,
-        **policy(options),
-        urdf=options.urdf,
-        xacro_args=xacro_args(options),
-        vocabulary=options.vocabulary,
-        file=input_name(options),
-        trust=options.trust,
-        distro=options.distro or "",
-    )
-    every = list(made)
+    every = list(rewrite_files(before.data, names, file=input_name(options), **rewriting(options)))
     check_unread(options, names, before.read)
     release = release_here(options.distro or "")
-    about = About([input_name(options)], by_themselves(names), release)
-    found = dict.fromkeys(finding for it in every for finding in it.findings)
-    if report_beside(options, told(options, chosen(options, found)), about):
-        say(f"--fail-on {options.fail_on}: nothing was written", options.program)
+    if is_stopped(options, (finding for it in every for finding in it.findings), names, release):
         return STOPPED
     results = ((it.robot, before.data, it.data) for it in every)
     deliver(options, results, [], len(names))

@@ -5,10 +5,22 @@ from __future__ import annotations
 import argparse
 import os
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from itertools import chain
 
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.selection import fails
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.cli.report import check_report
+from multibot_rewrite.cli.output import (
+    diff,
+    note,
+    print_bytes,
+    prints_colour,
+    say,
+    watched,
+    write_files,
+)
+from multibot_rewrite.cli.report import About, by_themselves, check_report, chosen, report_beside
 from multibot_rewrite.cli.usage import xacro_args
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.description.sources.read import is_xacro
@@ -34,7 +46,8 @@ def check_use(options: argparse.Namespace, names: list[str]) -> None:
     _check_path("--output", options.output, PLACEHOLDER)
     _check_path("--changes", options.changes, "")
     if len(names) > 1 and not options.diff and PLACEHOLDER not in (options.output or ""):
-        raise UsageError("several robots need one file each: -o 'out/{robot}.urdf'")
+        ending = os.path.splitext(options.input)[1] or ".urdf"
+        raise UsageError(f"several robots need one file each: -o 'out/{{robot}}{ending}'")
     _check_targets(
         options, [target_path(options.output, robot) for robot in names if options.output]
     )
@@ -100,3 +113,43 @@ def input_name(options: argparse.Namespace) -> str:
         return "<stdin>"
     expanded = " (expanded)" if is_xacro(options.input) else ""
     return f"{options.input}{expanded}"
+
+
+def is_stopped(
+    options: argparse.Namespace, found: Iterable[Finding], robots: Sequence[str], release: str
+) -> bool:
+    """Report what was found, to a program only what stops the rewrite; does it stop it?"""
+    findings: Sequence[Finding] = chosen(options, dict.fromkeys(found))
+    if options.silent and not fails(findings, options.fail_on):
+        findings = ()
+    about = About([input_name(options)], by_themselves(robots), release)
+    stops = report_beside(options, findings, about)
+    if stops:
+        say(f"--fail-on {options.fail_on}: nothing was written", options.program)
+    return stops
+
+
+def tell(options: argparse.Namespace, text: str) -> None:
+    """A line beside the result, unless a program reads it."""
+    if not options.silent:
+        note(options, text)
+
+
+def deliver(
+    options: argparse.Namespace,
+    results: Iterable[tuple[str, bytes, bytes]],
+    more: list[tuple[str, bytes]],
+    total: int,
+) -> None:
+    """Print or write the results (robot, before, after) as they are made, and ``more`` files."""
+    target = options.input if options.in_place else options.output
+    if target:
+        files = ((target_path(target, robot), data) for robot, _, data in results)
+        write_files(options, watched(chain(more, files), total, "writing"))
+        return
+    write_files(options, more)
+    colour = prints_colour(options)
+    for robot, before, data in results:
+        name = input_name(options)
+        text = diff(before, data, name, f"{name} for {robot}", colour) if options.diff else data
+        print_bytes(text)

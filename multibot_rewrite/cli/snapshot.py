@@ -13,7 +13,7 @@ from multibot_rewrite.cli.output import STANDARD, deliver, note, say
 from multibot_rewrite.cli.process import DONE, PROGRAM
 from multibot_rewrite.cli.tables import Grid, deliver_report
 from multibot_rewrite.cli.walk import check_folder, check_target
-from multibot_rewrite.producers.ros.request import Request, RosUnusable
+from multibot_rewrite.producers.ros.request import Request
 from multibot_rewrite.producers.rosgraph.writing import to_yaml
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.reach import machines
@@ -51,11 +51,7 @@ def run(options: argparse.Namespace) -> int:
     request = Request(
         options.timeout or live.LOOK_SECONDS, tuple(options.expect), tuple(options.topic)
     )
-    try:
-        snapshot = live.with_states(options, live.graph(options, request))
-    except RosUnusable as error:
-        say(str(error), PROGRAM)
-        return live.NO_ROS
+    snapshot = live.with_states(options, live.graph(options, request))
     if options.output is None and options.form is None:
         deliver_report(options, report(snapshot))
     else:

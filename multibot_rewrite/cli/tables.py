@@ -17,7 +17,6 @@ JSON = "json"
 # Columns with these names are set to the right.
 NUMBERS = ("count", "files", "rows")
 GAP = "  "
-_LONGEST = 60
 # Where a cell may be folded: behind a blank, or behind a slash inside a name.
 _PIECE = re.compile(r"[^ /]*(?:/+|\s+|$)")
 
@@ -121,12 +120,6 @@ def _as_lines(grid: Grid) -> Iterator[str]:
         yield from [""] * (number > 0)
         cells = zip(grid.columns, row, strict=True)
         yield from (f"{name.ljust(longest)}  {text}" for name, text in cells if text)
-
-
-def clip(text: str) -> str:
-    """A value on one line and not longer than a line can show."""
-    line = " ".join(text.split())
-    return line if len(line) <= _LONGEST else f"{line[: _LONGEST - 1]}…"
 
 
 def json_bytes(value: object) -> bytes:

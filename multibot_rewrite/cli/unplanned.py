@@ -28,9 +28,8 @@ from multibot_rewrite.live.diagnose import Diagnosis, diagnose, survey
 from multibot_rewrite.live.seen_plan import seen_plan
 from multibot_rewrite.live.suggestion import FILES, suggestion
 from multibot_rewrite.live.watching import Outcome, Verdict, final
-from multibot_rewrite.producers.bags.read import BagsUnusable, read_bag
+from multibot_rewrite.producers.bags.read import read_bag
 from multibot_rewrite.producers.bags.recording import as_snapshot, counted, is_recorded
-from multibot_rewrite.producers.ros.request import RosUnusable
 from multibot_rewrite.rules.check import doubts
 from multibot_rewrite.system.records import System
 from multibot_rewrite.system.tool_nodes import is_tool
@@ -45,13 +44,7 @@ WORDS = {
 def run(options: argparse.Namespace) -> int:
     """Look, report, sum up; returns the exit code."""
     _check_use(options)
-    try:
-        if options.watch:
-            return _watch(options)
-        return report_on(options, _diagnosis(options))
-    except (RosUnusable, BagsUnusable) as error:
-        say(str(error), PROGRAM)
-        return live.NO_ROS
+    return _watch(options) if options.watch else report_on(options, _diagnosis(options))
 
 
 def _diagnosis(options: argparse.Namespace) -> Diagnosis:
@@ -63,8 +56,6 @@ def _diagnosis(options: argparse.Namespace) -> Diagnosis:
 
 def _check_use(options: argparse.Namespace) -> None:
     live.check_source(options)
-    if options.built:
-        raise UsageError("--built is compared with a plan: name PLAN")
     if options.watch and (options.select or options.ignore or options.format != TEXT):
         raise UsageError("--watch shows every finding: leave out --select, --ignore and --format")
     check_report(options, printed=False)
@@ -72,15 +63,11 @@ def _check_use(options: argparse.Namespace) -> None:
     if options.output:
         check_target(options.output, options.snapshot)
     if options.suggest:
-        _check_suggest(options)
-
-
-def _check_suggest(options: argparse.Namespace) -> None:
-    for name in FILES:
-        path = os.path.join(options.suggest, name)
-        check_folder(path)
-        if os.path.lexists(path):
-            raise UsageError(f"{path} is there already; name another folder with --suggest")
+        for name in FILES:
+            path = os.path.join(options.suggest, name)
+            check_folder(path)
+            if os.path.lexists(path):
+                raise UsageError(f"{path} is there already; name another folder with --suggest")
 
 
 def report_on(options: argparse.Namespace, seen: Diagnosis) -> int:

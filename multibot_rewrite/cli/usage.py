@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import ROS_SEPARATORS, SEPARATORS
@@ -25,6 +25,18 @@ def policy(options: argparse.Namespace) -> Policy:
     if options.separator:
         words["separators"] = separators(options)
     return words
+
+
+def rewriting(options: argparse.Namespace) -> dict[str, Any]:
+    """What the options say to every call of the library that rewrites, undoes or explains."""
+    return {
+        **policy(options),
+        "urdf": options.urdf,
+        "xacro_args": xacro_args(options),
+        "vocabulary": options.vocabulary,
+        "trust": options.trust,
+        "distro": options.distro or "",
+    }
 
 
 def separators(options: argparse.Namespace) -> dict[str, str]:

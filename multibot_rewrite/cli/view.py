@@ -10,40 +10,32 @@ from typing import Any
 from multibot_rewrite.base.model import MultibotError, UsageError
 from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.wording import SEVERAL, shorten
-from multibot_rewrite.cli.output import deliver, note, say
-from multibot_rewrite.cli.process import DONE, PROGRAM
+from multibot_rewrite.cli.output import deliver, note
+from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.usage import check_xacro, policy, robots, xacro_args
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.fleet.file.fleet_file import input_files, read_fleet
-from multibot_rewrite.fleet.file.fleet_or_plan import is_fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.fleet.manifest import hash_of, inputs_of
 from multibot_rewrite.pages.page import Framed
 from multibot_rewrite.pages.view.heard import moved
-from multibot_rewrite.pages.view.models import ViewUnusable
 from multibot_rewrite.pages.view.page import Meshes, meshes_of, title_of, to_frame, to_html
 from multibot_rewrite.pages.view.scene import ViewedRobot, scene_of
-from multibot_rewrite.producers.bags.read import BagsUnusable, read_bag
+from multibot_rewrite.producers.bags.read import read_bag
 from multibot_rewrite.producers.bags.recording import as_snapshot
 from multibot_rewrite.producers.snapshot_file import read_snapshots
+from multibot_rewrite.spelling.plan_file import is_fleet
 from multibot_rewrite.system.records import System
-
-NO_VIEW = 4
 
 
 def run(options: argparse.Namespace) -> int:
     """Rewrite, load, write the page; returns the exit code."""
     plan = _plan(options)
     check_target(options.output, [*input_files(plan.file), *options.snapshot])
-    try:
-        graph = _graph(options)
-        scene = scene_of(plan, graph)
-        meshes = meshes_of(scene)
-        page = to_html(scene, meshes, title_of(scene.robots, plan.fleet.naming.layout.name))
-    except (ViewUnusable, BagsUnusable) as error:
-        say(str(error), PROGRAM)
-        return NO_VIEW
+    scene = scene_of(plan, _graph(options))
+    meshes = meshes_of(scene)
+    page = to_html(scene, meshes, title_of(scene.robots, plan.fleet.naming.layout.name))
     for it in _notes(scene.robots, meshes):
         note(options, f"note: {it}")
     deliver(options, page)
@@ -87,7 +79,7 @@ def framed(options: argparse.Namespace, graph: System) -> Framed | None:
     """
     given = vars(options)
     try:
-        file = options.view or (_fleet_file(options.plan) if given.get("plan") else "")
+        file = _fleet_file(options.plan) if given.get("plan") else ""
         if not (file or given.get("input")):
             return None
         plan = _fleet(options, file) if file else _plan(options)

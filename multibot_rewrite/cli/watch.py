@@ -22,9 +22,7 @@ Look = Callable[[System], tuple[System, Sequence[Finding]]]
 
 
 def follow(
-    look: Look,
-    snapshots: Generator[System, None, None],
-    words: Mapping[Verdict, str] = WORDS,
+    look: Look, snapshots: Generator[System, None, None], words: Mapping[Verdict, str] = WORDS
 ) -> WatchState | None:
     """Show every change until the snapshots end or the user ends it; the last state."""
     state: WatchState | None = None
@@ -82,12 +80,10 @@ def _parts(words: Mapping[Verdict, str], state: WatchState) -> Iterator[str | Gr
     yield Grid(("robot", "nodes", "names", "findings"), rows[:_SHOWN])
     yield from _more(len(rows), "robots")
     yield ""
-    yield from map(str, _worst_first(state.findings)[:_SHOWN])
+    yield from map(
+        str, sorted(state.findings, key=lambda finding: finding.level != "error")[:_SHOWN]
+    )
     yield from _more(len(state.findings), "findings")
-
-
-def _worst_first(found: tuple[Finding, ...]) -> list[Finding]:
-    return sorted(found, key=lambda finding: finding.level != "error")
 
 
 def _more(count: int, what: str) -> Iterator[str]:

@@ -9,7 +9,8 @@ from multibot_rewrite.base.config import configured_vocabulary
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.tables import deliver_report
-from multibot_rewrite.cli.usage import policy, robots, xacro_args
+from multibot_rewrite.cli.usage import rewriting, robots
+from multibot_rewrite.companions.kinds import is_beside
 from multibot_rewrite.description.library import explain
 from multibot_rewrite.description.reports.explain import Explanation
 
@@ -19,20 +20,13 @@ EXAMPLE_ROBOT = "robot1"
 def run(options: argparse.Namespace) -> int:
     """Print an explanation of every value on the line."""
     path, line = _place(options.why)
+    if is_beside(path):
+        raise UsageError(f"--why is for descriptions, {path} is none; --diff shows what changes")
     # The file is in the option: what stands first is a robot or a xacro argument.
     options.words[:0] = [options.input] if options.input else []
     robot = next(iter(robots(options)), EXAMPLE_ROBOT)
-    found = explain(
-        path,
-        line,
-        robot,
-        urdf=options.urdf,
-        xacro_args=xacro_args(options),
-        trust=options.trust,
-        distro=options.distro or "",
-        vocabulary=[*configured_vocabulary(path), *options.vocabulary],
-        **policy(options),
-    )
+    options.vocabulary = [*configured_vocabulary(path), *options.vocabulary]
+    found = explain(path, line, robot, **rewriting(options))
     if not found:
         raise UsageError(f"{options.why}: no value starts on this line")
     deliver_report(options, (line for it in found for line in _lines(it, path, robot)))

@@ -4,35 +4,21 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import suppress
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.companions.behavior_tree.read import named_tree
-from multibot_rewrite.companions.behavior_tree.rewrite import rewrite_behavior_tree
 from multibot_rewrite.companions.bridge import rewrite_bridge
 from multibot_rewrite.companions.bridge_entry import MODEL_SLOT
 from multibot_rewrite.companions.companion import Companion
 from multibot_rewrite.companions.context import Context
-from multibot_rewrite.companions.formats import read_named
-from multibot_rewrite.companions.kinds import (
-    BRIDGE,
-    IS_TREE,
-    LUA,
-    MOVEIT,
-    PARAMS,
-    RVIZ,
-    TREE,
-    kind_of,
-)
-from multibot_rewrite.companions.lua import read_lua, rewrite_lua
+from multibot_rewrite.companions.formats import made_for_any, read_named
+from multibot_rewrite.companions.kinds import BRIDGE, MOVEIT, PARAMS, RVIZ, kind_of
 from multibot_rewrite.companions.moveit.file_kind import find_kind
-from multibot_rewrite.companions.moveit.rewrite import rewrite_moveit
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.names.rename_map import KINDS, is_declared, spell
-from multibot_rewrite.companions.params.rewrite import rewrite_params
 from multibot_rewrite.companions.rviz.read import read_rviz
 from multibot_rewrite.companions.rviz.rewrite import rewrite_rviz
 from multibot_rewrite.companions.rviz.values import RvizRobot
@@ -40,28 +26,21 @@ from multibot_rewrite.companions.sites import Site
 from multibot_rewrite.companions.template import FileTemplate, fill_template
 from multibot_rewrite.companions.yaml_text import read_yaml
 
-_Rewrite = Callable[[bytes, str, Context], Companion]
-
-
-# What tells the kind of a file that is not linted as one, or is written in braces.
-_OTHERS = (
-    (TREE, IS_TREE),
-    (PARAMS, re.compile(rb"\bros__parameters\b")),
-    (LUA, re.compile(rb"^\s*(?:tracking_frame|published_frame|map_frame)\s*=", re.MULTILINE)),
-)
+# A file of parameters that is written in braces.
+_IN_BRACES = re.compile(rb"\bros__parameters\b")
 
 
 def kind_alone(data: bytes, file: str) -> str:
     """The kind of a file by its text; InputError for a file of no kind."""
-    found = kind_of(data) or next((kind for kind, mark in _OTHERS if mark.search(data)), "")
-    if found:
-        return found
+    found = kind_of(data)
+    if found or _IN_BRACES.search(data):
+        return found or PARAMS
     with suppress(InputError):
         if find_kind(read_yaml(data, file)):
             return MOVEIT
     if not data.strip():
         raise InputError(f"{file}: the file is empty; a robot description starts with <robot>")
-    hint = "name a description, or a file of parameters, RViz, MoveIt, ros_gz_bridge, Nav2 or Lua"
+    hint = "name a description, parameters, a tree, or a file of RViz, MoveIt, ros_gz_bridge or Lua"
     raise InputError(f"{file}:1:1: it is none of the files that are rewritten; {hint}")
 
 
@@ -86,7 +65,7 @@ def rewrite_alone(
         made, template = _made(kind, data, file, context, first)
         text = fill_template(template, robot, robot).replace(MODEL_SLOT, robot)
         named, found = made.file, made.findings
-    kept = _kept(named, named_file(kind, text.encode(), file, _of(context, robot)), robot)
+    kept = _kept(named, read_named(kind, text.encode(), file, _of(context, robot)), robot)
     return OneFile(text, named, found, kept)
 
 
@@ -96,17 +75,8 @@ def _made(
     if kind == BRIDGE:
         bridge = rewrite_bridge(read_yaml(data, file), context)
         return bridge.own, bridge.whole if first else bridge.own.template
-    made = _REWRITES[kind](data, file, context)
+    made = made_for_any(kind, data, file, context)
     return made, made.template
-
-
-def named_file(kind: str, data: bytes, file: str, context: Context) -> NamedFile:
-    """The names of a file of any kind; raises InputError for one that its reader rejects."""
-    if kind == TREE:
-        return named_tree(data, file, context)
-    if kind == LUA:
-        return read_lua(_text(data, file), file, context)
-    return read_named(kind, read_yaml(data, file), context)
 
 
 def _of(context: Context, robot: str) -> Context:
@@ -138,13 +108,6 @@ def _declared(file: NamedFile) -> Iterator[Site]:
 _PARTS = frozenset(("link", "joint", "frame", "sensor", "gpio"))
 
 
-def _text(data: bytes, file: str) -> str:
-    try:
-        return data.decode()
-    except UnicodeDecodeError:
-        raise InputError(f"{file}: it is not UTF-8; save it as UTF-8") from None
-
-
 def _shown(
     data: bytes, file: str, context: Context, robot: str
 ) -> tuple[str, NamedFile, tuple[Finding, ...]]:
@@ -152,23 +115,3 @@ def _shown(
     names, topics = (it._replace(robot=robot) for it in (context.names, context.topics))
     texts, found = rewrite_rviz(document, [RvizRobot(robot, names, topics)])
     return texts[0].text, read_rviz(document, context), found
-
-
-def _params(data: bytes, file: str, context: Context) -> Companion:
-    return rewrite_params(read_yaml(data, file), context)
-
-
-def _moveit(data: bytes, file: str, context: Context) -> Companion:
-    return rewrite_moveit(read_yaml(data, file), context)
-
-
-def _lua(data: bytes, file: str, context: Context) -> Companion:
-    return rewrite_lua(_text(data, file), file, context)
-
-
-_REWRITES: Mapping[str, _Rewrite] = {
-    PARAMS: _params,
-    MOVEIT: _moveit,
-    TREE: rewrite_behavior_tree,
-    LUA: _lua,
-}

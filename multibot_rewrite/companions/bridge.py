@@ -14,7 +14,6 @@ from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import POSTFIX
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.companions.bridge_checks import model_of, other_models, shared_services
 from multibot_rewrite.companions.bridge_entry import (
     BOTH,
     FRAME,
@@ -28,6 +27,7 @@ from multibot_rewrite.companions.bridge_entry import (
     BridgeEntry,
     below,
     faults,
+    model_of,
     row_of,
     text_in,
 )
@@ -93,9 +93,8 @@ def rewrite_bridge(
         else make_template("", ())
     )
     text = cut_out(document, 0, len(document.text), _only(document, shared)) if shared else ""
-    found = (*other_models(document, model_of(document)), *shared_services(document, entries))
     whole = make_template(document.text, [*_only(document, entries), *splices])
-    return BridgeFile(Companion(template, found, named), text, whole)
+    return BridgeFile(Companion(template, named), text, whole)
 
 
 def read_bridge(document: YamlText, context: Context) -> NamedFile:

@@ -10,10 +10,11 @@ from collections.abc import Iterator, Mapping
 
 import yaml
 
+from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.yaml_blocks import Block
-from multibot_rewrite.companions.yaml_text import pairs
+from multibot_rewrite.companions.yaml_text import YamlText, items, pairs
 
 # Stands for the name of the spawned model: it may differ from the namespace and the tag.
 MODEL_SLOT = "multibotModelSlot"
@@ -108,3 +109,17 @@ def _lacks(row: Row) -> str:
 def below(name: str, above: str) -> str:
     """A ROS name of a bridge that runs in a namespace below the robot's."""
     return f"/{above}/{name}" if above and not name.startswith("/") else name
+
+
+def models(document: YamlText) -> Iterator[tuple[yaml.Node, str]]:
+    """Each entry that is for a model, with the model."""
+    for node in items(document.root):
+        for key in (BOTH, GZ):
+            found = GZ_MODEL.fullmatch(text_in(row_of(node), key))
+            if found and not PLACEHOLDER.search(found["model"]):
+                yield node, found["model"]
+
+
+def model_of(document: YamlText) -> str:
+    """The model that a file is for: the first in its gz topics, empty for none."""
+    return next((name for _, name in models(document)), "")

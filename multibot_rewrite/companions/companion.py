@@ -9,8 +9,8 @@ from multibot_rewrite.companions.template import FileTemplate
 
 
 class Companion(NamedTuple):
-    """A companion file as a template for any robot, the findings about that, and what was read."""
+    """A companion file as a template for any robot, what was read, and what only its rewrite finds."""
 
     template: FileTemplate
-    findings: tuple[Finding, ...]
     file: NamedFile
+    findings: tuple[Finding, ...] = ()

@@ -1,34 +1,58 @@
-"""The kinds of files beside a description, each with its reader."""
+"""The kinds of files beside a description: how each is read, and made for any robot."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 
+from multibot_rewrite.companions.behavior_tree.read import named_tree
+from multibot_rewrite.companions.behavior_tree.rewrite import rewrite_behavior_tree
 from multibot_rewrite.companions.bridge import read_bridge
+from multibot_rewrite.companions.companion import Companion
 from multibot_rewrite.companions.context import Context
-from multibot_rewrite.companions.kinds import BRIDGE, MOVEIT, PARAMS, RVIZ
+from multibot_rewrite.companions.kinds import BRIDGE, LUA, MOVEIT, PARAMS, RVIZ, TREE
+from multibot_rewrite.companions.lua import read_lua, rewrite_lua
 from multibot_rewrite.companions.moveit.read import read_moveit
+from multibot_rewrite.companions.moveit.rewrite import rewrite_moveit
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.read import read_params
+from multibot_rewrite.companions.params.rewrite import rewrite_params
 from multibot_rewrite.companions.rviz.read import read_rviz
-from multibot_rewrite.companions.yaml_text import YamlText
+from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.knowledge.parameters import built_in_nodes
+from multibot_rewrite.knowledge.records import NodeFacts
 
-Reader = Callable[[YamlText, Context], NamedFile]
+_Reader = Callable[[bytes, str, Context], NamedFile]
+_Writer = Callable[[bytes, str, Context, Iterable[NodeFacts]], Companion]
 
 
-def read_named(kind: str, document: YamlText, context: Context) -> NamedFile:
+def read_named(kind: str, data: bytes, file: str, context: Context) -> NamedFile:
     """The names of a file of a kind; raises InputError for one that its reader rejects."""
-    return READERS[kind](document, context)
+    return _READERS[kind](data, file, context)
 
 
-def _params(document: YamlText, context: Context) -> NamedFile:
-    return read_params(document, context, built_in_nodes(context.distro))
+def made_for_any(
+    kind: str, data: bytes, file: str, context: Context, facts: Iterable[NodeFacts] = ()
+) -> Companion:
+    """A file with slots for a robot; ``facts`` are those of the robot's nodes, whose remap rules move
+    topics too. RViz and bridges are for all robots. Raises InputError as ``read_named``."""
+    return _WRITERS[kind](data, file, context, facts)
 
 
-READERS: Mapping[str, Reader] = {
-    PARAMS: _params,
-    RVIZ: read_rviz,
-    MOVEIT: read_moveit,
-    BRIDGE: read_bridge,
+_READERS: Mapping[str, _Reader] = {
+    PARAMS: lambda data, file, context: read_params(
+        read_yaml(data, file), context, built_in_nodes(context.distro)
+    ),
+    RVIZ: lambda data, file, context: read_rviz(read_yaml(data, file), context),
+    MOVEIT: lambda data, file, context: read_moveit(read_yaml(data, file), context),
+    BRIDGE: lambda data, file, context: read_bridge(read_yaml(data, file), context),
+    TREE: named_tree,
+    LUA: read_lua,
+}
+_WRITERS: Mapping[str, _Writer] = {
+    PARAMS: lambda data, file, context, facts: rewrite_params(
+        read_yaml(data, file), context, facts=facts
+    ),
+    MOVEIT: lambda data, file, *more: rewrite_moveit(read_yaml(data, file), *more),
+    TREE: lambda data, file, context, _: rewrite_behavior_tree(data, file, context),
+    LUA: lambda data, file, context, _: rewrite_lua(data, file, context),
 }

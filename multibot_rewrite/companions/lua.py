@@ -10,8 +10,6 @@ import re
 from collections.abc import Iterator, Sequence
 from functools import partial
 
-from multibot_rewrite.base.findings.finding import WARNING
-from multibot_rewrite.base.findings.rule import Rule, declare
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.companion import Companion
@@ -19,7 +17,6 @@ from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.engine import name_splices, text_of
 from multibot_rewrite.companions.kinds import LUA
 from multibot_rewrite.companions.named_file import NamedFile
-from multibot_rewrite.companions.names.by_kind import frames_differ
 from multibot_rewrite.companions.sites import AS_IS, Site, Slot
 from multibot_rewrite.companions.template import (
     check_no_slots,
@@ -69,30 +66,29 @@ class LuaOption(NamedTuple):
     value: Token | None
 
 
-def rewrite_lua(text: str, file: str, context: Context) -> Companion:
-    """A Lua file with slots for a robot, and the findings about it.
+def rewrite_lua(data: bytes, file: str, context: Context) -> Companion:
+    """A Lua file with slots for a robot.
 
-    Only ``name = "frame"`` is rewritten; any other assignment is reported. Raises InputError for
-    strings and comments that do not end.
+    Only ``name = "frame"`` is rewritten; any other assignment is ``computed``. Raises InputError for
+    strings and comments that do not end, and text that is not UTF-8.
     """
+    text = _text(data, file)
     check_no_slots(text, file)
-    tokens = list(tokens_of(text, file))
-    options = list(_options(tokens))
-    named = _named(text, file, context, tokens, options)
-    found = [
-        rule.finding(message, hint, file=file, line=line, column=column)
-        for at, rule, message, hint in (*_about(context, options), *_includes(tokens))
-        for line, column in [_place(text, at)]
-    ]
-    found.sort(key=lambda it: (it.line, it.column, it.code))
+    named = _named(text, file, context)
     splices = name_splices(named, partial(text_of, context, {}))
-    return Companion(make_template(text, splices), tuple(found), named)
+    return Companion(make_template(text, splices), named)
 
 
-def read_lua(text: str, file: str, context: Context) -> NamedFile:
+def read_lua(data: bytes, file: str, context: Context) -> NamedFile:
     """The names of a file; raises as ``rewrite_lua``."""
-    tokens = list(tokens_of(text, file))
-    return _named(text, file, context, tokens, list(_options(tokens)))
+    return _named(_text(data, file), file, context)
+
+
+def _text(data: bytes, file: str) -> str:
+    try:
+        return data.decode()
+    except UnicodeDecodeError:
+        raise InputError(f"{file}: it is not UTF-8; save it as UTF-8") from None
 
 
 def tokens_of(text: str, file: str) -> Iterator[Token]:
@@ -133,85 +129,26 @@ def _ends(tokens: Sequence[Token], at: int) -> bool:
     return tokens[at].kind == "name" and tokens[at].text not in ("and", "or")
 
 
-class _Problem(NamedTuple):
-    """What is wrong at a place of the text."""
-
-    at: int
-    rule: Rule
-    message: str
-    hint: str
-
-
-NOT_PLAIN = declare(
-    "MF451",
-    "lua-frame-not-plain",
-    WARNING,
-    what="A frame of Cartographer is not a plain string, so it stays unchanged.",
-    why="Its value is known only when Lua runs the file. If it is the same for each robot, all "
-    "robots publish the same frame.",
-    fix="Write the name in quotes, as for a single robot.",
-    bad="""\
-options = {
-  tracking_frame = "base" .. "_link",
-}
-""",
-    good="""\
-options = {
-  tracking_frame = "base_link",
-}
-""",
-    line=2,
-    formats=("lua",),
-)
-
-
-def _about(context: Context, options: Sequence[LuaOption]) -> Iterator[_Problem]:
-    for name, value in options:
-        if value is None and frames_differ(context):
-            message = f"{name.text} is not a plain string, so it stays unchanged"
-            hint = "each robot needs its own frame here; write the name in quotes"
-            yield _Problem(name.at, NOT_PLAIN, message, hint)
-
-
-INCLUDE = declare(
-    "MF453",
-    "lua-include-not-checked",
-    WARNING,
-    what="A Lua file includes another one that is not a file of Cartographer itself.",
-    why="The included file is not checked and not rewritten with this one. If it sets frames, "
-    "they are the same for all robots.",
-    fix="If it sets frames, list it under lua as well.",
-    bad="""\
-include "my_frames.lua"
-options = {tracking_frame = "base_link"}
-""",
-    good="""\
-include "map_builder.lua"
-options = {tracking_frame = "base_link"}
-""",
-    formats=("lua",),
-)
-
-
-def _includes(tokens: Sequence[Token]) -> Iterator[_Problem]:
+def _included(tokens: Sequence[Token]) -> Iterator[Token]:
+    """The names of included files, in their quotes; those of Cartographer are known."""
     for at, token in enumerate(tokens):
         behind = [it for it in tokens[at + 1 : at + 3] if it.text != "("][:1]
-        if token.text != "include" or not behind or behind[0].kind not in ("string", "long"):
-            continue
-        if behind[0].text.strip("\"'[]=") not in OWN_FILES:
-            message = f"the included file {behind[0].text} is not checked"
-            hint = "if it sets frames, list it under lua as well"
-            yield _Problem(token.at, INCLUDE, message, hint)
+        if token.text == "include" and behind and behind[0].kind in ("string", "long"):
+            yield from (it for it in behind if it.text.strip("\"'[]=") not in OWN_FILES)
 
 
-def _named(
-    text: str, file: str, context: Context, tokens: Sequence[Token], options: Sequence[LuaOption]
-) -> NamedFile:
+def _named(text: str, file: str, context: Context) -> NamedFile:
+    tokens = list(tokens_of(text, file))
+    options = list(_options(tokens))
     values = {it.value.at: (it.name.text, it.value) for it in options if it.value}
     names = tuple(_site(text, "frame", it, key) for key, it in values.values())
+    computed = tuple(_site(text, "", it.name, it.name.text) for it in options if it.value is None)
     strings = (it for it in tokens if it.kind in ("string", "long") and it.at not in values)
     others = tuple(_site(text, "", it) for it in strings)
-    return NamedFile(LUA, file, text, context, {}, names, others)
+    included = tuple(_site(text, "", it) for it in _included(tokens))
+    return NamedFile(
+        LUA, file, text, context, {}, names, others, included=included, computed=computed
+    )
 
 
 def _site(text: str, kind: str, token: Token, key: str = "") -> Site:

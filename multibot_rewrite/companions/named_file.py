@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Any
 
 from multibot_rewrite.base.record import NamedTuple
@@ -20,12 +20,13 @@ class NamedFile(NamedTuple):
     """A file beside a description, as rules ask it.
 
     ``names`` are those of known kinds, ``others`` the texts of unknown use, ``twice`` the keys that
-    are repeated in one map. ``context`` has what is declared: by the robot that the file is for where
+    are repeated in one map, ``included`` the files that it includes and ``computed`` the names that are
+    only made when it runs. ``context`` has what is declared: by the robot that the file is for where
     that ``is_certain``, else by any of a package, ``is_whole`` if all of these could be read.
-    ``sent`` are frames that nodes send, ``robots`` the words that stand for robots. ``own`` stand for
-    the one robot that a file is for. ``pages`` are the sections of a parameter file, ``known``
-    the nodes that it may be for, ``shown`` the displays of RViz. ``roots`` are folders with packages,
-    ``memo`` is what rules have found out of it.
+    ``sent`` are frames that nodes send, ``robots`` the words that stand for robots. ``is_for_one`` is
+    true for a file that only one of them gets. ``pages`` are the sections of a parameter file,
+    ``known`` the nodes that it may be for, ``shown`` the displays of RViz. ``roots`` are folders with
+    packages, ``memo`` is what rules have found out of it.
     """
 
     kind: str
@@ -42,11 +43,15 @@ class NamedFile(NamedTuple):
     shown: tuple[RvizItem, ...] = ()
     is_certain: bool = True
     is_whole: bool = True
+    is_for_one: bool = False
     sent: frozenset[str] = frozenset()
     robots: frozenset[str] = frozenset()
+    own: frozenset[str] = frozenset()
     roots: tuple[str, ...] = ()
+    included: tuple[Site, ...] = ()
+    computed: tuple[Site, ...] = ()
 
     @property
-    def declared(self) -> Mapping[str, Mapping[str, object]]:
+    def declared(self) -> Mapping[str, Collection[str]]:
         """The names that the description declares, by kind; raises nothing."""
         return self.context.names.declared

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 from multibot_rewrite.base.arguments import checked
 from multibot_rewrite.base.conventions import SHARED_TOPICS, WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import WARNING, Finding
-from multibot_rewrite.base.model import Change, UsageError
+from multibot_rewrite.base.model import Change
 from multibot_rewrite.base.naming import DEFAULT_LAYOUT, make_naming
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import release_here
-from multibot_rewrite.base.rosnames import check_robot_name
+from multibot_rewrite.base.rosnames import check_robot_name, check_robot_names
 from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.checks.arguments import unread_arguments
 from multibot_rewrite.description.checks.problem import to_findings
@@ -21,9 +21,9 @@ from multibot_rewrite.description.checks.verdict import not_proved
 from multibot_rewrite.description.reports.changes import list_changes
 from multibot_rewrite.description.sources.job import Job, read_job, read_jobs
 from multibot_rewrite.description.sources.read import Source
+from multibot_rewrite.description.steps.apply import Template
 from multibot_rewrite.description.steps.collect import NOTHING, collect
 from multibot_rewrite.description.steps.document import read_document
-from multibot_rewrite.description.steps.template import Template
 
 if TYPE_CHECKING:
     from multibot_rewrite.description.reports.explain import Explanation
@@ -171,8 +171,7 @@ def rewrite_all(
     ROS_DISTRO, else the newest LTS). Raises as ``rewrite`` does, before the first result.
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
-    names = tuple(robots)
-    _check_robots(names)
+    names = check_robot_names(robots)
     given = (urdf, xacro_args, vocabulary, file, trust, release_here(distro))
     jobs = read_jobs(names, source, naming, *given)
     return rewrite_jobs(jobs, again)
@@ -180,7 +179,7 @@ def rewrite_all(
 
 def rewrite_job(job: Job, robots: Sequence[str], again: bool = False) -> Iterator[Rewrite]:
     """Rewrite what was read, raises as ``rewrite_all``."""
-    _check_robots(robots)
+    check_robot_names(robots)
     prepared = Prepared(job)
     findings = (*_unread(prepared), *prepared.template.findings)
     texts = pipeline.render(prepared.template, robots, again)
@@ -294,12 +293,3 @@ def strip(
     job = read_job(source, naming, urdf, None, vocabulary, file, (), trust, release=release)
     beside_urdf = job.urdf_declarations
     return pipeline.strip(job.data, job.file, robot, naming, job.tree, beside_urdf, before)
-
-
-def _check_robots(robots: Iterable[str]) -> None:
-    seen: set[str] = set()
-    for robot in robots:
-        check_robot_name(robot)
-        if robot in seen:
-            raise UsageError(f"robot name {robot!r} is given twice; every robot needs its own")
-        seen.add(robot)

@@ -13,20 +13,19 @@ from multibot_rewrite.description.checks import audit
 from multibot_rewrite.description.checks import robots as checks
 from multibot_rewrite.description.checks.arguments import missed_by_arguments
 from multibot_rewrite.description.checks.meeting import shared_by_all, shared_by_both, shared_with
-from multibot_rewrite.description.checks.mentions import MENTIONED, find_mentions
+from multibot_rewrite.description.checks.mentions import MENTIONED, find_mentions, usual_names
 from multibot_rewrite.description.checks.problem import Problem, to_findings
 from multibot_rewrite.description.checks.twice import already_rewritten
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.spelling import stripped_names
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.sources.own_names import OF_ALL, OwnSource
-from multibot_rewrite.description.steps.apply import cut, fill
+from multibot_rewrite.description.steps.apply import Template, cut, fill
 from multibot_rewrite.description.steps.collect import NOTHING, SRDF, Inventory, collect
 from multibot_rewrite.description.steps.document import read_document, slot_values
 from multibot_rewrite.description.steps.plan import make_plan
 from multibot_rewrite.description.steps.renames import RenameMap, make_renames
 from multibot_rewrite.description.steps.strip import NOWHERE, own_places, strip_edits
-from multibot_rewrite.description.steps.template import Template
 from multibot_rewrite.description.steps.verify import verify
 
 
@@ -53,8 +52,8 @@ def prepare(
     findings += to_findings(inventory.document, missed, WARNING)
     _stop_on_errors(findings)
     names = _mentionable(inventory, plan.renames)
-    values = slot_values(inventory.document.root) if names else []
-    findings += find_mentions(inventory, values, names, tree)
+    values, usual = slot_values(inventory.document.root), usual_names(naming)
+    findings += find_mentions(inventory, values, names, tree, usual)
     pieces = cut(source, plan.edits)
     if inventory.format != SRDF:  # it starts nothing
         found = (

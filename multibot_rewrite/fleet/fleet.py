@@ -13,6 +13,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.library import rewrite_all
 from multibot_rewrite.description.sources.read import Source
 from multibot_rewrite.description.steps.collect import Inventory
+from multibot_rewrite.fleet.checks.described import left_out
 from multibot_rewrite.fleet.checks.meeting import with_meetings
 from multibot_rewrite.fleet.launch.launched_robot import (
     given_with,
@@ -20,7 +21,6 @@ from multibot_rewrite.fleet.launch.launched_robot import (
     nodes_with,
     under_plugins,
 )
-from multibot_rewrite.fleet.outputs.bridged import bridged_as
 from multibot_rewrite.fleet.robots.member import Member, line_of, member
 from multibot_rewrite.knowledge.node_library import with_included
 from multibot_rewrite.knowledge.nodl.facts import NodeKnowledge, nodes_of
@@ -30,13 +30,11 @@ from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in, user_stack
 from multibot_rewrite.producers.evidence.hardware import with_hardware
 from multibot_rewrite.producers.launch.records import LaunchOrder
-from multibot_rewrite.spelling.bridged_topics import bridged_topics
+from multibot_rewrite.spelling.bridged_topics import bridged_as, bridged_topics
 from multibot_rewrite.spelling.plan import expect, from_text, named_frames, planned_end, vacuous
-from multibot_rewrite.spelling.plugin_nodes import plugin_nodes
 from multibot_rewrite.spelling.records import Table
-from multibot_rewrite.spelling.table import build_table, joined
+from multibot_rewrite.spelling.table import build_table, joined, plugin_nodes
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, Edges, edges_of, frames_of
-from multibot_rewrite.spelling.transforms import Edge as SentEdge
 from multibot_rewrite.spelling.ways import merged
 from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import SIM_TIME, Edge, End, Parameter, System, Topic
@@ -121,7 +119,7 @@ def _with_bridge_and_findings(
 ) -> Fleet:
     """The fleet with where its robots meet, findings about their nodes, and what has to be bridged."""
     table = with_meetings(fleet.table, members, fleet.naming)
-    table = table._replace(problems=(*table.problems, *findings))
+    table = table._replace(problems=(*table.problems, *left_out(members), *findings))
     topics, _ = bridged_topics(fleet.inventories, fleet.naming)
     own = topics if any(it.robot for it in topics) else ()
     return fleet._replace(table=table, bridged=bridged_as(own))
@@ -179,7 +177,7 @@ def assemble(
     """The fleet of robots that run the same nodes of a release."""
     inventories = {it.robot: it.inventory for it in members}
     plugins = {it.robot: list(plugin_nodes(it.reading, it.robot)) for it in members}
-    edges: dict[tuple[str, str], list[SentEdge]] = {}
+    edges: dict[tuple[str, str], list[Edge]] = {}
     for it in members:
         own = [node for node, _ in plugins[it.robot]]
         edges |= edges_of(it.robot, it.described, facts, own, naming, it.tag, it.plain)
@@ -217,11 +215,7 @@ def _sources(members: Sequence[Member]) -> dict[str, str]:
 def _origins(table: Table, facts: tuple[NodeFacts, ...]) -> dict[str, str]:
     """By full name: the file or stack that names a node."""
     known = {it.name: it.origin for it in facts}
-    return {
-        f"{it.namespace.rstrip('/')}/{it.name}": origin
-        for it in table.nodes
-        if (origin := known.get(it.node, ""))
-    }
+    return {it.full_name: origin for it in table.nodes if (origin := known.get(it.node, ""))}
 
 
 def merge(fleets: Sequence[Fleet]) -> Fleet:
@@ -229,7 +223,7 @@ def merge(fleets: Sequence[Fleet]) -> Fleet:
     first, *others = fleets
     for other in others:
         first = Fleet(
-            joined(first.table, other.table, first.naming),
+            joined(first.table, other.table),
             {**first.inventories, **other.inventories},
             first.naming,
             {**first.edges, **other.edges},
@@ -255,7 +249,7 @@ def expected(fleet: Fleet) -> System:
 
 def planned(fleet: Fleet) -> System:
     """The graph that the fleet should have, be it one that any graph is like."""
-    sent: dict[str, list[SentEdge]] = {robot: [] for robot in fleet.inventories}
+    sent: dict[str, list[Edge]] = {robot: [] for robot in fleet.inventories}
     for (robot, _), edges in fleet.edges.items():
         sent[robot] += edges
     frames = {
@@ -267,11 +261,9 @@ def planned(fleet: Fleet) -> System:
     plan = expect(
         fleet.table, fleet.naming, frames, fleet.facts, named, places, tags, fleet.maybe_real
     )
-    plan = plan._replace(
+    return plan._replace(
         nodes=tuple(from_text(it, fleet.origins.get(it.name, "")) for it in plan.nodes),
         edges=tuple(_sends(fleet)),
-    )
-    return plan._replace(
         release=fleet.table.release,
         gaps=fleet.gaps,
         topics=fleet.bridged,
@@ -301,7 +293,7 @@ def _sends(fleet: Fleet) -> Iterator[Edge]:
         edges = fleet.edges.get((it.robot, it.node), ())
         if edges and it.node not in described:
             sender = (it.full_name,)
-            yield from (Edge(edge.child, edge.parent, "", edge.static, sender) for edge in edges)
+            yield from (edge._replace(publishers=sender) for edge in edges)
 
 
 def possible(fleet: Fleet) -> tuple[End, ...]:

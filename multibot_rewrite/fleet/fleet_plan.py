@@ -8,15 +8,16 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.naming import Naming, make_naming
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.fleet.checks.declared_twice import declared_twice
+from multibot_rewrite.fleet.checks.described import left_out
 from multibot_rewrite.fleet.checks.meeting import with_meetings
 from multibot_rewrite.fleet.file.filled_arguments import with_own_arguments
 from multibot_rewrite.fleet.file.fleet_file import FleetFile, Sources
 from multibot_rewrite.fleet.file.shape import placed, with_shape
 from multibot_rewrite.fleet.fleet import Fleet, assemble, merge
-from multibot_rewrite.fleet.launch.launched_bridges import with_bridge_namespaces
-from multibot_rewrite.fleet.launch.launched_files import with_launched_files
+from multibot_rewrite.fleet.launch.launched_files import with_bridge_namespaces, with_launched_files
+from multibot_rewrite.fleet.outputs.controller_files import with_loaded_files
 from multibot_rewrite.fleet.outputs.relays import with_relays
-from multibot_rewrite.fleet.robots.loaded_files import with_loaded_files
 from multibot_rewrite.fleet.robots.rewritten_robots import (
     Jobs,
     RewrittenRobot,
@@ -26,10 +27,10 @@ from multibot_rewrite.fleet.robots.rewritten_robots import (
 from multibot_rewrite.fleet.robots.robot_nodes import (
     NodeSources,
     RobotEvidence,
+    check_shared,
     node_sources,
     robot_nodes,
 )
-from multibot_rewrite.fleet.robots.shared_nodes import check_shared
 from multibot_rewrite.fleet.robots.simulators import may_be_real, note
 
 
@@ -42,6 +43,10 @@ class FleetPlan(NamedTuple):
     fleet: Fleet
     jobs: Mapping[Sources, Jobs]
     evidence: Mapping[NodeSources, RobotEvidence]
+
+    def evidence_of(self, robot: RewrittenRobot) -> RobotEvidence:
+        """What one robot's own files say; raises nothing."""
+        return self.evidence[node_sources(robot.spec)]
 
 
 def plan_fleet(
@@ -120,5 +125,6 @@ def _fleet(
     fleet = merge(fleets)
     members = [it.member for it in robots]
     table = with_meetings(fleet.table, members, naming)
-    problems = tuple(dict.fromkeys((*table.problems, *notes)))
+    told = (*declared_twice(robots, naming, table), *left_out(members))
+    problems = tuple(dict.fromkeys((*table.problems, *told, *notes)))
     return fleet._replace(table=table._replace(problems=problems))

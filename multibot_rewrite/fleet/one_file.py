@@ -13,13 +13,15 @@ from multibot_rewrite.base.naming import DEFAULT_LAYOUT, Naming, make_naming
 from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import release_here
-from multibot_rewrite.base.rosnames import check_robot_name
-from multibot_rewrite.companions.alone import kind_alone, named_file, rewrite_alone
+from multibot_rewrite.base.rosnames import check_robot_names
+from multibot_rewrite.companions.alone import kind_alone, rewrite_alone
 from multibot_rewrite.companions.context import Context, make_context
+from multibot_rewrite.companions.formats import read_named
 from multibot_rewrite.companions.names.rename_map import KINDS, NO_OWN, companion_names
 from multibot_rewrite.description.sources.job import Job, read_jobs
 from multibot_rewrite.description.sources.read import Source, read_whole
 from multibot_rewrite.rules.files.judge import judged_once
+from multibot_rewrite.rules.files.wheels import with_wheels
 
 # Code -> what is counted and what is said of it. A file with one of these findings is not proved.
 REASONS = {
@@ -28,17 +30,14 @@ REASONS = {
     "MB901": ("name", "not understood"),
     "MB876": ("name", "in a block of text"),
     "MB105": ("placeholder", "that a launch file has to replace"),
-    "MF114": ("node", "not known"),
-    "MF117": ("prefix parameter", "that no postfix reaches"),
-    "MF118": ("port or file", "shared by all robots"),
+    "MB422": ("prefix parameter", "that no postfix reaches"),
+    "MB880": ("port or file", "shared by all robots"),
     "MF120": ("topic", "that remap rules move"),
-    "MF122": ("pattern", "not rewritten"),
     "MF203": ("tf topic", "that rviz2 has to be given"),
-    "MF204": ("display", "not known"),
-    "MF208": ("value", "not rewritten"),
-    "MF403": ("tree", "in another file"),
-    "MF451": ("frame", "that is no plain string"),
-    "MF453": ("file", "not read"),
+    "MB891": ("display", "not known"),
+    "MB881": ("value", "not rewritten"),
+    "MB887": ("file", "that it includes"),
+    "MB888": ("frame", "that is no plain string"),
 }
 _DECLARED = frozenset(it for kinds in KINDS.values() for it in kinds)
 # Kinds of names that are spelled without a description.
@@ -128,7 +127,7 @@ def _rewritten(
     trust: bool,
     release: str,
 ) -> Iterator[RewrittenFile]:
-    _check_robots(robots)
+    check_robot_names(robots)
     read = read_whole(source, {}, trust)
     name = file or read.file
     kind = kind_alone(read.data, name)
@@ -139,15 +138,10 @@ def _rewritten(
     contexts = {it: _context(jobs.get(it), naming, release) for it in robots}
     if urdf is None:
         _check_free(kind, read.data, name, contexts[robots[0]])
-    made = [_for_robot(kind, read.data, name, it, robots, contexts[it]) for it in robots]
+    made = [
+        _for_robot(kind, read.data, name, it, robots, contexts[it], jobs.get(it)) for it in robots
+    ]
     return iter(made)
-
-
-def _check_robots(robots: Sequence[str]) -> None:
-    for at, robot in enumerate(robots):
-        check_robot_name(robot)
-        if robot in robots[:at]:
-            raise UsageError(f"robot name {robot!r} is given twice; every robot needs its own")
 
 
 def _context(job: Job | None, naming: Naming, release: str) -> Context:
@@ -161,18 +155,29 @@ def _context(job: Job | None, naming: Naming, release: str) -> Context:
 def _check_free(kind: str, data: bytes, file: str, context: Context) -> None:
     """Without a description only files whose names do not rest on one can be rewritten."""
     spelled = (_DECLARED - _IN_GRAPH).intersection(context.names.naming.separators)
-    named = named_file(kind, data, file, context)
-    found = next((it for it in named.names if not spelled.isdisjoint(KINDS.get(it.kind, ()))), None)
+    named = read_named(kind, data, file, context)
+    shared = context.names.naming.shared_frames
+    rests = (it for it in named.names if not spelled.isdisjoint(KINDS.get(it.kind, ())))
+    found = next((it for it in rests if it.text.strip("/") not in shared), None)
     if found:
         what = f"{file}:{found.line} names the {found.kind} {found.text!r}"
         raise UsageError(f"{what}; give the robot's description with --urdf (urdf=)")
 
 
 def _for_robot(
-    kind: str, data: bytes, file: str, robot: str, robots: Sequence[str], context: Context
+    kind: str,
+    data: bytes,
+    file: str,
+    robot: str,
+    robots: Sequence[str],
+    context: Context,
+    job: Job | None,
 ) -> RewrittenFile:
     made = rewrite_alone(kind, data, file, context, robot, robot == robots[0])
-    named = made.file._replace(robots=frozenset(robots))
+    named = made.file._replace(
+        robots=frozenset(robots), own=frozenset(robots if len(robots) == 1 else ())
+    )
+    named = with_wheels(named, job.inventories[0].document) if job else named
     findings = tuple(dict.fromkeys((*made.findings, *judged_once(named))))
     ordered = tuple(sorted(findings, key=lambda it: (it.line, it.column, it.code)))
     return RewrittenFile(robot, kind, made.text.encode(), ordered, _not_proved(ordered, made.kept))

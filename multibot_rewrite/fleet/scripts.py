@@ -11,7 +11,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
-from typing import Any, NoReturn
+from typing import Any
 
 from multibot_rewrite.base.arguments import checked
 from multibot_rewrite.base.findings.finding import ERROR, Finding, RewriteRefused
@@ -26,13 +26,12 @@ from multibot_rewrite.fleet.file.fleet_file import FleetFile, Sources, read_flee
 from multibot_rewrite.fleet.file.robot_choice import Choice
 from multibot_rewrite.fleet.fleet import Fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
-from multibot_rewrite.fleet.outputs.kept_files import KeptFiles
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
 from multibot_rewrite.fleet.robots import start_poses
-from multibot_rewrite.fleet.robots.loaded_robot import LoadedRobot
+from multibot_rewrite.fleet.robots.loaded_robot import KeptFiles, LoadedRobot
 from multibot_rewrite.fleet.robots.node_names import NodeNames, names_of
 from multibot_rewrite.fleet.robots.rewritten_robots import Jobs
-from multibot_rewrite.fleet.robots.with_start_pose_nodes import with_start_pose_nodes
+from multibot_rewrite.fleet.robots.start_poses import with_start_pose_nodes
 from multibot_rewrite.knowledge.yaml_with_lines import unknown
 
 
@@ -108,7 +107,8 @@ class LoadedFleet:
     def text(self, path: str) -> str:
         """The text of one of these files; raises UsageError for an unknown path, else as ``made``."""
         if path not in self.files:
-            _no_file(self, path)
+            hint = "list it under companions: in the fleet file"
+            raise UsageError(f"{self.file}: {unknown('file', path, self.files)}; {hint}")
         return self.files[path].data.decode()
 
     def node_text(self, path: str) -> str:
@@ -172,8 +172,3 @@ def _refuse(findings: Iterable[Finding]) -> None:
     wrong = tuple(it for it in findings if it.level == ERROR)
     if wrong:
         raise RewriteRefused(wrong)
-
-
-def _no_file(fleet: LoadedFleet, path: str) -> NoReturn:
-    hint = "list it under companions: in the fleet file"
-    raise UsageError(f"{fleet.file}: {unknown('file', path, fleet.files)}; {hint}")

@@ -14,7 +14,9 @@ A node:
     note       what else a reader of the page should know
     host       the node whose process it always runs in
     plugin     that of the simulator that makes it
-    nodl       its executables, which name its NoDL file
+    programs   the executables that run it, the usual one first, its own name if empty; those of other
+               packages as package/executable. A NoDL file may have their names
+    component  its class as a component
     shared     true: one node serves all robots
     apart      true: its code sets its name, or that of a node below it, so it keeps its name and
                has its robot's namespace in every layout

@@ -15,7 +15,7 @@ say in another way yet.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import lru_cache
 
 from multibot_rewrite.base.lazy import lazy_compile
@@ -124,6 +124,11 @@ def _words(text: str) -> tuple[str, ...]:
 def holds(text: str, value_of: Values) -> bool:
     """Is it surely true of these parameters? ``value_of`` gives None for one that is not set."""
     return not text or verdict(text, value_of) is True
+
+
+def chosen_type(types: Iterable[tuple[str, str]], value_of: Values) -> str:
+    """The type that the parameters choose among those of an endpoint; empty where they choose none."""
+    return next((type_ for it, type_ in types if holds(it, value_of)), "")
 
 
 def verdict(text: str, value_of: Values) -> bool | None:

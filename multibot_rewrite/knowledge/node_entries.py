@@ -40,8 +40,18 @@ from multibot_rewrite.knowledge.yaml_with_lines import (
 from multibot_rewrite.system.records import ROLES
 
 # A node with parameters and none of these is known by them alone: nobody says what it publishes.
-GRAPH_KEYS = (*ROLES, "with", "host", "plugin", "claims", "frames", "sends", "ids", "nodl")
-GRAPH_WORDS = ("shared", "note", "when", "fixed", "apart")
+GRAPH_KEYS = (*ROLES, "with", "host", "plugin", "claims", "frames", "sends", "ids")
+GRAPH_WORDS = (
+    "shared",
+    "note",
+    "when",
+    "fixed",
+    "apart",
+    "programs",
+    "component",
+    "prefix_switch",
+    "unmanaged",
+)
 SENT_KEYS = ("child", "if")
 CLAIM_KINDS = ("command", "state")
 CLAIM_KEYS = (*CLAIM_KINDS, "if", "releases")
@@ -70,12 +80,15 @@ def read_node(
         fixed=words_of(keys, "fixed"),
         sends=tuple(_sends(keys, frames)),
         claims=tuple(read_claims(keys)),
-        nodl=words_of(keys, "nodl"),
+        programs=words_of(keys, "programs"),
+        component=word_of(keys, "component"),
         ids=tuple((name, word(it, f"ids {name}")) for name, it in table_of(keys, "ids").items()),
         releases=releases_of(keys),
         source=source_of(keys),
         plugin=word_of(keys, "plugin"),
         apart=flag_of(keys, "apart"),
+        prefix_switch=word_of(keys, "prefix_switch"),
+        unmanaged=releases_of(keys, "unmanaged"),
     )
 
 

@@ -40,7 +40,10 @@ from multibot_rewrite.knowledge.yaml_with_lines import (
 from multibot_rewrite.system.records import ROLES
 
 STACK_KEYS = ("about", "include", "container", "nodes", "releases")
-ENTRY_KEYS = ("node", "as", "plugin", "shared", "when", "with", "names", "remaps", "releases")
+ENTRY_KEYS = (
+    *("node", "as", "plugin", "shared", "when", "with", "names", "remaps", "releases"),
+    "parameters",
+)
 ENTRY_OF_NODE = tuple(dict.fromkeys((*NODE_KEYS, *PARAMETER_KEYS)))
 FILE_KEYS = ("parts", "nodes", "stacks", "guesses", "sent")
 NOTHING: Mapping[str, str] = {}
@@ -153,7 +156,8 @@ def extend(library: NodeLibrary, text: str, file: str, own: bool = False) -> Nod
         if in_files:
             parameters[last] = found
         if not (in_files and keys.keys().isdisjoint(GRAPH_KEYS)):
-            nodes[name] = read_node(name, item, keys, parts, found.params)
+            new_node = read_node(name, item, keys, parts, found.params)
+            nodes[name] = _as_before(new_node, nodes.get(name))
     known = {*library.stacks, *new.get("stacks", {})}
     grown = library._replace(
         parts=parts,
@@ -167,6 +171,14 @@ def extend(library: NodeLibrary, text: str, file: str, own: bool = False) -> Nod
     for name, item in new.get("stacks", {}).items():
         _check_stack(whole, name, item)
     return whole
+
+
+def _as_before(node: NodeFacts, old: NodeFacts | None) -> NodeFacts:
+    """A changed node is started as before, where its new entry says nothing else."""
+    if old is None or old.package != node.package:
+        return node
+    programs, component = node.programs or old.programs, node.component or old.component
+    return node._replace(programs=programs, component=component)
 
 
 def _check_stack(library: NodeLibrary, name: str, item: YamlItem) -> None:
@@ -212,7 +224,16 @@ def _placed(item: YamlItem, library: NodeLibrary) -> NodeFacts:
         when=condition_of(keys, "when") or node.when,
         releases=releases_of(keys) or node.releases,
         endpoints=_remapped(_named(endpoints, keys), keys),
+        usual=tuple(_usual(keys)),
     )
+
+
+def _usual(keys: Mapping[str, YamlItem]) -> Iterator[tuple[str, str | float]]:
+    """The parameters that the stack's own file gives a node."""
+    for name, item in table_of(keys, "parameters").items():
+        if not isinstance(item.value, str | float | int):
+            wrong(item, f"parameter {name} is no word or number")
+        yield name, item.value
 
 
 def _named(endpoints: tuple[Endpoint, ...], keys: Mapping[str, YamlItem]) -> tuple[Endpoint, ...]:

@@ -42,7 +42,17 @@ PARAMETER_KEYS = (
     *("aliases", "types", "deprecated_types", "known_by", "absolute", "strips", "params"),
     "declared_in",
 )
-PARAM_KEYS = ("kind", "default", "list", "absolute", "deprecated", "own", "note", *FACT_KEYS)
+PARAM_KEYS = (
+    "kind",
+    "default",
+    "list",
+    "absolute",
+    "deprecated",
+    "own",
+    "instead",
+    "note",
+    *FACT_KEYS,
+)
 
 
 def read_parameters(
@@ -105,6 +115,7 @@ def _param(path: str, item: YamlItem, absolute: str) -> Param:
         source_of(keys),
         releases_of(keys, "deprecated"),
         flag_of(keys, "own"),
+        words_of(keys, "instead"),
     )
 
 

@@ -75,6 +75,19 @@ def is_absolute(param: Param, release: str) -> bool:
     return bool(param.absolute) and has_release(param.absolute, release)
 
 
+def is_below_costmap(plugin: str) -> bool:
+    """Is it the one filter that resolves its topics below the costmap in every release?"""
+    return "BinaryFilter" in plugin
+
+
+def is_called(param: Param, name: str) -> bool:
+    """May a parameter of this dotted name be the known one?"""
+    own, words = param.path.split("."), name.split(".")
+    return len(own) == len(words) and all(
+        a in (b, "*") or a.startswith("<") for a, b in zip(own, words, strict=True)
+    )
+
+
 def guess(known: KnownNodes, path: str) -> str:
     """The kind that the last word of a path suggests; empty for none."""
     found = known.guessing.fullmatch(path, path.rfind(".") + 1)

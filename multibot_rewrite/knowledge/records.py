@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from multibot_rewrite.base.record import NamedTuple
 
-MANAGER = "controller_manager"
+MANAGER, MOVE_GROUP = "controller_manager", "move_group"
 # Topics that image_transport's plugins derive from a base name.
 TRANSPORTS = ("compressed", "compressedDepth", "theora", "zstd")
 
@@ -74,7 +74,8 @@ class Param(NamedTuple):
     ``releases`` are release words (``multibot_rewrite.base.releases``), ``absolute`` those in which a
     relative topic in it is not resolved in the robot's namespace, ``deprecated`` those that warn of
     it, both empty for none; ``source`` are the places where it can be read. ``own`` is true for a
-    frame that the node itself makes, so no description has it.
+    frame that the node itself makes, so no description has it. ``instead`` are parameters or nodes that
+    do what a deprecated one did.
     """
 
     path: str
@@ -87,6 +88,7 @@ class Param(NamedTuple):
     source: tuple[str, ...] = ()
     deprecated: str = ""
     own: bool = False
+    instead: tuple[str, ...] = ()
 
 
 class NodeParameters(NamedTuple):
@@ -138,12 +140,16 @@ class NodeFacts(NamedTuple):
     are words in <> of its names, with the parameter that lists what they stand for. ``claims`` are the
     interfaces that a controller needs. ``known`` is its name in its entry if it has another one.
     ``origin`` is where a robot's own files name it (``file:line``), or its stack. ``releases`` and
-    ``source`` as in ``Endpoint``. ``nodl`` are further names of its NoDL document, such as its
-    executable; ``interface`` is the NoDL file that its endpoints are from, empty for the library.
+    ``source`` as in ``Endpoint``. ``programs`` are the executables that run it, those of
+    other packages as ``package/executable``, the usual one first; ``component`` is its class as a
+    component. ``interface`` is the NoDL file that its endpoints are from, empty for the library.
     ``container`` is the node whose process it is loaded into as a component, ``plugin`` the plugin of
     the simulator that makes it. ``apart`` is true for a node that keeps its name in every layout and
     runs in its robot's namespace: its code sets its name, or that of a node below it. ``of_hardware``
     is true for a node that a hardware plugin makes in the process of the controller manager.
+    ``unmanaged`` are the releases in which it has a life cycle and no manager of Nav2 knows it.
+    ``usual`` are the parameters of the stack's own file, for a robot none of whose files has any.
+    ``prefix_switch`` is a parameter: unless it is false, the node puts its namespace before its frames.
     """
 
     name: str
@@ -162,12 +168,21 @@ class NodeFacts(NamedTuple):
     origin: str = ""
     releases: str = ""
     source: tuple[str, ...] = ()
-    nodl: tuple[str, ...] = ()
+    programs: tuple[str, ...] = ()
     interface: str = ""
     container: str = ""
     plugin: str = ""
     apart: bool = False
     of_hardware: bool = False
+    component: str = ""
+    prefix_switch: str = ""
+    unmanaged: str = ""
+    usual: tuple[tuple[str, str | float], ...] = ()
+
+    @property
+    def kind(self) -> str:
+        """Its name in its entry; raises nothing."""
+        return self.known or self.name
 
     @property
     def is_controller(self) -> bool:

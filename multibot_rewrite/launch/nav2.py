@@ -14,7 +14,6 @@ from functools import partial
 from typing import Any
 
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.companions.rviz.rewrite import RvizText
 from multibot_rewrite.fleet.outputs.relays import BRIDGE, Relay, not_bridged
 from multibot_rewrite.fleet.outputs.rviz_outputs import robot_windows
@@ -100,8 +99,8 @@ def _started(robot: LoadedRobot, context: Context) -> list[Action]:
 
 def _alone(robot: LoadedRobot, name: str, context: Context) -> list[Action]:
     """A node in a process of its own; slam_toolbox is brought up here, as by its own launch file."""
-    program, managed = programs.program(name), _is_managed(robot, name)
-    made = (lifecycle_node if managed else node)(
+    program, alone = programs.program(name, robot.distro), programs.unmanaged(name, robot.distro)
+    made = (lifecycle_node if alone else node)(
         name,
         files=robot.params_files,
         package=program.package,
@@ -112,12 +111,7 @@ def _alone(robot: LoadedRobot, name: str, context: Context) -> list[Action]:
         arguments=["--ros-args", "--log-level", _said("log_level")],
         parameters=_own(robot.table, name, context),
     )
-    return [made, *(_activated(made) if managed and _is_on(context, "autostart") else ())]
-
-
-def _is_managed(robot: LoadedRobot, name: str) -> bool:
-    """Is it a node with a life cycle that no lifecycle manager of Nav2 takes care of?"""
-    return name == programs.SLAM and has_release("jazzy+", robot.distro)
+    return [made, *(_activated(made) if alone and _is_on(context, "autostart") else ())]
 
 
 def _activated(made: Action) -> Iterator[Action]:
@@ -155,7 +149,7 @@ def _container(robot: LoadedRobot, hosted: list[str], context: Context) -> Actio
 
 
 def _component(robot: LoadedRobot, name: str, context: Context) -> Any:
-    program = programs.program(name)
+    program = programs.program(name, robot.distro)
     return composable_node(
         name,
         files=robot.params_files,
@@ -205,7 +199,7 @@ def _shared(context: Context) -> list[Action]:
         return []
     made = [_shared_node(fleet, it, context) for it in found]
     values = {"autostart": _is_on(context, "autostart"), "node_names": found}
-    manager = programs.program(programs.MANAGER)
+    manager = programs.program(programs.MANAGER, fleet.robots[0].distro)
     return [*made, _plain(programs.SHARED_MANAGER, manager, context, [values])]
 
 
@@ -215,7 +209,7 @@ def _shared_node(fleet: LoadedFleet, name: str, context: Context) -> Action:
     files = [
         written(context, None, f"nodes/{it}", robot.node_text(it)) for it in robot.params_files
     ]
-    program = programs.program(name)
+    program = programs.program(name, robot.distro)
     return _plain(name, program, context, [*files, *_own(names, name, context)])
 
 

@@ -9,9 +9,16 @@ from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 
 from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER as MANAGER
-from multibot_rewrite.knowledge.programs import PROGRAMS, SLAM, Program, container_of
+from multibot_rewrite.knowledge.programs import (
+    NAV2,
+    Program,
+    container_of,
+    is_unmanaged,
+    known_program,
+)
+from multibot_rewrite.knowledge.stacks import built_in
 
-__all__ = ["MANAGER", "SLAM", "Program", "container_of", "program", "with_program"]
+__all__ = ["MANAGER", "Program", "container_of", "program", "unmanaged", "with_program"]
 
 CONTAINER, MAP_SERVER, SHARED_MANAGER = "nav2_container", "map_server", "lifecycle_manager_shared"
 STATE = "robot_state_publisher"
@@ -28,20 +35,24 @@ _KINDS: Mapping[str, str] = MappingProxyType(
 
 
 def kind_of(name: str) -> str:
-    """The key in ``PROGRAMS`` of a node of a stack."""
+    """The name in ``NAV2`` of a node of a stack."""
     if name.startswith(MANAGER):
         return MANAGER
     return _KINDS.get(name, name)
 
 
-def program(name: str) -> Program:
+def program(name: str, release: str) -> Program:
     """The program of a node that ``with_program`` gives."""
-    return PROGRAMS[kind_of(name)]
+    return known_program(kind_of(name), release)
+
+
+def unmanaged(name: str, release: str) -> bool:
+    """Has a node of ``with_program`` a life cycle that no lifecycle manager of Nav2 takes care of?"""
+    return is_unmanaged(built_in(release).nodes[kind_of(name)], release)
 
 
 def with_program(names: Iterable[str]) -> list[str]:
     """Those of the nodes that are Nav2's or slam_toolbox, managers last, so that what they manage is
     there."""
-    order = list(PROGRAMS)
-    known = (it for it in names if kind_of(it) in PROGRAMS)
-    return sorted(known, key=lambda it: order.index(kind_of(it)))
+    known = (it for it in names if kind_of(it) in NAV2)
+    return sorted(known, key=lambda it: NAV2.index(kind_of(it)))

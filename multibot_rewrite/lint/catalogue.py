@@ -29,14 +29,9 @@ HOMES: tuple[Home, ...] = (
         "parameter files",
         (
             "companions.params.sections",
-            "companions.params.section_checks",
-            "companions.params.robot_names",
             "companions.params.values",
-            "companions.params.name_checks",
-            "companions.params.unknown_parameters",
             "companions.params.shared_defaults",
             "companions.params.bringup_style",
-            "companions.params.calibrations",
         ),
     ),
     Home(
@@ -48,26 +43,7 @@ HOMES: tuple[Home, ...] = (
             "companions.rviz.display_checks",
         ),
     ),
-    Home(
-        "MF3",
-        "MoveIt",
-        ("companions.moveit.checks", "companions.moveit.controller_manager"),
-    ),
-    Home("MF4", "behavior trees and Lua", ("companions.behavior_tree.checks", "companions.lua")),
-    Home(
-        "MF5",
-        "bridges",
-        (
-            "companions.bridge_checks",
-            "fleet.outputs.bridge_merge",
-            "fleet.outputs.bridge_outputs",
-        ),
-    ),
-    Home(
-        "MF6",
-        "what was built",
-        ("fleet.checks.consistency", "fleet.checks.value_checks"),
-    ),
+    Home("MF5", "bridges", ("fleet.outputs.bridge_outputs",)),
     Home(
         "MF7",
         "start poses and spawning",
@@ -86,22 +62,17 @@ HOMES: tuple[Home, ...] = (
             "producers.launch.findings",
             "producers.launch.spawner_managers",
             "fleet.launch.launched_files",
-            "fleet.robots.loaded_files",
+            "fleet.outputs.controller_files",
             "fleet.outputs.yarp_files",
             "fleet.launch.launched_prefix",
             "fleet.file.filled_arguments",
             "fleet.robots.simulators",
-            "fleet.robots.shared_nodes",
+            "fleet.robots.robot_nodes",
             "fleet.outputs.params_style",
-            "fleet.checks.closing",
-            "fleet.checks.closing_bridges",
-            "fleet.checks.closing_controllers",
-            "fleet.checks.closing_semantics",
             "fleet.robots.srdf_of_another",
-            "fleet.robots.devices",
             "fleet.robots.apart",
             "fleet.outputs.cell_outputs",
-            "fleet.outputs.moveit_frames",
+            "fleet.outputs.moveit_parameters",
         ),
     ),
     Home(
@@ -133,7 +104,12 @@ HOMES: tuple[Home, ...] = (
     Home(
         "MG4",
         "any system: tf",
-        ("rules.system.transforms", "rules.system.tf_topics", "rules.system.frame_ids"),
+        (
+            "rules.system.transforms",
+            "rules.system.tf_topics",
+            "rules.system.frame_ids",
+            "rules.system.lookups",
+        ),
     ),
     Home(
         "MG5",
@@ -149,9 +125,10 @@ def rules() -> Mapping[str, Rule]:
     """All rules by code, in the order of the codes; imports every module that declares one."""
     from multibot_rewrite.lint.registry import RULES
 
+    # A lint has some with examples of its own.
     found = [*RULES.values(), *(it for home in HOMES for it in declared(home))]
     by_code = {it.code: it for it in sorted(found, key=lambda it: it.code)}
-    assert len(by_code) == len(found), "two rules have one code"
+    assert len({(it.code, it.name) for it in found}) == len(by_code), "two rules have one code"
     return by_code
 
 

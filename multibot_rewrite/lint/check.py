@@ -3,28 +3,28 @@
 from __future__ import annotations
 
 import signal
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from functools import partial
 from typing import Any, NoReturn
 
 from multibot_rewrite.base.findings.finding import Finding, by_place
 from multibot_rewrite.base.findings.rule import Rule
-from multibot_rewrite.base.findings.selection import level_of
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.model import InputError, VocabularyError
-from multibot_rewrite.companions.kinds import is_beside
+from multibot_rewrite.companions.kinds import is_named_beside, kind_of
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.lint.config.suppress import unsuppressed
 from multibot_rewrite.lint.failures import breakdown, crash, failure, too_long
 from multibot_rewrite.lint.files.subjects import Failed, read_subjects
 from multibot_rewrite.lint.groups import active_rules
 from multibot_rewrite.lint.places import numbered, placed
-from multibot_rewrite.rules.settings import Settings
+from multibot_rewrite.rules.settings import MARK, Settings, file_of, is_silent
 from multibot_rewrite.rules.subject import Subject
 
 AGAIN = 0.5
+# Names that do not tell what a file is.
+_BY_TEXT = (".xml", "<stdin>")
 
 
 class _TooLongError(BaseException):
@@ -47,7 +47,7 @@ def _linted(path: str, read: Callable[[], bytes], settings: Settings) -> list[Fi
     try:
         with _limited(settings.seconds), gc_paused():
             sources[path] = data = read()
-            if is_beside(path):
+            if is_named_beside(path) or (path.endswith(_BY_TEXT) and kind_of(data)):
                 return sorted(_beside(path, data, settings), key=by_place)
             _look(path, data, settings, found, sources)
     except InputError as error:
@@ -76,25 +76,23 @@ def _look(
 
 
 def _beside(path: str, data: bytes, settings: Settings) -> list[Finding]:
-    from multibot_rewrite.lint.beside.read import beside_findings  # a description needs none of it
+    from multibot_rewrite.lint.beside import beside_findings  # a description needs none of it
 
     return unsuppressed(list(beside_findings(path, data, settings)), {}, settings)
 
 
 def lint_subject(subject: Subject) -> list[Finding]:
     """What the active rules find in one document."""
-    settings = subject.settings
     found: list[tuple[Rule, list[Problem]]] = []
     crashes: list[Finding] = []
-    for rule in active_rules(settings, subject.format):
+    for rule in active_rules(subject.settings, subject.format):
         try:
             problems = list(rule.check(subject)) if rule.check else []
         except Exception as error:  # reported as a finding, and the other rules still run
             crashes.append(crash(rule, subject, error))
             continue
         if problems:
-            known = rule._replace(level=level_of(settings, rule.code, rule.level))
-            found.append((known, problems))
+            found.append((rule, problems))
     if not found:
         return crashes
     numbers = numbered(subject, [it for _, its in found for it in its])
@@ -129,3 +127,19 @@ def _limited(seconds: float) -> Iterator[None]:
 
 def _stop(*_: object) -> NoReturn:
     raise _TooLongError
+
+
+def unsuppressed(
+    findings: Sequence[Finding], sources: Mapping[str, bytes], settings: Settings
+) -> list[Finding]:
+    """The findings that no comment and no per-file setting suppresses, and those about comments.
+
+    The first of ``sources`` is the file that is linted, the others are those it includes.
+    """
+    reported = [it for it in findings if not is_silent(settings, file_of(it), it.code)]
+    if not any(MARK in source for source in sources.values()):
+        return reported
+    # Few files have a comment for the lint.
+    from multibot_rewrite.lint.config.comments import after_comments
+
+    return after_comments(reported, {it.code for it in findings}, sources, settings)

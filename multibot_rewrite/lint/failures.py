@@ -13,7 +13,9 @@ from multibot_rewrite.base.outside import unrepeatable
 from multibot_rewrite.rules.settings import Settings
 from multibot_rewrite.rules.subject import Subject
 
-_PLACE = lazy_compile(r"(?P<file>.*?)(?::(?P<line>\d+):(?P<column>\d+))?: (?P<text>.*)", re.DOTALL)
+_PLACE = lazy_compile(
+    r"(?P<file>.*?)(?::(?P<line>\d+)(?::(?P<column>\d+))?)?: (?P<text>.*)", re.DOTALL
+)
 # What a reader's message says -> the rule that reports it.
 _CODES = (
     (lazy_compile("No such file|cannot be read|Is a directory|Permission denied"), "MB102"),

@@ -39,8 +39,13 @@ GROUPS = (
 def rules_of(group: Group) -> list[Rule]:
     """The rules of a group's themes; a group of one file is its own theme."""
     module = import_module(f"multibot_rewrite.rules.description.{group.module}")
-    themes: tuple[ModuleType, ...] = getattr(module, "THEMES", (module,))
-    return [it for theme in themes for it in vars(theme).values() if isinstance(it, Rule)]
+    themes: tuple[str | ModuleType, ...] = getattr(module, "THEMES", (module,))
+    found = (_loaded(theme, module.__name__) for theme in themes)
+    return [it for theme in found for it in vars(theme).values() if isinstance(it, Rule)]
+
+
+def _loaded(theme: str | ModuleType, package: str) -> ModuleType:
+    return import_module(theme, package) if isinstance(theme, str) else theme
 
 
 def active_rules(settings: Settings, format_: str) -> tuple[Rule, ...]:

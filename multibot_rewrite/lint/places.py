@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.findings.place import locate
+from multibot_rewrite.base.findings.finding import Finding, locate
 from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.findings.selection import level_of
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.problem import Problem
@@ -43,7 +43,7 @@ def placed(subject: Subject, numbers: Numbers, problem: Problem, rule: Rule) -> 
     line, column = locate(it.source, it.offset)
     return Finding(
         rule.code,
-        rule.level,
+        level_of(subject.settings, rule.code, problem.level or rule.level),
         " ".join(problem.message.split()),
         problem.hint,
         it.file,

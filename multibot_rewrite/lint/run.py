@@ -92,7 +92,7 @@ def among(paths: Sequence[str], settings: Settings, cache: Cache | None = None) 
 
 def _looked_through(paths: Sequence[str], settings: Settings) -> tuple[Settings, Asked | None]:
     """The same, in a worker where there are xacro files: they may be made to take long."""
-    from multibot_rewrite.lint.files.among import set_among
+    from multibot_rewrite.lint.files.included import set_among
 
     look = partial(recorded, partial(set_among, paths, settings))
     if not any(path.endswith(".xacro") for path in paths):

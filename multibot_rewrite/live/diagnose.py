@@ -13,8 +13,9 @@ from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.producers.bags.recording import RECORDER, is_recorded
 from multibot_rewrite.rules.check import inconclusive_where_in_doubt, judge
 from multibot_rewrite.system.guess import GuessedRobot, guess_robots, whose_by_guess
-from multibot_rewrite.system.index import NO_COUNTS, TF, Index, Known, index, tree_topic
+from multibot_rewrite.system.index import NO_COUNTS, TF, Index, Known, index
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, System
+from multibot_rewrite.system.tf_copies import tree_topic
 
 
 class Diagnosis(NamedTuple):

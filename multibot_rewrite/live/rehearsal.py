@@ -13,18 +13,17 @@ from typing import Any
 
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import resolve_bound
-from multibot_rewrite.spelling.applied_rules import (
+from multibot_rewrite.spelling.plan import planned_end
+from multibot_rewrite.spelling.records import EndpointName, NodeTable, Table
+from multibot_rewrite.spelling.targets import ACTION_PARTS
+from multibot_rewrite.spelling.transforms import Edges
+from multibot_rewrite.spelling.way_checks import (
     RunningNode,
     bound_to,
     is_stand_in,
     running_nodes,
 )
-from multibot_rewrite.spelling.plan import planned_end
-from multibot_rewrite.spelling.records import EndpointName, NodeTable, Table
-from multibot_rewrite.spelling.started import ros_arguments
-from multibot_rewrite.spelling.targets import ACTION_PARTS
-from multibot_rewrite.spelling.transforms import Edge, Edges
-from multibot_rewrite.spelling.ways import Pair
+from multibot_rewrite.spelling.ways import Pair, ros_arguments
 from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
@@ -33,9 +32,11 @@ from multibot_rewrite.system.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
+    Edge,
     End,
     System,
     Topic,
+    edge_of,
 )
 
 TF = "tf2_msgs/msg/TFMessage"
@@ -202,7 +203,7 @@ def from_order(value: Sequence[Any]) -> list[StubNode]:
             tuple(words),
             tuple(process),
             tuple(StubEndpoint(*end) for end in endpoints),
-            tuple(Edge(*edge) for edge in edges),
+            tuple(edge_of(parent, child, static) for child, parent, _, static, *_ in edges),
         )
         for name, words, process, endpoints, edges in value
     ]

@@ -25,8 +25,15 @@ from multibot_rewrite.live.rehearsal import (
 )
 from multibot_rewrite.producers.ros import ros
 from multibot_rewrite.producers.ros.worker import Send, run_worker
-from multibot_rewrite.spelling.transforms import Edge
-from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SERVES, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.records import (
+    ACTION,
+    CALLS,
+    PUBLISHES,
+    SERVES,
+    SUBSCRIBES,
+    TOPIC,
+    Edge,
+)
 
 # The rate of robot_state_publisher and of most odometry sources.
 PUBLISH_SECONDS = 0.1

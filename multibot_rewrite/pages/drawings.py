@@ -5,19 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 
+from multibot_rewrite.base.plural import plural
 from multibot_rewrite.pages.overview import Tile, overview
 from multibot_rewrite.pages.page_sections import (
     MOST_DRAWN,
     SMALL_FLEET,
     PageSection,
     look_of,
+    only_common,
     summarize,
 )
 from multibot_rewrite.pages.scene import Scene
-from multibot_rewrite.pages.simplify import only_common
 from multibot_rewrite.pages.states import MISSING, OK, STATES, UNEXPECTED
 from multibot_rewrite.pages.svg import MEANINGS, Ids, group_svg, safe, tree_svg
-from multibot_rewrite.pages.text import counted
 from multibot_rewrite.pages.tf_tree_rows import FrameTree
 
 # What the states mean where there is no plan.
@@ -50,7 +50,7 @@ def graphs(scene: Scene, ids: Ids, sections: Sequence[PageSection]) -> Iterator[
         if section.id not in hidden_ids:
             yield from _group(section, scene, ids)
     if hidden:
-        title = f"{counted(len(hidden), 'more robot')} without findings"
+        title = f"{plural(len(hidden), 'more robot')} without findings"
         yield f'<details><summary class="good"><b>{title}</b></summary>\n<div>\n'
         yield from (line for section in hidden for line in _group(section, scene, ids))
         yield "</div></details>\n"
@@ -74,7 +74,7 @@ def _legend(scene: Scene) -> Iterator[str]:
 
 def _tile(section: PageSection) -> Tile:
     robot = section.group.robot
-    nodes = counted(sum(node.robot == robot for node in section.group.nodes), "node")
+    nodes = plural(sum(node.robot == robot for node in section.group.nodes), "node")
     # Without findings of its own, only another robot's node makes a robot faulty.
     note = summarize(section.levels) or ("used by another robot" if section.faulty else nodes)
     return Tile(robot, robot, note, f"#{section.id}", look_of(section))
@@ -87,8 +87,8 @@ def _number(scene: Scene, robot: str) -> str:
 
 def _group(section: PageSection, scene: Scene, ids: Ids) -> Iterator[str]:
     title = section.group.robot or "shared and others"
-    nodes = counted(sum(not node.is_robot for node in section.group.nodes), "node")
-    counts = f"{nodes}, {counted(len(section.group.names), 'name')}"
+    nodes = plural(sum(not node.is_robot for node in section.group.nodes), "node")
+    counts = f"{nodes}, {plural(len(section.group.names), 'name')}"
     findings = summarize(section.levels)
     opened = " open" if section.open else ""
     number = section.id[1:] if section.group.robot else "-1"
@@ -136,7 +136,7 @@ def trees(scene: Scene, ids: Ids) -> Iterator[str]:
 
 
 def _panel(tree: FrameTree, scene: Scene, ids: Ids) -> str:
-    frames = counted(len({row.frame for row in tree.rows}), "frame")
+    frames = plural(len({row.frame for row in tree.rows}), "frame")
     wrong = any(row.faults for row in tree.rows)
     title = f"<b>{safe(tree.robot or 'no robot')}</b> <span>{frames}</span>"
     if not tree.received:

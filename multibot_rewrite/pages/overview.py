@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
+from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.pages.scene import Crossing
 from multibot_rewrite.pages.states import FAULTY
 from multibot_rewrite.pages.svg import LETTER, MEANINGS, WIDTH, safe, tooltip
-from multibot_rewrite.pages.text import clipped, counted
+from multibot_rewrite.pages.text import clipped
 
 # Space for the arrows above the first row and below the last one.
 MARGIN = 44
@@ -71,7 +72,7 @@ _TIPS = "<defs>{}</defs>".format(
 def _shared_tiles(crossings: Sequence[Crossing], shared: Sequence[str]) -> Iterator[Tile]:
     """Boxes for the nodes of no robot, and for names of no robot that should belong to one."""
     if len(shared) > MOST_NODES:
-        yield Tile(OTHERS, counted(len(shared), "other node"), "of no robot", "#shared", "shared")
+        yield Tile(OTHERS, plural(len(shared), "other node"), "of no robot", "#shared", "shared")
     else:
         yield from (Tile(node, node, "of no robot", "#shared", "shared") for node in shared)
     leaked = dict.fromkeys(name for r in crossings if not r.target for name in r.names)
@@ -132,7 +133,7 @@ def _arrow(crossing: Crossing, path: str) -> str:
 
 def _label(crossing: Crossing, x: float, y: float) -> str:
     first = crossing.names[0].partition(" ")[2]
-    text = clipped(first, 40) if len(crossing.names) == 1 else counted(len(crossing.names), "name")
+    text = clipped(first, 40) if len(crossing.names) == 1 else plural(len(crossing.names), "name")
     return f'<text class="reach-note" x="{x:g}" y="{y:g}">{safe(text)}</text>'
 
 

@@ -12,12 +12,12 @@ from importlib.resources import files
 
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.naming import LAYOUTS
+from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.live.watching import Verdict
 from multibot_rewrite.pages.drawings import graphs, trees
-from multibot_rewrite.pages.explanations import explanations
-from multibot_rewrite.pages.finding_list import Sources, filters, finding_list
+from multibot_rewrite.pages.finding_list import Sources, explanations, filters, finding_list
 from multibot_rewrite.pages.page_sections import (
     LEVELS,
     PageSection,
@@ -29,7 +29,6 @@ from multibot_rewrite.pages.robot_cards import robot_cards
 from multibot_rewrite.pages.scene import Scene
 from multibot_rewrite.pages.states import MISSING
 from multibot_rewrite.pages.svg import Ids, safe
-from multibot_rewrite.pages.text import counted
 from multibot_rewrite.rules.check import RULES
 from multibot_rewrite.system.records import QUIET, ZENOH
 
@@ -113,7 +112,7 @@ def _frame(robots: Framed | None) -> str:
 
 
 def _title(scene: Scene) -> str:
-    robots = counted(len(scene.robots), "robot")
+    robots = plural(len(scene.robots), "robot")
     return f"{scene.outcome.words}: {robots}, layout {scene.layout}"
 
 
@@ -132,8 +131,8 @@ def _header(
     layout = "layout" if scene.outcome.planned else "looks like layout"
     facts = (
         summarize(Counter(finding.level for finding in scene.findings)) or "no findings",
-        f"{counted(len(scene.robots), 'robot')}: {shorten(scene.robots, SEVERAL)}",
-        counted(len(nodes), "node"),
+        f"{plural(len(scene.robots), 'robot')}: {shorten(scene.robots, SEVERAL)}",
+        plural(len(nodes), "node"),
         f"{layout} {scene.layout}{f': {about}' if about else ''}",
     )
     yield f'<header class="{_look(scene)}">\n<p>{safe(scene.outcome.by)}</p>\n'

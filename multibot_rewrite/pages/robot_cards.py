@@ -5,20 +5,15 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.base.findings.grouping import said_of
 from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.findings.selection import said_of
+from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.live.watching import Verdict
-from multibot_rewrite.pages.page_sections import (
-    PageSection,
-    concerns_of,
-    look_of,
-    summarize,
-)
+from multibot_rewrite.pages.page_sections import PageSection, concerns_of, look_of, summarize
 from multibot_rewrite.pages.scene import FindingRow, Scene
 from multibot_rewrite.pages.states import MISSING
 from multibot_rewrite.pages.svg import safe
-from multibot_rewrite.pages.text import counted
 
 # More robots or findings of a card are folded.
 MOST_ROBOTS, MOST_ROWS = 8, 5
@@ -80,7 +75,7 @@ def _state(card: _Card, scene: Scene) -> str:
     )
     each = " each" if len(card.sections) > 1 and card.rows else ""
     robots = f"{len(card.sections)} robots, " if len(card.sections) > 1 else ""
-    return f"{robots}{state}{each}; {counted(nodes, 'node')} running"
+    return f"{robots}{state}{each}; {plural(nodes, 'node')} running"
 
 
 def _line(at: int, row: FindingRow, rules: Mapping[str, Rule], robot: str) -> str:
@@ -108,5 +103,5 @@ def _list(lines: Sequence[str]) -> str:
 def _folded(parts: Sequence[str], most: int, what: str, joint: str) -> str:
     if len(parts) <= most:
         return joint.join(parts)
-    more = f"<summary>{counted(len(parts) - most, f'more {what}')}</summary>"
+    more = f"<summary>{plural(len(parts) - most, f'more {what}')}</summary>"
     return f"{joint.join(parts[:most])} <details>{more}{joint.join(parts[most:])}</details>"

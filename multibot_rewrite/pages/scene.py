@@ -6,7 +6,7 @@ from collections import defaultdict
 from collections.abc import Collection, Container, Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.findings.grouping import with_members
+from multibot_rewrite.base.findings.selection import with_members
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.live.watching import WORDS, Outcome, judge
 from multibot_rewrite.pages.states import (
@@ -27,8 +27,7 @@ from multibot_rewrite.pages.tf_tree_rows import FrameTree, make_frame_trees
 from multibot_rewrite.rules.check import side_by_side
 from multibot_rewrite.rules.pair.meeting import matches
 from multibot_rewrite.spelling.plan import robot_words
-from multibot_rewrite.system.index import EndKey, Index, by_node, types
-from multibot_rewrite.system.planned import Planned
+from multibot_rewrite.system.index import EndKey, Index
 from multibot_rewrite.system.records import (
     ACTION,
     SERVICE,
@@ -154,10 +153,7 @@ class _RobotOf(NamedTuple):
 
 
 def make_scene(
-    plan: System,
-    graph: System,
-    found: Sequence[Finding],
-    outcome: Outcome | None = None,
+    plan: System, graph: System, found: Sequence[Finding], outcome: Outcome | None = None
 ) -> Scene:
     """What is drawn of ``graph`` with its plan and findings; the outcome follows from these if a
     command does not say otherwise."""
@@ -183,16 +179,16 @@ def make_scene(
     )
 
 
-def _rows(plan: Planned, targets: Mapping[Finding, Targets]) -> Iterator[FindingRow]:
+def _rows(plan: Index, targets: Mapping[Finding, Targets]) -> Iterator[FindingRow]:
     for finding, members in with_members(targets, robot_words(plan.system)):
         concerned = {robot for it in members for robot in robots_of(plan, it)}
-        robots = tuple(robot for robot in plan.robots if robot in concerned)
+        robots = tuple(robot for robot in plan.declared if robot in concerned)
         written = f"{finding.file}:{finding.line}" if finding.line else finding.file
         place = written or _origin(plan, finding.node)
         yield FindingRow(finding, merged(targets[it] for it in members), robots, place)
 
 
-def _edges(plan: Planned, seen: Index, states: States) -> Iterator[DrawnEdge]:
+def _edges(plan: Index, seen: Index, states: States) -> Iterator[DrawnEdge]:
     """The endpoints in the graph, and those that a finding reports as missing."""
     common_names = _common_names((*seen.system.ends, *plan.system.ends))
     bridged = {(role, it.name): it.type for it in plan.system.topics for role in it.bridge}
@@ -205,34 +201,34 @@ def _edges(plan: Planned, seen: Index, states: States) -> Iterator[DrawnEdge]:
         if state in (OK, MISSING):
             state = OK if common or _is_expected(plan, key, bridged) else UNEXPECTED
         yield DrawnEdge(*key, type_, state, common)
-    for key, planned in plan.ends.items():
+    for key, planned in plan.by_key.items():
         node, *_, name = key
         missing = MISSING in (states.nodes.get(node), states.endpoints.get((node, name)))
-        if missing and key not in types(seen):
+        if missing and key not in seen.by_key:
             yield DrawnEdge(*key, planned.type, MISSING, name in common_names)
 
-    carried = {(role, name) for _, _, role, name in types(seen)}
+    carried = {(role, name) for _, _, role, name in seen.by_key}
     for (role, name), type_ in bridged.items():
         if name in states.names and (role, name) not in carried:
             yield DrawnEdge(BRIDGE, TOPIC, role, name, type_, MISSING, False)
 
 
-def _is_expected(plan: Planned, key: EndKey, bridged: Container[tuple[str, str]]) -> bool:
+def _is_expected(plan: Index, key: EndKey, bridged: Container[tuple[str, str]]) -> bool:
     """Whether the plan has an endpoint of the graph, by itself or in another form.
 
     An action may be planned as its parts. Helpers of a robot's nodes have what these have.
     """
     node, kind, role, name = key
-    if key in plan.ends or node in plan.own[""] or (role, name) in bridged:
+    if key in plan.by_key or node in plan.own[""] or (role, name) in bridged:
         return True
-    if kind == ACTION and (node, SERVICE, role, f"{name}{ACTION_PART}send_goal") in plan.ends:
+    if kind == ACTION and (node, SERVICE, role, f"{name}{ACTION_PART}send_goal") in plan.by_key:
         return True
-    return is_tool(node) and bool(plan.names.robot(node))
+    return is_tool(node) and bool(plan.robot(node))
 
 
-def _origin(plan: Planned, node: str) -> str:
+def _origin(plan: Index, node: str) -> str:
     """Where a planned node is from: its plugin, a file, or its stack."""
-    planned = plan.nodes.get(node)
+    planned = plan.node.get(node)
     if planned is None:
         return ""
     stack = f"stack {planned.stack}" if planned.stack else ""
@@ -248,11 +244,11 @@ def _common_names(ends: Iterable[End]) -> set[str]:
     }
 
 
-def _robot_of(plan: Planned, seen: Index, states: States, edges: Iterable[DrawnEdge]) -> _RobotOf:
+def _robot_of(plan: Index, seen: Index, states: States, edges: Iterable[DrawnEdge]) -> _RobotOf:
     missing = (node for node, state in states.nodes.items() if state == MISSING)
     nodes = {*seen.nodes, *missing, *(edge.node for edge in edges)}
     names = {edge.name for edge in edges}
-    robot, shared = plan.names.robot, {*plan.own[""], *plan.system.shared_topics}
+    robot, shared = plan.of_names.robot, {*plan.own[""], *plan.system.shared_topics}
     return _RobotOf(
         {node: "" if node in shared else robot(node) for node in sorted(nodes)},
         {name: "" if name in shared else robot(name) for name in sorted(names)},
@@ -260,7 +256,7 @@ def _robot_of(plan: Planned, seen: Index, states: States, edges: Iterable[DrawnE
 
 
 def _nodes(
-    plan: Planned, seen: Index, states: States, edges: Iterable[DrawnEdge], robot_of: _RobotOf
+    plan: Index, seen: Index, states: States, edges: Iterable[DrawnEdge], robot_of: _RobotOf
 ) -> dict[str, DrawnNode]:
     planned = {*plan.robot_of, *plan.own[""]}
     edge_states: dict[str, set[str]] = defaultdict(set)
@@ -275,7 +271,7 @@ def _nodes(
     for node, robot in robot_of.nodes.items():
         own = {states.nodes.get(node, OK), *(edge_states[node] & FAULTY - {MISSING})}
         state = LEAK if node in misnamed and not robot else worst(own)
-        if node not in seen.nodes and node not in by_node(seen):
+        if node not in seen.nodes and node not in seen.by_node:
             state = MISSING
         elif state == OK and node not in planned and own_states[node] != {OK}:
             state = OK if robot and is_tool(node) else UNEXPECTED
@@ -285,10 +281,7 @@ def _nodes(
 
 
 def _groups(
-    plan: System,
-    edges: Iterable[DrawnEdge],
-    nodes: Mapping[str, DrawnNode],
-    robot_of: _RobotOf,
+    plan: System, edges: Iterable[DrawnEdge], nodes: Mapping[str, DrawnNode], robot_of: _RobotOf
 ) -> Iterator[DrawnGroup]:
     """One for each robot, then one for the rest; an endpoint that connects two robots is in both."""
     parts: dict[str, list[DrawnEdge]] = {robot.name: [] for robot in plan.robots}

@@ -9,9 +9,9 @@ from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.rules.check import RULES
 from multibot_rewrite.rules.pair.tf_trees import tf_trees
-from multibot_rewrite.system.index import Index, ends_of, tree_topic
-from multibot_rewrite.system.planned import Planned
+from multibot_rewrite.system.index import Index, ends_of
 from multibot_rewrite.system.records import alternatives
+from multibot_rewrite.system.tf_copies import tree_topic
 
 OK, LEAK, CROSS_TALK, MISSING = "ok", "leak", "cross-talk", "missing"
 UNEXPECTED, CLASH = "unexpected", "clash"
@@ -57,7 +57,7 @@ def worst(states: Iterable[str]) -> str:
     return min(states, key=STATES.index, default=OK)
 
 
-def find_targets(plan: Planned, seen: Index, findings: Iterable[Finding]) -> tuple[Targets, ...]:
+def find_targets(plan: Index, seen: Index, findings: Iterable[Finding]) -> tuple[Targets, ...]:
     """What each finding is about, by its fields and by the names in its message."""
     homes = (tree_topic(robot.tf_topic) for robot in plan.system.robots)
     topics = [*dict.fromkeys((*(tree.topic for tree in tf_trees(plan, seen)), *homes))]
@@ -93,14 +93,14 @@ def make_states(findings: Iterable[Finding], targets: Sequence[Targets]) -> Stat
     return States(endpoints, nodes, frames, frozenset(chain(*(it.names for it in targets))))
 
 
-def _endpoint_targets(plan: Planned, seen: Index, finding: Finding) -> Targets:
+def _endpoint_targets(plan: Index, seen: Index, finding: Finding) -> Targets:
     nodes = tuple(it for it in finding.names if _is_node(plan, seen, it))
     names = tuple(it for it in finding.names if it not in nodes)
     if nodes:
         return Targets(nodes, names, ())
     users = dict.fromkeys(end.node for name in names for end in ends_of(seen, name))
     if not finding.node:
-        robot = plan.robots.get(finding.robot)
+        robot = plan.declared.get(finding.robot)
         return Targets(tuple(plan.own[robot.name] if robot else sorted(users)), names, ())
     words = words_of(finding.message)
     rule = RULES.get(finding.code)
@@ -108,28 +108,28 @@ def _endpoint_targets(plan: Planned, seen: Index, finding: Finding) -> Targets:
     return Targets(tuple(dict.fromkeys((finding.node, *sorted(others)))), names, ())
 
 
-def _is_node(plan: Planned, seen: Index, name: str) -> bool:
+def _is_node(plan: Index, seen: Index, name: str) -> bool:
     """Whether a finding that has this name speaks of a node: nothing else is called so."""
     if any(name in group for group in alternatives(plan.system)):
         return True
     return name in seen.nodes and not any(ends_of(seen, name))
 
 
-def robots_of(plan: Planned, finding: Finding) -> set[str]:
+def robots_of(plan: Index, finding: Finding) -> set[str]:
     """The robots that a finding is about, or of which it names a node, a name or a frame."""
     in_tf = finding.code.startswith(TF_CODES)
-    of_name = plan.frames.robot if in_tf else plan.names.robot
+    of_name = plan.of_frames.robot if in_tf else plan.of_names.robot
     words = words_of(finding.message)
     found = {finding.robot, *finding.others, *map(of_name, finding.names)}
-    found |= {plan.names.robot(it) for it in (finding.node, *words) if it.startswith("/")}
-    found |= {it for it in words if it in plan.robots} - plan.names.ambiguous_words
-    return found & plan.robots.keys()
+    found |= {plan.robot(it) for it in (finding.node, *words) if it.startswith("/")}
+    found |= {it for it in words if it in plan.declared} - plan.of_names.ambiguous_words
+    return found & plan.declared.keys()
 
 
-def _frame_targets(plan: Planned, finding: Finding, topics: Sequence[str]) -> Iterator[FrameKey]:
+def _frame_targets(plan: Index, finding: Finding, topics: Sequence[str]) -> Iterator[FrameKey]:
     """The frames on the topics that the message names; else on the robot's own, or on any topic."""
     words = {tree_topic(word) for word in words_of(finding.message)}
-    robot = plan.robots.get(finding.robot)
+    robot = plan.declared.get(finding.robot)
     own = [topic for topic in topics if robot and topic == tree_topic(robot.tf_topic)]
     named = [topic for topic in topics if topic in words]
     return ((topic, frame) for topic in named or own or topics for frame in finding.names)

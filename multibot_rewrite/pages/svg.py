@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from html import escape
 
+from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.pages.layout import OFFERING, GroupLayout, lay_out
 from multibot_rewrite.pages.scene import DrawnGroup, DrawnName, DrawnNode
@@ -18,7 +19,7 @@ from multibot_rewrite.pages.states import (
     UNEXPECTED,
     FrameKey,
 )
-from multibot_rewrite.pages.text import clipped, columns, counted, visible
+from multibot_rewrite.pages.text import clipped, columns, visible
 from multibot_rewrite.pages.tf_tree_rows import FrameTree
 from multibot_rewrite.system.records import ACTION, SERVICE
 
@@ -64,7 +65,7 @@ def tooltip(*lines: str) -> str:
 def group_svg(group: DrawnGroup, ids: Ids, prefix: str) -> str:
     """The picture of a group; ``prefix`` is put before its anchors, without it there are none."""
     place = lay_out(group)
-    kinds = {counted(len(group.nodes), "node"), counted(len(group.names), "name")}
+    kinds = {plural(len(group.nodes), "node"), plural(len(group.names), "name")}
     label = safe(f"{group.robot or 'shared'}: {', '.join(sorted(kinds))}")
     parts = [
         f'<svg class="graph" viewBox="0 0 {WIDTH} {place.height + 4:.0f}" role="group"'
@@ -138,7 +139,7 @@ def _node(
 def _name(name: DrawnName, robot: str, y: float, id_attributes: str) -> str:
     x, wide = MIDDLE
     badge = BADGES.get(name.kind, "")
-    many = counted(len(name.merged), name.kind)
+    many = plural(len(name.merged), name.kind)
     label = (
         safe(f"{many} without a client")
         if name.merged

@@ -34,8 +34,3 @@ def _fitting(text: str, room: int) -> str:
         room -= columns(text[at])
         at += room >= 0
     return text[:at]
-
-
-def counted(number: int, what: str) -> str:
-    """``1 robot``, ``2 robots``."""
-    return f"{number} {what}{'' if number == 1 else 's'}"

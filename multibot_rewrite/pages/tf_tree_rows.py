@@ -9,9 +9,9 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.pages.states import CLASH, MISSING, OK, States
 from multibot_rewrite.rules.check import RULES
 from multibot_rewrite.rules.pair.tf_trees import tf_trees
-from multibot_rewrite.system.index import Index, tree_topic
-from multibot_rewrite.system.planned import Planned
+from multibot_rewrite.system.index import Index
 from multibot_rewrite.system.records import Edge, Robot
+from multibot_rewrite.system.tf_copies import tree_topic
 
 
 class FrameRow(NamedTuple):
@@ -42,11 +42,11 @@ class FrameTree(NamedTuple):
     rows: tuple[FrameRow, ...]
 
 
-def make_frame_trees(plan: Planned, seen: Index, states: States) -> tuple[FrameTree, ...]:
+def make_frame_trees(plan: Index, seen: Index, states: States) -> tuple[FrameTree, ...]:
     """The trees on each topic in the order of the robots, then the frames missing there."""
     if not (tf_trees(plan, seen) or states.frames):
         return ()
-    order = {robot: at for at, robot in enumerate(plan.robots)}
+    order = {robot: at for at, robot in enumerate(plan.declared)}
     edges = {tree.topic: tree.edges for tree in tf_trees(plan, seen)}
     found: list[FrameTree] = []
     home_topics = (tree_topic(robot.tf_topic) for robot in plan.system.robots)
@@ -73,14 +73,14 @@ class _Forest(NamedTuple):
     robots: Mapping[str, str]
 
 
-def _forest(plan: Planned, topic: str, edges: Sequence[Edge], home: Sequence[Robot]) -> _Forest:
+def _forest(plan: Index, topic: str, edges: Sequence[Edge], home: Sequence[Robot]) -> _Forest:
     static = {(edge.parent, edge.child): edge.static for edge in edges}
     children: dict[str, list[str]] = defaultdict(list)
     for parent, child in sorted(static):
         children[parent].append(child)
     only = home[0].name if len(home) == 1 else ""
     frames = sorted({frame for edge in static for frame in edge})
-    robots = {frame: plan.frames.robot(frame) or only for frame in frames}
+    robots = {frame: plan.frame_robot(frame) or only for frame in frames}
     return _Forest(topic, static, children, robots)
 
 

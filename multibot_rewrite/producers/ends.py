@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from multibot_rewrite.base.rosnames import expand
-from multibot_rewrite.companions.bridge_entry import BOTH, ROS, below
+from multibot_rewrite.companions.bridge_entry import BOTH, GZ, ROS, below
 from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, pairs
 from multibot_rewrite.description.readback.reading import Reading
 from multibot_rewrite.knowledge.records import NodeFacts
@@ -65,7 +65,8 @@ def bridge_ends(document: YamlText, above: str = "") -> Iterator[End]:
     both ways has no role."""
     for row in items(document.root):
         values = {key.value: value for key, value in pairs(row)}
-        name = values.get(ROS) or values.get(BOTH)
+        # A row with one name has it on both sides (ros_gz_bridge bridge_config.cpp).
+        name = values.get(BOTH) or values.get(ROS) or values.get(GZ)
         if name is None:
             continue
         words = {key: str(value.value) for key, value in values.items()}

@@ -6,25 +6,34 @@ from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain
 
 from multibot_rewrite.knowledge.conditions import AND, holds, parse_condition
-from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.knowledge.records import MOVE_GROUP, NodeFacts
 from multibot_rewrite.producers.evidence.filling import filled, lookup
-from multibot_rewrite.producers.evidence.records import GivenNode
+from multibot_rewrite.producers.evidence.records import Given, GivenNode
+from multibot_rewrite.producers.evidence.semantics import FIXED, Semantics
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, sent_by
-from multibot_rewrite.spelling.transforms import Edge as Pair
-from multibot_rewrite.system.records import NOWHERE, OFF, RUNS, Edge, Place, Sure
+from multibot_rewrite.system.records import (
+    NOWHERE,
+    OFF,
+    RUNS,
+    Edge,
+    Lookup,
+    Place,
+    Sure,
+    edge_of,
+)
 
 TOPIC = "/tf"
 
 
 def edge(
-    pair: Pair, node: str, place: Place = NOWHERE, topic: str = TOPIC, sure: Sure = RUNS
+    pair: Edge, node: str, place: Place = NOWHERE, topic: str = TOPIC, sure: Sure = RUNS
 ) -> Edge:
     """A transform on the tf topic of its robot, or on the static one beside it."""
     on = "/".join("tf_static" if it == "tf" and pair.static else it for it in topic.split("/"))
-    return Edge(pair.child, pair.parent, on, pair.static, (node,), sure=sure, place=place)
+    return pair._replace(topic=on, publishers=(node,), sure=sure, place=place)
 
 
-def joint_edges(tree: Iterable[tuple[Pair, Place]]) -> Iterator[Edge]:
+def joint_edges(tree: Iterable[tuple[Edge, Place]]) -> Iterator[Edge]:
     """What robot_state_publisher sends for the joints of a description."""
     yield from (edge(pair, f"/{STATE_PUBLISHER}", place) for pair, place in tree)
 
@@ -35,6 +44,22 @@ def node_edges(nodes: Iterable[NodeFacts], given: Iterable[GivenNode], root: str
     for node in nodes:
         for pair in sent_by(node, root):
             yield edge(pair, f"/{node.name}", places.get(node.name, NOWHERE))
+
+
+def lookups_of(name: str, node: NodeFacts, values: Mapping[str, Given]) -> Iterator[Lookup]:
+    """The frames that a node reads by its parameters, and does not send itself."""
+    own = {name for it in node.sends for name in it[:2]}
+    for it in node.frames:
+        found = values.get(it.parameter)
+        if found and it.parameter not in own and isinstance(found.value, str) and found.value:
+            yield Lookup(name, found.value.lstrip("/"), place=found.place)
+
+
+def virtual_lookups(semantics: Semantics) -> Iterator[Lookup]:
+    """The transforms that are the state of virtual joints: current_state_monitor.cpp of moveit2."""
+    for it in semantics.virtual:
+        if it.type != FIXED:
+            yield Lookup(f"/{MOVE_GROUP}", it.child, it.parent, it.place)
 
 
 def edges_off(given: Iterable[GivenNode], known: Mapping[str, NodeFacts]) -> Iterator[Edge]:
@@ -48,7 +73,7 @@ def edges_off(given: Iterable[GivenNode], known: Mapping[str, NodeFacts]) -> Ite
         for send in node.sends:
             place = _switch(send.condition, runs, it)
             if place:
-                pair = Pair(frames[send.parent], frames[send.child], False)
+                pair = edge_of(frames[send.parent], frames[send.child])
                 yield edge(pair, f"/{it.name}", place, sure=OFF)
 
 

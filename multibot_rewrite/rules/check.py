@@ -30,11 +30,13 @@ from multibot_rewrite.rules.pair import (
 )
 from multibot_rewrite.rules.pair.meeting import missing
 from multibot_rewrite.rules.system import (
+    addresses,
     clocks,
     commands,
     equal_robots,
     frame_ids,
     interfaces,
+    lookups,
     matching,
     names,
     relays,
@@ -45,15 +47,15 @@ from multibot_rewrite.rules.system import (
 )
 from multibot_rewrite.rules.system import nodes as running_nodes
 from multibot_rewrite.rules.system import transforms as any_transforms
-from multibot_rewrite.system.index import NO_COUNTS, Index, ends_of
+from multibot_rewrite.system.index import NO_COUNTS, Index, beside, ends_of, index
+from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.patterns import fitted
-from multibot_rewrite.system.planned import Planned, beside, planned
 from multibot_rewrite.system.records import PUBLISHES, SIM_TIME, Caveat, End, System, incomplete
 from multibot_rewrite.system.tf_copies import without_bridged
 
 _SYSTEM = (
     *(running_nodes, names, matching, commands, relays, sharing, any_transforms, tf_topics),
-    *(frame_ids, clocks, states, equal_robots, unsent, interfaces),
+    *(frame_ids, lookups, clocks, states, equal_robots, unsent, interfaces, addresses),
 )
 _PAIR = (
     *(nodes, endpoints, leaks, types, publishers, demands, in_enclaves, planned_states),
@@ -112,15 +114,15 @@ def check(plan: System, graph: System, messages: Mapping[str, int] = NO_COUNTS) 
 
 def side_by_side(
     plan: System, graph: System, messages: Mapping[str, int] = NO_COUNTS
-) -> tuple[Planned, Index]:
+) -> tuple[Index, Index]:
     """The look-ups of a plan and a system, with the same words for what is made at run time."""
     fitting, there = fitted(plan, graph)
-    by_plan = planned(fitting)
+    by_plan = index(fitting, whose_by_plan(fitting))
     edges = without_bridged(fitting, there.edges)
     return by_plan, beside(by_plan, there._replace(edges=edges), messages)
 
 
-def _besides(plan: Planned, seen: Index, found: Sequence[Finding]) -> Iterator[Finding]:
+def _besides(plan: Index, seen: Index, found: Sequence[Finding]) -> Iterator[Finding]:
     """What is wrong with the system, without what is meant, and what is found with its cause by the
     plan: under the same code, or as an end that is missing."""
     said = {(it.code, about) for it in found for about in (*it.names, it.node) if about}
@@ -135,7 +137,7 @@ def _besides(plan: Planned, seen: Index, found: Sequence[Finding]) -> Iterator[F
             yield it
 
 
-def _is_meant(plan: Planned, seen: Index, finding: Finding) -> bool:
+def _is_meant(plan: Index, seen: Index, finding: Finding) -> bool:
     """Whether all who do with its names what it is about are planned to."""
     roles = RULES[finding.code].options["meant"]
     ends = [end for name in finding.names for end in ends_of(seen, name)]
@@ -143,14 +145,14 @@ def _is_meant(plan: Planned, seen: Index, finding: Finding) -> bool:
     return bool(about) and all(_is_planned(plan, end) for end in about)
 
 
-def _is_planned(plan: Planned, end: End) -> bool:
-    if (end.node, end.kind, end.role, end.name) in plan.ends:
+def _is_planned(plan: Index, end: End) -> bool:
+    if (end.node, end.kind, end.role, end.name) in plan.by_key:
         return True
     topics = (it for it in plan.system.topics if it.name == end.name and end.role == PUBLISHES)
     return any(fnmatchcase(end.node, pattern) for it in topics for pattern in it.senders)
 
 
-def _without_planned(plan: Planned, graph: System) -> System:
+def _without_planned(plan: Index, graph: System) -> System:
     """The graph without the states that the plan has: they are compared with it."""
     states_ = {it.name for it in plan.system.nodes if it.lifecycle}
     timed = dict(planned_states.planned_clocks(plan.system))

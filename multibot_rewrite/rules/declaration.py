@@ -11,10 +11,9 @@ from multibot_rewrite.base.record import NamedTuple
 
 if TYPE_CHECKING:
     from multibot_rewrite.system.index import Index
-    from multibot_rewrite.system.planned import Planned
 
 _Check = TypeVar("_Check", bound=Callable[..., Any])
-_Pair = Callable[["Planned", "Index"], Iterator[Finding]]
+_Pair = Callable[["Index", "Index"], Iterator[Finding]]
 # How pictures show what a finding is about; "" is violet for an error, blue for a warning.
 Drawn = Literal["", "missing", "leak", "cross-talk", "unexpected"]
 # What the examples of a rule are written in: lines of a system, or of a plan and a system.
@@ -52,9 +51,20 @@ def system_rule(
     those of ``findings.rule.declare``; the examples are lines of ``tests/support/graph_examples.py``
     that begin with ``running:``.
     """
-    options: dict[str, object] = {"absence": absence, "drawn": drawn, "all_ends": all_ends}
-    options |= {"meant": meant, "robot_wide": robot_wide}
+    options = system_options(absence, drawn, all_ends, meant, robot_wide)
     return rule(code, name, level, formats=(SYSTEM,), options=options, **words)
+
+
+def system_options(
+    absence: bool = False,
+    drawn: Drawn = "",
+    all_ends: bool = False,
+    meant: tuple[str, ...] = (),
+    robot_wide: bool = False,
+) -> dict[str, object]:
+    """The options of a rule about any system, as in ``system_rule``."""
+    options: dict[str, object] = {"absence": absence, "drawn": drawn, "all_ends": all_ends}
+    return {**options, "meant": meant, "robot_wide": robot_wide}
 
 
 def pair_rule(
@@ -67,7 +77,8 @@ def pair_rule(
     nodes: bool = True,
     **words: str | int,
 ) -> Callable[[_Check], Rule]:
-    """Makes a function a rule about a plan and what is seen: it gets a ``Planned`` and an ``Index``.
+    """Makes a function a rule about a plan and what is seen: it gets the ``Index`` of
+    each.
 
     ``nodes``: it asks which nodes run, which a recording does not know. The rest is as for
     ``system_rule``.

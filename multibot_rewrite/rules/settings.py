@@ -16,7 +16,7 @@ from multibot_rewrite.base.releases import NEWEST_LTS
 if TYPE_CHECKING:
     from multibot_rewrite.description.sources.known_arguments import KnownArguments
 
-ALL = ("MB",)
+ALL = ("M",)
 TARGETS = ("usd", "mjcf")
 TIME_LIMIT = 60.0
 EVERY_FILE = "*"

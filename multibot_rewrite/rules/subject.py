@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from multibot_rewrite.base.findings.rule import URDF
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.description.checks.links_and_joints import Robot
+from multibot_rewrite.description.checks.links_and_joints import Robot, read_robot
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.description.steps.document import Document
 from multibot_rewrite.rules.facts.elements import Elements
-from multibot_rewrite.rules.schema.faults import Fault
 from multibot_rewrite.rules.settings import Settings
 
 if TYPE_CHECKING:
@@ -29,8 +29,7 @@ class Subject(NamedTuple):
     ``format`` is ``urdf``, ``srdf`` or ``xacro`` (the source as it is written). ``beside`` is the
     robot of an SRDF's URDF, if it was found. Where the document was expanded, ``origins``
     says where its elements were written, in document order, and ``sources`` has those files;
-    ``arguments`` are the ones it was expanded with, ``given`` their names. ``faults`` are
-    those of a URDF's structure.
+    ``arguments`` are the ones it was expanded with, ``given`` their names.
     ``memo`` is each subject's own, and filled while rules look at it (``facts.memo``).
     """
 
@@ -47,7 +46,13 @@ class Subject(NamedTuple):
     sources: Mapping[str, bytes] = {}
     arguments: str = ""
     given: tuple[str, ...] = ()
-    faults: tuple[Fault, ...] = ()
+
+
+def subject_of(inventory: Inventory, tree: Tree, settings: Settings) -> Subject:
+    """The subject of a URDF as it is written."""
+    document = inventory.document
+    elements, robot = Elements(document), read_robot(document.root)
+    return Subject(URDF, document, elements, inventory, tree, robot, settings, {})
 
 
 class Robots(NamedTuple):

@@ -16,6 +16,7 @@ from multibot_rewrite.description.rewriters.model_namespaces import is_model_nam
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.description.steps.collect import Inventory
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, Topic
 
 # How libraries for gz-sim are called; those for Gazebo Classic that are ROS nodes have the other word.
 GZ_LIBRARIES, CLASSIC_LIBRARY = ("gz-", "gz_", "ign_", "ignition-"), "gazebo_ros"
@@ -198,3 +199,25 @@ def as_yaml(bridged: Iterable[BridgedTopic]) -> str:
             f"  direction: {item.direction}\n",
         ]
     return "".join(rows)
+
+
+# With nothing said, a row goes both ways.
+BOTH = (PUBLISHES, SUBSCRIBES)
+_ROLES = {"GZ_TO_ROS": (PUBLISHES,), "ROS_TO_GZ": (SUBSCRIBES,)}
+
+
+def bridged_as(topics: Iterable[BridgedTopic]) -> tuple[Topic, ...]:
+    """The topics that descriptions have, each once."""
+    return once(
+        Topic(it.ros, bridge=_ROLES.get(it.direction, BOTH), type=it.ros_type) for it in topics
+    )
+
+
+def once(topics: Iterable[Topic]) -> tuple[Topic, ...]:
+    """Each topic once, with all that a bridge does with it."""
+    found: dict[str, Topic] = {}
+    for topic in topics:
+        first = found.setdefault(topic.name, topic)
+        roles = tuple(it for it in BOTH if it in {*first.bridge, *topic.bridge})
+        found[topic.name] = first._replace(bridge=roles)
+    return tuple(found.values())

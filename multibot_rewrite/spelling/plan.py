@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.conventions import SENT_BY_EVERY_NODE, USUAL_FRAMES
 from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS, Naming, spelled
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.spelling.records import EndpointName, Table
 from multibot_rewrite.spelling.ways import HOST, PLUGIN, PROCESS, deliveries
-from multibot_rewrite.system.records import MAY, RUNS, End, Node, Robot, System, place_of
+from multibot_rewrite.system.records import MAY, RUNS, End, Node, Robot, Sure, System, place_of
 
 if TYPE_CHECKING:
     from multibot_rewrite.description.steps.collect import Inventory
@@ -82,9 +81,17 @@ def expect(
         tag = word if word != name else ""
         return Robot(name, own, tf_topic(name, naming), _further(others, own, naming), tag)
 
-    may_run = _may_run(table, facts, maybe_real)
-    names = dict.fromkeys((*frames, *filter(None, may_run.nodes)))
-    nodes = (it for name in (*names, "") for it in _nodes_of(name, may_run))
+    own = _own_nodes(table, facts, maybe_real)
+    made = _private_nodes(table.names)
+    always = _private_nodes(it for it in table.names if not it.endpoint.when)
+    names = dict.fromkeys((*frames, *filter(None, own)))
+    nodes = (
+        Node(full, robot=name, sure=sure)
+        for name in (*names, "")
+        for full, sure in _with_made(
+            own.get(name, {}), made.get(name, ()) if name else (), always.get(name, ())
+        )
+    )
     return System(
         nodes=tuple(_placed(nodes, table, sources)),
         ends=tuple(dict.fromkeys(_planned(table.names))),
@@ -93,43 +100,35 @@ def expect(
         shared_topics=tuple(sorted(f"/{topic}" for topic in naming.shared_topics)),
         shared_frames=tuple(sorted(naming.shared_frames)),
         # What nodes for all robots make for themselves.
-        ignored_nodes=tuple(may_run.made.get("", ())),
+        ignored_nodes=made.get("", ()),
     )
 
 
-class _MayRun(NamedTuple):
-    """The nodes of each robot (name in the stack, full name), those that its nodes make, those of them
-    that are always there, and the nodes that run under a condition, by robot and name in the stack."""
-
-    nodes: Mapping[str, Sequence[tuple[str, str]]]
-    made: Mapping[str, Sequence[str]]
-    always: Mapping[str, Sequence[str]]
-    conditional: Set[tuple[str, str]]
-
-
-def _may_run(table: Table, facts: Sequence[NodeFacts], maybe_real: Container[str]) -> _MayRun:
+def _own_nodes(
+    table: Table, facts: Sequence[NodeFacts], maybe_real: Container[str]
+) -> dict[str, dict[str, Sure]]:
+    """By robot: the full names of its nodes, each with whether it runs; those for all robots do."""
     optional = {node.name for node in facts if node.when}
-    plugins = {
-        (it.robot, it.node) for it in table.nodes if it.home.written and it.robot in maybe_real
+    conditional = {
+        (it.robot, it.node)
+        for it in table.nodes
+        if it.node in optional or (it.home.written and it.robot in maybe_real)
     }
-    return _MayRun(
-        _nodes(table),
-        _private_nodes(table.names),
-        _private_nodes(it for it in table.names if not it.endpoint.when),
-        plugins | {(it.robot, it.node) for it in table.nodes if it.node in optional},
-    )
+    found: dict[str, dict[str, Sure]] = {}
+    for it in table.nodes:
+        own, may = found.setdefault(it.robot, {}), (it.robot, it.node) in conditional
+        own[it.full_name] = MAY if it.robot and may else own.get(it.full_name, RUNS)
+    return found
 
 
-def _nodes_of(robot: str, may_run: _MayRun) -> Iterator[Node]:
-    """The nodes of a robot, and those that these make for themselves; of all robots only the former."""
-    of_stack = may_run.nodes.get(robot, ())
-    optional = tuple(full for name, full in of_stack if (robot, name) in may_run.conditional)
-    always, own = may_run.always.get(robot, ()), dict.fromkeys(full for _, full in of_stack)
-    for full in own:
-        yield Node(full, robot=robot, sure=MAY if robot and full in optional else RUNS)
-    for full in (it for it in may_run.made.get(robot, ()) if robot and it not in own):
-        sure = full in always and not full.startswith(optional)
-        yield Node(full, robot=robot, sure=RUNS if sure else MAY)
+def _with_made(
+    own: Mapping[str, Sure], made: Iterable[str], always: Container[str]
+) -> Iterator[tuple[str, Sure]]:
+    """A robot's nodes, and those that they make for themselves: ``always``, or by a parameter."""
+    yield from own.items()
+    optional = tuple(full for full, sure in own.items() if sure is MAY)
+    for full in (it for it in made if it not in own):
+        yield full, RUNS if full in always and not full.startswith(optional) else MAY
 
 
 def _further(others: Iterable[str], own: Iterable[str], naming: Naming) -> tuple[str, ...]:
@@ -155,15 +154,6 @@ def _ways(table: Table) -> Iterator[tuple[str, tuple[str, str]]]:
             continue
         taker = full.get((node.robot, it.taker), "")
         yield node.full_name, (it.way, taker if it.way in (HOST, PLUGIN) else "")
-
-
-def _nodes(table: Table) -> dict[str, list[tuple[str, str]]]:
-    """By robot: the name of each node in the stack, and its full name."""
-    found: dict[str, list[tuple[str, str]]] = {}
-    for node in table.nodes:
-        full = f"{node.namespace.rstrip('/')}/{node.name}"
-        found.setdefault(node.robot, []).append((node.node, full))
-    return found
 
 
 def _defaults(facts: Iterable[NodeFacts]) -> Iterator[str]:

@@ -1,6 +1,7 @@
 """The plan of a fleet as a file: YAML, which people edit, or JSON, which is read faster.
 
-Both have the same keys and values, and both are read with the same checks.
+Both have the same keys and values, and both are read with the same checks. A fleet file is
+told from both.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from functools import cache
 from multibot_rewrite.base.bounded import load_json, load_yaml
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.model import InputError
+from multibot_rewrite.knowledge.yaml_with_lines import refuse_xml
 from multibot_rewrite.spelling.plan_value import REMEDY, from_value, value_of
 from multibot_rewrite.system.records import System
 
@@ -96,6 +98,7 @@ def _quoted(value: str) -> str:
 def read_plan(data: bytes, file: str) -> System:
     """Read what ``to_yaml`` or ``to_json`` wrote; raises InputError with file, place and what to write
     there."""
+    refuse_xml(data, file)
     with gc_paused():
         return from_json(data, file) if is_json(data) else from_yaml(data, file)
 
@@ -134,3 +137,15 @@ def from_yaml(data: bytes, file: str) -> System:
         raise InputError(f"{place}: not valid YAML: {reason}; {REMEDY}") from None
     except UnicodeDecodeError as error:
         raise InputError(f"{file}: not valid YAML: {error}; {REMEDY}") from None
+
+
+# What follows ``robots:``, empty lines and comments aside.
+_ROBOTS = re.compile(rb"^robots:[ \t]*(?:#[^\n]*)?(?:\s*#[^\n]*\n)*\s*(\S)", re.MULTILINE)
+_INCLUDE = re.compile(rb"^include:", re.MULTILINE)
+
+
+def is_fleet(data: bytes) -> bool:
+    """Is this a fleet file? Its robots are a list, or in files that it includes; in a plan they are
+    keys."""
+    found = _ROBOTS.search(data)
+    return found[1][:1] in (b"-", b"[") if found else bool(_INCLUDE.search(data))

@@ -11,8 +11,13 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.spelling.plan import STACK, from_text, planned_end, vacuous
-from multibot_rewrite.spelling.plan_gaps import gap_value, read_gaps
-from multibot_rewrite.spelling.plan_states import NodeDemand, read_states, state_value
+from multibot_rewrite.spelling.plan_states import (
+    NodeDemand,
+    gap_value,
+    read_gaps,
+    read_states,
+    state_value,
+)
 from multibot_rewrite.system.records import (
     KINDS,
     MAY,

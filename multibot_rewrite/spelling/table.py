@@ -13,21 +13,19 @@ from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.naming import NAMESPACE, Naming
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import RemapRule, bind, expand, parse_remap, resolve_bound
+from multibot_rewrite.description.readback.nodes import ReadNode
+from multibot_rewrite.description.readback.reading import Reading
 from multibot_rewrite.knowledge.controller_ways import controller_way
-from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
-from multibot_rewrite.spelling.applied_rules import is_stand_in
+from multibot_rewrite.knowledge.records import Endpoint, FrameParameter, NodeFacts, SentTransform
 from multibot_rewrite.spelling.records import EndpointName, Home, NodeRule, NodeTable, Pairs, Table
 from multibot_rewrite.spelling.table_checks import (
     PROBE,
-    SHARED_NODE,
     asked_for,
-    collisions,
-    shared_nodes,
     unreachable,
     useless_rules,
 )
 from multibot_rewrite.spelling.targets import expanded, placed, target_of
-from multibot_rewrite.spelling.way_checks import NOT_TAKEN, not_taken
+from multibot_rewrite.spelling.way_checks import NOT_TAKEN, is_stand_in, not_taken
 from multibot_rewrite.system.records import ACTION, TOPIC
 
 SAME = "all robots would share this name otherwise"
@@ -70,24 +68,18 @@ def _build(
     ]
     meant = list(names_of(own))
     apart = {robot: _without_stand_ins(pairs, nodes) for robot, pairs in plugins.items()}
-    names = {
-        robot: [*_renamed(meant, robot), *names_of(apart.get(robot, ()))]
-        for robot in ([*robots, PROBE] if len(robots) == 1 else robots)
-    }
+    names = {robot: [*_renamed(meant, robot), *names_of(apart.get(robot, ()))] for robot in robots}
     problems = [
         *unreachable([node for node, _ in own], naming),
         *useless_rules(own, release),
-        *collisions(names, naming),
     ]
     for robot in robots:
         controllers = _given_by_plugins(own, robot, release)
         problems += useless_rules(plugins.get(robot, ()), release, controllers)
-    twin = _copies(own, PROBE) if len(robots) == 1 else ()
     kept = [*names_of(shared), *(name for robot in robots for name in names[robot])]
     tables = [table for _, table in shared]
     for robot in robots:
         tables += [*_copies(own, robot), *(table for _, table in plugins.get(robot, ()))]
-    problems += shared_nodes((*tables, *twin))
     return Table(naming.layout.name, tuple(tables), tuple(kept), tuple(problems), release)
 
 
@@ -112,22 +104,14 @@ def _without_controllers(facts: NodeFacts, table: NodeTable) -> NodeFacts:
     return facts._replace(endpoints=tuple(kept))
 
 
-def joined(table: Table, other: Table, naming: Naming) -> Table:
+def joined(table: Table, other: Table) -> Table:
     """Two tables of different robots as one; nodes for all robots are in it once."""
     names = tuple(dict.fromkeys((*table.names, *other.names)))
-    by_robot: dict[str, list[EndpointName]] = {}
-    for name in names:
-        if name.robot:
-            by_robot.setdefault(name.robot, []).append(name)
-    known = {(it.code, it.message) for it in (*table.problems, *other.problems)}
-    met = (it for it in collisions(by_robot, naming) if (it.code, it.message) not in known)
     nodes = tuple(dict.fromkeys((*table.nodes, *other.nodes)))
     made = Table(table.layout, nodes, names, (), table.release)
     # The first robot of all is another one than the first of each.
-    whole = (NOT_TAKEN.code, SHARED_NODE.code)
-    each = (it for it in (*table.problems, *other.problems) if it.code not in whole)
-    found = (*each, *met, *shared_nodes(nodes), *not_taken(made))
-    return made._replace(problems=tuple(dict.fromkeys(found)))
+    each = (it for it in (*table.problems, *other.problems) if it.code != NOT_TAKEN.code)
+    return made._replace(problems=tuple(dict.fromkeys((*each, *not_taken(made)))))
 
 
 def _renamed(names: Sequence[EndpointName], robot: str) -> list[EndpointName]:
@@ -216,9 +200,11 @@ def _targets(endpoint: Endpoint, place: _Place) -> Iterator[tuple[str, str, str]
         if target:
             yield source, f"{'' if target[0] == '/' else root}{target}", moved
         # What a node joins with the namespace above is no name of its own namespace.
-        if target and naming.topics != NAMESPACE:
-            for joined in asked_for(source, endpoint, namespace)[1:]:
-                yield joined, f"/{target.lstrip('/')}", moved
+        for joined in asked_for(source, endpoint, namespace)[1:]:
+            if naming.topics != NAMESPACE:
+                yield from [(joined, f"/{target.lstrip('/')}", moved)] * bool(target)
+            elif (target or wanted).startswith("/") and joined != (target or wanted):
+                yield joined, target or wanted, moved
 
 
 def _shared(name: str, place: _Place) -> str:
@@ -267,3 +253,30 @@ def names_of(pairs: Pairs) -> Iterator[EndpointName]:
             kind = TOPIC if endpoint.kind == ACTION else endpoint.kind
             found = resolve_bound(endpoint.name, kind, bare if endpoint.fixed else bound)
             yield EndpointName(table.robot, f"{root}/{table.name}", endpoint, found)
+
+
+def plugin_nodes(reading: Reading, robot: str) -> Iterator[tuple[NodeFacts, NodeTable]]:
+    """Each ROS 2 plugin of ``robot``'s rewritten description: its endpoints, its names and rules."""
+    for node in reading.nodes:
+        rules = tuple(_rules(node, robot))
+        section = node.section
+        home = Home("", "", section.names[0], written=True, process_wide=section.process_wide)
+        yield _facts(node), NodeTable(robot, node.name, node.namespace, node.name, rules, home)
+
+
+def _facts(node: ReadNode) -> NodeFacts:
+    endpoints = (
+        Endpoint(it.kind, it.role, it.name, it.type, parameter=it.parameter, when=it.off)
+        for it in node.endpoints
+    )
+    frames = tuple(FrameParameter(*frame) for frame in node.frames)
+    package = node.section.names[0]
+    sends = tuple(SentTransform(*it) for it in node.sends)
+    return NodeFacts(node.name, package, tuple(endpoints), frames=frames, sends=sends)
+
+
+def _rules(node: ReadNode, robot: str) -> Iterator[NodeRule]:
+    for rule, line, _ in node.rules:
+        why = f"in the description, line {line}"
+        lead = f"{rule.node}:" if rule.node else ""
+        yield NodeRule(robot, node.name, f"{lead}{rule.source}", rule.target, "", why)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from functools import cache
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
@@ -14,7 +14,7 @@ from multibot_rewrite.base.rosnames import BoundNode, bind, resolve_bound
 from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import load_nodes
-from multibot_rewrite.spelling.records import EndpointName, NodeRule, NodeTable, Pairs
+from multibot_rewrite.spelling.records import NodeRule, NodeTable, Pairs
 from multibot_rewrite.spelling.targets import expanded, target_of
 from multibot_rewrite.system.records import SERVICE, TOPIC
 
@@ -66,110 +66,6 @@ def _needed(endpoint: Endpoint, naming: Naming) -> bool:
     if "<" in endpoint.name:
         return naming.topics != NAMESPACE or endpoint.name.startswith("/")
     return bool(target_of(endpoint.name, endpoint.kind, PROBE, naming))
-
-
-SHARED_NAME = declare(
-    "MR102",
-    "robots-share-name",
-    ERROR,
-    what="Two robots would have the same topic, service or action name, and it is not a shared one.",
-    why="The nodes of both robots use it: one command moves both robots, or their scans are mixed.",
-    fix="Remap it for each robot, choose other names or another separator, or allow it with "
-    "--shared-topics (shared_topics in the fleet file).",
-    bad="""\
-nodes:
-  lidar_driver:
-    package: acme_lidar
-    publishes:
-      # both are /scan_left_robot1: scan_left of robot1, scan of left_robot1
-      scan_left: sensor_msgs/msg/LaserScan
-      scan: sensor_msgs/msg/LaserScan
-""",
-    good="""\
-nodes:
-  lidar_driver:
-    package: acme_lidar
-    publishes:
-      rear_scan: sensor_msgs/msg/LaserScan
-      scan: sensor_msgs/msg/LaserScan
-""",
-    line=5,
-    formats=("remap",),
-    options={
-        "robots": ("robot1", "left_robot1"),
-        "layout": "postfix",
-        "affix": "postfix",
-        "separators": {"topic": "_"},
-    },
-)
-
-
-def collisions(names: dict[str, list[EndpointName]], naming: Naming) -> Iterator[Finding]:
-    """Names that two robots would have though they are not shared."""
-    first: dict[tuple[str, str], EndpointName] = {}
-    reported = set()
-    shared = {f"/{topic}" for topic in naming.shared_topics}
-    for name in (name for found in names.values() for name in found):
-        key = ("" if name.endpoint.kind != SERVICE else SERVICE, name.name)
-        other = first.setdefault(key, name)
-        if (
-            other.robot == name.robot
-            or name.name in shared
-            or name.endpoint.fixed
-            or key in reported
-        ):
-            continue
-        reported.add(key)
-        message = f"two robots would share {name.name}: {other.node} and {name.node} use it"
-        hint = "remap it for each robot, or allow it with --shared-topics"
-        place = {"robot": other.robot, "node": name.node, "names": (name.name,)}
-        yield SHARED_NAME.finding(message, hint, **place)
-
-
-SHARED_NODE = declare(
-    "MR106",
-    "robots-share-node",
-    ERROR,
-    what="A node of two robots would have the same full name.",
-    why="Parameters and lifecycle services are found by that name, so a request reaches either robot's "
-    "node, and the graph does not tell whose topics are whose.",
-    fix="Choose other names or another separator. Where the code of a node sets its name, give it "
-    "apart: true in the file of nodes, or choose a layout with namespaces, such as tf-per-robot.",
-    bad="""\
-nodes:
-  # both are /driver_left_robot1: driver_left of robot1, driver of left_robot1
-  driver_left:
-    package: acme_driver
-  driver:
-    package: acme_driver
-""",
-    good="""\
-nodes:
-  rear_driver:
-    package: acme_driver
-  driver:
-    package: acme_driver
-""",
-    line=5,
-    formats=("remap",),
-    options={"robots": ("robot1", "left_robot1"), "layout": "postfix", "affix": "postfix"},
-)
-
-
-def shared_nodes(tables: Iterable[NodeTable]) -> Iterator[Finding]:
-    """Full names that nodes of two robots would have; two of descriptions have a judge of their own."""
-    first: dict[str, NodeTable] = {}
-    reported = set()
-    for table in (it for it in tables if it.robot):
-        full = table.full_name
-        other = first.setdefault(full, table)
-        written = other.home.written and table.home.written
-        if other.robot == table.robot or full in reported or written:
-            continue
-        reported.add(full)
-        message = f"two robots would share the node {full}: {other.node} and {table.node}"
-        hint = "choose other names or another separator, or a layout with namespaces"
-        yield SHARED_NODE.finding(message, hint, robot=other.robot, node=table.node)
 
 
 RULE_WITHOUT_NAME = declare(

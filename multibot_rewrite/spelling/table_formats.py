@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterator
 from xml.sax.saxutils import escape
 
 from multibot_rewrite.spelling.records import Table
-from multibot_rewrite.spelling.started import Started, arguments, launch_arguments, started
 from multibot_rewrite.spelling.ways import (
     COMPONENT,
     HOST,
@@ -16,8 +15,12 @@ from multibot_rewrite.spelling.ways import (
     PROCESS,
     SPAWNER,
     Delivery,
+    Started,
+    arguments,
     deliveries,
+    launch_arguments,
     rules_by_taker,
+    started,
 )
 
 EVERY_ROBOT = "all robots"

@@ -7,10 +7,9 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.naming import Naming, spelled
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.knowledge.conditions import holds
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.system.records import PUBLISHES
+from multibot_rewrite.system.records import PUBLISHES, Edge, edge_of
 
 if TYPE_CHECKING:
     from lxml.etree import _Element
@@ -19,14 +18,6 @@ if TYPE_CHECKING:
 
 STATE_PUBLISHER = "robot_state_publisher"
 NO_PLAIN: Mapping[tuple[str, str], str] = {}
-
-
-class Edge(NamedTuple):
-    """A transform that a node sends."""
-
-    parent: str
-    child: str
-    static: bool
 
 
 Edges = Mapping[tuple[str, str], Sequence[Edge]]
@@ -81,7 +72,7 @@ def _once(by_naming: Callable[[str], str]) -> Callable[[str], str]:
 def tree_of(inventory: Inventory, naming: Naming, robot: str) -> Iterator[Edge]:
     """The transforms that a robot's robot_state_publisher sends for its rewritten description."""
     for it in edges_in(inventory.document.root):
-        parent, child = (at_run_time(naming, robot, link) for link in it[:2])
+        parent, child = (at_run_time(naming, robot, link) for link in (it.parent, it.child))
         yield it._replace(parent=parent, child=child)
 
 
@@ -105,7 +96,7 @@ def edges_in(root: _Element) -> Iterator[Edge]:
         names = [(end.get("link") or end.text or "").strip() for end in ends if end is not None]
         if len(names) == 2:
             parent, child = (_attached_to(name, attached) for name in names)
-            yield Edge(parent, child, joint.get("type") == "fixed")
+            yield edge_of(parent, child, joint.get("type") == "fixed")
 
 
 def _attached_to(name: str, attached: Mapping[str, str]) -> str:
@@ -127,7 +118,7 @@ def sent_by(node: NodeFacts, root: str) -> Iterator[Edge]:
     static = _is_static(node)
     for parent, child, _ in (it for it in node.sends if holds(it.condition, values.get)):
         base = root and "odom" not in child and child not in given
-        edge = Edge(values[parent], root if base else values[child], static)
+        edge = edge_of(values[parent], root if base else values[child], static)
         # A frame that only a file sets; a frame below itself, which tf2 refuses (buffer_core.cpp).
         if edge.parent not in ("", edge.child) and "<" not in edge.child:
             yield edge
@@ -153,7 +144,7 @@ def with_odometry(edges: Edges, robot: str, naming: Naming) -> tuple[Edges, str]
     loose = {edge.child for edge in others} - {edge.parent for edge in (*tree, *others)}
     if len(roots) != 1 or len(loose) != 1:
         return edges, ""
-    added = Edge(loose.pop(), roots.pop(), False)
+    added = edge_of(loose.pop(), roots.pop())
     return {**edges, state: [*tree, added]}, f"{added.parent} -> {added.child}"
 
 
@@ -167,6 +158,6 @@ def frames_of(
     """
     own = () if inventory.document.root.tag == "sdf" else inventory.declared["frame"]
     declared = (*links_of(inventory, naming, robot), *own)
-    ends = (frame for edge in sent for frame in edge[:2])
+    ends = (frame for edge in sent for frame in (edge.parent, edge.child))
     frames = dict.fromkeys((*declared, *ends))
     return tuple(frame for frame in frames if frame not in naming.shared_frames)

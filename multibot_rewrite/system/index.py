@@ -10,19 +10,25 @@ from typing import Any, TypeVar, cast
 from multibot_rewrite.base.conventions import EVERYBODYS, only_looks
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.system import words
-from multibot_rewrite.system.ownership import Whose
+from multibot_rewrite.system.ownership import NameOwnership, Whose
 from multibot_rewrite.system.records import (
     CALLS,
     KINDS,
     OFF,
     PUBLISHES,
     SERVES,
+    SIM_TIME,
     SUBSCRIBES,
     TOPIC,
     Edge,
     End,
+    Node,
+    Robot,
     System,
+    may_miss,
+    nodes_by_robot,
 )
+from multibot_rewrite.system.tf_copies import copying_nodes, tree_topic
 from multibot_rewrite.system.tool_nodes import is_tool
 
 # In the order of the fields of Ends.
@@ -65,6 +71,17 @@ class Tree(NamedTuple):
     listeners: tuple[str, ...]
 
 
+class Sent(NamedTuple):
+    """A transform that a node sends by the plan."""
+
+    node: str
+    parent: str
+    child: str
+
+    def __str__(self) -> str:
+        return f"{self.parent} -> {self.child}"
+
+
 class Known(NamedTuple):
     """What is known of a system besides what it shows.
 
@@ -88,39 +105,6 @@ class Known(NamedTuple):
 NOTHING_KNOWN = Known()
 
 
-class Index(NamedTuple):
-    """A system; ``names`` has the ends of each (kind, name), without hidden ones.
-
-    ``robot`` and ``frame_robot`` have the robot of a node or name and of a frame, empty where it is of
-    none or of all; ``plain`` and ``plain_frame`` the name without the robot's. ``nodes`` counts the
-    nodes by name. ``topics`` are the topics but tf and what every node has; ``orders`` those by which a
-    robot is moved or sent somewhere. ``known`` is what is known besides. ``memo`` is filled while
-    rules look at it (``once``).
-    """
-
-    system: System
-    robots: tuple[str, ...]
-    robot: Callable[[str], str]
-    plain: Callable[[str], str]
-    frame_robot: Callable[[str], str]
-    plain_frame: Callable[[str], str]
-    nodes: Mapping[str, int]
-    names: Mapping[tuple[str, str], Ends]
-    topics: tuple[Ends, ...]
-    orders: Mapping[str, Ends]
-    trees: tuple[Tree, ...]
-    known: Known
-    memo: dict[object, Any]
-
-    def of_robot(self, robot: str, kind: str, plain: str) -> Ends | None:
-        """The ends of a robot's name, by the name without the robot's."""
-        return _by_robot(self).get((robot, kind, plain))
-
-    def is_tool(self, node: str) -> bool:
-        """Is the node none of the robots', but one that comes and goes beside any?"""
-        return node not in self.known.parts and is_tool(node, self.known.tools)
-
-
 def once(make: _Look) -> _Look:
     """A look-up that is made when it is first asked, and kept by the last index that it is asked of."""
 
@@ -134,53 +118,167 @@ def once(make: _Look) -> _Look:
     return cast(_Look, found)
 
 
+class Index(NamedTuple):
+    """A system, seen or planned, with its look-ups, each made when it is first asked.
+
+    ``robot`` and ``frame_robot`` have the robot of a node or name and of a frame, empty where it is of
+    none or of all; ``plain`` and ``plain_frame`` the name without the robot's; ``of_names`` and
+    ``of_frames`` are how a plan has it. ``known`` is what is known besides. ``memo`` is filled while
+    rules look (``once``).
+    """
+
+    system: System
+    robots: tuple[str, ...]
+    robot: Callable[[str], str]
+    plain: Callable[[str], str]
+    frame_robot: Callable[[str], str]
+    plain_frame: Callable[[str], str]
+    of_names: NameOwnership
+    of_frames: NameOwnership
+    known: Known
+    memo: dict[object, Any]
+
+    @property
+    @once
+    def nodes(self) -> Mapping[str, int]:
+        """How many nodes have each name."""
+        return Counter(node.name for node in self.system.nodes)
+
+    @property
+    @once
+    def node(self) -> Mapping[str, Node]:
+        """The last node of each name."""
+        return {it.name: it for it in self.system.nodes}
+
+    @property
+    @once
+    def own(self) -> Mapping[str, Sequence[str]]:
+        """The nodes that a plan has for each robot, and for all (empty name)."""
+        return nodes_by_robot(self.system)
+
+    @property
+    @once
+    def robot_of(self) -> Mapping[str, str]:
+        """The robot of each node that a plan has for one."""
+        return {it.name: it.robot for it in self.system.nodes if it.robot}
+
+    @property
+    @once
+    def may_miss(self) -> Set[str]:
+        """The nodes that need not run: on a condition, or because another one may run instead."""
+        return {it.name for it in self.system.nodes if may_miss(it)}
+
+    @property
+    @once
+    def declared(self) -> Mapping[str, Robot]:
+        """The robots that a plan has."""
+        return {it.name: it for it in self.system.robots}
+
+    @property
+    @once
+    def frames_of(self) -> Mapping[str, Set[str]]:
+        """The frames that each planned robot has, or may have."""
+        return {it.name: {*it.frames, *it.other_frames} for it in self.system.robots}
+
+    @property
+    @once
+    def sent(self) -> Sequence[Sent]:
+        """The transforms by the nodes that send them."""
+        return [
+            Sent(node, it.parent, it.child) for it in self.system.edges for node in it.publishers
+        ]
+
+    @property
+    @once
+    def by_key(self) -> Mapping[EndKey, End]:
+        """The last end of each key, hidden ones as well."""
+        return {(it.node, it.kind, it.role, it.name): it for it in self.system.ends}
+
+    @property
+    @once
+    def by_node(self) -> Mapping[str, Sequence[End]]:
+        """The ends of each node, hidden ones as well."""
+        found: dict[str, list[End]] = defaultdict(list)
+        for end in self.system.ends:
+            found[end.node].append(end)
+        return found
+
+    @property
+    @once
+    def by_name(self) -> Mapping[tuple[str, str], Ends]:
+        """The ends of each kind and name, without hidden ones."""
+        return {(it.kind, it.name): it for it in _ends(self.system.ends)}
+
+    @property
+    @once
+    def topics(self) -> Sequence[Ends]:
+        """The topics but tf and what every node has."""
+        found = (it for it in self.by_name.values() if it.kind == TOPIC and it.type != TF)
+        return [it for it in found if it.name not in EVERYBODYS]
+
+    @property
+    @once
+    def orders(self) -> Mapping[str, Ends]:
+        """The topics by which a robot is moved or sent somewhere."""
+        found = (it for it in self.by_name.values() if it.kind == TOPIC)
+        return {it.name: it for it in found if words.is_order(self.plain(it.name), it.type)}
+
+    @property
+    @once
+    def trees(self) -> Sequence[Tree]:
+        """The transforms by their tf topic."""
+        return [*_trees(self.system, self.by_name.values())]
+
+    @property
+    @once
+    def published(self) -> Set[str]:
+        """The topics that somebody publishes."""
+        found = self.by_name.items()
+        return {name for (kind, name), ends in found if kind == TOPIC and ends.publishers}
+
+    def of_robot(self, robot: str, kind: str, plain: str) -> Ends | None:
+        """The ends of a robot's name, by the name without the robot's."""
+        return _by_robot(self).get((robot, kind, plain))
+
+    def is_tool(self, node: str) -> bool:
+        """Is the node none of the robots', but one that comes and goes beside any?"""
+        return node not in self.known.parts and is_tool(node, self.known.tools)
+
+
 def index(system: System, whose: Whose, known: Known = NOTHING_KNOWN) -> Index:
-    """The look-ups, made once."""
-    names = {(it.kind, it.name): it for it in _ends(system.ends)}
-    topics = [it for it in names.values() if it.kind == TOPIC]
-    return Index(
-        system,
-        *whose,
-        Counter(node.name for node in system.nodes),
-        names,
-        tuple(it for it in topics if it.name not in EVERYBODYS and it.type != TF),
-        {it.name: it for it in topics if words.is_order(whose.plain(it.name), it.type)},
-        tuple(_trees(system, names.values())),
-        known,
-        {},
+    """A system with its look-ups."""
+    return Index(system, *whose, known, {})
+
+
+def beside(plan: Index, graph: System, messages: Mapping[str, int] = NO_COUNTS) -> Index:
+    """A system with what its plan says of names, tf topics, senders and tools."""
+    senders: dict[tuple[str, str], tuple[str, ...]] = defaultdict(tuple)
+    for it in plan.sent:
+        senders[it.parent, it.child] += (it.node,)
+    known = Known(
+        {robot.name: tree_topic(robot.tf_topic) for robot in plan.system.robots},
+        senders,
+        plan.robot_of,
+        plan.system.ignored_nodes,
+        {it.node for it in plan.system.parameters if it.name == SIM_TIME},
+        copying_nodes(plan.system),
+        messages,
+        graph.environment.seconds,
     )
+    return plan._replace(system=graph, known=known, memo={})
 
 
 @once
 def _by_robot(it: Index) -> Mapping[tuple[str, str, str], Ends]:
-    return {(it.robot(name), kind, it.plain(name)): ends for (kind, name), ends in it.names.items()}
-
-
-@once
-def by_node(it: Index) -> Mapping[str, Sequence[End]]:
-    """The ends of each node, hidden ones as well."""
-    found: dict[str, list[End]] = defaultdict(list)
-    for end in it.system.ends:
-        found[end.node].append(end)
-    return found
-
-
-@once
-def types(it: Index) -> Mapping[EndKey, str]:
-    """The type of each end, hidden ones as well."""
-    return {(end.node, end.kind, end.role, end.name): end.type for end in it.system.ends}
-
-
-@once
-def published(it: Index) -> Set[str]:
-    """The topics that somebody publishes."""
-    return {name for (kind, name), ends in it.names.items() if kind == TOPIC and ends.publishers}
+    return {
+        (it.robot(name), kind, it.plain(name)): ends for (kind, name), ends in it.by_name.items()
+    }
 
 
 def ends_of(it: Index, name: str) -> Iterator[End]:
     """All ends of a name, whatever their kind."""
     for kind in KINDS:
-        found = it.names.get((kind, name))
+        found = it.by_name.get((kind, name))
         if found:
             yield from (end for side in found[3:] for end in side)
 
@@ -280,11 +378,6 @@ def in_namespaces_above(node: str, name: str) -> Iterator[str]:
         namespace = namespace.rpartition("/")[0]
         yield namespace + rest
         name = namespace + rest
-
-
-def tree_topic(topic: str) -> str:
-    """The topic a tree is called after: tf and tf_static of one robot are one tree, ``tf``."""
-    return "/".join("tf" if word == "tf_static" else word for word in topic.split("/"))
 
 
 def and_then(words: Sequence[str]) -> str:

@@ -14,6 +14,7 @@ from types import NoneType
 from typing import Any, cast, get_args, get_origin, get_type_hints
 
 from multibot_rewrite.base.bounded import load_json
+from multibot_rewrite.base.findings.finding import LEVELS, Finding
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.system.json_values import (
@@ -29,21 +30,27 @@ from multibot_rewrite.system.json_values import (
     unexpected,
 )
 from multibot_rewrite.system.records import (
+    CALIBRATION,
     CHANGING,
+    COMPUTER,
+    DEVICE,
     EXPECTED,
     KINDS,
     MAY,
     OFF,
+    OWN,
     QUIET,
     ROLES,
     RUNS,
     TIMEOUT,
     UNKNOWN,
+    Address,
     Controller,
     Edge,
     End,
     Environment,
     Heard,
+    Lookup,
     Node,
     Parameter,
     Qos,
@@ -53,27 +60,32 @@ from multibot_rewrite.system.records import (
 from multibot_rewrite.system.schema_1 import OldSnapshot, OldState, system_of
 
 SCHEMA = 2
-# Findings are in the file of a plan alone (``spelling/plan_gaps.py``).
-LEFT_OUT = ("gaps",)
 _EMPTY: tuple[object, ...] = ("", ())
 
 ALLOWED_WORDS: Mapping[tuple[type, str], tuple[str, ...]] = {
     (End, "kind"): KINDS,
     (End, "role"): ROLES,
+    (Address, "kind"): (DEVICE, CALIBRATION, COMPUTER, OWN),
     (Sure, "word"): tuple(it.word for it in (RUNS, MAY, UNKNOWN, OFF)),
     (Environment, "settled"): (EXPECTED, QUIET, TIMEOUT, CHANGING),
+    (Finding, "level"): LEVELS,
 }
 FULL_NAMES = {
     (Node, "name"),
     (End, "name"),
     (End, "node"),
-    (Edge, "topic"),
     (Heard, "topic"),
     (OldState, "node"),
+    (Lookup, "node"),
+    (Address, "node"),
     (Parameter, "node"),
     (Controller, "manager"),
 }
 _TRANSFORM = (Edge, "transform")
+# The transforms of a plan say who sends them and not on which topic.
+MAYBE_FULL_NAMES: Mapping[type, str] = {Edge: "topic"}
+# What fixes a file is for the program that found it.
+LEFT_OUT: Mapping[type, str] = {Finding: "edits"}
 
 
 def to_json(system: System) -> bytes:
@@ -83,7 +95,7 @@ def to_json(system: System) -> bytes:
     parts += [
         f'"{name}": {_value(value)}'
         for name, value in told
-        if name not in LEFT_OUT and value not in (*_EMPTY, Environment())
+        if value not in (*_EMPTY, Environment())
     ]
     return ("{\n " + ",\n ".join(parts) + "\n}\n").encode("utf-8", "backslashreplace")
 
@@ -106,9 +118,12 @@ def plain_value(value: object) -> object:
         fields = getattr(value, "_fields", None)
         if fields is None:
             return [plain_value(item) for item in value]
-        usual = type(value)._field_defaults  # type: ignore[attr-defined]
+        kind = type(value)
+        usual = kind._field_defaults  # type: ignore[attr-defined]
         pairs = zip(fields, value, strict=True)
-        return {name: plain_value(it) for name, it in pairs if usual.get(name, ...) != it}
+        told = (it for it in pairs if usual.get(it[0], ...) != it[1])
+        left_out = LEFT_OUT.get(kind)
+        return {name: plain_value(it) for name, it in told if name != left_out}
     if isinstance(value, float) and math.isinf(value):
         return None
     return value
@@ -220,12 +235,16 @@ def _reader(expected: Any) -> Reader:
     return read_seconds if expected is float else partial(read_plain, expected)
 
 
-def _field_reader(kind: type, name: str, hint: Any) -> Reader:
+def _field_reader(kind: Any, name: str, hint: Any) -> Reader:
     words = ALLOWED_WORDS.get((kind, name))
     if words:
         return partial(read_word, words)
     if (kind, name) == _TRANSFORM:
         return read_transform
+    if MAYBE_FULL_NAMES.get(kind) == name:
+        return lambda value: value if value == "" else read_full_name(value)
+    if LEFT_OUT.get(kind) == name:
+        return partial(read_word, (kind._field_defaults[name],))
     return read_full_name if (kind, name) in FULL_NAMES else _reader(hint)
 
 

@@ -13,23 +13,6 @@ SEPARATORS = "_-."
 NO_TAGS: Mapping[str, str] = {}
 
 
-class Whose(NamedTuple):
-    """The robots of a system, and whose each name is: ``robot`` of a node, topic, service or action,
-    ``frame_robot`` of a frame; empty where it is of no robot or of all. ``plain`` and ``plain_frame``
-    have the name without the robot's.
-    """
-
-    robots: tuple[str, ...]
-    robot: Callable[[str], str]
-    plain: Callable[[str], str]
-    frame_robot: Callable[[str], str]
-    plain_frame: Callable[[str], str]
-
-
-# Of a robot alone, which has no name in what it is called.
-ALONE = Whose((), lambda _: "", lambda name: name, lambda _: "", lambda frame: frame)
-
-
 class NameOwnership(NamedTuple):
     """How the names of one sort, graph names or frames, show their robot.
 
@@ -110,8 +93,31 @@ class NameOwnership(NamedTuple):
         return slash + "/".join(segments)
 
 
-def whose_by_plan(plan: System, names: NameOwnership, frames: NameOwnership) -> Whose:
+NOBODYS = NameOwnership({}, {}, {}, frozenset(), False)
+
+
+class Whose(NamedTuple):
+    """The robots of a system, and whose each name is: ``robot`` of a node, topic, service or action,
+    ``frame_robot`` of a frame; empty where it is of no robot or of all. ``plain`` and ``plain_frame``
+    have the name without the robot's. ``of_names`` and ``of_frames`` are how a plan has it.
+    """
+
+    robots: tuple[str, ...]
+    robot: Callable[[str], str]
+    plain: Callable[[str], str]
+    frame_robot: Callable[[str], str]
+    plain_frame: Callable[[str], str]
+    of_names: NameOwnership = NOBODYS
+    of_frames: NameOwnership = NOBODYS
+
+
+# Of a robot alone, which has no name in what it is called.
+ALONE = Whose((), lambda _: "", lambda name: name, lambda _: "", lambda frame: frame)
+
+
+def whose_by_plan(plan: System) -> Whose:
     """Whose names are by a plan; what it has for all robots is nobody's."""
+    names, frames = name_ownership(plan), frame_ownership(plan)
     shared = {*(it.name for it in plan.nodes if not it.robot), *plan.shared_topics}
     robot = cache(lambda name: "" if name in shared else names.robot(name))
     frame_robot = cache(frames.robot)
@@ -121,6 +127,8 @@ def whose_by_plan(plan: System, names: NameOwnership, frames: NameOwnership) -> 
         cache(lambda name: names.without_robot(name, robot(name))),
         frame_robot,
         cache(lambda frame: frames.without_robot(frame, frame_robot(frame))),
+        names,
+        frames,
     )
 
 

@@ -13,9 +13,11 @@ TOPIC, SERVICE, ACTION = "topic", "service", "action"
 KINDS = (TOPIC, SERVICE, ACTION)
 PUBLISHES, SUBSCRIBES, SERVES, CALLS = "publishes", "subscribes", "serves", "calls"
 ROLES = (PUBLISHES, SUBSCRIBES, SERVES, CALLS)
-# Kinds and roles of an interface of ros2_control.
-COMMAND, STATE = "command", "state"
+# Kinds and roles of an interface of ros2_control, or of MoveIt.
+COMMAND, STATE, JOINT = "command", "state", "joint"
 EXPORTS, CLAIMS = "exports", "claims"
+# Kinds of addresses.
+DEVICE, CALIBRATION, COMPUTER, OWN = "device", "calibration", "computer", "own"
 # Why an observation ended: all expected nodes are there, the graph no longer changes, the timeout
 # is over. CHANGING: it has not ended, the graph is being watched.
 EXPECTED, QUIET, TIMEOUT, CHANGING = "expected", "quiet", "timeout", "changing"
@@ -173,11 +175,25 @@ class Edge(NamedTuple):
     place: Place = NOWHERE
 
 
+def edge_of(parent: str, child: str, static: bool = False) -> Edge:
+    """A transform of which neither the topic nor the sender is told."""
+    return Edge(child, parent, "", static, ())
+
+
 class Heard(NamedTuple):
     """The ``header.frame_id`` of a message that was received on ``topic``, as it is written there."""
 
     topic: str
     frame: str
+
+
+class Lookup(NamedTuple):
+    """A transform that ``node`` needs: from ``parent``, empty for any frame, to ``frame``."""
+
+    node: str
+    frame: str
+    parent: str = ""
+    place: Place = NOWHERE
 
 
 class Parameter(NamedTuple):
@@ -201,12 +217,24 @@ class Controller(NamedTuple):
 
 class Interface(NamedTuple):
     """An interface of ros2_control, ``kind`` is command or state: ``node``, a controller manager,
-    ``exports`` it, or ``node``, a controller, ``claims`` it."""
+    ``exports`` it, or ``node``, a controller, ``claims`` it. A ``joint`` is exported by the controller
+    that moves it for MoveIt, and claimed by the node that plans for it."""
 
     kind: str
     name: str
     node: str
     role: str
+    place: Place = NOWHERE
+
+
+class Address(NamedTuple):
+    """What one process holds: a ``device`` or its ``calibration``, a port of its ``computer``, or what
+    is its ``own`` for another reason; ``name`` is the parameter that has it."""
+
+    kind: str
+    name: str
+    value: str
+    node: str
     place: Place = NOWHERE
 
 
@@ -257,9 +285,11 @@ class Environment(NamedTuple):
 class System(NamedTuple):
     """What runs, or would run, on some robots; what no source tells is empty.
 
-    ``heard`` are frames that messages name, one message a topic. ``parameters`` and ``controllers`` are
-    what nodes answered, or what files set. A plan has a ``layout``; ``topics`` say more of some of its
-    topics, ``ignored_nodes`` are patterns of nodes that may come and go, besides the usual tools.
+    ``heard`` are frames that messages name, one message a topic, ``lookups`` what nodes ask of tf,
+    ``addresses`` what only one of them can have.
+    ``parameters`` and ``controllers`` are what nodes answered, or what files set. A plan has a
+    ``layout``; ``topics`` say more of some of its topics, ``ignored_nodes`` are patterns of nodes that
+    may come and go, besides the usual tools.
     ``release`` is the one whose facts it rests on. ``gaps`` are findings about what is open in the
     robots as they are planned: a name that is read and not sent, for example.
     """
@@ -280,6 +310,8 @@ class System(NamedTuple):
     shared_frames: tuple[str, ...] = ()
     ignored_nodes: tuple[str, ...] = ()
     gaps: tuple[Finding, ...] = ()
+    lookups: tuple[Lookup, ...] = ()
+    addresses: tuple[Address, ...] = ()
 
 
 def incomplete(system: System) -> tuple[Caveat, ...]:

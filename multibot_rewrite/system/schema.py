@@ -6,7 +6,13 @@ import json
 from types import NoneType
 from typing import Any, get_args, get_origin, get_type_hints
 
-from multibot_rewrite.system.json import ALLOWED_WORDS, FULL_NAMES, LEFT_OUT, SCHEMA
+from multibot_rewrite.system.json import (
+    ALLOWED_WORDS,
+    FULL_NAMES,
+    LEFT_OUT,
+    MAYBE_FULL_NAMES,
+    SCHEMA,
+)
 from multibot_rewrite.system.records import System
 
 _PLAIN = {str: "string", int: "integer", bool: "boolean"}
@@ -33,9 +39,9 @@ def _record(kind: Any, found: dict[str, object]) -> dict[str, Any]:
         "type": "object",
         "description": " ".join(kind.__doc__.split()),
         "properties": {
-            name: _field(kind, name, hint, found)
-            for name, hint in hints.items()
-            if name not in LEFT_OUT
+            name: _field(kind, name, it, found)
+            for name, it in hints.items()
+            if LEFT_OUT.get(kind) != name
         },
         "required": [name for name in hints if name not in usual],
         "additionalProperties": False,
@@ -46,6 +52,8 @@ def _field(kind: Any, name: str, hint: Any, found: dict[str, object]) -> dict[st
     if words := ALLOWED_WORDS.get((kind, name)):
         return {"enum": list(words)}
     made = _value(hint, found)
+    if MAYBE_FULL_NAMES.get(kind) == name:
+        return {**made, "pattern": "^(/|$)"}
     return {**made, "pattern": "^/"} if (kind, name) in FULL_NAMES else made
 
 

@@ -5,10 +5,14 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
 
-from multibot_rewrite.system.index import tree_topic
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, Edge, System, nodes_by_robot
 
 _TF, _GLOBAL = "/tf", ("/tf", "/tf_static")
+
+
+def tree_topic(topic: str) -> str:
+    """The topic a tree is called after: tf and tf_static of one robot are one tree, ``tf``."""
+    return "/".join("tf" if word == "tf_static" else word for word in topic.split("/"))
 
 
 def copying_nodes(plan: System) -> Mapping[str, str]:

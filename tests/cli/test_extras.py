@@ -59,6 +59,7 @@ def bare(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
+@pytest.mark.sample(7)
 @pytest.mark.parametrize(("words", "extra"), NEEDS)
 def test_a_missing_extra_is_one_line_with_what_installs_it(
     words: tuple[str, ...], extra: str, bare: Path, capsys: pytest.CaptureFixture[str]

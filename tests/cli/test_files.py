@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from multibot_rewrite import UsageError
-from multibot_rewrite.cli.files import write_all
+from multibot_rewrite.cli.files import write_all, write_new
 
 # The calls by which files are changed.
 CALLS = ("mkdir", "open", "write", "fsync", "link", "replace", "unlink")
@@ -115,6 +115,7 @@ def test_a_call_that_fails_leaves_everything_as_it_was(
     assert 0 < whole < len(calls) / 2
 
 
+@pytest.mark.slow
 def test_a_process_that_is_killed_at_any_call_leaves_each_file_old_or_new(
     folder: Path, calls: range
 ) -> None:
@@ -185,3 +186,16 @@ def test_the_disk_finishes_once_for_all_files(
     write(folder)
     last = max(at for at, name in enumerate(order) if name == "write")
     assert order.index("fsync") > last
+
+
+@pytest.mark.parametrize(("umask", "mode"), [(0o022, 0o644), (0o027, 0o640)])
+def test_a_new_file_has_the_rights_that_the_umask_leaves(
+    umask: int, mode: int, tmp_path: Path
+) -> None:
+    """As those of open(): read and write for all, and no program."""
+    before = os.umask(umask)
+    try:
+        write_new(str(tmp_path / "new"), b"", 0)
+    finally:
+        os.umask(before)
+    assert (tmp_path / "new").stat().st_mode & 0o777 == mode

@@ -62,6 +62,7 @@ def there(robot: Path) -> dict[str, str]:
     return {it.relative_to(robot).as_posix(): it.read_text() for it in files}
 
 
+@pytest.mark.sample(7)
 @pytest.mark.parametrize("target", READ)
 @pytest.mark.parametrize("name", WRITERS)
 def test_nothing_is_written_over_what_the_xacro_reads(
@@ -90,6 +91,7 @@ def test_what_another_name_leads_to_is_not_written_over(
     assert (robot / "sizes.yaml").read_text() == FILES["sizes.yaml"]
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("force", [[], ["--force"]])
 def test_a_build_writes_over_nothing_that_a_xacro_reads(
     force: list[str], robot: Path, capsys: pytest.CaptureFixture[str]
@@ -121,6 +123,7 @@ WARNED: dict[str, Command] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", WARNED)
 def test_a_misspelt_argument_is_said_once(
     name: str, robot: Path, capsys: pytest.CaptureFixture[str]

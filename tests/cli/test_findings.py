@@ -84,6 +84,7 @@ def commands(tmp_path: Path, fleet: Path) -> dict[str, list[str]]:
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["urdf-postfix", "build", "urdf-lint"])
 def test_a_description_s_findings(name: str, tmp_path: Path, fleet: Path, said: Said) -> None:
     words = commands(tmp_path, fleet)[name]
@@ -110,6 +111,7 @@ def test_nothing_is_written_at_the_level_of_fail_on(
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.sample(8)
 @pytest.mark.parametrize("form", FORMATS)
 @pytest.mark.parametrize("name", ["urdf-postfix", "build", "urdf-lint"])
 def test_every_format_tells_the_finding(
@@ -133,6 +135,7 @@ def test_a_refused_rewrite_is_reported_in_the_format_too(tmp_path: Path, said: S
 # ---------------------------------------------------------------- tables and graphs
 
 
+@pytest.mark.slow
 def test_twenty_robots_are_one_line(check: Sequence[str], said: Said) -> None:
     code, out, err = said(*check)
     assert code == 1
@@ -144,6 +147,7 @@ def test_twenty_robots_are_one_line(check: Sequence[str], said: Said) -> None:
     assert [it.split("/")[1] for it in each] == TWENTY
 
 
+@pytest.mark.slow
 def test_twenty_robots_are_one_finding_in_every_format(check: Sequence[str], said: Said) -> None:
     only = ("--select", "MG101", "--format")
     (finding,) = json.loads(said(*check, *only, "json")[1])["findings"]
@@ -161,12 +165,14 @@ def junit(check: Sequence[str], said: Said) -> bytes:
     return said(*check, "--select", "MG101", "--format", "junit")[1].encode()
 
 
+@pytest.mark.slow
 def test_a_check_fails_by_what_is_selected(check: Sequence[str], said: Said) -> None:
     assert said(*check, "--select", "MG101")[0] == 1
     assert said(*check, "--ignore", "MG")[:2] == (0, "")
     assert said(*check, "--ignore", "MG1,MG2", "--fail-on", "note")[0] == 0
 
 
+@pytest.mark.slow
 def test_a_report_of_a_check_goes_to_a_file(
     check: Sequence[str], tmp_path: Path, said: Said
 ) -> None:
@@ -177,6 +183,7 @@ def test_a_report_of_a_check_goes_to_a_file(
     assert suites.failures > 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", ["plan", "table"])
 def test_a_table_s_findings(form: str, tmp_path: Path, siren: list[str], said: Said) -> None:
     words = [

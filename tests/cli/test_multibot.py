@@ -82,6 +82,8 @@ def plugin(library: str, body: str = "") -> str:
     return f'<gazebo><plugin name="p" filename="{library}">{body}</plugin></gazebo>'
 
 
+ROVER = str(ROBOTS / "rover.urdf")
+LAUNCH = str(ROOT / "examples/launch_tutorial/three.launch.xml")
 KNOWN = plugin("libgazebo_ros_diff_drive.so")
 ACME = plugin("libacme.so", "<x>hip</x><x>arm</x><list>hip arm</list>")
 
@@ -119,6 +121,13 @@ def test_the_table_of_commands_is_what_help_lists(multibot: Multibot) -> None:
         (("inspect", "--suggest", "no.urdf"), "no.urdf: cannot be read: No such file"),
         (("inspect", "--vocabulary", "no"), "no: cannot be read: No such file"),
         (("inspect", "no"), "'no' is no plugin, class, element, sensor type or block"),
+        (("explain", "MX1"), "multibot: no rule has the code 'MX1', and none begins with it; "),
+        (("build", ROVER, "-o", "x"), "rover.urdf: a description; use multibot init, which makes"),
+        (
+            ("check", ROVER),
+            "rover.urdf: a description; use multibot init, which makes a fleet file",
+        ),
+        (("check", LAUNCH), ".launch.xml: a launch file; use multibot check-launch, or"),
         (("inspect", "."), ".: no *.urdf or *.sdf there; name a file or another folder"),
     ],
 )
@@ -165,6 +174,7 @@ def test_missing_streams(folder: Path, redirection: str, code: int, said: str) -
     assert (done.returncode, done.stderr) == (code, said)
 
 
+@pytest.mark.slow
 def test_urdf_postfix_does_not_pay_for_it() -> None:
     code = "import sys, multibot_rewrite.cli.urdf_postfix; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
@@ -267,6 +277,7 @@ def test_the_json_says_all_of_it(multibot: Multibot, two: Path) -> None:
     table = multibot.json("inspect", ".")
     kinds = table.pop("claims")
     assert kinds["link"] == 8 and kinds["joint"] == 2
+    assert list(kinds) == sorted(kinds)
     assert table == {
         "distro": "lyrical",
         "files": {"read": 2, "unreadable": []},
@@ -423,6 +434,7 @@ def test_brackets_and_colons_are_shown_as_they_are() -> None:
 # ---------------------------------------------------------------- vocabulary
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "heading"),
     [
@@ -461,6 +473,7 @@ def test_what_is_shown_of_a_plugin(multibot: Multibot) -> None:
     assert shared[-3].startswith("urdf.vocab:") and shared[-2:] == ["[block", "ros_settings]"]
 
 
+@pytest.mark.slow
 def test_every_row_names_the_line_it_stands_in(multibot: Multibot) -> None:
     """The file and line of each row of the whole vocabulary, held against the files."""
     home = Path(multibot_rewrite.__file__).parent / "description" / "rewriters" / "vocabulary"
@@ -514,6 +527,7 @@ def test_an_element_is_found_by_its_tag_the_exact_name_first() -> None:
     assert {"robot.sensor", "link.sensor"} <= set(names)
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize(
     ("name", "near"),
     [

@@ -46,6 +46,7 @@ def open_(tmp_path: Path) -> Folder:
     return Folder(tmp_path, OPEN)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", ["plan", "table"])
 def test_a_table_is_made_with_what_is_open(
     form: str, open_: Folder, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -56,9 +57,10 @@ def test_a_table_is_made_with_what_is_open(
     said = capsys.readouterr().err
     assert said.count("MG303") == 1
     assert f"{tmp_path}/ekf.yaml:4:1: warning: {SAID}{tmp_path}/bridge.yaml:1)" in said
-    assert main([*words, "--strict"]) == 1
+    assert main([*words, "--fail-on", "warning"]) == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("of", ["plan", "json", "fleet"])
 def test_a_graph_as_planned_of_a_plan_that_does_not_close(
     of: str, open_: Folder, capsys: pytest.CaptureFixture[str]
@@ -68,8 +70,8 @@ def test_a_graph_as_planned_of_a_plan_that_does_not_close(
     out, err = capsys.readouterr()
     assert SAID in out
     assert "2 robots, 1 finding: as planned, but the plan does not close" in err
-    assert open_.check(vars(open_)[of], "--strict") == 1
-    assert open_.check(vars(open_)[of], "--strict", "--ignore", "MG303") == 0
+    assert open_.check(vars(open_)[of], "--fail-on", "warning") == 1
+    assert open_.check(vars(open_)[of], "--fail-on", "warning", "--ignore", "MG303") == 0
     assert "0 findings: as planned (" in capsys.readouterr().err
 
 
@@ -83,6 +85,7 @@ def test_a_graph_that_is_not_as_planned_either(
     assert "not as planned, and the plan does not close" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_a_build_writes_the_same_plan_with_paths_from_the_fleet_file(
     open_: Folder, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -93,6 +96,7 @@ def test_a_build_writes_the_same_plan_with_paths_from_the_fleet_file(
     assert gap.hint.endswith("write /imu/data in its parameters; see bridge.yaml:1")
 
 
+@pytest.mark.slow
 def test_what_was_open_before_is_counted_where_it_is_asked_for(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -110,6 +114,7 @@ def test_what_was_open_before_is_counted_where_it_is_asked_for(
     assert "1 finding: as planned (" in err
 
 
+@pytest.mark.slow
 def test_a_plan_without_open_ends_says_nothing_of_them(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -122,6 +127,7 @@ def test_a_plan_without_open_ends_says_nothing_of_them(
 ROW = 'code: MG303, level: warning, at: "ekf.yaml:4", message: x, hint: ""'
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("rows", "told"),
     [

@@ -21,6 +21,7 @@ def run(capture: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str
     return code, *capture.readouterr()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("layout", ["tf-per-robot", "frames-per-robot", "both", "postfix"])
 def test_nav2_for_two_robots_has_no_error(layout: str, capsys: pytest.CaptureFixture[str]) -> None:
     code, out, err = run(
@@ -45,6 +46,7 @@ def test_a_postfix_names_six_rules_for_an_action(capsys: pytest.CaptureFixture[s
         assert f"navigate_to_pose{part}:=navigate_to_pose/robot1{part}" in out, part
 
 
+@pytest.mark.sample(7)
 @pytest.mark.parametrize("form", sorted(FORMS))
 def test_every_form_is_written_to_a_file(
     form: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]

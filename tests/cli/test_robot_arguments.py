@@ -57,6 +57,7 @@ def test_changes_of_every_robot_are_its_own(tmp_path: Path) -> None:
         assert renamed == {("camera_link", f"camera_link/{robot}")}
 
 
+@pytest.mark.slow
 def test_a_diff_is_against_the_robots_own_expansion(capfd: pytest.CaptureFixture[str]) -> None:
     assert urdf_postfix.main([ARM, "left", "right", PREFIX, "--diff"]) == 0
     out = capfd.readouterr().out
@@ -66,6 +67,7 @@ def test_a_diff_is_against_the_robots_own_expansion(capfd: pytest.CaptureFixture
     assert "-      <parent link" not in out
 
 
+@pytest.mark.slow
 def test_findings_of_every_robot_are_reported(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
@@ -77,9 +79,10 @@ def test_findings_of_every_robot_are_reported(
     messages = [it["message"] for it in found if it["code"] == "MB143"]
     assert len(messages) == 2
     assert all(f"'{name}_base_link'" in " ".join(messages) for name in ("left", "right"))
-    assert urdf_postfix.main([*words, "--layout", "both", "--strict"]) == 1
+    assert urdf_postfix.main([*words, "--layout", "both", "--fail-on", "warning"]) == 1
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("options", [[], ["--affix", "prefix", "--separator", "_"]])
 def test_strip_with_the_xacro(tmp_path: Path, options: list[str]) -> None:
     made, back, plain = (str(tmp_path / name) for name in ("left.urdf", "back.urdf", "plain.urdf"))
@@ -91,6 +94,7 @@ def test_strip_with_the_xacro(tmp_path: Path, options: list[str]) -> None:
     assert urdf_postfix.main([back, "left", "-o", plain, *options, "--again"]) == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("run", "words", "said"),
     [

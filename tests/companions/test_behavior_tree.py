@@ -248,7 +248,7 @@ def test_an_unknown_frame_is_reported_with_the_nearest() -> None:
 
 def test_another_file_is_said() -> None:
     text = '<root BTCPP_format="4">\n<include path="other.xml"/></root>'
-    assert codes(text, context()) == [("MF403", 2)]
+    assert codes(text, context()) == [("MB887", 2)]
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)

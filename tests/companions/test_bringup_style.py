@@ -69,6 +69,7 @@ def in_rcl(file: Path, nodes: list[tuple[str, str]]) -> list[dict[str, Any]]:
     return [{k: it for k, it in one.items() if "." not in k} for one in found]
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not importlib.util.find_spec("rclpy"), reason="no rclpy: rcl is the judge")
 @pytest.mark.parametrize("namespace", ["robot1", "fleet_a/robot1"])
 def test_rcl_finds_every_section_below_the_root_key(tmp_path: Path, namespace: str) -> None:
@@ -118,6 +119,7 @@ def test_comments_and_placeholders_stay() -> None:
     assert findings == ()
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("layout", ["frames-per-robot", "postfix"])
 def test_a_layout_that_nav2_bringup_cannot_start_is_refused(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], layout: str
@@ -143,6 +145,7 @@ def test_an_unknown_style_is_refused_with_its_line(tmp_path: Path) -> None:
         load_fleet(tmp_path / "fleet.yaml")
 
 
+@pytest.mark.slow
 def test_nodes_that_are_started_here_get_full_names_all_the_same(tmp_path: Path) -> None:
     built(tmp_path)
     robot = load_fleet(tmp_path / "fleet.yaml").robot("robot1")

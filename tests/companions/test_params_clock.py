@@ -32,6 +32,7 @@ def text(folder: Path, told: str, robot: str = "robot1") -> str:
     return load_fleet(folder / "fleet.yaml").robot(robot).text("params.yaml")
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize(
     ("told", "robot", "every", "own"),
     [

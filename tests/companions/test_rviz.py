@@ -194,7 +194,7 @@ def test_a_description_with_bare_links_gets_a_tf_prefix() -> None:
 def test_a_tf_prefix_of_the_file_is_emptied_and_reported() -> None:
     text = config("Class: rviz_default_plugins/RobotModel\nTF Prefix: tb3\nDescription Topic: /d")
     assert manager(text=text)["Displays"][0]["Displays"][0]["TF Prefix"] == ""
-    assert "MF207" in codes(text)
+    assert "MB882" in codes(text)
 
 
 def test_links_frames_and_the_tree() -> None:
@@ -421,13 +421,13 @@ def test_the_postfix_layout_adds_postfixes_to_topics() -> None:
 @pytest.mark.parametrize(
     ("display", "code"),
     [
-        ("Class: acme/Show\nTopic: /t", "MF204"),
+        ("Class: acme/Show\nTopic: /t", "MB891"),
         ("Class: acme/Show\nBody: base_link", "MB901"),
         ("Class: rviz_default_plugins/Axes\nReference Frame: base_lin", "MB853"),
-        ("Class: rviz_default_plugins/TF\nFilter (whitelist): ^base", "MF208"),
+        ("Class: rviz_default_plugins/TF\nFilter (whitelist): ^base", "MB881"),
         (
             "Class: rviz_default_plugins/RobotModel\nDescription Source: File\nDescription File: a",
-            "MF208",
+            "MB881",
         ),
         ("Class: rviz_default_plugins/Image\nImage Topic: /i", "MB872"),
         ("Class: rviz_default_plugins/Path\nTopic: /a/<name>/b", "MB105"),
@@ -441,6 +441,11 @@ def test_the_postfix_layout_adds_postfixes_to_topics() -> None:
 )
 def test_findings(display: str, code: str) -> None:
     assert code in codes(config(display))
+
+
+@pytest.mark.parametrize("more", ["Topic:\n  Value: /i", "Topic: /i\nVisibility: {}"])
+def test_a_camera_that_hides_nothing_loses_nothing(more: str) -> None:
+    assert codes(config(f"Class: rviz_default_plugins/Camera\n{more}")) == []
 
 
 def test_a_finding_says_where() -> None:

@@ -38,6 +38,7 @@ def shadowed(folder: Path, capsys: pytest.CaptureFixture[str], *sections: str) -
     return [int(line) for line in re.findall(r"params\.yaml:(\d+):\d+: \w+: MB867\b", err)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("sections", "lines"),
     [
@@ -69,6 +70,7 @@ def tools(folder: Path, name: str = "one_robot.rviz") -> list[dict[str, Any]]:
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "written",
     [
@@ -93,6 +95,7 @@ def test_each_robots_tool_gets_its_topic_however_it_is_written(
     ]
 
 
+@pytest.mark.slow
 def test_a_tool_in_braces_in_a_window_of_one_robot(tmp_path: Path) -> None:
     """The goal's own topic is relative and goes with the window's namespace."""
     point = "{Class: rviz_default_plugins/PublishPoint, Single click: true}"

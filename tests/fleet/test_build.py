@@ -74,6 +74,7 @@ def renamed(folder: Path, old: str = "robot2", new: str = "robot3") -> None:
 # ---------------------------------------------------------------- what is written
 
 
+@pytest.mark.slow
 def test_the_smallest_fleet_gives_everything(out: Path) -> None:
     common = {"plan.yaml", "remappings.yaml", "commands.md", MANIFEST}
     common |= {"fleet.launch.py"}
@@ -99,6 +100,7 @@ def test_a_policy_of_sros2_is_written_where_it_is_asked_for(tmp_path: Path) -> N
     assert "robot1" not in text["/robot2"]
 
 
+@pytest.mark.slow
 def test_the_manifest_names_what_was_read_and_written(out: Path) -> None:
     data = json.loads((out / MANIFEST).read_text())
     assert set(data["outputs"]) == set(held(out)) - {MANIFEST}
@@ -114,6 +116,7 @@ def test_included_files_and_nodes_are_inputs(tmp_path: Path) -> None:
     assert "../site.yaml" in json.loads((tmp_path / "out" / MANIFEST).read_text())["inputs"]
 
 
+@pytest.mark.slow
 def test_a_second_build_changes_nothing(out: Path) -> None:
     before = {path: path.stat() for path in out.rglob("*")}
     assert build(out.parent) == 0
@@ -123,6 +126,7 @@ def test_a_second_build_changes_nothing(out: Path) -> None:
     }
 
 
+@pytest.mark.slow
 def test_a_change_writes_only_what_follows_from_it(out: Path) -> None:
     before = {path: path.stat().st_ino for path in out.rglob("*") if path.is_file()}
     params = out.parent / "params.yaml"
@@ -133,6 +137,7 @@ def test_a_change_writes_only_what_follows_from_it(out: Path) -> None:
     assert changed == {"robot1/params.yaml", "robot2/params.yaml", MANIFEST}
 
 
+@pytest.mark.slow
 def test_what_is_no_longer_made_goes_with_its_folder(out: Path) -> None:
     renamed(out.parent)
     assert build(out.parent) == 0
@@ -140,6 +145,7 @@ def test_what_is_no_longer_made_goes_with_its_folder(out: Path) -> None:
     assert (out / "robot3" / "params.yaml").exists()
 
 
+@pytest.mark.slow
 def test_what_others_put_there_stays(out: Path) -> None:
     (out / "robot2" / "notes.txt").write_text("mine")
     (out / "maps" / "empty").mkdir(parents=True)
@@ -156,6 +162,7 @@ def test_what_others_put_there_stays(out: Path) -> None:
     assert (out / "robot1").stat().st_mode & 0o777 == 0o750
 
 
+@pytest.mark.slow
 def test_a_file_keeps_its_mode(out: Path) -> None:
     (out / "commands.md").chmod(0o640)
     renamed(out.parent)
@@ -163,6 +170,7 @@ def test_a_file_keeps_its_mode(out: Path) -> None:
     assert (out / "commands.md").stat().st_mode & 0o777 == 0o640
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("more", ["", "x"])
 def test_what_was_edited_is_not_overwritten(
     more: str, out: Path, capsys: pytest.CaptureFixture[str]
@@ -178,6 +186,7 @@ def test_what_was_edited_is_not_overwritten(
     assert "by hand" not in path.read_text()
 
 
+@pytest.mark.slow
 def test_what_no_build_made_is_not_overwritten(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -190,6 +199,7 @@ def test_what_no_build_made_is_not_overwritten(
     assert build(tmp_path, "--force") == 0
 
 
+@pytest.mark.slow
 def test_what_was_edited_and_is_no_longer_made_is_not_removed(out: Path) -> None:
     path = out / "robot2" / "params.yaml"
     path.write_text("mine")
@@ -201,6 +211,7 @@ def test_what_was_edited_and_is_no_longer_made_is_not_removed(out: Path) -> None
 # ---------------------------------------------------------------- --check
 
 
+@pytest.mark.slow
 def test_check_says_what_is_stale_and_writes_nothing(
     out: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -222,6 +233,7 @@ def test_check_of_nothing_writes_nothing(tmp_path: Path) -> None:
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_check_finds_a_file_that_was_deleted(out: Path) -> None:
     (out / "robot1" / "rover.urdf").unlink()
     assert build(out.parent, "--check") == 1
@@ -273,6 +285,7 @@ def test_findings_are_sorted_and_said_once(
     assert "multibotTagSlot" not in "".join(lines)
 
 
+@pytest.mark.slow
 def test_errors_stop_the_job_and_strict_makes_errors(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -285,6 +298,7 @@ def test_errors_stop_the_job_and_strict_makes_errors(
 # ---------------------------------------------------------------- links and folders in the way
 
 
+@pytest.mark.slow
 def test_a_link_in_the_output_is_not_followed(
     out: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -300,6 +314,7 @@ def test_a_link_in_the_output_is_not_followed(
     assert held(outside) == before
 
 
+@pytest.mark.slow
 def test_an_output_folder_that_is_a_link_is_where_it_leads(tmp_path: Path) -> None:
     fleet_folder(tmp_path)
     (tmp_path / "real").mkdir()
@@ -309,6 +324,7 @@ def test_an_output_folder_that_is_a_link_is_where_it_leads(tmp_path: Path) -> No
     assert (tmp_path / "real" / "plan.yaml").exists()
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(
     ("path", "folder", "words"),
     [
@@ -380,6 +396,7 @@ def test_no_room_leaves_the_old_files(room: int, out: Path) -> None:
     assert leftovers(out.parent) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["out", "."])
 def test_a_full_disk_leaves_the_old_files(name: str, out: Path) -> None:
     """On a file system of 300 kB, where that can be had; the folder may be the file system."""
@@ -414,6 +431,7 @@ def one_by_one(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     yield
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("one_by_one")
 def test_without_a_swap_the_result_is_the_same(out: Path) -> None:
     renamed(out.parent)
@@ -428,6 +446,7 @@ def test_without_a_swap_the_result_is_the_same(out: Path) -> None:
     assert held(out) == found
 
 
+@pytest.mark.slow
 def test_a_build_inside_of_the_folder_does_not_take_it_away(
     out: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -438,6 +457,7 @@ def test_a_build_inside_of_the_folder_does_not_take_it_away(
     assert (out / "robot3").is_dir()
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("one_by_one")
 @pytest.mark.parametrize("error", [OSError(28, "No space left on device"), KeyboardInterrupt()])
 @pytest.mark.parametrize("there", [None, b"of a build that was killed"])
@@ -465,6 +485,7 @@ def test_a_failure_without_a_swap_leaves_no_note(
     assert leftovers(out.parent) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("force", [[], ["--force"]])
 @pytest.mark.parametrize("link", [os.symlink, os.link, shutil.move])
 def test_a_build_writes_over_nothing_that_it_reads(
@@ -493,6 +514,7 @@ def test_a_build_writes_over_nothing_that_it_reads(
     assert given.read_bytes() == before
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("one_by_one")
 def test_half_replaced_files_are_completed_by_the_next_build(
     out: Path, monkeypatch: pytest.MonkeyPatch
@@ -601,6 +623,7 @@ def test_a_kill_around_each_step_leaves_old_or_new(step: str, before: bool, out:
 DONE = {("_exchange", False), ("_bring_late", True), ("_bring_late", False)}
 
 
+@pytest.mark.slow
 def test_a_failure_at_each_step_leaves_the_old_files(
     out: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -614,6 +637,7 @@ def test_a_failure_at_each_step_leaves_the_old_files(
         assert leftovers(out.parent) == []
 
 
+@pytest.mark.slow
 def test_what_comes_while_a_build_writes_is_kept(
     out: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -668,6 +692,7 @@ def test_a_folder_that_cannot_be_written_is_reported(
             path.chmod(0o755)
 
 
+@pytest.mark.slow
 def test_a_read_only_folder_is_reported(out: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """On a file system that was mounted read-only, which stops root, too."""
     renamed(out.parent)
@@ -686,6 +711,7 @@ def test_a_read_only_folder_is_reported(out: Path, capsys: pytest.CaptureFixture
         subprocess.run(["umount", str(out)], check=True)
 
 
+@pytest.mark.slow
 def test_a_mount_point_is_built_into_file_by_file(out: Path) -> None:
     mount = ["mount", "--bind", str(out), str(out)]
     if os.geteuid() or subprocess.run(mount, capture_output=True, check=False).returncode:
@@ -718,6 +744,7 @@ def test_any_words_in_a_plan_read_back(word: str, other: str, frames: list[str])
     assert isinstance(yaml.safe_load(text), dict)
 
 
+@pytest.mark.slow
 def test_parameters_of_a_node_of_your_own(tmp_path: Path) -> None:
     fleet_folder(tmp_path, f"nodes: facts.yaml\n{SMALL}")
     facts = "nodes:\n  mast:\n    package: acme\n    params:\n      eye: {kind: frame}\n"

@@ -153,6 +153,7 @@ def test_materials_are_declared_once_and_keep_their_colours(tmp_path: Path) -> N
     assert used == ["paint", "right_paint"]
 
 
+@pytest.mark.slow
 def test_a_referee_reads_the_joined_description(tmp_path: Path) -> None:
     yourdfpy = pytest.importorskip("yourdfpy")
     (tmp_path / "cell.urdf").write_bytes(built(tmp_path)[0]["cell/cell.urdf"])
@@ -265,6 +266,7 @@ def test_values_that_disagree_are_said_and_the_first_counts(tmp_path: Path) -> N
     assert parameters(files)["robot_description_planning"]["default_velocity_scaling_factor"] == 0.5
 
 
+@pytest.mark.sample(7)
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [

@@ -27,6 +27,7 @@ def outputs(folder: Path, release: str) -> dict[str, str]:
     return {path: it.data.decode() for path, it in load_fleet(file).files.items()}
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize(
     ("release", "rules"),
     [
@@ -107,6 +108,7 @@ def test_controllers_are_spawned_as_the_launch_file_does(tmp_path: Path) -> None
     assert not {"--param-file", "--inactive"} & set(lines["joint_state_broadcaster"].split())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("told", "wanted"), [("true", "true"), ("false", "false"), ("", "")])
 def test_all_nodes_have_the_clock_of_the_fleet_file(told: str, wanted: str, tmp_path: Path) -> None:
     robot = ROBOTS / "rover_gz.urdf"
@@ -135,3 +137,19 @@ def test_all_nodes_have_the_clock_of_the_fleet_file(told: str, wanted: str, tmp_
     assert fleet.robot("robot2").node("robot_state_publisher")["parameters"] == [
         {"use_sim_time": True}
     ]
+
+
+@pytest.mark.parametrize("own", [False, True])
+def test_a_twist_mux_that_no_file_tells_its_topics_gets_those_of_its_package(
+    own: bool, tmp_path: Path
+) -> None:
+    """twist_mux.cpp subscribes to what ``topics`` has, and to nothing else (twist_mux_topics.yaml)."""
+    (tmp_path / "mux.yaml").write_text(
+        "twist_mux:\n  ros__parameters:\n    topics.pad: {topic: pad_vel, timeout: 0.5, priority: 1}\n"
+    )
+    text = f"description: {ROBOTS / 'rover.urdf'}\nlayout: both\nstack: teleop\n"
+    text += "robots: [{name: robot1}, {name: robot2}]\n"
+    text += "companions: {params: mux.yaml}\n" if own else ""
+    (tmp_path / "fleet.yaml").write_text(text)
+    launch = load_fleet(tmp_path / "fleet.yaml").text("fleet.launch.py")
+    assert ("'topics.joystick.topic': 'joy_vel'" in launch.replace('"', "'")) is not own

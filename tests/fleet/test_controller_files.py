@@ -56,6 +56,7 @@ def built(package: Path, path: str, *options: str, fleet: str = FLEET) -> Sequen
 
 
 # As xacro leaves them, as an installed file, and what the build of a package finds.
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "path",
     [
@@ -84,6 +85,7 @@ def test_a_linked_install_is_the_same_file(package: Path, tmp_path: Path) -> Non
     assert built(package, f"{tmp_path}/install/config/arm.yaml")[0].endswith("out/robot1/arm.yaml")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "path",
     [

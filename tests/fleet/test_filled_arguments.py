@@ -77,6 +77,7 @@ def nobodys(outputs: Outputs, robot: str) -> str:
     return root(outputs, robot).findtext("note") or ""
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize(
     ("separators", "given"), [({"link": "_"}, "robot2_"), ({"link": "/", "joint": "/"}, "robot2/")]
 )
@@ -103,6 +104,7 @@ def test_names_that_would_get_different_separators_are_left_to_the_layout(tmp_pa
     assert "tf_prefix of its xacro is not filled: it makes {robot}base_link of a link" in message
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize(
     "keys",
     [
@@ -118,6 +120,7 @@ def test_a_prefix_is_left_where_links_get_none(keys: dict[str, Any], tmp_path: P
     assert said(outputs) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("layout", ["tf-per-robot", "frames-per-robot", "both", "frame-prefix"])
 @pytest.mark.parametrize("default", ["", "None"])
 def test_a_namespace_is_filled_in_layouts_with_namespaces(
@@ -139,6 +142,7 @@ def test_a_namespace_is_left_in_a_layout_without(tmp_path: Path) -> None:
     assert said(outputs) == []
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize(
     "keys",
     [
@@ -155,6 +159,7 @@ def test_the_fleet_file_may_say_otherwise(keys: dict[str, Any], tmp_path: Path) 
     assert said(outputs) == []
 
 
+@pytest.mark.slow
 def test_a_value_of_the_fleet_file_wins(tmp_path: Path) -> None:
     keys = {**WITH_PREFIX, "arguments": {"tf_prefix": "{robot}_arm_"}}
     outputs = made(xacro(tmp_path, "tf_prefix", ARM), **keys)
@@ -162,6 +167,7 @@ def test_a_value_of_the_fleet_file_wins(tmp_path: Path) -> None:
     assert said(outputs) == []
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize(("argument", "default"), [("tf_prefix", "ur_"), ("side", "")])
 def test_what_is_not_for_robots_is_left(argument: str, default: str, tmp_path: Path) -> None:
     path = xacro(tmp_path, argument, ARM.replace("tf_prefix", argument), default)
@@ -171,6 +177,7 @@ def test_what_is_not_for_robots_is_left(argument: str, default: str, tmp_path: P
     assert said(outputs) == []
 
 
+@pytest.mark.slow
 def test_a_prefix_that_misses_a_reference_is_not_filled(tmp_path: Path) -> None:
     """Kinova's gripper_joint_name is an argument of its own, with a name without the prefix."""
     hardware = """<ros2_control name="s" type="system"><hardware><plugin>a/B</plugin></hardware>
@@ -182,6 +189,7 @@ def test_a_prefix_that_misses_a_reference_is_not_filled(tmp_path: Path) -> None:
     assert message.endswith("not filled: something still names elbow, which it renames")
 
 
+@pytest.mark.slow
 def test_each_argument_gets_the_word_of_its_names(tmp_path: Path) -> None:
     robots = [{"name": "robot1", "namespace": "n1", "prefix": "p1"}]
     arm = made(xacro(tmp_path, "tf_prefix", ARM), robots, **WITH_PREFIX)
@@ -202,6 +210,7 @@ def test_a_namespace_of_several_levels_is_not_filled(tmp_path: Path) -> None:
     assert ["not filled" in it for it in said(outputs)] == [True]
 
 
+@pytest.mark.slow
 def test_what_a_simulator_gets_is_filled_too(tmp_path: Path) -> None:
     (tmp_path / "r.urdf").write_text('<robot name="r"><link name="base_link"/></robot>')
     arg = f'<sdf version="1.8" {SPACE}><xacro:arg name="namespace" default=""/>'
@@ -218,6 +227,7 @@ def test_what_cannot_be_expanded_is_told_as_ever(tmp_path: Path) -> None:
         made(xacro(tmp_path, "namespace", '<link name="$(arg other)"/>'), **TF_PER_ROBOT)
 
 
+@pytest.mark.slow
 def test_one_look_serves_all_robots(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     looked: list[str] = []
     look = xacro_arguments.find_arguments

@@ -21,7 +21,7 @@ from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.file.checked_yaml import TYPES
 from multibot_rewrite.fleet.file.fleet_data import SCHEMA, schema
 from multibot_rewrite.fleet.file.fleet_file import KINDS, FleetFile, Pose, RobotSpec, read_fleet
-from multibot_rewrite.fleet.file.fleet_or_plan import is_fleet
+from multibot_rewrite.spelling.plan_file import is_fleet
 from tools.pages import fleet_keys
 
 ONE = "robots:\n  - {name: a, description: rover.urdf}\n"
@@ -317,6 +317,7 @@ BAD: dict[str, tuple[str, ...]] = {
 }
 
 
+@pytest.mark.sample(7)
 @pytest.mark.parametrize("case", BAD)
 def test_bad_input_is_one_line_and_nothing_is_written(
     case: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -422,6 +423,7 @@ def test_every_key_of_the_schema_is_explained(part: tuple[str, ...]) -> None:
 EXAMPLES = re.findall(r"```yaml\n(.*?)```", PAGE, re.DOTALL)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("at", range(len(EXAMPLES)))
 def test_every_example_of_the_page_builds(
     at: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]

@@ -18,10 +18,8 @@ from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
-from multibot_rewrite.fleet.robots.with_start_pose_nodes import (
-    split_per_robot,
-    with_start_pose_nodes,
-)
+from multibot_rewrite.fleet.robots.robot_groups import split_per_robot
+from multibot_rewrite.fleet.robots.start_poses import with_start_pose_nodes
 from multibot_rewrite.spelling.plan_file import from_yaml
 
 LAYOUTS = [("L1", "prefix"), ("L2", "prefix"), ("L3", "postfix"), ("L4", "postfix")]
@@ -81,6 +79,7 @@ def scalars(value: Any) -> Iterator[str]:
         yield str(value)
 
 
+@pytest.mark.slow
 def test_every_robot_has_its_files_and_no_other(fleet: tuple[str, dict[str, str]]) -> None:
     layout, files = fleet
     common = {"plan.yaml", "remappings.yaml", "commands.md", "bridge.yaml"}
@@ -101,6 +100,7 @@ def test_every_robot_has_its_files_and_no_other(fleet: tuple[str, dict[str, str]
     assert set(files) >= common - {"bridge.yaml"}
 
 
+@pytest.mark.slow
 def test_links_and_joints_of_each_description(fleet: tuple[str, dict[str, str]]) -> None:
     layout, files = fleet
     links = {
@@ -114,12 +114,14 @@ def test_links_and_joints_of_each_description(fleet: tuple[str, dict[str, str]])
         assert names(files[path], "joint") == [spell(layout, it, word, "_") for it in joints]
 
 
+@pytest.mark.slow
 def test_the_srdf_names_what_its_description_declares(fleet: tuple[str, dict[str, str]]) -> None:
     layout, files = fleet
     assert names(files["reach/arm.srdf"], "joint") == [spell(layout, "elbow", "reach", "_")]
     assert names(files["reach/arm.srdf"], "group") == ["all"]
 
 
+@pytest.mark.slow
 def test_params_have_the_namespace_in_keys_and_the_prefix_in_frames(
     fleet: tuple[str, dict[str, str]],
 ) -> None:
@@ -132,12 +134,14 @@ def test_params_have_the_namespace_in_keys_and_the_prefix_in_frames(
     assert "# its base" in files["scout/params.yaml"]
 
 
+@pytest.mark.slow
 def test_moveit_limits_have_the_joint(fleet: tuple[str, dict[str, str]]) -> None:
     layout, files = fleet
     data = yaml.safe_load(files["reach/limits.yaml"])
     assert list(data["joint_limits"]) == [spell(layout, "elbow", "reach", "_")]
 
 
+@pytest.mark.slow
 def test_a_bridge_has_namespace_and_model(fleet: tuple[str, dict[str, str]]) -> None:
     layout, files = fleet
     own = yaml.safe_load(files["scout/bridge.yaml"])[0]
@@ -145,6 +149,7 @@ def test_a_bridge_has_namespace_and_model(fleet: tuple[str, dict[str, str]]) -> 
     assert own["gz_topic_name"] == "/model/scout_model/scan"
 
 
+@pytest.mark.slow
 def test_rviz_shows_the_topics_of_all(fleet: tuple[str, dict[str, str]]) -> None:
     layout, files = fleet
     found = {it for path, text in files.items() if path.endswith(".rviz") for it in
@@ -153,6 +158,7 @@ def test_rviz_shows_the_topics_of_all(fleet: tuple[str, dict[str, str]]) -> None
         assert topic(layout, "scan", word) in found
 
 
+@pytest.mark.slow
 def test_commands_spawn_the_model_with_its_own_topic(fleet: tuple[str, dict[str, str]]) -> None:
     layout, files = fleet
     lines = [shlex.split(it) for it in files["commands.md"].splitlines() if " create " in it]
@@ -163,6 +169,7 @@ def test_commands_spawn_the_model_with_its_own_topic(fleet: tuple[str, dict[str,
     ]
 
 
+@pytest.mark.slow
 def test_a_start_pose_is_for_the_node_that_runs(fleet: tuple[str, dict[str, str]]) -> None:
     layout, files = fleet
     node = "/amcl_fleet_scout" if layout == "L4" else "/fleet_scout/amcl"
@@ -170,6 +177,7 @@ def test_a_start_pose_is_for_the_node_that_runs(fleet: tuple[str, dict[str, str]
     assert (given["set_initial_pose"], given["initial_pose.x"]) == (True, 1.0)
 
 
+@pytest.mark.slow
 def test_the_plan_reads_back_and_holds_each_robots_nodes(
     fleet: tuple[str, dict[str, str]],
 ) -> None:
@@ -187,6 +195,7 @@ def test_the_plan_reads_back_and_holds_each_robots_nodes(
     assert layout == "L1" or spell(layout, "base_link", "s1") in frames
 
 
+@pytest.mark.slow
 def test_remappings_hold_every_node_of_the_plan(fleet: tuple[str, dict[str, str]]) -> None:
     _, files = fleet
     table = yaml.safe_load(files["remappings.yaml"])["robots"]
@@ -201,6 +210,7 @@ def test_remappings_hold_every_node_of_the_plan(fleet: tuple[str, dict[str, str]
     assert own <= full
 
 
+@pytest.mark.slow
 def test_no_file_of_a_robot_has_a_word_of_another(fleet: tuple[str, dict[str, str]]) -> None:
     _, files = fleet
     words = {"scout": ("fleet_scout", "s1", "scout_model"), "reach": ("reach",), "grip": ("grip",)}
@@ -222,7 +232,7 @@ def test_two_stacks_whose_names_meet_are_reported(tmp_path: Path) -> None:
     )
     plan = plan_fleet(read_fleet(str(fleet_folder(tmp_path, text)), "", {}))
     assert {it.robot for it in plan.fleet.table.nodes} >= {"a", "b"}
-    assert not [it for it in plan.fleet.table.problems if it.code == "MR102"]
+    assert not [it for it in plan.fleet.table.problems if it.code == "MG320"]
 
 
 def test_affixes_that_make_one_name_of_two_are_refused(tmp_path: Path) -> None:
@@ -237,10 +247,10 @@ def test_affixes_that_make_one_name_of_two_are_refused(tmp_path: Path) -> None:
     plan = plan_fleet(
         read_fleet(str(fleet_folder(tmp_path, text, one__urdf=one, two__urdf=two)), "", {})
     )
-    told = [it for it in make_outputs(plan).findings if it.code == "MF601"]
-    assert [it.level for it in told] == ["error"]
-    assert "two robots have the same link 'arm_left_b': 'one' and 'two'" in told[0].message
-    assert (Path(told[0].file).name, told[0].line) == ("fleet.yaml", 5)
+    (told,) = plan.fleet.table.problems
+    assert (told.code, told.level) == ("MG402", "error")
+    assert "one and two would both have the frame 'arm_left_b'" in told.message
+    assert (Path(told.file).name, told.line) == ("one.urdf", 1)
 
 
 def test_companions_of_one_name_are_in_folders_of_their_own(tmp_path: Path) -> None:
@@ -272,7 +282,8 @@ def test_a_held_robot_is_a_planned_publisher(tmp_path: Path) -> None:
     plan = plan_fleet(read_fleet(str(fleet_folder(tmp_path, text)), "", {}))
     found = with_start_pose_nodes(plan)
     assert [it.name for it in found.table.nodes] == ["start_pose"]
-    assert found.edges["robot1", "start_pose"][0][:2] == ("map", "robot1/base_link")
+    sent = found.edges["robot1", "start_pose"][0]
+    assert (sent.parent, sent.child) == ("map", "robot1/base_link")
     assert with_start_pose_nodes(plan._replace(robots=())) == plan.fleet
 
 

@@ -22,8 +22,9 @@ from multibot_rewrite.companions.context import make_context
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleet.launch.starts import shell_line
 from multibot_rewrite.fleet.outputs import spawn, teleop
-from multibot_rewrite.fleet.outputs.bridge_merge import as_spawned, fill_bridge, merge_bridges
+from multibot_rewrite.fleet.outputs.bridge_outputs import as_spawned, fill_bridge, merge_bridges
 from multibot_rewrite.fleet.robots import start_poses
 from multibot_rewrite.spelling.bridged_topics import BridgedTopic
 from multibot_rewrite.spelling.bridged_topics import bridged_topics as generated_bridge
@@ -150,7 +151,7 @@ def test_a_file_with_nothing_shared_or_nothing_own() -> None:
         (f"- topic_name: a\n  gz_ros_topic_name: b\n{TYPES}", "MB858"),
         (f"- ros_topic_name: a/$(var b)\n{TYPES}", "MB105"),
         (f"- gz_topic_name: /model/x/joint/hip/0/cmd_pos\n{TYPES}", "MB312"),
-        (f"- topic_name: /model/x/a\n{TYPES}- topic_name: /model/door/b\n{TYPES}", "MF505"),
+        (f"- topic_name: /model/x/a\n{TYPES}- topic_name: /model/door/b\n{TYPES}", "MB889"),
         (f"- topic_name: a\n  lazy: base\n{TYPES}", "MB901"),
         (f"- ros_topic_name: a\n  gz_topic_name: /model/x/link/bas/a\n{TYPES}", "MB853"),
     ],
@@ -307,7 +308,7 @@ def test_a_pose_is_a_static_transform(
 ) -> None:
     found = start_poses.start_poses(fleet(layout, body=body))
     assert len(found.transforms) == 1 and not found.findings
-    words = shlex.split(start_poses.command(found.transforms[0]))
+    words = shlex.split(shell_line(found.transforms[0].start))
     assert words[:4] == ["ros2", "run", "tf2_ros", "static_transform_publisher"]
     assert words[4:16] == shlex.split("--x 1.0 --y -0.5 --z 0.0 --roll 0.0 --pitch 0.0 --yaw 1.57")
     assert words[16:20] == ["--frame-id", "map", "--child-frame-id", child]
@@ -319,6 +320,7 @@ def test_odometry_of_a_node_of_the_stack(fleet: Any) -> None:
     assert [it.child for it in found.transforms] == ["r1/odom"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("stack", "initial"), [("nav2", ["amcl"]), ("nav2_slam", [])])
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_no_second_parent_beside_a_localisation(
@@ -417,7 +419,7 @@ def test_a_namespace_of_the_description_is_not_overwritten(
 def test_no_namespace_where_nothing_needs_one(fleet: Any) -> None:
     for layout in LAYOUTS:
         made, _ = spawn.spawns(fleet(layout))
-        assert "-robot_namespace" not in spawn.classic_command(made[0])
+        assert "-robot_namespace" not in shell_line(spawn.spawner(made[0], classic=True))
 
 
 def test_driving(fleet: Any) -> None:
@@ -439,9 +441,11 @@ def test_a_bridge_to_the_simulator_reads_commands(fleet: Any) -> None:
         "/r1/drive",
         "/two/drive",
     ]
-    rows = f"- topic_name: go\n{TYPES}  direction: {{}}\n".replace("a/msg/B", teleop.PLAIN)
-    for direction, heard in (("ROS_TO_GZ", ["/r1/go"]), ("GZ_TO_ROS", [])):
-        Path("bridge.yaml").write_text(rows.format(direction))
+    rows = f"- {{}}topic_name: go\n{TYPES}  direction: {{}}\n".replace("a/msg/B", teleop.PLAIN)
+    # One name is that of both sides (ros_gz_bridge bridge_config.cpp).
+    to_gz = ((side, "ROS_TO_GZ", ["/r1/go"]) for side in ("", "ros_", "gz_"))
+    for side, direction, heard in (*to_gz, ("", "GZ_TO_ROS", [])):
+        Path("bridge.yaml").write_text(rows.format(side, direction))
         plan = fleet("L2", more="companions: {bridge: bridge.yaml}\n")
         assert [it.topic for it in teleop.teleops(plan)][:1] == heard
 
@@ -452,9 +456,32 @@ def test_a_controller_that_takes_stamped_commands_only(fleet: Any) -> None:
     assert teleop.arguments(it)[3:] == ["-p", "stamped:=true", "-p", "frame_id:=r1/base"]
 
 
+@pytest.mark.parametrize(
+    ("controller", "stamped", "heard"),
+    [
+        # ros2_controllers 2.54.0: diff_drive_controller.cpp 347 and 371, its default is true ...
+        ("diff_drive_controller", "false", "cmd_vel_unstamped"),
+        ("diff_drive_controller", "true", "cmd_vel"),
+        ("mecanum_drive_controller", "false", "reference_unstamped"),
+        # ... and that of steering_controllers_library is false (its .cpp 120 and 126).
+        ("ackermann_steering_controller", "true", "reference"),
+        ("ackermann_steering_controller", "", "reference_unstamped"),
+    ],
+)
+def test_a_controller_of_humble(fleet: Any, controller: str, stamped: str, heard: str) -> None:
+    more = f"    use_stamped_vel: {stamped}\n" if stamped else ""
+    Path("own.yaml").write_text(f"{controller}:\n  ros__parameters:\n    publish_rate: 5.0\n{more}")
+    plan = fleet("L2", controller, more="distro: humble\ncompanions: {params: own.yaml}\n")
+    it = teleop.teleops(plan)[0]
+    assert (it.topic, it.stamped) == (f"/r1/{controller}/{heard}", "unstamped" not in heard)
+
+
 def test_a_bridge_that_takes_stamped_commands(fleet: Any) -> None:
-    (first,) = teleop.teleops(fleet("L2"), stamped={"/r1/cmd_vel"})
-    assert (first.robot, first.stamped, first.frame) == ("r1", True, "r1/base")
+    row = f"- topic_name: cmd_vel\n{TYPES}  direction: ROS_TO_GZ\n"
+    Path("bridge.yaml").write_text(row.replace("a/msg/B", teleop.STAMPED))
+    first, *_ = teleop.teleops(fleet("L2", more="companions: {bridge: bridge.yaml}\n"))
+    assert (first.robot, first.topic) == ("r1", "/r1/cmd_vel")
+    assert (first.stamped, first.frame) == (True, "r1/base")
 
 
 def test_a_listener_that_takes_no_stamp_decides(fleet: Any) -> None:

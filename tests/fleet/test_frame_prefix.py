@@ -95,7 +95,7 @@ def test_nodes_with_a_prefix_of_their_own_keep_their_frames(tmp_path: Path) -> N
     # No line of what is missing either: the default of map_frame is that of all robots.
     assert "map_frame" not in ekf
     assert [it for it in outputs.findings if it.level == "error"] == []
-    assert [it for it in outputs.findings if it.code in ("MF603", "MF605", "MF115")] == []
+    assert [it for it in outputs.findings if it.code in ("MB882", "MB863")] == []
 
 
 @pytest.mark.parametrize("prefix", ["", '""'])

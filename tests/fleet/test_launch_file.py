@@ -122,6 +122,7 @@ def test_what_two_robots_of_gazebo_classic_are_started_with(
     assert "ros2 run teleop_twist_keyboard" in text
 
 
+@pytest.mark.slow
 def test_the_nodes_of_nav2_with_their_lifecycle(tmp_path: Path) -> None:
     shutil.copytree(ROOT / "examples" / "namespace_and_prefix", tmp_path / "example")
     fleet, out = tmp_path / "example" / "nav2.yaml", tmp_path / "out"
@@ -130,6 +131,7 @@ def test_the_nodes_of_nav2_with_their_lifecycle(tmp_path: Path) -> None:
     assert '"node_names": ["map_server", "amcl"]' in text
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("layout", ["frames-per-robot", "postfix"])
 def test_a_plugin_of_the_simulator_is_not_started_again(
     layout: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -206,6 +208,7 @@ def of_nav2(folder: Path, distro: str = "jazzy", **keys: str) -> str:
     return (out / "fleet.launch.py").read_text()
 
 
+@pytest.mark.slow
 def test_slam_toolbox_is_brought_up(tmp_path: Path) -> None:
     """It has a life cycle from Jazzy on, and no manager of Nav2 knows it."""
     python = of_nav2(tmp_path, layout="tf-per-robot", stack="nav2_slam")
@@ -214,12 +217,14 @@ def test_slam_toolbox_is_brought_up(tmp_path: Path) -> None:
     assert python.count("*brought_up(") == 2, "one a robot, and nothing else"
 
 
+@pytest.mark.slow
 def test_in_humble_slam_toolbox_has_no_life_cycle(tmp_path: Path) -> None:
     python = of_nav2(tmp_path, layout="postfix", stack="nav2_slam", distro="humble")
     assert 'executable="sync_slam_toolbox_node"' in python
     assert "brought_up" not in python
 
 
+@pytest.mark.slow
 def test_a_container_has_its_components(tmp_path: Path) -> None:
     python = of_nav2(tmp_path, layout="both", stack="nav2_composed")
     assert 'plugin="nav2_controller::ControllerServer"' in python
@@ -229,6 +234,7 @@ def test_a_container_has_its_components(tmp_path: Path) -> None:
     assert len(found) == 2 and min(found) > 10
 
 
+@pytest.mark.slow
 def test_a_shared_map_server_has_a_manager(tmp_path: Path) -> None:
     topics = "[/map, /clock, /rosout, /parameter_events, /diagnostics]"
     python = of_nav2(
@@ -238,6 +244,7 @@ def test_a_shared_map_server_has_a_manager(tmp_path: Path) -> None:
     assert python.count('executable="map_server"') == 1
 
 
+@pytest.mark.slow
 def test_relays_of_tf_are_started(tmp_path: Path) -> None:
     python = of_nav2(tmp_path, layout="both", affix="prefix", stack="nav2", relayed="true")
     told = '{"input_topic": "/robot1/tf", "output_topic": "/tf"}'
@@ -245,6 +252,7 @@ def test_relays_of_tf_are_started(tmp_path: Path) -> None:
     assert python.count('package="topic_tools"') == 4
 
 
+@pytest.mark.slow
 def test_nodes_of_bringup_are_left_to_it(tmp_path: Path) -> None:
     """Its parameter files have no namespaces, so a node in one would get nothing of them."""
     python = of_nav2(tmp_path, layout="tf-per-robot", stack="nav2", params_style="bringup")
@@ -331,6 +339,7 @@ def chosen(out: Path, monkeypatch: pytest.MonkeyPatch, text: str) -> list[str]:
     return found
 
 
+@pytest.mark.slow
 def test_so_many_robots_are_started(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     out = built(tmp_path, "ten", "both")
     assert chosen(out, monkeypatch, "3") == ["robot1", "robot2", "robot3"]

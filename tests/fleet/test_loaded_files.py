@@ -33,6 +33,7 @@ def package(folder: Path, path: str) -> Path:
     return folder
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize(
     "path",
     [

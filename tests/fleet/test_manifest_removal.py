@@ -34,10 +34,12 @@ def stale(out: Path, capsys: pytest.CaptureFixture[str]) -> set[str]:
 # What an earlier build made and this one does not.
 
 
+@pytest.mark.slow
 def test_what_is_no_longer_made_is_left_over(out: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert stale(out, capsys) == {"robot2/rover.urdf", "robot2/params.yaml"}
 
 
+@pytest.mark.slow
 def test_what_is_gone_already_is_not_left_over(
     out: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -47,6 +49,7 @@ def test_what_is_gone_already_is_not_left_over(
     assert not (out / "robot2").exists()
 
 
+@pytest.mark.slow
 def test_a_folder_that_is_gone_already_is_not_left_over(
     out: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -58,6 +61,7 @@ def test_a_folder_that_is_gone_already_is_not_left_over(
     assert build(out.parent, "--check") == 0
 
 
+@pytest.mark.slow
 def test_a_folder_in_the_place_of_a_file_is_not_removed(out: Path) -> None:
     """It is not what the build made."""
     path = out / "robot2" / "params.yaml"
@@ -78,12 +82,13 @@ def foreign(folder: Path, value: str, capsys: pytest.CaptureFixture[str]) -> lis
     fleet_folder(folder, SMALL, params__yaml=params)
     code = build(folder)
     err = capsys.readouterr().err
-    lines = re.findall(r"(\w+\.yaml):(\d+):\d+: \w+: MF602\b", err)
+    lines = re.findall(r"(\w+\.yaml):(\d+):\d+: \w+: MB863\b", err)
     assert code == (1 if lines else 0)
     assert (folder / "out" / "plan.yaml").exists() == (not lines)
     return [(file, int(line)) for file, line in lines]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "value",
     [
@@ -98,6 +103,7 @@ def test_the_model_of_another_robot_is_found_inside_a_name(
     assert foreign(tmp_path, value, capsys) == [("params.yaml", 4)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "value",
     ["/model/rover/scan", "/world/robot2_hall/model/rover/scan", "/x/models/robot2/scan", "model"],

@@ -37,6 +37,7 @@ def planned(folder: Path, layout: str) -> System:
     return from_yaml(to_yaml(plan).encode(), "plan.yaml")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("layout", NAMESPACED)
 def test_a_fleet_as_planned_has_no_findings(tmp_path: Path, layout: str) -> None:
     plan = planned(tmp_path, layout)
@@ -56,6 +57,7 @@ def test_frames_have_the_robots_word_and_not_its_path(tmp_path: Path) -> None:
     assert [robot.frames[0].rpartition("/")[2] for robot in plan.robots] == ["a1", "b1", "guard"]
 
 
+@pytest.mark.slow
 def test_faults_name_the_robot(tmp_path: Path) -> None:
     """A leak, another robot's scan, a node without its namespace and a node of nobody's plan."""
     plan = planned(tmp_path, "both")

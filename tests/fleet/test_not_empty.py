@@ -88,6 +88,7 @@ def nodes_of(plan: str) -> set[str]:
     return {it.name for it in from_yaml(plan.encode(), "plan").nodes if it.robot}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("poses", ["", "one", "both"])
 def test_all_commands_have_the_same_robots(
     poses: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]

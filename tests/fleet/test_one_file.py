@@ -76,6 +76,10 @@ def test_a_description_is_asked_for_only_where_names_rest_on_it() -> None:
         rewrite_file(NAV.encode(), "robot1", layout="both")
     bare = rewrite_file(NAV.encode(), "robot1", layout="tf-per-robot")
     assert "base_frame_id: base_footprint" in bare.text and bare.text.startswith("/robot1/amcl:")
+    everybodys = rewrite_file(
+        NAV.replace("base_footprint", "map").encode(), "robot1", layout="both"
+    )
+    assert "base_frame_id: map" in everybodys.text
     row = rewrite_file(ROW.format("topic_name", "scan").encode(), "robot1", layout="both")
     assert "/robot1/scan" in row.text
 
@@ -141,6 +145,17 @@ def test_options_of_descriptions_are_refused(
     (tmp_path / "nav.yaml").write_text(NAV)
     assert main([str(tmp_path / "nav.yaml"), "a", option]) == 2
     assert "is for descriptions" in capsys.readouterr().err
+
+
+def test_why_and_a_missing_output_speak_of_the_file(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """``--why`` read it as XML, and the hint of several robots named a URDF."""
+    (tmp_path / "nav.yaml").write_text(NAV)
+    assert main(["--why", f"{tmp_path / 'nav.yaml'}:3"]) == 2
+    assert "--why is for descriptions" in capsys.readouterr().err
+    assert main([str(tmp_path / "nav.yaml"), "a", "b"]) == 2
+    assert "-o 'out/{robot}.yaml'" in capsys.readouterr().err
 
 
 def test_a_robots_name_in_it_stops(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

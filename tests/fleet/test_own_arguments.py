@@ -76,6 +76,7 @@ def links(text: str) -> list[str | None]:
     return [it.get("name") for it in etree.fromstring(text.encode()).findall("link")]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("robots", [BY_PLACEHOLDER, BY_VALUE])
 @pytest.mark.parametrize("name", ["left", "right"])
 def test_all_files_of_a_robot_agree(tmp_path: Path, robots: str, name: str) -> None:
@@ -96,6 +97,7 @@ def test_all_files_of_a_robot_agree(tmp_path: Path, robots: str, name: str) -> N
     assert worth_a_look(made.made.findings) == []
 
 
+@pytest.mark.slow
 def test_robots_with_and_without_the_argument(tmp_path: Path) -> None:
     robots = BY_VALUE.replace(", arguments: {tf_prefix: right_}", "")
     made = load_fleet(fleet(tmp_path, FLEET + robots))
@@ -104,6 +106,7 @@ def test_robots_with_and_without_the_argument(tmp_path: Path) -> None:
     assert "right_elbow" in made.text("right/controllers.yaml")
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("key", ["prefix", "namespace"])
 def test_a_name_of_its_own_beside_another_prefix_or_namespace(tmp_path: Path, key: str) -> None:
     text = (FLEET + BY_PLACEHOLDER).replace("name: left", f"name: left, {key}: l1")
@@ -168,6 +171,7 @@ def test_a_further_robot_is_one_more_expansion(
     assert len(read) == 5 + 2
 
 
+@pytest.mark.slow
 def test_one_value_for_several_robots_is_refused(tmp_path: Path) -> None:
     text = FLEET + BY_PLACEHOLDER.replace("{robot}_", "left_")
     with pytest.raises(InputError) as refused:
@@ -184,6 +188,7 @@ def test_an_unknown_placeholder_has_its_line(tmp_path: Path) -> None:
         read_fleet(str(path), "", {})
 
 
+@pytest.mark.slow
 def test_a_fleet_with_own_arguments_can_be_pickled(tmp_path: Path) -> None:
     made = load_fleet(fleet(tmp_path, FLEET + BY_PLACEHOLDER))
     copy = pickle.loads(pickle.dumps(made))

@@ -6,12 +6,16 @@ Expectations: what launch does with a file that is not there, and tf2 with a fra
 from __future__ import annotations
 
 import os
+import re
+from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
+from built_faults import FLEET, OUT, Edit, edited, fleet, in_file, in_launch, node, without
 from paths import ROOT
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING
+from multibot_rewrite.base.findings.finding import ERROR
+from multibot_rewrite.cli import build
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.build import Outputs, make_outputs
 from multibot_rewrite.fleet.checks.read_back import read_back
@@ -19,7 +23,7 @@ from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
 
 EXAMPLE = ROOT / "examples" / "namespace_and_prefix" / "nav2.yaml"
-OUT = "/anywhere/out"
+EXAMPLES = sorted((ROOT / "examples").glob("*/fleet.yaml"))
 
 
 @pytest.fixture(scope="module")
@@ -28,42 +32,185 @@ def built() -> tuple[FleetPlan, Outputs]:
     return plan, make_outputs(plan, OUT)
 
 
+@pytest.mark.slow
 def test_nothing_is_wrong_with_a_whole_fleet(built: tuple[FleetPlan, Outputs]) -> None:
-    assert read_back(built[0], built[1].files, OUT) == []
+    assert read_back(*built, OUT) == []
 
 
+@pytest.mark.sample(17)
+@pytest.mark.parametrize("release", ["humble", "jazzy", "lyrical"])
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda it: it.parent.name)
+def test_nothing_is_wrong_with_the_examples_in_any_release(example: Path, release: str) -> None:
+    plan = plan_fleet(read_fleet(str(example), release, os.environ), trust=True)
+    assert read_back(plan, make_outputs(plan, OUT), OUT) == []
+
+
+def test_a_rule_that_a_rehearsal_would_miss_is_an_error() -> None:
+    """Humble's controller manager asks for ~/robot_description (ros2_control 2,
+    controller_manager.cpp), robot_state_publisher sends robot_description."""
+    example = str(ROOT / "examples" / "two_arms_moveit" / "fleet.yaml")
+    plan = plan_fleet(read_fleet(example, "humble", os.environ), trust=True)
+    spoiled = edited(make_outputs(plan, OUT), in_launch(without("~/robot_description")))
+    found = {it.node: it.code for it in read_back(plan, spoiled, OUT) if it.level == ERROR}
+    assert found.keys() == {"/left/controller_manager", "/right/controller_manager"}
+
+
+@pytest.mark.sample(5)
 @pytest.mark.parametrize(
     "path", ["robot1/hexbase.urdf", "robot2/nav2_params.yaml", "robot1/bridge.yaml"]
 )
 def test_a_file_that_the_launch_file_names_and_is_not_there(
     path: str, built: tuple[FleetPlan, Outputs]
 ) -> None:
-    left = [it for it in built[1].files if it.path != path]
-    found = read_back(built[0], left, OUT)
+    left = tuple(it for it in built[1].files if it.path != path)
+    found = read_back(built[0], built[1]._replace(files=left), OUT)
     named = [it for it in found if it.code == "MF823" and path in it.message]
     assert named and all(it.level == ERROR for it in named)
     assert all((it.file, it.line > 1) == ("fleet.launch.py", True) for it in named)
 
 
 def test_a_robot_with_the_description_of_another_one(built: tuple[FleetPlan, Outputs]) -> None:
-    texts = {it.path: it for it in built[1].files}
-    other = texts["robot1/hexbase.urdf"].data
-    files = [
-        it._replace(data=other) if it.path == "robot2/hexbase.urdf" else it for it in built[1].files
-    ]
-    found = read_back(built[0], files, OUT)
-    assert any(it.code.startswith("MG") and it.level == WARNING for it in found)
+    other = next(it.data for it in built[1].files if it.path == "robot1/hexbase.urdf").decode()
+    spoiled = edited(built[1], lambda path, text: other if path == "robot2/hexbase.urdf" else text)
+    codes = {it.code: it.level for it in read_back(built[0], spoiled, OUT)}
+    assert codes["MG208"] == ERROR
+
+
+# Faults of one file, each with the code that `multibot check` has for it where the fleet runs.
+PLANTED: Mapping[str, tuple[Edit, str]] = {
+    "a rule leads to the other robot": (
+        in_launch(lambda it: it.replace('"cmd_vel_nav")', '"/robot2/cmd_vel_nav")', 1)),
+        "MG311",
+    ),
+    "tf goes to the other robot": (
+        node("robot1", "amcl", lambda it: it.replace('"tf")', '"/robot2/tf")')),
+        "MG405",
+    ),
+    "a rule is lost": (node("robot1", "controller_server", without("cmd_vel")), "MG102"),
+    "a node is lost": (node("robot1", "velocity_smoother", lambda it: ""), "MG101"),
+    "a node has another name": (
+        node("robot1", "amcl", lambda it: it.replace('"amcl"', '"amcl_node"')),
+        "MG101",
+    ),
+    "a node is not in its robot's namespace": (
+        node("robot2", "amcl", lambda it: it.replace('namespace="/robot2",', "")),
+        "MG101",
+    ),
+    "a parameter file has another topic": (
+        in_file("robot2/nav2_params.yaml", "scan_topic: scan", "scan_topic: robot2/scan"),
+        "MG102",
+    ),
+    "a costmap's source is misspelt": (
+        in_file("robot1/nav2_params.yaml", "topic: /robot1/scan", "topic: /robot1/scn"),
+        "MG102",
+    ),
+    "a parameter file is not given": (
+        node("robot1", "collision_monitor", lambda it: it.replace("*params, ", "")),
+        "MG102",
+    ),
+    "a lifecycle manager waits for nobody": (
+        in_launch(lambda it: it.replace('"smoother_server", ', '"smother_server", ', 1)),
+        "MG102",
+    ),
+    "a frame of the other robot": (
+        in_file("robot2/nav2_params.yaml", "odom_frame_id: odom", "odom_frame_id: robot1/odom"),
+        "MG407",
+    ),
+    "a node is on the wrong clock": (
+        node("robot1", "amcl", lambda it: it.replace("CLOCK]", 'CLOCK, {"use_sim_time": False}]')),
+        "MG503",
+    ),
+    "a row of the bridge has another type": (
+        in_file("robot1/bridge.yaml", "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2"),
+        "MG126",
+    ),
+    "a row of the bridge goes the other way": (
+        in_file("robot1/bridge.yaml", "GZ_TO_ROS", "ROS_TO_GZ"),
+        "MG126",
+    ),
+    "a node has no description": (
+        in_launch(
+            lambda it: it.replace('{"robot_description": text("robot1/hexbase.urdf")}, ', "", 1)
+        ),
+        "MF823",
+    ),
+}
+
+
+@pytest.mark.sample(7)
+@pytest.mark.parametrize("name", PLANTED)
+def test_a_planted_fault_is_an_error_of_its_code(name: str) -> None:
+    edit, code = PLANTED[name]
+    plan, made = fleet()
+    found = read_back(plan, edited(made, edit), OUT)
+    assert code in {it.code for it in found if it.level == ERROR}
+    own = [it for it in found if it.code == code and it.file]
+    assert all(it.file == "fleet.launch.py" and it.line for it in own)
+
+
+@pytest.mark.sample(5)
+@pytest.mark.parametrize("name", ["a rule is lost", "a node is lost", "a node has no description"])
+def test_the_command_ends_with_an_error_and_writes_nothing(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    edit, code = PLANTED[name]
+    (tmp_path / "fleet.yaml").write_text(FLEET)
+    monkeypatch.setattr(build, "make_outputs", lambda *given: edited(make_outputs(*given), edit))
+    out = tmp_path / "out"
+    assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(out)]) == 1
+    assert not out.exists()
+    said = capsys.readouterr().err
+    assert f"error: {code} " in said and "nothing was written" in said
+
+
+_SPAWNER = re.compile(
+    r'(?s)        Node\(\n            package="controller_manager",\n'
+    r'            executable="spawner",\n            namespace="/left",\n'
+    r'            arguments=\["hand_controller"\].*?\n        \),\n'
+)
+CONTROLLERS: Mapping[str, tuple[Edit, str, str]] = {
+    "declared and not spawned": (
+        in_launch(lambda it: _SPAWNER.sub("", it)),
+        "MG101",
+        "/left/hand_controller",
+    ),
+    "spawned and not declared": (
+        lambda path, it: (
+            it.replace("hand_controller:", "hand:") if path == "left/controllers.yaml" else it
+        ),
+        "MG102",
+        "/left/hand_controller",
+    ),
+    "spawned into the other robot": (
+        in_launch(lambda it: _SPAWNER.sub(lambda one: one[0].replace('"/left"', '"/right"'), it)),
+        "MG101",
+        "/left/hand_controller",
+    ),
+    "without its manager": (
+        in_launch(lambda it: it.replace('name="controller_manager"', 'name="manager"', 1)),
+        "MG101",
+        "/left/controller_manager",
+    ),
+}
+
+
+@pytest.mark.sample(5)
+@pytest.mark.parametrize("name", CONTROLLERS)
+def test_a_controller_runs_as_it_is_declared(name: str) -> None:
+    edit, code, lost = CONTROLLERS[name]
+    example = str(ROOT / "examples" / "two_arms_moveit" / "fleet.yaml")
+    plan = plan_fleet(read_fleet(example, "", os.environ), trust=True)
+    found = read_back(plan, edited(make_outputs(plan, OUT), edit), OUT)
+    assert (code, lost) in {(it.code, it.node) for it in found if it.level == ERROR}
 
 
 def test_a_launch_file_that_cannot_be_read(built: tuple[FleetPlan, Outputs]) -> None:
-    files = [
-        it._replace(data=b"import nothing_of_that_name\n") if it.path == "fleet.launch.py" else it
-        for it in built[1].files
-    ]
-    (found,) = read_back(built[0], files, OUT)
+    spoiled = edited(built[1], in_launch(lambda it: "import nothing_of_that_name\n"))
+    (found,) = read_back(built[0], spoiled, OUT)
     assert (found.code, found.level, found.file) == ("MF823", ERROR, "fleet.launch.py")
 
 
+@pytest.mark.slow
 def test_a_description_is_launched_by_the_name_that_is_written(tmp_path: Path) -> None:
     (tmp_path / "arm.xacro").write_text(
         '<robot name="arm" xmlns:xacro="http://wiki.ros.org/xacro"><link name="base_link"/></robot>'

@@ -97,6 +97,7 @@ def test_clearpath_has_a_setup_folder(tmp_path: Path) -> None:
     ]
 
 
+@pytest.mark.sample(4)
 @pytest.mark.parametrize(
     "text",
     [
@@ -172,6 +173,7 @@ def test_the_fleet_file_says_that_hardware_is_simulated(tmp_path: Path) -> None:
     assert "ros2 run clearpath_generator_gz" in load_fleet(keys).text("commands.md")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("distro", "word"), [("jazzy", " use_namespace:=True"), ("kilted", "")])
 def test_nav2_gets_a_file_without_the_namespace(distro: str, word: str, tmp_path: Path) -> None:
     given = "params_file:=$PWD/'robot1/my controller_server.yaml'"
@@ -183,6 +185,7 @@ def test_nav2_gets_a_file_without_the_namespace(distro: str, word: str, tmp_path
     assert list(yaml.safe_load(text)) == ["controller_server"]
 
 
+@pytest.mark.slow
 def test_turtlebot4_as_it_is(tmp_path: Path) -> None:
     """standard.launch.py puts the file below the namespace, turtlebot4_spawn.launch.py does not."""
     node = "robot1/my turtlebot4_node.yaml"
@@ -231,6 +234,7 @@ def test_what_the_vendor_cannot_start_is_refused(
         load_fleet(fleet(tmp_path, "nav2", **keys))
 
 
+@pytest.mark.slow
 def test_the_option_wins(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "fleet.json.yaml"
     file.write_text(json.dumps(fleet(tmp_path, "nav2")))
@@ -247,6 +251,7 @@ def test_the_option_wins(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
     assert "clearpath" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("style", ["", "full"])
 def test_the_usual_style_may_be_written_out(style: str, tmp_path: Path) -> None:
     keys = {"params_style": style} if style else {}

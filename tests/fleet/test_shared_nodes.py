@@ -34,6 +34,7 @@ def planned(folder: Path, layout: str, shared: str = "map_server") -> System:
     return expected(made)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_each_amcl_reads_the_map_of_the_one_map_server(tmp_path: Path, layout: str) -> None:
     plan = planned(tmp_path, layout)
@@ -47,6 +48,7 @@ def test_each_amcl_reads_the_map_of_the_one_map_server(tmp_path: Path, layout: s
                 and it.kind == "topic"]  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_no_robot_has_a_copy_of_it_or_manages_it(tmp_path: Path, layout: str) -> None:
     plan = planned(tmp_path, layout)
@@ -59,6 +61,7 @@ def test_no_robot_has_a_copy_of_it_or_manages_it(tmp_path: Path, layout: str) ->
     assert callers == set()
 
 
+@pytest.mark.slow
 def test_a_client_of_a_shared_node_calls_the_one_there_is(tmp_path: Path) -> None:
     """A service below a node that is shared is that node's, in every layout."""
     nodes = tmp_path / "nodes.yaml"

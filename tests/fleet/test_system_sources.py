@@ -17,9 +17,12 @@ from multibot_rewrite import (
     system_of_description,
     system_of_files,
     system_of_fleet,
+    system_of_folder,
+    system_of_graph,
     system_of_launch,
 )
 from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.producers.ros import child
 from multibot_rewrite.system.records import MAY
 
 ROVER = FIXTURES / "robots" / "rover.urdf"
@@ -57,6 +60,17 @@ def test_a_plan_as_json_too(tmp_path: Path) -> None:
     assert system_of_files(file).layout == "both"
 
 
+@pytest.mark.parametrize(("words", "asked"), [({}, 0), ({"states": True}, 1)])
+def test_nodes_of_a_graph_are_asked_only_if_that_is_wanted(
+    words: dict[str, bool], asked: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    questions: list[object] = []
+    monkeypatch.setattr(child, "observe", lambda request, around: healthy())
+    monkeypatch.setattr(child, "ask", lambda *it: questions.append(it) or ())
+    assert system_of_graph(**words) == healthy()
+    assert len(questions) == asked
+
+
 def test_what_is_wrong_is_what_the_commands_say(capsys: pytest.CaptureFixture[str]) -> None:
     broken = GRAPHS / "MG320.json"
     plan = GRAPHS / "plan.yaml"
@@ -83,6 +97,7 @@ def test_a_fleet_file_is_a_plan() -> None:
     assert {it.robot for it in plan.nodes} >= {it.name for it in plan.robots}
 
 
+@pytest.mark.slow
 def test_a_launch_file_is_what_it_would_start(tmp_path: Path) -> None:
     file = tmp_path / "one.launch.py"
     file.write_text(LAUNCH)
@@ -96,3 +111,21 @@ def test_what_cannot_be_read_is_said(tmp_path: Path) -> None:
         system_of_files(tmp_path / "none.json")
     with pytest.raises(InputError, match="there is no such bag"):
         system_of_bag(tmp_path / "bag")
+
+
+@pytest.mark.slow
+def test_a_built_folder_runs_as_its_plan_says(tmp_path: Path) -> None:
+    robots = "".join(f"  - {{name: {it}, description: {ROVER}}}\n" for it in ROBOTS)
+    text = f"layout: frames-per-robot\nstack: [robot_localization]\nrobots:\n{robots}"
+    (tmp_path / "fleet.yaml").write_text(text)
+    assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "built")]) == 0
+    seen = system_of_folder(tmp_path / "built")
+    names = {it.name for it in seen.nodes}
+    edges = {(it.parent, it.child) for it in seen.edges}
+    assert {f"/{it}/robot_state_publisher" for it in ROBOTS} <= names
+    assert {(f"base_link/{it}", f"lidar_link/{it}") for it in ROBOTS} <= edges
+
+
+def test_a_folder_without_a_launch_file_is_an_error(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="launch file does not exist"):
+        system_of_folder(tmp_path)

@@ -73,7 +73,7 @@ ARMS = {
         # Two components of one name cannot be loaded by one controller manager.
         frozenset({("robot", "name", "ur", "left_ur"), ("ros2_control", "name", "ur", "left_ur")}),
         # The description has no effort interfaces: forward_effort_controller cannot be loaded.
-        findings=frozenset({"MG515"}),
+        findings=frozenset({"MB229"}),
     ),
     "fr3": Arm(
         "franka_ros2/franka_bringup/urdf/franka_arm.urdf.xacro",
@@ -131,7 +131,7 @@ ARMS = {
             }
         ),
         # Both arms have the address and the port that are the defaults of the xacro.
-        findings=frozenset({"MF833"}),
+        findings=frozenset({"MB412"}),
     ),
 }
 LAYOUTS = ("frames-per-robot", "both", "tf-per-robot", "postfix")

@@ -17,7 +17,7 @@ from multibot_rewrite.knowledge.stacks import every_release
 
 # What nobody could say as a condition yet.
 OPEN_CONDITIONS = 11
-PROSE = {"endpoint": 35, "node": 22, "parameter": 27, "file": 4, "port": 0, "condition": 39}
+PROSE = {"endpoint": 4, "node": 3, "parameter": 5, "file": 0, "port": 0, "condition": 10}
 TOPIC = re.compile(r"(?:^|[\s(])[~/]?[a-z_<>]*/[\w<>/*]+")
 FILE = re.compile(r"\.(?:ya?ml|lua|xml|py|cpp|hpp|bag|mcap|launch)\b")
 PORT = re.compile(r"\bport\b|:\d{4,5}\b")

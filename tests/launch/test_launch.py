@@ -28,6 +28,7 @@ from paths import FIXTURES, ROOT
 from multibot_rewrite import InputError, UsageError, launch, load_fleet
 from multibot_rewrite.launch import context as launch_context
 from multibot_rewrite.launch import later, substitutions
+from multibot_rewrite.producers.launch.stand_in import contents, standing_in
 
 REAL = not launch.missing()
 NO_LAUNCH = f"not tried in the real launch, which is not here: {launch.missing()}"
@@ -195,6 +196,7 @@ WORDS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("word", "name", "wanted"), WORDS)
 def test_words(word: str, name: str, wanted: str, fleet: str, context: Any) -> None:
     context.launch_configurations.update({"which": "robot2", "where": fleet})
@@ -232,6 +234,7 @@ def test_a_robot_in_its_group(fleet: str, context: Any) -> None:
     assert set(context.launch_configurations) == {"where"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("robots", "wanted"),
     [
@@ -250,6 +253,7 @@ def test_only_some_robots(robots: Any, wanted: list[str], fleet: str, context: A
     assert [it.options["name"] for it in run(context, made)] == wanted
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("files", ["params.yaml,more.yaml", ["params.yaml", "more.yaml"]])
 def test_several_files(files: Any, fleet: str, context: Any) -> None:
     (Path(fleet).with_name("more.yaml")).write_text(PARAMS)
@@ -258,6 +262,7 @@ def test_several_files(files: Any, fleet: str, context: Any) -> None:
     assert [Path(it).name for it in made.options["parameters"]] == ["params.yaml", "more.yaml"]
 
 
+@pytest.mark.slow
 def test_robots_that_the_file_does_not_have(fleet: str, context: Any) -> None:
     found = []
     robots = "robot2={x: 4.0, y: 1}; third={x: 6.0}"
@@ -265,6 +270,7 @@ def test_robots_that_the_file_does_not_have(fleet: str, context: Any) -> None:
     assert [(it.name, it.pose.x) for it in found] == [("robot2", 4.0), ("third", 6.0)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("count", ["three", "-1", "2.5"])
 def test_a_number_of_robots_that_is_none(count: str, fleet: str, context: Any) -> None:
     context.launch_configurations["multibot_count"] = count
@@ -283,6 +289,7 @@ def test_a_condition(fleet: str, context: Any) -> None:
             assert len(run(context, one)) == bool(count)
 
 
+@pytest.mark.slow
 def test_a_node(fleet: str, context: Any) -> None:
     mine, later = ("scan", "front"), {"use_sim_time": True}
     action = launch.node(
@@ -337,6 +344,7 @@ def test_a_component_is_loaded_into_its_container(fleet: str, context: Any) -> N
     assert "composable_node_descriptions" not in box.options
 
 
+@pytest.mark.slow
 def test_a_node_with_the_description(fleet: str, context: Any) -> None:
     where = {"robot": "robot2", "fleet": fleet}
     (made,) = run(context, launch.node("robot_state_publisher", describe=True, **where))
@@ -348,6 +356,7 @@ def test_a_node_with_the_description(fleet: str, context: Any) -> None:
     assert bare.options["parameters"] == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("odd", ["\x7f", "\x85", "\u2028", "\ufeff", "\U0001f916", 'a "b" \\n'])
 def test_a_description_reads_back_whatever_is_in_it(odd: str, fleet: str, context: Any) -> None:
     path = Path(fleet).with_name("rover.urdf")
@@ -374,6 +383,7 @@ def test_a_spawner_and_a_place(fleet: str, context: Any) -> None:
     assert run(context, launch.place("robot2", fleet)) == []
 
 
+@pytest.mark.slow
 def test_files_go_with_the_launch(fleet: str, context: Any) -> None:
     own = launch.perform(context, launch.params_file("params.yaml", "robot1", fleet))
     shared = launch.perform(context, launch.rviz_config("one.rviz", fleet=fleet))
@@ -415,6 +425,7 @@ def test_a_launch_loads_a_fleet_once(
     assert launch.fleet_of(other, fleet) is not first
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("configured", "trusted"), [({}, False), ({"multibot_trust": "true"}, True),
     ({"multibot_trust": "false"}, False), ({"multibot_trust": "True"}, True)],
@@ -456,6 +467,7 @@ def test_warnings_are_logged_once(
     assert told
 
 
+@pytest.mark.sample(7)
 @pytest.mark.parametrize(
     ("make", "part"),
     [
@@ -516,6 +528,7 @@ def test_xml_for_one_robot(fleet: str, context: Any) -> None:
     assert run(context, off) == []
 
 
+@pytest.mark.sample(7)
 @pytest.mark.parametrize(("word", "name", "wanted"), WORDS)
 def test_xml_words(word: str, name: str, wanted: str, fleet: str, context: Any) -> None:
     context.launch_configurations.update({"where": fleet, "which": "robot2"})
@@ -525,6 +538,16 @@ def test_xml_words(word: str, name: str, wanted: str, fleet: str, context: Any) 
     with pytest.raises(UsageError) as caught:
         run(context, action)
     assert f"'a {wanted} b'" in str(caught.value)
+
+
+def test_a_path_in_a_word_may_have_what_parts_its_name(
+    fleet: str, context: Any, tmp_path: Path
+) -> None:
+    named = tmp_path / "a:=b.yaml"
+    named.write_text(Path(fleet).read_text())
+    (action,) = read(f'<multibot_spawn simulator="$(multibot name robot:=robot2 fleet:={named})"/>')
+    with pytest.raises(UsageError, match="'robot2'"):
+        run(context, action)
 
 
 @pytest.mark.parametrize(
@@ -609,6 +632,7 @@ def test_a_step_of_the_tutorial_in_launch(file: str, tmp_path: Path) -> None:
         assert f"/{robot.name}/bridge.yaml" in texts
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("code", PYTHON, ids=["plain", "running"])
 def test_the_python_of_the_page(
     code: str, fleet: str, context: Any, monkeypatch: pytest.MonkeyPatch
@@ -645,11 +669,44 @@ def test_the_stand_in_is_like_launch() -> None:
     assert launch_signatures.stand_in() == SIGNATURES["launch"]
 
 
+def test_what_launch_offers_can_be_imported_without_it() -> None:
+    """By the same table: a launch file does not fail at a name that it imports."""
+    missing = {
+        f"{module}.{name}"
+        for module, names in SIGNATURES["names"].items()
+        for name in {*names} - {*contents()[module]}
+    }
+    assert not missing
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "from launch.actions.declare_launch_argument import DeclareLaunchArgument",
+        "from launch.launch_description import LaunchDescription",
+        "from launch.substitutions.path_join_substitution import PathJoinSubstitution",
+        "from launch_ros.substitutions.find_package import FindPackageShare",
+        "import launch, launch_ros; launch.SomeSubstitutionsType; launch_ros.actions.Node",
+    ],
+)
+def test_a_module_inside_of_launch_can_be_imported_without_it(line: str) -> None:
+    with standing_in():
+        exec(line, {})
+
+
+def test_a_name_that_launch_has_not_cannot_be_imported() -> None:
+    with standing_in():
+        for line in ("from launch.actions import Nod", "import launch.actions.declare_argument"):
+            with pytest.raises(ImportError):
+                exec(line, {})
+
+
 @in_launch
 def test_the_table_is_that_of_launch_and_launch_ros() -> None:
     assert launch_signatures.table() == SIGNATURES
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "make",
     [

@@ -19,46 +19,20 @@ from typing import Any
 import pytest
 import yaml
 from launched_programs import launched
-from paths import FIXTURES, ROBOTS, ROOT, SUPPORT
+from nav2_fleet import FILE, written
+from paths import FIXTURES, SUPPORT
 from vendor_sources import VARIABLE, sources_folder
 
 from multibot_rewrite import launch
 from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.cli.rehearse import stage
-from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER, PROGRAMS, SLAM
+from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER, NAV2, known_program
+from multibot_rewrite.knowledge.stacks import load_nodes
 
 REASON = f"not tried in the real launch, which is not here: {launch.missing()}"
 in_launch = pytest.mark.skipif(bool(launch.missing()), reason=REASON)
 STAND_IN = SUPPORT / "lifecycle_stand_in.py"
-FILE = ROOT / "share" / "launch" / "nav2.launch.py"
-PARAMS = """\
-amcl:
-  ros__parameters: {base_frame_id: base_link, odom_frame_id: odom}
-local_costmap:
-  local_costmap:
-    ros__parameters: {global_frame: odom, plugins: [keepout]}
-"""
-RVIZ = "Visualization Manager:\n  Displays: []\n  Global Options: {Fixed Frame: map}\n"
-FLEET = """\
-layout: {layout}
-distro: {distro}
-stack: [{stack}, robot_state_publisher]
-{more}
-robots:
-  - {{name: robot1, description: %s, pose: {{x: 1.0}}}}
-  - {{name: robot2, description: %s, pose: {{x: 3.0}}}}
-companions: {{params: params.yaml, rviz: one.rviz}}
-"""
-FLEET = FLEET.replace("%s", str(ROBOTS / "rover.urdf"))
 Rows = list[dict[str, Any]]
-
-
-def written(folder: Path, **words: str) -> Path:
-    given = {"layout": "postfix", "distro": "jazzy", "stack": "nav2", "more": "", **words}
-    (folder / "fleet.yaml").write_text(FLEET.format(**given))
-    (folder / "params.yaml").write_text(PARAMS)
-    (folder / "one.rviz").write_text(RVIZ)
-    return folder
 
 
 def run(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
@@ -165,8 +139,9 @@ def test_slam_toolbox_is_configured_and_activated_once(
     fleet.write_text(fleet.read_text().replace("  - {name: robot2", "#"))
     for name, value in stage(None).items():
         monkeypatch.setenv(name, value)
-    programs = {it.executable: it.package for it in PROGRAMS.values()}
-    real = {PROGRAMS[SLAM].executable: STAND_IN}
+    nav2 = [known_program(it, "jazzy") for it in NAV2 if it in load_nodes("jazzy")]
+    programs = {it.executable: it.package for it in nav2}
+    real = {known_program("slam_toolbox", "jazzy").executable: STAND_IN}
     told, _ = launched(FILE, tmp_path, f"fleet:={fleet}", programs=programs, real=real)
     (slam,) = (it for it in told if "state" in it)
     assert "__ns:=/robot1" in slam["words"]
@@ -183,11 +158,12 @@ def launched_by(release: str) -> Iterator[tuple[str, str, str]]:
 
 def test_programs_are_those_of_launch_files_of_some_release() -> None:
     known = {row for release in RELEASES for row in launched_by(release)}
-    for name, it in PROGRAMS.items():
+    for name in NAV2:
+        it = known_program(name, "rolling")
         words = {("node", it.package, it.executable), ("lifecycle_node", it.package, it.executable)}
         assert words & known, name
         assert not it.plugin or ("component", it.package, it.plugin) in known, name
-    assert list(PROGRAMS)[-1] == LIFECYCLE_MANAGER
+    assert NAV2[-1] == LIFECYCLE_MANAGER
 
 
 WITHOUT = launch.missing() or ("" if sources_folder() else f"set {VARIABLE}")

@@ -22,7 +22,6 @@ from multibot_rewrite.cli.urdf_lint import main
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.sources import packages
 from multibot_rewrite.lint.cache import cache as caches
-from multibot_rewrite.lint.cache import shard
 from multibot_rewrite.lint.cache.cache import Cache, cache_folder
 from multibot_rewrite.lint.cache.identity import identity
 from multibot_rewrite.lint.run import lint_files
@@ -127,6 +126,7 @@ def again(
     return found, sum(map(len, cache.changed.values()))
 
 
+@pytest.mark.slow
 def test_nothing_is_linted_twice(here: Path) -> None:
     first, new = again()
     assert new == len(SOURCES) + 1, "each file, and what they know of each other"
@@ -159,6 +159,7 @@ CHANGES: dict[str, Callable[[Path], object]] = {
 }
 
 
+@pytest.mark.sample(7)
 @pytest.mark.parametrize("change", CHANGES)
 def test_what_changed_is_noticed(here: Path, change: str) -> None:
     before, _ = again()
@@ -192,6 +193,7 @@ ENVIRONMENTS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ENVIRONMENTS)
 def test_the_environment_is_noticed(here: Path, monkeypatch: pytest.MonkeyPatch, name: str) -> None:
     # A package that is in neither root, only where the variable says.
@@ -219,6 +221,7 @@ OTHERS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("what", OTHERS)
 def test_other_settings_are_other_results(here: Path, what: str) -> None:
     again()
@@ -260,6 +263,7 @@ def test_runs_over_parts_of_a_folder_add_up(here: Path) -> None:
     assert again(paths=SOURCES[2:3])[1] == again(paths=SOURCES[3:4])[1] == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "damage",
     [
@@ -296,6 +300,7 @@ def test_only_marked_functions_are_asked() -> None:
             outside.answer_now(outside.Question(function, ("x",)))
 
 
+@pytest.mark.slow
 def test_what_rests_on_time_is_not_kept(here: Path) -> None:
     write(here / "slow.urdf.xacro", f'<robot name="s" {XACRO}><link name="${{9**9**9}}"/></robot>')
     short = SETTINGS._replace(seconds=0.2)
@@ -319,6 +324,7 @@ FOLDERS: dict[str, Callable[[Path], object]] = {
 }
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("fault", FOLDERS)
 def test_a_folder_that_cannot_be_written_is_no_error(
     here: Path, capsys: pytest.CaptureFixture[str], fault: str
@@ -356,6 +362,7 @@ def test_a_relative_cache_home_is_not_valid(monkeypatch: pytest.MonkeyPatch) -> 
     assert cache_folder() == "/home/someone/.cache/multibot_rewrite/lint"
 
 
+@pytest.mark.slow
 def test_two_runs_at_once_do_not_disturb_each_other(here: Path) -> None:
     expected = linted()
     wrong: list[object] = []
@@ -379,14 +386,14 @@ def test_two_runs_at_once_do_not_disturb_each_other(here: Path) -> None:
 
 
 def test_it_is_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(shard, "MOST_FILES", 10)
+    monkeypatch.setattr(caches, "MOST_FILES", 10)
     for number in range(11):
         write(tmp_path / str(number), "x" * 100)
         os.utime(tmp_path / str(number), (number, number))
-    shard.bound(str(tmp_path))
+    caches.bound(str(tmp_path))
     assert sorted(int(it.name) for it in tmp_path.iterdir()) == [6, 7, 8, 9, 10]
-    monkeypatch.setattr(shard, "MOST_IN_ALL", 400)
-    shard.bound(str(tmp_path))
+    monkeypatch.setattr(caches, "MOST_IN_ALL", 400)
+    caches.bound(str(tmp_path))
     assert sorted(int(it.name) for it in tmp_path.iterdir()) == [9, 10]
 
 
@@ -435,7 +442,7 @@ def unnoted(here: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
 
 def test_every_look_at_the_disk_is_noted(unnoted: list[str]) -> None:
     from multibot_rewrite.lint.check import lint_file
-    from multibot_rewrite.lint.files.among import set_among
+    from multibot_rewrite.lint.files.included import set_among
 
     forget()
     builtin_tree((), SETTINGS.distro)  # the identity of a run has all vocabularies
@@ -478,6 +485,7 @@ def unmarked(path: Path) -> list[str]:
     ]
 
 
+@pytest.mark.slow
 def test_what_asks_the_disk_is_marked() -> None:
     """A rule that looks at a file by itself would be right once: its result is kept."""
     package = Path(outside.__file__).parent.parent
@@ -491,6 +499,7 @@ def test_what_asks_the_disk_is_marked() -> None:
 # ---------------------------------------------------------------- the command
 
 
+@pytest.mark.slow
 def test_the_command_keeps_and_forgets(here: Path) -> None:
     first = command("arm_description", "--roots", ".")
     assert first.stdout
@@ -509,6 +518,7 @@ def test_without_a_cache_nothing_is_written(here: Path, option: str) -> None:
     assert not os.path.exists(cache_folder())
 
 
+@pytest.mark.slow
 def test_an_unchanged_lint_loads_no_rule(here: Path) -> None:
     program = (
         "import sys; from multibot_rewrite.cli.urdf_lint import main; "
@@ -540,11 +550,10 @@ def test_statistics(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     twice = '<robot name="r"><link name="a"/><link name="b"/></robot>'
     for name in ("one.urdf", "two.urdf"):
         write(here / name, twice)
-    assert main(["one.urdf", "two.urdf", "--statistics", "--select", "MB501"]) == 1
+    assert main(["one.urdf", "two.urdf", "--format", "statistics", "--select", "MB501"]) == 1
     out, err = capsys.readouterr()
     assert [line.split() for line in out.splitlines()] == [
         ["count", "files", "fixable", "code", "level", "rule"],
         ["2", "2", "MB501", "error", "several-roots"],
     ]
     assert "2 files: 2 errors" in err
-    assert main(["one.urdf", "--statistics", "--format", "json"]) == 2

@@ -89,8 +89,6 @@ ENDS: list[tuple[Sequence[str], int]] = [
     ([ROVER, "--robots", "robot1,robot2", "--layout", "L2"], 0),
     ([ROVER, "--robots", "robot1,robot2", "--fail-on", "note"], 1),
     ([ROVER, "--target", "usd"], 0),
-    (["--explain", "MB202"], 0),
-    (["--explain", "MB5"], 0),
     (["--help"], 0),
     (["--version"], 0),
 ]
@@ -107,18 +105,20 @@ WRONG: list[tuple[Sequence[str], str]] = [
     ([""], "the name of a file is empty"),
     (["nowhere.urdf"], "nowhere.urdf: there is no such file or folder"),
     (["good.urdf", "nowhere"], "nowhere: there is no such file or folder"),
-    (["empty"], "empty: no *.urdf or *.xacro or *.srdf or *.yaml or *.yml or *.rviz there"),
+    (
+        ["empty"],
+        "empty: no *.urdf or *.xacro or *.srdf or *.yaml or *.yml or *.rviz or *.lua or *.xml there",
+    ),
     (["good.urdf", "--select", "MB999"], "no rule has the code 'MB999'"),
     (["good.urdf", "--ignore", "MB2,nonsense"], "no rule has the code 'nonsense'"),
     (["good.urdf", "--select", "mb2"], "did you mean 'MB2'?"),
     (["good.urdf", "--select", ","], "',' has an empty part"),
-    (["--explain", "MB999"], "no rule has the code 'MB999'"),
     (["good.urdf", "--format", "xml"], "argument --format: 'xml' is not known, use one of text"),
     (["good.urdf", "--fail-on", "never"], "use one of error, warning, note"),
     (["good.urdf", "--jobs", "-1"], "argument --jobs: '-1' is not a number, give 0 or more"),
     (["good.urdf", "--jobs", "two"], "argument --jobs: 'two' is not a number"),
     (["good.urdf", "--robots", "1a"], "robot name '1a'"),
-    (["good.urdf", "--robots", "a,a"], "the robot 'a' is named twice"),
+    (["good.urdf", "--robots", "a,a"], "'a' is given twice"),
     (["good.urdf", "--layout", "L9"], "'L9' is not known, use one of tf-per-robot"),
     (["good.urdf", "--target", "stl"], "usd, mjcf"),
     (["good.urdf", "--diff"], "give both"),
@@ -229,16 +229,6 @@ def test_quiet_says_nothing_but_findings(capsys: pytest.CaptureFixture[str]) -> 
 @pytest.mark.usefixtures("here")
 def test_json_is_there_when_nothing_is_found(capsys: pytest.CaptureFixture[str]) -> None:
     assert json.loads(said(capsys, "good.urdf", "--format", "json")[1])["findings"] == []
-
-
-def test_explain_tells_one_rule_or_a_group(capsys: pytest.CaptureFixture[str]) -> None:
-    out = said(capsys, "--explain", "MB202")[1]
-    rule = RULES["MB202"]
-    assert out.startswith("MB202 undeclared-link (error)\n")
-    assert all(text in out for text in (rule.what, rule.why, rule.fix, "Bad:", "Good:"))
-    assert said(capsys, "--explain", "MB2")[1].count("Why: ") == sum(
-        code.startswith("MB2") for code in RULES
-    )
 
 
 def test_help_names_every_option(capsys: pytest.CaptureFixture[str]) -> None:

@@ -164,6 +164,7 @@ def test_fix_writes_and_tells_what_is_left(
     assert f"fixed {file}" in err and "other.urdf" not in err
 
 
+@pytest.mark.slow
 def test_what_is_found_through_another_file_is_not_lost(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

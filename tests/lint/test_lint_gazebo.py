@@ -6,17 +6,19 @@ What libsdformat makes of a value was tried with libsdformat 12.3 (``sdf::Root::
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
+from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
 from multibot_rewrite.lint.check import lint_data
-from multibot_rewrite.rules.schema.described import PLUGINS, SDF, UNITS, chunks, described
+from multibot_rewrite.rules.schema.described import chunks, described
 from multibot_rewrite.rules.schema.sdf_values import misread
 from multibot_rewrite.rules.settings import Settings
 
-NEW = Settings(select=("MB15", "MB16", "MB17"))
+NEW = Settings(select=("MB11", "MB120", "MB124", "MB125", "MB15", "MB16", "MB17"))
 LINK = (
     '<link name="a"><inertial><mass value="1"/>'
     '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>'
@@ -81,60 +83,60 @@ CONTROL = (
     "<parameters>a.yaml</parameters>"
 )
 PLANTED = {
-    "type of a sensor": (sensor("camra"), "MB152"),
-    "type in capitals": (sensor("Camera"), "MB152"),
-    "field of view in degrees": (camera("<horizontal_fov>60</horizontal_fov>"), "MB151"),
-    "image format": (camera("<image><format>R8G8B</format></image>"), "MB152"),
-    "image format of ROS": (camera("<image><format>rgb8</format></image>"), "MB152"),
-    "rate in words": (sensor("imu", "<update_rate>fast</update_rate>"), "MB150"),
-    "rate with a decimal comma": (sensor("imu", "<update_rate>0,5</update_rate>"), "MB158"),
-    "rate with a unit": (sensor("imu", "<update_rate>30 Hz</update_rate>"), "MB158"),
-    "yes for true": (sensor("imu", "<always_on>yes</always_on>"), "MB150"),
-    "1.0 for true": (sensor("imu", "<visualize>1.0</visualize>"), "MB150"),
-    "five numbers in a pose": (sensor("imu", "<pose>0 0 0 0 0</pose>"), "MB150"),
+    "type of a sensor": (sensor("camra"), "MB124"),
+    "type in capitals": (sensor("Camera"), "MB124"),
+    "field of view in degrees": (camera("<horizontal_fov>60</horizontal_fov>"), "MB125"),
+    "image format": (camera("<image><format>R8G8B</format></image>"), "MB124"),
+    "image format of ROS": (camera("<image><format>rgb8</format></image>"), "MB124"),
+    "rate in words": (sensor("imu", "<update_rate>fast</update_rate>"), "MB120"),
+    "rate with a decimal comma": (sensor("imu", "<update_rate>0,5</update_rate>"), "MB120"),
+    "rate with a unit": (sensor("imu", "<update_rate>30 Hz</update_rate>"), "MB120"),
+    "yes for true": (sensor("imu", "<always_on>yes</always_on>"), "MB120"),
+    "1.0 for true": (sensor("imu", "<visualize>1.0</visualize>"), "MB120"),
+    "five numbers in a pose": (sensor("imu", "<pose>0 0 0 0 0</pose>"), "MB120"),
     "two numbers in a direction": (
         in_link('<light name="l" type="spot"><direction>1 0</direction></light>'),
-        "MB150",
+        "MB120",
     ),
     "a colour of 255": (
         in_link('<light name="l" type="spot"><diffuse>255 0 0 1</diffuse></light>'),
-        "MB150",
+        "MB120",
     ),
-    "type of a light": (in_link('<light name="l" type="spott"/>'), "MB152"),
-    "type of a noise": (camera("<noise><type>gausian</type></noise>"), "MB152"),
-    "friction in words": (in_link("<mu1>high</mu1>"), "MB150"),
-    "self collision": (in_link("<selfCollide>maybe</selfCollide>"), "MB158"),
-    "gravity off": (in_link("<gravity>off</gravity>"), "MB150"),
-    "a pixel and a half": (camera("<image><width>640.5</width></image>"), "MB158"),
+    "type of a light": (in_link('<light name="l" type="spott"/>'), "MB124"),
+    "type of a noise": (camera("<noise><type>gausian</type></noise>"), "MB124"),
+    "friction in words": (in_link("<mu1>high</mu1>"), "MB120"),
+    "self collision": (in_link("<selfCollide>maybe</selfCollide>"), "MB120"),
+    "gravity off": (in_link("<gravity>off</gravity>"), "MB120"),
+    "a pixel and a half": (camera("<image><width>640.5</width></image>"), "MB120"),
     "negative samples": (
         sensor("ray", "<ray><scan><horizontal><samples>-5</samples></horizontal></scan></ray>"),
-        "MB158",
+        "MB120",
     ),
     "a negative deviation": (
         sensor("air_pressure", '<air_pressure><pressure><noise type="gaussian">'
                "<stddev>-1</stddev></noise></pressure></air_pressure>"),
-        "MB151",
+        "MB125",
     ),
-    "a sensor without name": (in_link('<sensor type="imu"/>'), "MB153"),
-    "a sensor with an empty name": (in_link('<sensor name="" type="imu"/>'), "MB153"),
-    "a sensor without type": (in_link('<sensor name="s"/>'), "MB153"),
-    "updateRate": (sensor("imu", "<updateRate>9</updateRate>"), "MB154"),
-    "horizontal_fow": (camera("<horizontal_fow>1</horizontal_fow>"), "MB154"),
+    "a sensor without name": (in_link('<sensor type="imu"/>'), "MB115"),
+    "a sensor with an empty name": (in_link('<sensor name="" type="imu"/>'), "MB115"),
+    "a sensor without type": (in_link('<sensor name="s"/>'), "MB115"),
+    "updateRate": (sensor("imu", "<updateRate>9</updateRate>"), "MB110"),
+    "horizontal_fow": (camera("<horizontal_fow>1</horizontal_fow>"), "MB110"),
     "provide_feedback of a joint": (
         '<gazebo reference="j"><provide_feedback>true</provide_feedback></gazebo>',
-        "MB154",
+        "MB110",
     ),
-    "max_contacts of a link": (in_link("<max_contacts>9</max_contacts>"), "MB154"),
-    "rate in the camera": (camera("<update_rate>9</update_rate>"), "MB155"),
-    "friction without reference": ("<gazebo><mu1>1</mu1></gazebo>", "MB155"),
-    "friction of a joint": ('<gazebo reference="j"><mu1>1</mu1></gazebo>', "MB155"),
-    "feedback of a link": (in_link("<provideFeedback>true</provideFeedback>"), "MB155"),
-    "a plugin without library": ('<gazebo><plugin name="p"/></gazebo>', "MB159"),
+    "max_contacts of a link": (in_link("<max_contacts>9</max_contacts>"), "MB110"),
+    "rate in the camera": (camera("<update_rate>9</update_rate>"), "MB112"),
+    "friction without reference": ("<gazebo><mu1>1</mu1></gazebo>", "MB112"),
+    "friction of a joint": ('<gazebo reference="j"><mu1>1</mu1></gazebo>', "MB112"),
+    "feedback of a link": (in_link("<provideFeedback>true</provideFeedback>"), "MB112"),
+    "a plugin without library": ('<gazebo><plugin name="p"/></gazebo>', "MB115"),
     "a scan in degrees": (
         sensor("ray", "<ray><scan><horizontal><max_angle>180</max_angle></horizontal></scan></ray>"),
-        "MB173",
+        "MB170",
     ),
-    "a pose in degrees": (sensor("imu", "<pose>0 0 0 0 0 -90</pose>"), "MB173"),
+    "a pose in degrees": (sensor("imu", "<pose>0 0 0 0 0 -90</pose>"), "MB170"),
     "a class in capitals": (system("imu", "IMU"), "MB160"),
     "a class of another library": (system("imu", "DiffDrive"), "MB160"),
     "a label for a class": (
@@ -143,15 +145,15 @@ PLANTED = {
     ),
     "a library": (
         '<gazebo><plugin name="gz::sim::systems::X" filename="gz-sim-dif-drive-system"/></gazebo>',
-        "MB161",
+        "MB110",
     ),
-    "a library of Classic": (classic("gazebo_ros_dif_drive"), "MB161"),
-    "a class of hardware": (hardware("mock_components/GenericSytem"), "MB171"),
-    "hardware with another case": (hardware("gz_ros2_control/GazeboSimsystem"), "MB171"),
-    "a parameter": (system(*DRIVE, "<wheel_seperation>1</wheel_seperation>"), "MB162"),
+    "a library of Classic": (classic("gazebo_ros_dif_drive"), "MB110"),
+    "a class of hardware": (hardware("mock_components/GenericSytem"), "MB110"),
+    "hardware with another case": (hardware("gz_ros2_control/GazeboSimsystem"), "MB110"),
+    "a parameter": (system(*DRIVE, "<wheel_seperation>1</wheel_seperation>"), "MB110"),
     "a parameter in camel case": (
         system("thruster", "Thruster", "<joint_name>j</joint_name><fluidDensity>1</fluidDensity>"),
-        "MB162",
+        "MB110",
     ),
     "a parameter of ROS 1": (
         classic("gazebo_ros_diff_drive", "<ros/><robotBaseFrame>a</robotBaseFrame>"),
@@ -163,94 +165,94 @@ PLANTED = {
     ),
     "a parameter of a plugin of ROS 1": (
         classic("gazebo_ros_p3d", f"{OF_ROS_1}<xyzOffsets>0 0 0</xyzOffsets>"),
-        "MB162",
+        "MB110",
     ),
     "a parameter nobody reads in ROS 1": (
         classic("gazebo_ros_p3d", f"{OF_ROS_1}<alwaysOn>true</alwaysOn>"),
-        "MB164",
+        "MB111",
     ),
     "an element of the sensor in a plugin of ROS 1": (
         classic("gazebo_ros_imu", f"{OF_ROS_1}<imu/>"),
-        "MB164",
+        "MB111",
     ),
     "no topic of p3d in ROS 1": (
         classic("gazebo_ros_p3d", "<robotNamespace>a</robotNamespace><bodyName>a</bodyName>"),
-        "MB165",
+        "MB115",
     ),
     "a rate in words in ROS 1": (
         classic("gazebo_ros_p3d", f"{OF_ROS_1}<updateRate>fast</updateRate>"),
-        "MB166",
+        "MB120",
     ),
     "a parameter of a sensor's plugin": (
         sensor("ray", classic("gazebo_ros_ray_sensor", "<ros/><output_typ>a</output_typ>")[8:-9]),
-        "MB162",
+        "MB110",
     ),
     "a parameter of hardware": (
         hardware("kortex_driver/KortexMultiInterfaceHardware", '<param name="robot_ipp">1</param>'),
-        "MB162",
+        "MB110",
     ),
     "a parameter of a block": (
         system("wheel-slip", "WheelSlip", '<wheel link_name="a"><wheel_radus>1</wheel_radus></wheel>'),
-        "MB162",
+        "MB110",
     ),
     "a block of a block": (
         classic("gazebo_ros_p3d", "<body_name>a</body_name><ros><namespac>a</namespac></ros>"),
-        "MB162",
+        "MB110",
     ),
     "a remapping beside its block": (
         f"<gazebo>{CONTROL}<ros><namespace>a</namespace></ros>"
         "<remapping>a:=b</remapping></plugin></gazebo>",
-        "MB174",
+        "MB112",
     ),
     "a namespace beside its block": (
         classic("gazebo_ros_p3d", "<ros/><body_name>a</body_name><namespace>a</namespace>"),
-        "MB174",
+        "MB112",
     ),
     "a name of a block that nobody reads": (
         f"<gazebo>{CONTROL}<ros><controlPeriod>1</controlPeriod></ros></plugin></gazebo>",
-        "MB164",
+        "MB111",
     ),
     "a radius of a block in words": (
         system("wheel-slip", "WheelSlip",
                '<wheel link_name="a"><wheel_radius>ten</wheel_radius></wheel>'),
-        "MB166",
+        "MB120",
     ),
     "Classic's parameter in gz": (system(*DRIVE, "<wheel_diameter>1</wheel_diameter>"), "MB163"),
     "gz's parameter in Classic": (
         classic("gazebo_ros_diff_drive", "<ros/><wheel_radius>1</wheel_radius>"),
         "MB163",
     ),
-    "a parameter nobody reads": (system(*DRIVE, "<use_sim_time>true</use_sim_time>"), "MB164"),
-    "no joint of a thruster": (system("thruster", "Thruster"), "MB165"),
-    "no link of p3d": (classic("gazebo_ros_p3d", "<ros/>"), "MB165"),
-    "a radius in words": (system(*DRIVE, "<wheel_radius>ten cm</wheel_radius>"), "MB166"),
-    "a radius with a comma": (system(*DRIVE, "<wheel_radius>0,1</wheel_radius>"), "MB166"),
+    "a parameter nobody reads": (system(*DRIVE, "<use_sim_time>true</use_sim_time>"), "MB111"),
+    "no joint of a thruster": (system("thruster", "Thruster"), "MB115"),
+    "no link of p3d": (classic("gazebo_ros_p3d", "<ros/>"), "MB115"),
+    "a radius in words": (system(*DRIVE, "<wheel_radius>ten cm</wheel_radius>"), "MB120"),
+    "a radius with a comma": (system(*DRIVE, "<wheel_radius>0,1</wheel_radius>"), "MB120"),
     "on for true": (
         classic("gazebo_ros_diff_drive", "<ros/><publish_odom>on</publish_odom>"),
-        "MB166",
+        "MB120",
     ),
     "a turning direction": (
         system("multicopter-motor-model", "MulticopterMotorModel",
                "<turningDirection>ccww</turningDirection>"),
-        "MB167",
+        "MB124",
     ),
-    "no radius": (system(*DRIVE, "<wheel_radius>0</wheel_radius>"), "MB169"),
+    "no radius": (system(*DRIVE, "<wheel_radius>0</wheel_radius>"), "MB125"),
     "a negative rate": (
         system(*DRIVE, "<odom_publish_frequency>-1</odom_publish_frequency>"),
-        "MB169",
+        "MB125",
     ),
-    "a label above 255": (system("label", "Label", "<label>256</label>"), "MB169"),
+    "a label above 255": (system("label", "Label", "<label>256</label>"), "MB125"),
     "a steering limit in degrees": (
         system("ackermann-steering", "AckermannSteering", "<steering_limit>30</steering_limit>"),
         "MB170",
     ),
     "a parameter of Classic's own plugin": (
         classic("LiftDragPlugin", "<alpha_stal>0.3</alpha_stal>"),
-        "MB162",
+        "MB110",
     ),
     "a block of Classic's own plugin": (
         classic("LinkPlot3DPlugin", "<plot><lnk>a</lnk></plot>"),
-        "MB162",
+        "MB110",
     ),
     "gz's parameter in Classic's own plugin": (
         classic("DiffDrivePlugin", "<left_joint>j</left_joint><wheel_separation>1</wheel_separation>"),
@@ -262,38 +264,39 @@ PLANTED = {
     ),
     "no link of Classic's battery": (
         classic("LinearBatteryPlugin", "<battery_name>b</battery_name>"),
-        "MB165",
+        "MB115",
     ),
-    "two numbers of a centre of pressure": (classic("LiftDragPlugin", "<cp>1 2</cp>"), "MB166"),
+    "two numbers of a centre of pressure": (classic("LiftDragPlugin", "<cp>1 2</cp>"), "MB120"),
     "a stall in degrees": (classic("LiftDragPlugin", "<alpha_stall>15</alpha_stall>"), "MB170"),
     "a turning direction of Classic": (
         classic("ArduCopterPlugin", "<rotor><turningDirection>ccww</turningDirection></rotor>"),
-        "MB167",
+        "MB124",
     ),
     "a parameter that a helper reads": (
         classic("hector_gazebo_ros_imu", "<rateGausianNoise>0 0 0</rateGausianNoise>"),
-        "MB162",
+        "MB110",
     ),
     "one number for three axes": (
         classic("hector_gazebo_ros_imu", f"{ROS_1_SPACE}<accelDrift>0.5</accelDrift>"),
-        "MB166",
+        "MB120",
     ),
     "a rate of hector in words": (
         classic("hector_gazebo_ros_sonar", f"{ROS_1_SPACE}<updateRate>ten</updateRate>"),
-        "MB166",
+        "MB120",
     ),
     "a latitude beyond the pole": (
         classic("hector_gazebo_ros_gps", "<referenceLatitude>151.2</referenceLatitude>"),
-        "MB169",
+        "MB125",
     ),
     "a parameter of one joint of a trajectory": (
         system("joint-trajectory-controller", "JointTrajectoryController",
                "<position_p_gain>high</position_p_gain>"),
-        "MB166",
+        "MB120",
     ),
 }  # fmt: skip
 
 
+@pytest.mark.sample(7)
 @pytest.mark.parametrize("defect", PLANTED)
 def test_a_planted_defect_is_found_by_its_rule_alone(defect: str) -> None:
     text, code = PLANTED[defect]
@@ -411,7 +414,7 @@ def test_a_healthy_oddity_is_left_alone(oddity: str) -> None:
 
 def test_a_name_is_required_in_humble_alone() -> None:
     plugin = '<gazebo><plugin filename="gz-sim-imu-system"/></gazebo>'
-    assert codes(plugin, "humble") == ["MB159"]
+    assert codes(plugin, "humble") == ["MB115"]
 
 
 def test_a_release_has_its_own_elements_and_parameters() -> None:
@@ -421,7 +424,7 @@ def test_a_release_has_its_own_elements_and_parameters() -> None:
 
 def test_a_type_that_a_plugin_of_classic_adds_is_left_alone_in_humble() -> None:
     assert codes(sensor("dsros_dvl"), "humble") == []
-    assert codes(sensor("dsros_dvl")) == ["MB152"]
+    assert codes(sensor("dsros_dvl")) == ["MB124"]
 
 
 def test_models_of_sdf_are_read_as_well() -> None:
@@ -429,7 +432,7 @@ def test_models_of_sdf_are_read_as_well() -> None:
         '<sdf version="1.9"><model name="m"><link name="l">'
         '<sensor name="s" type="imu"><update_rate>x</update_rate></sensor></link></model></sdf>'
     )
-    assert [it.code for it in lint_data("model.sdf", text.encode(), NEW)] == ["MB150"]
+    assert [it.code for it in lint_data("model.sdf", text.encode(), NEW)] == ["MB120"]
 
 
 # As libsdformat 12.3 reads them: Element::Get of the type; None is read as it stands.
@@ -474,28 +477,45 @@ def test_a_value_is_read_as_libsdformat_reads_it(type_: str, text: str, fails: b
 def test_a_class_of_hardware_in_a_model_is_no_plugin_of_gazebo() -> None:
     inside = hardware("gz_ros2_control/GazeboSimSystem")
     text = f'<sdf version="1.9"><model name="m"><link name="l"/>{inside}</model></sdf>'
-    assert [it.code for it in lint_data("model.sdf", text.encode(), NEW)] == ["MB156"]
+    assert [it.code for it in lint_data("model.sdf", text.encode(), NEW)] == ["MB111"]
 
 
-@pytest.mark.parametrize("file", [SDF, PLUGINS, UNITS])
-def test_every_row_has_a_source(file: str) -> None:
-    for name in chunks(file):
-        section = described(file, name)
+def test_every_row_of_sdf_has_a_source() -> None:
+    for name in chunks():
+        section = described(name)
         assert section is not None
-        if file != UNITS:
-            assert section.about, f"{name} says not where it was read"
+        assert section.about, f"{name} says not where it was read"
         for row in (row for rows in section.rows.values() for row in rows):
-            line = row.place.rpartition(":")[2]
+            line = row.line.rpartition(":")[2]
             assert line.isdigit(), f"{name}/{row.name} has no line"
             assert int(line) > 0
 
 
-def test_units_are_those_of_parameters_that_are_read() -> None:
-    for name in chunks(UNITS):
-        units, known = described(UNITS, name), described(PLUGINS, name)
-        assert units
-        assert known
-        assert set(units.rows) <= set(known.rows)
+def test_every_value_of_a_plugin_has_a_source() -> None:
+    vocabulary = load_vocabulary((), "", packages=False)
+    places = [
+        (name, row.name, it)
+        for name, of_ros_1 in vocabulary.valued()
+        for values in filter(None, [vocabulary.values(name, of_ros_1)])
+        for row in values.rows.values()
+        for it in (row.place, row.checked)
+    ]
+    assert len(places) > 4000
+    assert [it for it in places if not re.fullmatch(r"[\w/.+-]+:[1-9]\d*", it[2])] == []
+
+
+@pytest.mark.sample(5)
+@pytest.mark.parametrize(
+    ("value", "code"),
+    [("4.5", ""), ("9", "MB125"), ("fast", "MB120"), ("", "")],
+)
+def test_values_of_a_file_of_a_user_are_looked_at(tmp_path: Path, value: str, code: str) -> None:
+    vocabulary = tmp_path / "acme.vocab"
+    vocabulary.write_text("[plugin acme_winch]\nspeed  value number range=0..5\n")
+    inside = classic("acme_winch", f"<speed>{value}</speed>")
+    text = f'<robot name="r">{LINK}{inside}</robot>'
+    settings = NEW._replace(vocabulary=(str(vocabulary),))
+    assert [it.code for it in lint_data("r.urdf", text.encode(), settings)] == [code] * bool(code)
 
 
 def test_nothing_is_loaded_for_a_robot_without_gazebo() -> None:

@@ -121,10 +121,10 @@ PLANTED: dict[str, tuple[str, list[Change], str]] = {
         [Change(f"{SEPARATION}</wheel_separation>", "")],
         "MB620",
     ),
-    "radius is the diameter": (ROVER, [Change(RADIUS, "<wheel_radius>0.14")], "MB621"),
-    "radius of another wheel": (ROVER, [Change('radius="0.07"', 'radius="0.1"', 0)], "MB621"),
-    "radius in millimetres": (ROVER, [Change(RADIUS, "<wheel_radius>70")], "MB621"),
-    "radius is left to its default": (ROVER, [Change(f"{RADIUS}</wheel_radius>", "")], "MB621"),
+    "radius is the diameter": (ROVER, [Change(RADIUS, "<wheel_radius>0.14")], "MB620"),
+    "radius of another wheel": (ROVER, [Change('radius="0.07"', 'radius="0.1"', 0)], "MB620"),
+    "radius in millimetres": (ROVER, [Change(RADIUS, "<wheel_radius>70")], "MB620"),
+    "radius is left to its default": (ROVER, [Change(f"{RADIUS}</wheel_radius>", "")], "MB620"),
     "joints are swapped": (
         ROVER,
         [
@@ -135,16 +135,16 @@ PLANTED: dict[str, tuple[str, list[Change], str]] = {
     ),
     "origins are swapped": (ROVER, swapped(LEFT_AT, RIGHT_AT), "MB622"),
     "axes point to the right": (ROVER, [Change(AXIS, '<axis xyz="0 -1 0"/>', 0)], "MB622"),
-    "one axis points to the right": (ROVER, [Change(AXIS, '<axis xyz="0 -1 0"/>')], "MB623"),
+    "one axis points to the right": (ROVER, [Change(AXIS, '<axis xyz="0 -1 0"/>')], "MB622"),
     "one joint is turned around": (
         ROVER,
         [Change(LEFT_AT, '<origin xyz="0 0.17 0" rpy="0 0 3.14159"/>')],
-        "MB623",
+        "MB622",
     ),
     "one wheel is mounted upside down": (
         ROVER,
         [Change(RIGHT_AT, '<origin xyz="0 -0.17 0" rpy="3.14159 0 0"/>')],
-        "MB623",
+        "MB622",
     ),
     "wheel is fixed": (
         ROVER,

@@ -19,7 +19,7 @@ from junitparser import JUnitXml
 from paths import ROOT
 
 from multibot_rewrite.cli.declared.description import LINT
-from multibot_rewrite.cli.lint_use import check_use
+from multibot_rewrite.cli.lint import check_use
 from multibot_rewrite.cli.parser import make_parser, parsed
 from multibot_rewrite.cli.urdf_lint import main
 
@@ -122,7 +122,8 @@ def test_it_holds_by_the_schema_of_its_reader(words: list[str], tmp_path: Path) 
         ("not-urdf-lint.toml", False),
         ("a.urdf.md", False),
         ("urdf", False),
-        ("a.xml", False),
+        ("trees/main.xml", True),
+        ("a.txt", False),
     ],
 )
 def test_the_hook_runs_where_a_description_was_touched(path: str, runs: bool) -> None:

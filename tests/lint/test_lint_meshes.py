@@ -50,6 +50,7 @@ def linted(workspace: Path, *names: str, select: str = "MB7", roots: bool = True
     return [it.code for it in found]
 
 
+@pytest.mark.sample(7)
 @pytest.mark.parametrize(
     ("name", "expected"),
     [
@@ -290,6 +291,7 @@ def test_the_box_around_a_collada_scene(
 BOMB = '<!DOCTYPE a [<!ENTITY a "1 2 3 "><!ENTITY b "%s">]>' % ("&a;" * 10)
 
 
+@pytest.mark.sample(7)
 @pytest.mark.parametrize(
     "data",
     [

@@ -252,6 +252,7 @@ def test_a_lone_slash_is_no_frame() -> None:
     assert codes(plugin("<frame_name>/</frame_name>")) == []
 
 
+@pytest.mark.slow
 def test_many_names_take_linear_time() -> None:
     body = "".join(f'<link name="L{i}"/><link name="l{i}"/>' for i in range(5000))
     assert len(codes(body)) == 5000

@@ -35,11 +35,13 @@ def test_enough_was_judged_and_enough_is_true(row: Precision) -> None:
         assert row.true / row.judged >= RIGHT
 
 
+@pytest.mark.slow
 def test_the_page_is_up_to_date() -> None:
     """It has the planted defects and healthy oddities as the lint finds them now."""
     assert (ROOT / "docs/lint-precision.md").read_text() == precision_page()
 
 
+@pytest.mark.slow
 def test_enough_defects_are_planted_and_found() -> None:
     counts = [planted(it) for it in PLANTED]
     assert sum(it.found for it in counts) >= LEAST_DEFECTS

@@ -14,9 +14,8 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.findings.selection import is_on
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.lint.check import lint_file
+from multibot_rewrite.lint.check import lint_file, unsuppressed
 from multibot_rewrite.lint.config.directives import ALWAYS_REPORTED, read_directives
-from multibot_rewrite.lint.config.suppress import unsuppressed
 from multibot_rewrite.lint.fix import fix
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.rules.settings import ArgumentSet, Settings
@@ -109,6 +108,7 @@ REACH = [
 ]
 
 
+@pytest.mark.sample(7)
 @pytest.mark.parametrize("end", ["\n", "\r\n"], ids=["lf", "crlf"])
 @pytest.mark.parametrize(("body", "wanted"), REACH)
 def test_what_a_comment_reaches(tmp_path: Path, body: str, wanted: list[str], end: str) -> None:
@@ -198,6 +198,7 @@ GRAMMAR: list[tuple[str, str | None]] = [
 ]
 
 
+@pytest.mark.sample(7)
 @pytest.mark.parametrize(("text", "words"), GRAMMAR)
 def test_the_grammar(tmp_path: Path, text: str, words: str | None) -> None:
     """Where it cannot be followed that is one error, and the finding stays."""
@@ -359,6 +360,7 @@ IN_XACRO = [
 ]
 
 
+@pytest.mark.sample(7)
 @pytest.mark.parametrize(("body", "wanted"), IN_XACRO)
 def test_in_xacro_it_stands_in_the_source(tmp_path: Path, body: str, wanted: list[str]) -> None:
     text = f'{XACRO}<link name="base"/>\n{body}\n</robot>'
@@ -422,6 +424,7 @@ def test_text_that_is_no_xml_ends_in_no_traceback(text: bytes) -> None:
     unsuppressed([Finding("MB501", "error", "m", "", "f", 1, 1)], {"f": text}, Settings())
 
 
+@pytest.mark.slow
 def test_hundreds_of_comments_take_no_time(tmp_path: Path) -> None:
     text = robot("\n".join(f'{HERE}\n<link name="l{at}"/>' for at in range(400)))
     assert linted(tmp_path, text, seconds=5) == []

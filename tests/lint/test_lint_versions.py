@@ -41,7 +41,9 @@ needs_pin = pytest.mark.skipif(
     importlib.util.find_spec("pinocchio") is None, reason="pinocchio is missing: pip install pin"
 )
 # Rules that say what urdfdom refuses, drops or warns of.
-OF_URDFDOM = frozenset(f"MB{it}" for it in (115, *range(120, 127), 128, 129, 509, 510, 535, 615))
+OF_URDFDOM = frozenset(f"MB{it}" for it in (115, 120, *range(124, 127), 128, 129, 509, 615))
+# Warnings of these are of what other programs make of a file before URDF 1.2.
+OF_OTHERS = ("MB125", "MB509")
 EXACT = 1e-12
 
 
@@ -60,9 +62,11 @@ def fixed(text: str, distro: str = "lyrical") -> str:
 def complaints(text: str, version: str) -> list[Finding]:
     # That upper is below lower urdfdom only says in 1.2.
     judged = {*OF_URDFDOM, *(["MB511"] if version == "1.2" else [])}
-    return [it for it in linted(text) if it.code in judged]
+    found = [it for it in linted(text) if it.code in judged]
+    return [it for it in found if it.level == ERROR or it.code not in OF_OTHERS]
 
 
+@pytest.mark.sample(16)
 @needs_check
 @pytest.mark.parametrize("version", VERSIONS)
 @pytest.mark.parametrize("case", JOINTS)
@@ -73,6 +77,7 @@ def test_joints_are_judged_as_urdfdom_does(case: str, version: str, tmp_path: Pa
     assert said.reads == all(it.level != ERROR for it in found)
 
 
+@pytest.mark.sample(7)
 @needs_check
 @pytest.mark.parametrize("version", VERSIONS)
 @pytest.mark.parametrize("case", LINKS)
@@ -83,6 +88,7 @@ def test_links_are_judged_as_urdfdom_does(case: str, version: str, tmp_path: Pat
     assert said.complains == bool(complaints(text, version))
 
 
+@pytest.mark.sample(7)
 @needs_check
 @pytest.mark.parametrize("declared", DECLARED)
 def test_versions_are_read_as_urdfdom_reads_them(declared: str, tmp_path: Path) -> None:
@@ -133,6 +139,7 @@ def test_the_shape_of_a_capsule_is_a_matter_of_gazebo_alone() -> None:
     assert "MB134" not in codes(robot("1.0", f'{capsule}<gazebo reference="a"/>'))
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(
     importlib.util.find_spec("mujoco") is None, reason="mujoco is missing: pip install mujoco"
 )
@@ -267,6 +274,7 @@ def is_among(part: tuple[Any, ...], others: list[tuple[Any, ...]]) -> bool:
     return any(len(part) == len(it) and all(map(same, part, it)) for it in others)
 
 
+@pytest.mark.sample(8)
 @needs_pin
 @pytest.mark.parametrize("version", ["1.1", "1.2"])
 @pytest.mark.parametrize("seed", range(8))
@@ -286,6 +294,7 @@ def test_a_file_for_an_older_release_has_every_pose_and_shape(seed: int, version
         assert all(is_among(it, shapes_after[link]) for it in parts)
 
 
+@pytest.mark.slow
 @needs_pin
 @pytest.mark.parametrize("seed", range(4))
 def test_a_rotation_that_was_ignored_is_the_one_that_is_written(seed: int) -> None:

@@ -76,6 +76,7 @@ PARTS = {
 }  # fmt: skip
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("case", PARTS)
 def test_line_and_column_are_those_of_the_source(tmp_path: Path, case: str) -> None:
     name, body, line, column = PARTS[case]
@@ -181,6 +182,7 @@ def test_what_all_of_them_have_is_told_once_and_without_arguments(tmp_path: Path
     assert found.arguments == ""
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize(
     ("given", "expected"),
     [
@@ -225,6 +227,7 @@ def test_arguments_on_the_command_line_and_in_the_configuration(
 # ---------------------------------------------------------------- parts and packages
 
 
+@pytest.mark.sample(7)
 @pytest.mark.parametrize("space", ["", "  "])
 @pytest.mark.parametrize(
     "part",
@@ -273,6 +276,7 @@ def packages(tmp_path: Path) -> None:
     )
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize(
     ("name", "roots", "expected"),
     [

@@ -132,6 +132,7 @@ def found(path: Path) -> list[tuple[str, str]]:
     return [(it.code, it.message) for it in findings]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mcap", [True, False])
 def test_a_healthy_bag_has_no_finding(tmp_path: Path, mcap: bool) -> None:
     path = write(tmp_path / "bag", healthy().values(), mcap)
@@ -150,6 +151,7 @@ def test_a_healthy_bag_has_no_finding(tmp_path: Path, mcap: bool) -> None:
     assert last["robot2/laser"] == (0, 2, 3, 0, 0, 0, 1)
 
 
+@pytest.mark.sample(8)
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_seeded_fault_is_found(fault: str, tmp_path: Path) -> None:
     change, codes, words = FAULTS[fault]
@@ -188,6 +190,7 @@ def run(capsys: pytest.CaptureFixture[str], *words: object) -> tuple[int, str, s
     return code, *capsys.readouterr()
 
 
+@pytest.mark.slow
 def test_the_command(made: Path, capsys: pytest.CaptureFixture[str]) -> None:
     check_ = ("check", made / "plan.yaml", "--bag")
     assert run(capsys, *check_, made / "healthy")[:2] == (0, "")
@@ -200,12 +203,14 @@ def test_the_command(made: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(capsys, *check_, made / "faulty", "--ignore", "MG320,MG102")[0] == 0
 
 
+@pytest.mark.slow
 def test_the_doctor(made: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(capsys, "check", "--bag", made / "healthy")[0] == 0
     code, out, _ = run(capsys, "check", "--bag", made / "collision")
     assert (code, "MG401" in out) == (1, True)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "fault", ["data in the frame of another robot", "a silent sensor", "tf_static that is not kept"]
 )
@@ -245,6 +250,7 @@ BOMB = "a: &a [x, x, x, x, x, x, x, x, x, x]\n" + "".join(
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["healthy", "sqlite"])
 @pytest.mark.parametrize(
     "damage",

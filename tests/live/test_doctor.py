@@ -51,6 +51,7 @@ EMPTY = System((), (), (), environment())
 # ---------------------------------------------------------------- whose names
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("system", "names", "layout"),
     [
@@ -186,6 +187,7 @@ def test_a_reader_that_hears_one_of_two_publishers_is_warned() -> None:
 # ---------------------------------------------------------------- the plan of what is seen
 
 
+@pytest.mark.sample(8)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_the_plan_of_what_is_seen_is_fulfilled_by_it(name: str) -> None:
     graph = SYSTEMS[name]()
@@ -221,6 +223,7 @@ def test_a_healthy_system_ends_with_0(tmp_path: Path, capsys: pytest.CaptureFixt
     assert out == "" and err.endswith("multibot: 0 findings: nothing wrong seen\n")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("graph", "more", "code"),
     [
@@ -254,6 +257,7 @@ def test_the_page(tmp_path: Path) -> None:
     assert "MG402" in page.read_text()
 
 
+@pytest.mark.sample(31)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_what_is_suggested_is_taken(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -265,6 +269,7 @@ def test_what_is_suggested_is_taken(
     assert multibot.main(["plan", fleet, "-o", planned]) == 0, capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_what_separates_a_robots_word_from_frames_is_suggested(tmp_path: Path) -> None:
     """`robot1_base_link`, where a fleet file has `robot1/base_link` by itself."""
 

@@ -113,6 +113,7 @@ SILENT: dict[str, Callable[[System], System]] = {
 }
 
 
+@pytest.mark.sample(8)
 @pytest.mark.parametrize("name", SILENT)
 def test_it_is_no_fault(name: str) -> None:
     assert [str(it) for it in diagnose(SILENT[name](nav2_with_tools())).findings] == []

@@ -84,6 +84,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyP
 LAYOUTS = ("frames-per-robot", "tf-per-robot", "postfix")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_a_robot_may_do_all_that_is_planned(layout: str) -> None:
     plan, topics, _ = fleet(layout)
@@ -97,6 +98,7 @@ def test_a_robot_may_do_all_that_is_planned(layout: str) -> None:
                 assert allowed(form.format(end.name), side), (end, form)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_what_is_one_robots_no_other_may_write_or_read(layout: str) -> None:
     plan, topics, _ = fleet(layout)

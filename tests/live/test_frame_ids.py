@@ -110,6 +110,7 @@ def test_an_empty_frame_and_no_tf_say_nothing() -> None:
     assert codes(without_tf, "/robot1/image", "x") == []
 
 
+@pytest.mark.sample(8)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_systems_whose_headers_are_right(name: str) -> None:
     """Every sensor topic in a frame of its robot's tree: a leaf, where there is one."""

@@ -426,6 +426,7 @@ def test_a_shared_node_is_no_surprise_and_missed_mildly() -> None:
     assert (found.code, found.level, found.node) == ("MG101", "warning", "/fleet_manager")
 
 
+@pytest.mark.sample(7)
 @pytest.mark.parametrize(
     "node",
     [
@@ -885,6 +886,7 @@ def test_a_name_without_the_robots(layout: str, name: str, bare: str) -> None:
 # ---------------------------------------------------------------- size
 
 
+@pytest.mark.slow
 def test_the_cost_grows_with_the_fleet_and_not_faster() -> None:
     def prepared(count: int) -> Callable[[], object]:
         wanted = robots_called(*(f"robot{at}" for at in range(count)))

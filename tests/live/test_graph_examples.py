@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import pytest
-from graph_examples import read_example
+from graph_examples import read_example, read_system
 from plans import own
 
 from multibot_rewrite.lint import catalogue
-from multibot_rewrite.rules.check import RULES, check
+from multibot_rewrite.rules.check import RULES, check, judge
 from multibot_rewrite.system.records import ACTION, CALLS, SERVICE, Edge
 
+# Rules that a lint of a description has as well.
+OF_DESCRIPTIONS = {"MB229", "MB240", "MB412"}
 EXAMPLE = """\
 planned: frames of robot1 on /robot1/tf: base_link, laser
 planned: shared topic /map
@@ -76,4 +78,12 @@ def test_a_line_of_another_language_is_refused(line: str) -> None:
 
 def test_every_declared_rule_is_asked() -> None:
     declared = {code for code in catalogue.rules() if code.startswith("MG")}
-    assert declared == RULES.keys()
+    assert declared | OF_DESCRIPTIONS == RULES.keys()
+
+
+@pytest.mark.parametrize("code", sorted(OF_DESCRIPTIONS))
+def test_a_rule_for_descriptions_finds_it_in_a_system(code: str) -> None:
+    rule = RULES[code]
+    (finding,) = (it for it in judge(read_system(rule.bad)) if it.code == code)
+    assert finding.node in rule.bad.splitlines()[rule.line - 1]
+    assert [it for it in judge(read_system(rule.good)) if it.code == code] == []

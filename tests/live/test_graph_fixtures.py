@@ -44,6 +44,7 @@ def test_nothing_else_is_in_the_folders() -> None:
     assert there == cases | plans | {f"{GRAPHS}/nodes.yaml"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("layout", FOLDERS)
 def test_the_plan_is_what_the_command_makes(layout: str, tmp_path: Path) -> None:
     made = tmp_path / "plan.yaml"
@@ -66,6 +67,7 @@ def test_a_healthy_graph_is_silent(layout: str, capsys: CaptureFixture[str]) -> 
     assert capsys.readouterr().out == ""
 
 
+@pytest.mark.sample(8)
 @pytest.mark.parametrize("case", CASES, ids=ids)
 def test_a_broken_graph_gives_exactly_its_lines(case: Case, capsys: CaptureFixture[str]) -> None:
     same(f"{case.stem}.json", case.broken(healthy(case.layout)))

@@ -17,8 +17,8 @@ from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.knowledge.node_library import stack_of
 from multibot_rewrite.knowledge.stacks import user_stack
 from multibot_rewrite.spelling.records import NodeTable, Table
-from multibot_rewrite.spelling.started import arguments, started
 from multibot_rewrite.spelling.table import build_table
+from multibot_rewrite.spelling.ways import arguments, started
 from multibot_rewrite.system.json import from_json
 from multibot_rewrite.system.records import System
 

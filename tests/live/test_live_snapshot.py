@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -181,7 +182,11 @@ def test_frames_that_could_not_be_read_are_a_caveat(fleet: Build) -> None:
     if not fleet:
         pytest.skip("tf2_msgs was not built for this run, so it cannot be taken away")
     result = multibot(0, "--expect", "/robot1/state,/robot2/state")
-    assert "the frames on /robot1/tf, /robot2/tf, /tf_static were not read" in result.stderr
+    # On a busy machine the expected nodes are there before all of their topics.
+    assert re.search(
+        r"the frames on (/robot1/tf, |/robot2/tf, |/tf_static){1,3} were not read: No module",
+        result.stderr,
+    )
     assert result.stdout.splitlines()[2].split()[:3] == ["node", "process", "publishes"]
     assert "/robot2/state" in result.stdout
 

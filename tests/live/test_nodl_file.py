@@ -91,6 +91,14 @@ def test_a_depth_that_is_not_announced_is_not_written() -> None:
     assert (given["history"], given.get("depth")) == ("SYSTEM_DEFAULT", None)
 
 
+def test_a_depth_of_one_is_a_depth() -> None:
+    qos = WHOLE._replace(depth=1)
+    (found,) = section("publishers", end("topic", "publishes", "/robot1/x", "a/msg/B", qos))
+    given = found["qos"]
+    assert isinstance(given, dict)
+    assert (given["history"], given["depth"]) == ("KEEP_LAST", 1)
+
+
 def test_two_types_are_two_entries_and_the_clock_is_left_out() -> None:
     found = section(
         "subscriptions",
@@ -144,7 +152,7 @@ def test_a_folder_has_a_file_for_each_node_and_a_plan_of_them_fits_the_graph(
     assert main(["learn", *learned, "-o", folder]) == 0
     assert (tmp_path / "nodl/local_costmap/local_costmap.nodl.yaml").is_file()
     stacks = "pilot,local_costmap/local_costmap"
-    made = ("--layout", "frames-per-robot", "--nodl", folder, "--stack", stacks, "-o", plan)
+    made = ("--layout", "frames-per-robot", "--nodes", folder, "--stack", stacks, "-o", plan)
     rover = str(FIXTURES / "robots" / "rover.urdf")
     assert main(["plan", rover, "robot1", "robot2", *made]) == 0
     assert f"pilot as in {folder}/pilot.nodl.yaml (NoDL)" in capsys.readouterr().err
@@ -152,6 +160,7 @@ def test_a_folder_has_a_file_for_each_node_and_a_plan_of_them_fits_the_graph(
     assert "0 findings" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_nav2_from_its_own_graph_is_as_planned_and_a_leak_is_found(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -161,7 +170,7 @@ def test_nav2_from_its_own_graph_is_as_planned_and_a_leak_is_found(
     given = ("--snapshot", seen, "--namespace", "/robot1", "--form", "nodl", "-o", folder)
     assert main(["learn", *given]) == 0
     robots = ("robot1", "robot2", "--layout", "L1", "--stack", "nav2")
-    assert main(["plan", str(ROVER), *robots, "--nodl", folder, "-o", plan]) == 0
+    assert main(["plan", str(ROVER), *robots, "--nodes", folder, "-o", plan]) == 0
     capsys.readouterr()
     assert main(["check", plan, "--snapshot", seen]) == 0, capsys.readouterr().out
     leak = moved(graph, "/robot1/cmd_vel", "/cmd_vel", "collision_monitor")

@@ -29,8 +29,8 @@ from multibot_rewrite.cli import multibot
 from multibot_rewrite.live.watching import Verdict
 from multibot_rewrite.pages.layout import NODE_ROW, ROW, lay_out
 from multibot_rewrite.pages.page import to_html
+from multibot_rewrite.pages.page_sections import only_common, without_common
 from multibot_rewrite.pages.scene import DrawnGroup, Scene, make_scene
-from multibot_rewrite.pages.simplify import only_common, without_common
 from multibot_rewrite.pages.states import (
     CLASH,
     CROSS_TALK,
@@ -98,6 +98,7 @@ def swarm() -> System:
 # ---------------------------------------------------------------- the scene
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("layout", nav2_graphs.LAYOUTS)
 def test_a_healthy_fleet_has_nothing_in_red(layout: str) -> None:
     plan = nav2_graphs.nav2(layout)
@@ -112,6 +113,7 @@ def test_a_healthy_fleet_has_nothing_in_red(layout: str) -> None:
         assert drawn == set(nodes_of(plan, robot.name))
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("layout", nav2_graphs.LAYOUTS)
 def test_a_leak_is_red_at_its_robot_and_among_what_is_shared(layout: str) -> None:
     plan = nav2_graphs.nav2(layout)
@@ -126,6 +128,22 @@ def test_a_leak_is_red_at_its_robot_and_among_what_is_shared(layout: str) -> Non
     assert [(r.source, r.target, r.names) for r in scene.crossings] == [
         ("robot1", "", ("subscribes /scan",))
     ]
+
+
+@pytest.mark.sample(2)
+@pytest.mark.parametrize(
+    ("layout", "topics"),
+    [
+        ("L2", ["/tf and /tf_static"]),
+        ("L4", [f"/tf/robot{n} and /tf_static/robot{n}" for n in "12"]),
+    ],
+)
+def test_a_tree_is_told_with_its_two_topics(layout: str, topics: list[str]) -> None:
+    plan = nav2_graphs.nav2(layout)
+    (section,) = page(nav2_graphs.scene(plan, nav2_graphs.healthy(plan))).xpath(
+        "//section[@id='tf']"
+    )
+    assert [it.text_content() for it in section.xpath("h3")] == topics
 
 
 def test_what_is_missing_in_place_of_a_leak_is_drawn() -> None:
@@ -387,6 +405,7 @@ def test_without_any_tf_no_frame_is_called_missing() -> None:
     assert "No tf messages were received" in section(page(scene), "tf").text_content()
 
 
+@pytest.mark.slow
 def test_a_ring_and_a_chain_deeper_than_pythons_stack_end() -> None:
     ring = [Edge(f"r{(at + 1) % 3}", f"r{at}", "/tf", False, ()) for at in range(3)]
     chain = [Edge(f"c{at + 1}", f"c{at}", "/tf", False, ()) for at in range(3000)]
@@ -427,6 +446,7 @@ def test_the_policy_allows_only_the_own_script_and_style() -> None:
     assert len(pick(tree, "script")[0].text.splitlines()) < 160
 
 
+@pytest.mark.slow
 def test_all_links_and_hooks_lead_somewhere() -> None:
     for scene in scenes():
         tree = page(scene)
@@ -516,6 +536,7 @@ def unfolded(tree: html.HtmlElement) -> list[str]:
     return [one.get("id") for one in there if one.get("open") is not None]
 
 
+@pytest.mark.slow
 def test_the_cost_of_a_page_grows_with_the_fleet_and_not_faster() -> None:
     def prepared(count: int) -> Callable[[], object]:
         plan = nav2_graphs.fleet(count, 20)
@@ -628,6 +649,7 @@ def test_any_text_may_be_a_name(words: list[str]) -> None:
     assert_harmless(nav2_graphs.scene(named, odd))
 
 
+@pytest.mark.slow
 @given(st.text(max_size=60), st.integers(4, 40))
 def test_a_clipped_text_fits_and_keeps_its_ends(text: str, room: int) -> None:
     shown = clipped(visible(text), room)
@@ -658,6 +680,7 @@ def check(*more: str) -> int:
     return multibot.main(["check", "plan.yaml", "--snapshot", "graph.json", *more])
 
 
+@pytest.mark.slow
 def test_the_command_writes_what_is_asked_for(
     files: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -670,6 +693,7 @@ def test_the_command_writes_what_is_asked_for(
     assert (files / "r.html").read_bytes() == to_html(scene)
 
 
+@pytest.mark.sample(7)
 @pytest.mark.parametrize(
     ("wrong", "said"),
     [

@@ -60,6 +60,7 @@ def test_a_plan_is_read_back_as_it_was_written(plan: Path) -> None:
     assert "base_link/robot1" in wanted.robots[0].frames
 
 
+@pytest.mark.slow
 def test_a_plan_in_json_is_the_same_plan(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
     written = plan.with_name("plan.json")
     assert main(["plan", *FLEET, "-o", str(written)]) == 0
@@ -69,6 +70,7 @@ def test_a_plan_in_json_is_the_same_plan(plan: Path, capsys: pytest.CaptureFixtu
     assert held(written, as_planned(plan), capsys)[:2] == (0, "")
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
@@ -125,6 +127,7 @@ def test_an_edited_plan_is_what_counts(plan: Path, capsys: pytest.CaptureFixture
     assert held(plan, graph, capsys)[0] == 0
 
 
+@pytest.mark.sample(8)
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
@@ -211,6 +214,7 @@ def test_inserted_lines_do_not_move_them(layout: str, tmp_path: Path) -> None:
     ]  # fmt: skip
 
 
+@pytest.mark.slow
 def test_the_lines_of_a_xacro_are_those_of_the_expanded_text(tmp_path: Path) -> None:
     path = tmp_path / "plan.yaml"
     assert main(["plan", f"{ROVER}.xacro", "robot1", "-o", str(path)]) == 0

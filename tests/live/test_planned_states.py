@@ -278,6 +278,7 @@ def test_the_files_of_a_build_say_what_each_node_has(built: Path) -> None:
     )
 
 
+@pytest.mark.slow
 def test_a_robot_whose_namespace_is_not_its_name(tmp_path: Path) -> None:
     """A build names the folder after the robot, the plan has its namespace."""
     (tmp_path / "nav2.yaml").write_text("amcl: {ros__parameters: {alpha1: 0.25}}\n")
@@ -340,8 +341,8 @@ def test_check_finds_the_files_beside_the_plan(
     assert multibot.main(["check", "plan.yaml", "--snapshot", "g.json"]) == 1
     assert "MG132" in capsys.readouterr().out
     (built / "elsewhere").mkdir()
-    given = ["--built", "elsewhere"]
-    assert multibot.main(["check", "plan.yaml", "--snapshot", "g.json", *given]) == 0
+    (built / "elsewhere" / "plan.yaml").write_text(PLAN)
+    assert multibot.main(["check", "elsewhere/plan.yaml", "--snapshot", "g.json"]) == 0
     (built / "robot1" / "nav2.yaml").write_text("ros__parameters: [")
     assert multibot.main(["check", "plan.yaml", "--snapshot", "silent.json"]) == 0
     capsys.readouterr()
@@ -352,8 +353,6 @@ def test_check_finds_the_files_beside_the_plan(
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        (["--built", "nowhere", "--state"], "nowhere: no folder"),
-        (["--built", "."], "add --state"),
         (["--state", "--snapshot", "g.json"], "--state asks nodes of the live graph"),
     ],
 )

@@ -34,10 +34,8 @@ from multibot_rewrite.live.rehearsal import (
 from multibot_rewrite.producers.ros.request import Request
 from multibot_rewrite.spelling.plan import expect
 from multibot_rewrite.spelling.plan_file import read_plan
-from multibot_rewrite.spelling.plugin_nodes import plugin_nodes
 from multibot_rewrite.spelling.records import Home, NodeRule, NodeTable, Table
-from multibot_rewrite.spelling.table import build_table
-from multibot_rewrite.spelling.transforms import Edge as SentEdge
+from multibot_rewrite.spelling.table import build_table, plugin_nodes
 from multibot_rewrite.spelling.transforms import edges_of, frames_of, with_odometry
 from multibot_rewrite.spelling.ways import WAYS
 from multibot_rewrite.system.json import from_json
@@ -49,7 +47,9 @@ from multibot_rewrite.system.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
+    Edge,
     System,
+    edge_of,
 )
 
 ROVER = ROBOTS / "rover.urdf"
@@ -138,7 +138,7 @@ def test_robots_share_processes_when_they_are_many() -> None:
 def test_an_order_survives_the_pipe() -> None:
     import json
 
-    stub = drive()._replace(edges=(SentEdge("odom", "base", False),))
+    stub = drive()._replace(edges=(edge_of("odom", "base", False),))
     assert from_order(json.loads(json.dumps(to_order([stub])))) == [stub]
 
 
@@ -176,7 +176,7 @@ def rewritten(layout: str) -> tuple[Inventory, Naming]:
     ), make_naming(layout)
 
 
-def sent(layout: str, *stacks: str) -> dict[str, list[SentEdge]]:
+def sent(layout: str, *stacks: str) -> dict[str, list[Edge]]:
     inventory, naming = rewritten(layout)
     nodes = [node for stack in stacks for node in stack_of(built_in(NEWEST_LTS), stack)]
     reading = read(inventory.document.source, "rover.urdf", builtin_tree((), NEWEST_LTS).vocabulary)
@@ -188,24 +188,24 @@ def sent(layout: str, *stacks: str) -> dict[str, list[SentEdge]]:
 @pytest.mark.parametrize(("layout", "end"), [("L1", ""), ("L2", "/robot1"), ("L4", "/robot1")])
 def test_description_odometry_and_map_are_one_tree(layout: str, end: str) -> None:
     edges = sent(layout, "robot_state", "localization")
-    assert edges["amcl"] == [SentEdge("map", f"odom{end}", False)]
-    assert edges["diff_drive"] == [SentEdge(f"odom{end}", f"base_footprint{end}", False)]
+    assert edges["amcl"] == [edge_of("map", f"odom{end}", False)]
+    assert edges["diff_drive"] == [edge_of(f"odom{end}", f"base_footprint{end}", False)]
     tree = edges["robot_state_publisher"]
-    assert tree[0] == SentEdge(f"base_footprint{end}", f"base_link{end}", True)
-    assert SentEdge(f"base_link{end}", f"left_wheel{end}", False) in tree
+    assert tree[0] == edge_of(f"base_footprint{end}", f"base_link{end}", True)
+    assert edge_of(f"base_link{end}", f"left_wheel{end}", False) in tree
     parents = {edge.child: edge.parent for edges in edges.values() for edge in edges}
     assert {parent for parent in parents.values() if parent not in parents} == {"map"}
 
 
 def test_odometry_leads_to_the_root_of_the_description() -> None:
     assert sent("L2", "robot_localization")["ekf_filter_node"] == [
-        SentEdge("odom/robot1", "base_footprint/robot1", False)
+        edge_of("odom/robot1", "base_footprint/robot1", False)
     ]
 
 
 def test_a_robots_frames_are_declared_or_sent_and_not_shared() -> None:
     inventory, naming = rewritten("L2")
-    frames = frames_of(inventory, [SentEdge("map", "odom/robot1", False)], naming, "robot1")
+    frames = frames_of(inventory, [edge_of("map", "odom/robot1", False)], naming, "robot1")
     assert "odom/robot1" in frames
     assert "camera_link/robot1" in frames
     assert "map" not in frames
@@ -213,18 +213,18 @@ def test_a_robots_frames_are_declared_or_sent_and_not_shared() -> None:
 
 def test_missing_odometry_is_added_and_reported() -> None:
     naming = make_naming("L2")
-    tree = [SentEdge("base", "arm", True)]
+    tree = [edge_of("base", "arm", True)]
     edges = {
         ("r1", "robot_state_publisher"): tree,
-        ("r1", "amcl"): [SentEdge("map", "odom", False)],
+        ("r1", "amcl"): [edge_of("map", "odom", False)],
     }
     filled, added = with_odometry(edges, "r1", naming)
     assert added == "odom -> base"
-    assert filled["r1", "robot_state_publisher"] == [*tree, SentEdge("odom", "base", False)]
+    assert filled["r1", "robot_state_publisher"] == [*tree, edge_of("odom", "base", False)]
     assert with_odometry(filled, "r1", naming) == (filled, "")
     assert with_odometry({("r1", "robot_state_publisher"): tree}, "r1", naming)[1] == ""
     assert with_odometry(edges, "r2", naming) == (edges, "")
-    standing = {**edges, ("r1", "robot_state_publisher"): [SentEdge("world", "base", True)]}
+    standing = {**edges, ("r1", "robot_state_publisher"): [edge_of("world", "base", True)]}
     assert with_odometry(standing, "r1", naming) == (standing, "")
 
 

@@ -219,9 +219,9 @@ def test_findings_are_reached_with_the_keyboard(show: Open) -> None:
 def test_a_code_opens_what_it_means(show: Open) -> None:
     driver = show(spoiled())
     (folded,) = every(driver, "#rule-MG321")
-    assert "one robot is driven" not in folded.text.lower()
+    assert "avoids obstacles, with the data of the other" not in folded.text.lower()
     row(driver, "MG321").find_element(By.CSS_SELECTOR, "a.rule").click()
-    assert "one robot is driven" in folded.text.lower()
+    assert "avoids obstacles, with the data of the other" in folded.text.lower()
     assert in_view(driver, folded)
     assert every(driver, ".hit") == []
 
@@ -243,7 +243,7 @@ def test_a_large_fleet_opens_where_something_is_wrong(show: Open) -> None:
     assert len(drawings) == 3
     assert len(seen(driver, "svg.overview g.tile")) == 2
     assert len(seen(driver, ".card")) == 3
-    row(driver, "MG310").click()
+    row(driver, "MG320").click()
     assert labels(driver, "g.hit") >= {"/topic1"}
     # The name of a healthy robot leads into what is folded away.
     every(driver, ".card h3 summary")[0].click()
@@ -329,7 +329,7 @@ def test_a_hundred_robots_are_few_elements(show: Open) -> None:
     driver = show(to_html(nav2_graphs.scene(plan, graph)))
     # How long a browser works is by how much there is.
     assert driver.execute_script("return document.all.length") < 15_000
-    row(driver, "MG310").click()
+    row(driver, "MG320").click()
     assert "/topic2" in labels(driver, "g.hit")
 
 
@@ -406,10 +406,10 @@ def test_an_opened_finding_says_why_and_what_to_do(show: Open) -> None:
 
 def test_a_line_of_a_card_leads_to_its_finding(show: Open) -> None:
     driver = show(to_html(report_pages.twenty()))
-    (brief,) = (it for it in every(driver, ".brief") if "leaked name" in it.text)
+    (brief,) = (it for it in every(driver, ".brief") if "topic of several robots" in it.text)
     brief.click()
     (picked,) = every(driver, ".finding.picked")
-    assert "MG310" in picked.text and picked.get_attribute("open")
+    assert "MG320" in picked.text and picked.get_attribute("open")
     assert in_view(driver, picked.find_element(By.TAG_NAME, "summary"))
 
 
@@ -418,7 +418,7 @@ def test_a_name_filters_findings_and_drawings(show: Open) -> None:
     typed = every(driver, "#filters input")[0]
     typed.send_keys("robot2/AMCL")
     codes = {it.text for it in seen(driver, ".finding a.rule")}
-    assert codes == {"MG102", "MG321"}
+    assert codes == {"MG102", "MG321", "MG401"}
     # What it is connected to stays.
     assert "/robot2/amcl" in labels(driver, "#g1 > .frame:not(.more) .n:not(.off)")
     assert "/robot2/velocity_smoother" in labels(driver, "#g1 > .frame:not(.more) .n.off")
@@ -470,7 +470,7 @@ def test_it_reads_and_links_without_scripts(
         assert seen(driver, "#findings .finding") and seen(driver, "svg.graph")
         every(driver, "label[for=more]")[0].click()
         assert seen(driver, ".more")
-        row(driver, "MG310").find_element(By.CSS_SELECTOR, "a.place").click()
+        row(driver, "MG320").find_element(By.CSS_SELECTOR, "a.place").click()
         (target,) = every(driver, "g:target")
         assert in_view(driver, target)
     finally:

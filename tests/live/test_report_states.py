@@ -59,6 +59,7 @@ def node_states(scene: Scene) -> dict[str, str]:
 # ---------------------------------------------------------------- the head
 
 
+@pytest.mark.slow
 def test_only_a_fleet_without_findings_is_green() -> None:
     assert head(report_pages.healthy()) == ("good", "as planned")
     assert head(report_pages.spoiled()) == ("bad", "not as planned")
@@ -76,6 +77,7 @@ def test_an_open_end_of_the_plan_is_a_finding_with_its_explanation() -> None:
     assert cards(report_pages.not_closed()) == {"robot2": "odd", "robot1": "good"}
 
 
+@pytest.mark.slow
 def test_a_fault_in_tf_makes_its_robots_red() -> None:
     assert [it.finding.code for it in report_pages.tf_collision().rows] == ["MG402"]
     assert cards(report_pages.tf_collision()) == {"robot1": "bad"}
@@ -143,6 +145,7 @@ def test_a_frame_concerns_the_robot_that_has_its_word() -> None:
     assert robots_of(by_plan, found) == {"fleet_a/robot2"}
 
 
+@pytest.mark.sample(31)
 @pytest.mark.parametrize("fault", FAULTS, ids=[it.name for it in FAULTS])
 def test_a_danger_is_drawn_and_concerns_a_robot(fault: Fault) -> None:
     scene = report_pages.doctors(fault.change(fault.system()))

@@ -96,6 +96,7 @@ def test_what_is_written_is_read_back() -> None:
     assert from_yaml(to_yaml(once).decode(), "again.yaml") == once
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("layout", ["L1", "L4"])
 def test_the_graph_of_nav2_keeps_its_endpoints(layout: str) -> None:
     graph = healthy(nav2(layout))
@@ -141,6 +142,7 @@ def test_a_monitor_of_topics_alone_gives_an_incomplete_view() -> None:
 # ---------------------------------------------------------------- the commands
 
 
+@pytest.mark.slow
 def test_check_and_learn_take_a_message_in_yaml_and_in_json(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

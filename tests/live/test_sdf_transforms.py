@@ -8,7 +8,8 @@ from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.steps.collect import Inventory, collect
 from multibot_rewrite.description.steps.document import read_document
-from multibot_rewrite.spelling.transforms import Edge, edges_in
+from multibot_rewrite.spelling.transforms import edges_in
+from multibot_rewrite.system.records import edge_of
 
 JOINT = '<joint name="j" type="fixed"><parent>{}</parent><child>tool</child></joint>'
 MODEL = (
@@ -41,5 +42,5 @@ def test_the_tree_of_the_rover_has_one_root() -> None:
     edges = list(
         edges_in(inventory((FIXTURES / "robots" / "rover.sdf").read_bytes()).document.root)
     )
-    assert Edge("base_link", "head::base_link", True) in edges
+    assert edge_of("base_link", "head::base_link", True) in edges
     assert {it.parent for it in edges} == {"base_link"}

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-from typing import Any
-
 import pytest
 from paths import ROBOTS
 
@@ -12,6 +9,8 @@ from multibot_rewrite.fleet.fleet import expected, make_fleet
 from multibot_rewrite.rules.pair.causes import how_to_remap, why_other_name
 from multibot_rewrite.spelling.plan import planned_end
 from multibot_rewrite.spelling.plan_file import from_yaml, to_yaml
+from multibot_rewrite.system.index import index
+from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.records import System
 
 GZ = str(ROBOTS / "rover_gz.urdf")
@@ -23,9 +22,8 @@ def plan(release: str, stack: str) -> System:
 
 
 def hint(of: System, node: str) -> str:
-    view: Any = SimpleNamespace(system=of, nodes={it.name: it for it in of.nodes})
     end = planned_end(f"/robot1/{node}", "topic", "publishes", "/robot1/tf", "", "/tf")
-    return how_to_remap(view, end)
+    return how_to_remap(index(of, whose_by_plan(of)), end)
 
 
 @pytest.mark.parametrize(
@@ -53,6 +51,7 @@ def test_a_process_takes_it_as_it_is_started() -> None:
 COSTMAP = "local_costmap/local_costmap"
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize(
     ("release", "stack", "words"),
     [
@@ -69,6 +68,7 @@ def test_a_hosted_nodes_rule_is_for_what_its_host_is_started_with(
     assert "local_costmap:/tf" in text
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize(
     ("stack", "node", "words"),
     [
@@ -81,11 +81,5 @@ def test_a_node_under_another_name_is_told_where_its_name_is_given(
     stack: str, node: str, words: str
 ) -> None:
     of = plan("lyrical", stack)
-    ownership = SimpleNamespace(without_robot=lambda name, robot: name.removeprefix(f"/{robot}"))
-    view: Any = SimpleNamespace(
-        system=of,
-        nodes={it.name: it for it in of.nodes},
-        robot_of={f"/robot1/{node}": "robot1"},
-        names=ownership,
-    )
-    assert words in why_other_name(view, f"/robot1/{node}", f"/{node}").hint
+    it = index(of, whose_by_plan(of))
+    assert words in why_other_name(it, f"/robot1/{node}", f"/{node}").hint

@@ -28,6 +28,7 @@ def python(code: str, *arguments: object) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, capture_output=True, text=True, check=False)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("word", ["bare", "L9"])
 def test_a_fifth_layout_rewrites(word: str, tmp_path: Path) -> None:
     (tmp_path / "r.urdf").write_text(SMALL)
@@ -48,6 +49,7 @@ def test_a_fifth_layout_builds(word: str, tmp_path: Path) -> None:
     assert (tmp_path / "out" / "r1" / "r.urdf").read_text() == SMALL
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize(
     "command",
     [("urdf_postfix",), ("urdf_lint",), ("multibot", "plan")],

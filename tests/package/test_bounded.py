@@ -72,6 +72,7 @@ YAML_READERS: dict[str, Reader] = {
 }
 
 
+@pytest.mark.sample(7)
 @pytest.mark.parametrize("fault", YAML_FAULTS)
 @pytest.mark.parametrize("reader", YAML_READERS)
 def test_every_yaml_reader_has_the_bounds(reader: str, fault: str) -> None:
@@ -82,6 +83,7 @@ def test_every_yaml_reader_has_the_bounds(reader: str, fault: str) -> None:
     assert "\n" not in str(caught.value) and len(str(caught.value)) < 300
 
 
+@pytest.mark.sample(7)
 @pytest.mark.parametrize(
     "text",
     [
@@ -130,6 +132,7 @@ JSON_FAULTS = {
 }
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(
     st.recursive(
@@ -190,6 +193,7 @@ READ_TEXT: dict[str, Reader] = {
 }
 
 
+@pytest.mark.sample(7)
 @pytest.mark.parametrize("reader", READ_TEXT)
 @pytest.mark.parametrize("file", ["/dev/zero", "large"])
 def test_a_file_without_an_end_is_too_large(file: str, reader: str, tmp_path: Path) -> None:
@@ -226,6 +230,7 @@ def calls(file: Path) -> set[str]:
     return {ast.unparse(it.func) for it in ast.walk(tree) if isinstance(it, ast.Call)}
 
 
+@pytest.mark.slow
 def test_the_parsers_are_called_in_one_place() -> None:
     parsers = {f"{module}.{name}" for module in ("yaml", "json") for name in ("load", "loads")}
     parsers |= {f"yaml.{name}" for name in ("compose", "parse", "safe_load", "load_all")}

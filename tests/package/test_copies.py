@@ -59,6 +59,7 @@ COPIES: list[Callable[[Any], Any]] = [
 COPY_IDS = ["copy", "deepcopy", "pickle", "newest"]
 
 
+@pytest.mark.sample(7)
 @pytest.mark.parametrize("again", COPIES, ids=COPY_IDS)
 @pytest.mark.parametrize("source", [SMALL, DOUBTFUL, ROVER], ids=["small", "finding", "rover"])
 def test_a_rewrite_can_be_copied(again: Callable[[Any], Any], source: str | Path) -> None:
@@ -118,6 +119,7 @@ def seen(fleet: LoadedFleet) -> list[object]:
     ))]  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("again", COPIES, ids=COPY_IDS)
 def test_a_fleet_can_be_copied(again: Callable[[Any], Any], fleet: LoadedFleet) -> None:
     before = seen(fleet)
@@ -129,6 +131,7 @@ def test_a_fleet_can_be_copied(again: Callable[[Any], Any], fleet: LoadedFleet) 
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("again", COPIES, ids=COPY_IDS)
 def test_a_robot_of_a_fleet_can_be_copied(again: Callable[[Any], Any], fleet: LoadedFleet) -> None:
     robot, whole = again((fleet.robots[1], fleet))
@@ -161,6 +164,7 @@ print(fleet.robots[0].node("amcl", "params.yaml"), end="")
 """
 
 
+@pytest.mark.slow
 def test_a_fresh_process_reads_the_pickles(fleet: LoadedFleet, tmp_path: Path) -> None:
     one = rewrite(ROVER, "r1")
     with pytest.raises(RewriteRefused) as caught:

@@ -75,6 +75,7 @@ def test_every_dependency_of_pip_is_one_of_ros() -> None:
     assert {key for key in KEYS.values() if key} <= wanted("exec_depend")
 
 
+@pytest.mark.slow
 def test_every_import_is_a_dependency_of_ros() -> None:
     found = {name for tree in sources().values() for name in imported(tree)}
     others = found - sys.stdlib_module_names - {"multibot_rewrite"} - UNASKED
@@ -107,6 +108,7 @@ def test_the_pythons_are_named_alike_everywhere() -> None:
     assert f"Python 3.{FIRST[1]} to 3.{LAST[1]}" in guide
 
 
+@pytest.mark.slow
 def test_the_first_python_reads_every_file() -> None:
     assert sources()
     for path in (ROOT / "tests").rglob("*.py"):

@@ -71,6 +71,7 @@ def test_a_transcript_of_the_readme_is_the_whole_output(
         assert (done.returncode, printed) == (it.code, it.lines), it.command
 
 
+@pytest.mark.slow
 def test_the_readme_shows_what_its_first_command_prints(tmp_path: Path) -> None:
     (command,) = re.findall(r"^    python3 .*/bin/(urdf-postfix .*)$", README, re.MULTILINE)
     (shown,) = re.findall(r"^    (urdf-postfix: .*)$", README, re.MULTILINE)
@@ -79,6 +80,7 @@ def test_the_readme_shows_what_its_first_command_prints(tmp_path: Path) -> None:
     assert {it.name for it in (tmp_path / "out").iterdir()} == {"robot1.urdf", "robot2.urdf"}
 
 
+@pytest.mark.slow
 def test_the_readme_diff_is_what_the_command_prints(tmp_path: Path) -> None:
     """Lines are left out of it, none is changed or moved."""
     (command,) = re.findall(r"`(urdf-postfix [^`]* --diff)`", README)

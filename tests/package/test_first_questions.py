@@ -52,6 +52,7 @@ def test_why_does_cmd_vel_never_come(
     assert f"reads {name}" in said, said
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("layout", "windows"),
     [("frames-per-robot", ["one"]), ("tf-per-robot", ["robot1", "robot2"])],

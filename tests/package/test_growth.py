@@ -10,7 +10,7 @@ from growing import GROWING, description
 
 from multibot_rewrite import MultibotError, rewrite
 from multibot_rewrite.base import nearest
-from multibot_rewrite.base.findings.place import locate
+from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.nearest import HINTED, Guesses
 from multibot_rewrite.description.checks import audit, references
 from multibot_rewrite.description.rewriters.tree import Tree
@@ -99,7 +99,7 @@ def test_a_place_is_found_from_the_block_it_is_in(
     ends: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     read: list[int] = []
-    count = "multibot_rewrite.base.findings.place._characters"
+    count = "multibot_rewrite.base.findings.finding._characters"
     monkeypatch.setattr(count, lambda text: read.append(len(text)) or len(text))
     source = (("x" * 40 + ends) * 20_000).encode()
     locate(source, 0)

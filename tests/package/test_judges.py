@@ -13,6 +13,7 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.description.readback.meeting import SHARED_CODES
 from multibot_rewrite.description.readback.reading import read
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.fleet.build import make_outputs
@@ -25,7 +26,7 @@ from multibot_rewrite.rules.settings import Settings
 pytestmark = pytest.mark.slow
 
 ROBOTS = ("robot1", "robot2")
-CODES = ("MB425", "MB430", "MB431", "MB432", "MB435", "MR102")
+CODES = tuple(sorted(SHARED_CODES))
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
 EVERY = 23
 _NAME = re.compile(r"'([^']+)'")

@@ -12,6 +12,7 @@ from functools import cache
 from graphlib import TopologicalSorter
 from importlib.resources import files
 
+import pytest
 from parsed import PACKAGE, sources
 
 import multibot_rewrite
@@ -91,16 +92,19 @@ def inner(file: str) -> set[str]:
     return found
 
 
+@pytest.mark.slow
 def test_imports_run_one_way() -> None:
     pairs = [(file, other) for file in sources() for other in inner(file)]
     between = [(one, other) for one, other in pairs if room(one) != room(other)]
     assert [it for it in between if floor(room(it[1])) >= floor(room(it[0]))] == []
 
 
+@pytest.mark.slow
 def test_no_module_imports_itself_by_a_detour() -> None:
     TopologicalSorter({file: inner(file) for file in sources()}).prepare()
 
 
+@pytest.mark.slow
 def test_the_check_sees_the_imports_there_are() -> None:
     assert inner("description/library.py") >= {
         "base/model.py",
@@ -120,6 +124,7 @@ def test_the_check_sees_the_imports_there_are() -> None:
     }
 
 
+@pytest.mark.slow
 def test_heavy_packages_have_one_door_each() -> None:
     doors = defaultdict(set)
     for file in sources():
@@ -137,12 +142,14 @@ def loaded(code: str) -> set[str]:
     return set(after.stdout.split()) - set(bare.stdout.split())
 
 
+@pytest.mark.slow
 def test_a_start_loads_no_more_than_it_needs() -> None:
     there = loaded("import multibot_rewrite as m; m.rewrite('<robot name=\"r\"/>', 'r1')")
     assert "multibot_rewrite.description.library" in there
     assert sorted(there & set(LATE)) == []
 
 
+@pytest.mark.slow
 def test_a_check_pays_for_no_source_that_it_does_not_look_at() -> None:
     there = loaded("import multibot_rewrite.cli.check")
     assert "multibot_rewrite.rules.check" in there
@@ -151,6 +158,7 @@ def test_a_check_pays_for_no_source_that_it_does_not_look_at() -> None:
     assert there & {*late, *(f"multibot_rewrite.producers.{it}" for it in sources)} == set()
 
 
+@pytest.mark.slow
 def test_the_package_alone_loads_nothing() -> None:
     there = {name for name in loaded("import multibot_rewrite") if name.startswith(PACKAGE.name)}
     assert there == {PACKAGE.name, f"{PACKAGE.name}.version"}
@@ -162,6 +170,7 @@ def test_all_names_what_is_there() -> None:
     assert sorted(set(multibot_rewrite.__all__)) == multibot_rewrite.__all__
 
 
+@pytest.mark.slow
 def test_all_is_complete() -> None:
     offered = {name.rpartition(".")[2] for name in imports_of("__init__.py")}
     assert offered - {"annotations", "import_module", "TYPE_CHECKING", "__version__"} == set(

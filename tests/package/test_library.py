@@ -172,6 +172,7 @@ def test_findings_are_warnings_in_order() -> None:
 # ---------------------------------------------------------------- fleets
 
 
+@pytest.mark.sample(7)
 @pytest.mark.parametrize("layout", [layout.name for layout in LAYOUTS])
 @pytest.mark.parametrize("source", [SMALL, DRIVE, IMU.format("imu")], ids=["small", "drive", "imu"])
 def test_a_fleet_is_as_many_single_calls(source: str, layout: str) -> None:
@@ -232,7 +233,7 @@ NODES = """\
 def test_robots_whose_names_would_meet_are_refused(source: str, separators: dict[str, str]) -> None:
     text = source.format("arm", "arm_left")
     with pytest.raises(
-        RewriteRefused, match=r"MB421 left_b and b would both have a \w+ 'arm_left_b'"
+        RewriteRefused, match=r"MB421 left_b and b would both have the \w+ 'arm_left_b'"
     ):
         next(rewrite_all(text, ["left_b", "b"], separators=separators))
 

@@ -47,6 +47,7 @@ def test_the_citation_says_what_the_package_says() -> None:
     assert [it["name"] for it in citation["authors"]] == [it["name"] for it in PROJECT["authors"]]
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")
 def test_the_change_log_is_what_bloom_takes() -> None:
     """A release gives the section Forthcoming a version and a date; then it has to be read."""

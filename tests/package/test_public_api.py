@@ -102,6 +102,7 @@ WRONG = {
 }
 
 
+@pytest.mark.slow
 def test_mypy_sees_every_option(tmp_path: Path) -> None:
     """With a program of a caller: right calls are right, and each wrong one is one error."""
     program = tmp_path / "caller.py"
@@ -221,6 +222,7 @@ def test_a_wrong_fleet_is_named(path: Any) -> None:
         load_fleet(path)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "ask",
     [

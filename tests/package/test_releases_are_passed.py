@@ -5,8 +5,10 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
+import pytest
 from parsed import sources
 
+pytestmark = pytest.mark.slow
 WORDS = ("release", "distro", "environment")
 # The public calls, which ask ROS_DISTRO.
 PUBLIC = (
@@ -57,6 +59,7 @@ def passed(call: ast.Call, word: str, count: int) -> bool:
     return starred or len(call.args) >= count or bool(named & {word, None})
 
 
+@pytest.mark.slow
 def test_no_function_has_a_release_of_its_own() -> None:
     found = {
         f"{file}: {function.name}"
@@ -67,6 +70,7 @@ def test_no_function_has_a_release_of_its_own() -> None:
     assert found == set()
 
 
+@pytest.mark.slow
 def test_the_newest_release_is_named_where_no_other_can_be_meant() -> None:
     found = {
         file
@@ -77,6 +81,7 @@ def test_the_newest_release_is_named_where_no_other_can_be_meant() -> None:
     assert found == NEWEST
 
 
+@pytest.mark.slow
 def test_every_call_of_what_is_made_once_names_the_release() -> None:
     """mypy does not see what a function behind ``lru_cache`` asks for; it sees the rest."""
     asking = {

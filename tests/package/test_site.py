@@ -77,6 +77,7 @@ def test_a_link_to_nowhere_is_seen(link: str) -> None:
     assert not leads(ROOT / "docs" / "index.md", link)
 
 
+@pytest.mark.slow
 def test_pictures_are_what_a_build_writes(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(str(SITE))
     from layout_pictures import FOLDER, pictures

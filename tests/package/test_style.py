@@ -14,6 +14,7 @@ from paths import ROOT
 CLOCKS = {"support/waiting.py", "fleet/test_build.py", "live/test_snapshot.py", "support/walk.py"}
 
 
+@pytest.mark.slow
 def test_no_test_reads_a_clock() -> None:
     """A limit of seconds fails on a busy machine: count calls or steps, or compare two sizes."""
     clock = re.compile(r"\b(perf_counter|process_time|monotonic|thread_time)\b|\btime\.time\b")

@@ -15,6 +15,7 @@ from multibot_rewrite import launch
 PAGE = (ROOT / "docs" / "walk.md").read_text()
 
 
+@pytest.mark.slow
 def test_the_help_on_the_page_is_current(tmp_path: Path) -> None:
     for title, command, lines in walk.HELP:
         assert walk.section(walk.shell(title, command, tmp_path, lines)) in PAGE

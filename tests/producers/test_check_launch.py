@@ -355,6 +355,18 @@ def bridged_model(run: Graph, bridged: str, *words: str) -> System:
     return run(state, create, node("ros_gz_bridge/parameter_bridge", "b", "/", arguments=row))
 
 
+def test_a_bridge_has_services_and_images_in_ros(run: Graph) -> None:
+    """parameter_bridge.cpp takes ``SERVICE@TYPE``, image_bridge.cpp names of topics."""
+    service = ("/world/w/control@ros_gz_interfaces/srv/ControlWorld",)
+    made = run(
+        node("ros_gz_bridge/parameter_bridge", "b", arguments=service),
+        node("ros_gz_image/image_bridge", "i", rules=(("/cam", "front"),), arguments=("/cam",)),
+    )
+    assert ("serves", "/world/w/control") in names(made, "/robot1/b")
+    assert names(made, "/robot1/i") == {("publishes", "/robot1/front")}
+    assert not any(it.incomplete for it in made.environment.caveats)
+
+
 def test_a_bridge_sends_what_systems_of_the_spawned_model_do(run: Graph) -> None:
     """gz-sim DiffDrive.cc: frame_id to child_frame_id on tf_topic."""
     made = bridged_model(run, "robot1", *CREATE)
@@ -401,3 +413,77 @@ def test_plugins_of_gazebo_classic_are_nodes_and_it_has_the_clock(run: Graph) ->
     assert made.environment.caveats == ()
     alone = run(state, node("gazebo_ros/gzserver", "", "/"))
     assert "/robot1/laser" not in {it.name for it in alone.nodes}, "nothing spawns it"
+
+
+@pytest.mark.parametrize(
+    ("base", "found"), [("robot1/base_footprint", {"MG413"}), ("robot1/base_link", set())]
+)
+def test_a_frame_that_a_node_asks_for_and_nobody_sends(
+    base: str, found: set[str], run: Graph
+) -> None:
+    """bt_navigator asks tf for robot_base_frame; the odometry is the filter's."""
+    ekf = node(
+        "robot_localization/ekf_node", "ekf_filter_node",
+        odom_frame="robot1/odom", base_link_frame="robot1/base_link", world_frame="robot1/odom",
+    )  # fmt: skip
+    navigator = node("nav2_bt_navigator/bt_navigator", "bt_navigator", robot_base_frame=base)
+    made = run(publisher("/robot1", frame_prefix="robot1/"), ekf, navigator)
+    assert ("/robot1/bt_navigator", base) in {(it.node, it.frame) for it in made.lookups}
+    assert codes(made) & {"MG413"} == found
+
+
+ARM = """<robot name="arm"><link name="base"/><ros2_control name="arm" type="system"><hardware>
+<plugin>franka_hardware/FrankaHardwareInterface</plugin><param name="robot_ip">%s</param>
+</hardware></ros2_control></robot>"""
+BRIDGE = "rosbridge_server/rosbridge_websocket"
+
+
+@pytest.mark.parametrize(
+    ("second", "found"),
+    [
+        ({"port": 9090}, ["port 9090"]),
+        ({"port": 9091}, []),
+        ({"port": 9090, "space": "/robot1"}, []),
+    ],
+)
+def test_a_port_that_two_robots_open(
+    second: dict[str, object], found: list[str], run: Graph
+) -> None:
+    made = run(
+        node(BRIDGE, "bridge", "/robot1", port=9090),
+        node(BRIDGE, "bridge2", **{"space": "/robot2", **second}),  # type: ignore[arg-type]
+        *(publisher(space) for space in ("/robot1", "/robot2")),
+    )
+    told = [it for it in diagnose(made).findings if it.code == "MB412"]
+    assert [it.message.rpartition(": ")[2] for it in told] == found
+
+
+@pytest.mark.parametrize(("address", "levels"), [("10.0.0.2", ["warning"]), ("10.0.0.3", [])])
+def test_an_arm_that_two_robots_command(address: str, levels: list[str], run: Graph) -> None:
+    made = run(
+        publisher("/robot1", robot_description=ARM % "10.0.0.2"),
+        publisher("/robot2", robot_description=ARM % address),
+    )
+    told = [it for it in diagnose(made).findings if it.code == "MB412"]
+    assert [it.level for it in told] == levels
+    assert {(it.robot, it.node) for it in told} <= {("robot2", "/robot2/rsp")}
+
+
+CLASSIC = """<robot name="r"><link name="base_link"/><gazebo>
+<plugin name="joints" filename="libgazebo_ros_joint_state_publisher.so"><ros>
+<namespace>/robot1</namespace>
+<remapping>~/out:=joint_states</remapping></ros></plugin>
+<plugin name="control" filename="libgazebo_ros2_control.so"><ros>
+<namespace>/robot1</namespace></ros></plugin>
+</gazebo></robot>"""
+
+
+def test_classic_makes_a_manager_beside_its_plugins(run: Graph) -> None:
+    """gazebo_ros2_control_plugin.cpp of humble: a node with the plugin's name, and one called
+    controller_manager. Which way ``~/out`` goes is not in the rule."""
+    state = node("robot_state_publisher/robot_state_publisher", "state", robot_description=CLASSIC)
+    words = ("-entity", "robot1", "-topic", "/robot1/robot_description")
+    spawn = node("gazebo_ros/spawn_entity.py", "spawn", arguments=words)
+    ends = run(state, spawn)
+    assert "/robot1/controller_manager" in {it.name for it in ends.nodes}
+    assert all(it.role for it in ends.ends)

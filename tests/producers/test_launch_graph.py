@@ -113,6 +113,7 @@ def test_includes_get_their_arguments_and_conditions_decide(tmp_path: Path) -> N
     assert (Path(found.place.file).name, found.place.line) == ("inner.launch.xml", 4)
 
 
+@pytest.mark.slow
 def test_components_are_in_their_container(tmp_path: Path) -> None:
     graph = read(
         tmp_path,
@@ -136,6 +137,7 @@ def test_components_are_in_their_container(tmp_path: Path) -> None:
     assert {first.container, second.container} == {"/robot1/box"}
 
 
+@pytest.mark.slow
 def test_functions_run_and_what_starts_later_says_so(tmp_path: Path) -> None:
     graph = read(
         tmp_path,
@@ -231,6 +233,7 @@ def generate_launch_description():
 """
 
 
+@pytest.mark.slow
 def test_a_timer_knows_the_folder_of_its_launch_file(tmp_path: Path) -> None:
     """It keeps the locals of its place (timer_action.py), an event handler does not."""
     inner = 'Node(package="acme", executable="d", arguments=[ThisLaunchFileDir()])'
@@ -238,6 +241,7 @@ def test_a_timer_knows_the_folder_of_its_launch_file(tmp_path: Path) -> None:
     assert one(graph).arguments == (str(tmp_path),)
 
 
+@pytest.mark.slow
 def test_a_timer_that_starts_itself_again_is_told(tmp_path: Path) -> None:
     file = tmp_path / "again.launch.py"
     file.write_text(AGAIN)
@@ -247,6 +251,7 @@ def test_a_timer_that_starts_itself_again_is_told(tmp_path: Path) -> None:
     assert 1 < len(graph.nodes) < 100
 
 
+@pytest.mark.slow
 def test_a_configuration_that_is_gone_at_an_event_is_told(tmp_path: Path) -> None:
     late = 'Node(package="acme", executable="e", namespace=LaunchConfiguration("robot"))'
     event = f"RegisterEventHandler(OnProcessExit(on_exit=[{late}]))"
@@ -258,6 +263,7 @@ def test_a_configuration_that_is_gone_at_an_event_is_told(tmp_path: Path) -> Non
     )
 
 
+@pytest.mark.slow
 def test_what_starts_later_is_outside_the_group_that_it_stands_in(tmp_path: Path) -> None:
     """launch leaves the scope of a group before any event (LaunchService, GroupAction)."""
     graph = read(
@@ -274,6 +280,7 @@ def test_what_starts_later_is_outside_the_group_that_it_stands_in(tmp_path: Path
     assert found == {"n": "/robot1", "e": "/robot1", "t": "/"}
 
 
+@pytest.mark.slow
 def test_a_node_without_its_parameter_file_is_known(tmp_path: Path) -> None:
     """launch_ros warns of the file and starts the node (``_perform_substitutions`` of Node)."""
     graph = read(tmp_path, 'Node(package="acme", executable="d", parameters=["none.yaml"]),')
@@ -281,6 +288,7 @@ def test_a_node_without_its_parameter_file_is_known(tmp_path: Path) -> None:
     assert ([it.parameters for it in graph.notes], graph.whole) == ([True], True)
 
 
+@pytest.mark.slow
 def test_nothing_is_started(tmp_path: Path) -> None:
     made = tmp_path / "made"
     found = one(
@@ -296,6 +304,7 @@ def test_nothing_is_started(tmp_path: Path) -> None:
     assert any("rate: 1" in it.text for it in found.parameters)
 
 
+@pytest.mark.slow
 def test_a_missing_package_is_named_and_found_in_its_sources(tmp_path: Path) -> None:
     share = 'FindPackageShare("acme_bringup")'
     include = f'        IncludeLaunchDescription([{share}, "/launch/a.launch.py"]),'
@@ -311,6 +320,7 @@ def test_a_missing_package_is_named_and_found_in_its_sources(tmp_path: Path) -> 
     assert found.place[:2] == (str(sources / "launch" / "a.launch.py"), NAMES + 1)
 
 
+@pytest.mark.sample(4)
 @pytest.mark.parametrize(
     ("text", "said"),
     [
@@ -331,11 +341,13 @@ def test_a_launch_file_that_cannot_be_read_is_one_line(
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.slow
 def test_a_launch_without_nodes_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="it starts no node"):
         read(tmp_path, '        Node(package="a", executable="b", condition=IfCondition("0")),')
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not without(), reason="launch_ros is here")
 @pytest.mark.skipif(not without(), reason="launch is here")
 def test_without_launch_a_stand_in_reads_and_says_so(
@@ -357,6 +369,7 @@ def test_the_command_itself_imports_no_launch() -> None:
     assert "launch_ros" not in sys.modules or not without()
 
 
+@pytest.mark.slow
 def test_a_file_that_is_made_of_another_one_names_it(tmp_path: Path) -> None:
     source = tmp_path / "p.yaml"
     source.write_text("/**:\n  ros__parameters: {rate: $(var rate)}\n")
@@ -370,6 +383,7 @@ def test_a_file_that_is_made_of_another_one_names_it(tmp_path: Path) -> None:
     assert "rate: 5" in given.text
 
 
+@pytest.mark.slow
 def test_the_file_of_a_rewritten_one_is_found(tmp_path: Path) -> None:
     source, name = tmp_path / "p.yaml", repr(str(tmp_path / "p.yaml"))
     source.write_text("/**:\n  ros__parameters: {rate: 5}\n")
@@ -398,6 +412,7 @@ class RewrittenYaml(Substitution):
     assert given.text.startswith("# made\n# made\n")
 
 
+@pytest.mark.slow
 def test_the_files_of_a_spawner_are_its_parameters(tmp_path: Path) -> None:
     source = tmp_path / "p.yaml"
     source.write_text("a:\n  ros__parameters: {type: x/X}\n")
@@ -409,6 +424,7 @@ def test_the_files_of_a_spawner_are_its_parameters(tmp_path: Path) -> None:
     assert found.arguments[0] == "a"
 
 
+@pytest.mark.slow
 def test_a_launch_file_sees_the_command_line_of_ros2_launch(tmp_path: Path) -> None:
     """As nav2_common's ParseMultiRobotPose looks at it."""
     file = tmp_path / "bringup.launch.py"
@@ -425,6 +441,7 @@ def test_a_launch_file_sees_the_command_line_of_ros2_launch(tmp_path: Path) -> N
     assert [it.namespace for it in launch_graph(order).nodes] == ["/r1", "/r2"]
 
 
+@pytest.mark.slow
 def test_the_text_of_a_file_that_the_launch_makes_is_kept(tmp_path: Path) -> None:
     made = "tempfile.NamedTemporaryFile('w', suffix='.yaml', delete=False)"
     file = tmp_path / "bringup.launch.py"
@@ -458,6 +475,7 @@ COMMANDS = """\
 """
 
 
+@pytest.mark.slow
 def test_the_output_of_commands_is_known_and_nothing_is_started(tmp_path: Path) -> None:
     file, plain = tmp_path / "rover.urdf.xacro", tmp_path / "plain.txt"
     file.write_text(XACRO)
@@ -515,6 +533,7 @@ def generate_launch_description():
 """
 
 
+@pytest.mark.sample(4)
 @pytest.mark.parametrize(
     ("rules", "code"),
     [("[]", 1), ("[('/tf', 'tf'), ('/tf_static', 'tf_static')]", 0), ("[('/tf', '1tf')]", 3)],
@@ -542,6 +561,7 @@ def test_the_whole_command(
         assert "MG102" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     ["two.launch.py", "three.launch.py", pytest.param("three.launch.xml", marks=in_launch)],
@@ -565,6 +585,7 @@ def test_actions_for_robots_are_read_with_their_names(name: str) -> None:
     assert main(words) == 0
 
 
+@pytest.mark.slow
 def test_files_that_plugins_of_a_description_name_are_kept(tmp_path: Path) -> None:
     """A launch makes them of others, and they are gone when it has been read."""
     file = tmp_path / "controllers.yaml"
@@ -579,3 +600,156 @@ def test_files_that_plugins_of_a_description_name_are_kept(tmp_path: Path) -> No
     )
     ((path, kept),) = found.files
     assert (path, kept.text) == (str(file), file.read_text())
+
+
+# By launch jazzy, substitutions/ and utilities/type_utils.py.
+@pytest.mark.sample(7)
+@pytest.mark.parametrize(
+    ("made", "said"),
+    [
+        ("AndSubstitution('true', '0')", "false"),
+        ("OrSubstitution('false', 'true')", "true"),
+        ("AnySubstitution('false', 'on', '0')", "true"),
+        ("AllSubstitution('true', 'no')", "false"),
+        ("NotSubstitution('1')", "false"),
+        ("EqualsSubstitution('1', 'True')", "true"),
+        ("EqualsSubstitution(2, '2.0')", "true"),
+        ("NotEqualsSubstitution(None, '')", "false"),
+        ("IfElseSubstitution('false', 'a')", ""),
+        ("IfElseSubstitution(EqualsSubstitution('x', 'x'), 'a', 'b')", "a"),
+        ("LocalSubstitution('current_launch_file_path[-3:]')", ".py"),
+        (
+            "[LaunchConfiguration('no', default=5), EnvironmentVariable('NO', default_value='z')]",
+            "5z",
+        ),
+        ("launch_ros.substitutions.Parameter('rate', default=5)", "5"),
+    ],
+)
+def test_a_substitution_has_the_value_that_launch_gives_it(
+    tmp_path: Path, made: str, said: str
+) -> None:
+    node = f"Node(package='a', executable='b', arguments=[{made}]),"
+    file = tmp_path / "bringup.launch.py"
+    file.write_text(f"import launch_ros.substitutions\n{HEAD}{node}\n    ])\n")
+    found = one(launch_graph(LaunchOrder(str(file), (), (), True)))
+    assert found.arguments == (said,)
+
+
+# launch jazzy, actions/append_environment_variable.py, group_action.py (a group pushes them).
+@pytest.mark.slow
+def test_variables_are_those_of_their_group(tmp_path: Path) -> None:
+    graph = read(
+        tmp_path,
+        """
+        SetEnvironmentVariable('HOW', 'a'),
+        GroupAction([
+            AppendEnvironmentVariable('HOW', 'b', separator='-'),
+            AppendEnvironmentVariable('HOW', 'c', prepend=True, separator='+'),
+            Node(package='a', executable='b', name=EnvironmentVariable('HOW')),
+            UnsetEnvironmentVariable('HOW'),
+            Node(package='a', executable='b',
+                 name=EnvironmentVariable('HOW', default_value='none')),
+        ]),
+        Node(package='a', executable='b', name=EnvironmentVariable('HOW')),""",
+    )
+    assert [it.name for it in graph.nodes] == ["c+a-b", "none", "a"]
+
+
+# launch jazzy, group_action.py, reset_launch_configurations.py, unset_launch_configuration.py.
+@pytest.mark.slow
+def test_launch_configurations_are_set_and_forgotten(tmp_path: Path) -> None:
+    said = "Node(package='a', executable='b', name=LaunchConfiguration('x', default='none')),"
+    graph = read(
+        tmp_path,
+        f"""
+        SetLaunchConfiguration('x', 'one'),
+        GroupAction([{said}], forwarding=False),
+        GroupAction([UnsetLaunchConfiguration('x'), {said}]),
+        {said}
+        GroupAction([{said}], scoped=False, launch_configurations={{'x': 'two'}}),
+        {said}
+        ResetLaunchConfigurations({{'x': [LaunchConfiguration('x'), '3']}}),
+        {said}
+        Node(package='a', executable='b', name='equal',
+             condition=LaunchConfigurationEquals('x', 'two3')),
+        Node(package='a', executable='b', name='unset',
+             condition=LaunchConfigurationNotEquals('y', None)),""",
+    )
+    assert [it.name for it in graph.nodes] == [
+        *("none", "none", "one", "two", "two", "two3"),
+        "equal",
+    ]
+
+
+# launch_ros jazzy, utilities/normalize_parameters.py and evaluate_parameters.py.
+@pytest.mark.sample(7)
+@pytest.mark.parametrize(
+    ("given", "kept"),
+    [
+        ("'5'", "5"),
+        ("LaunchConfiguration('n', default='5')", 5),
+        ("['5', LaunchConfiguration('n', default='5')]", 55),
+        ("[1, 2.5]", [1.0, 2.5]),
+        ("['a', '1']", ["a", "1"]),
+        ("['a', [LaunchConfiguration('n', default='b')]]", ["a", "b"]),
+        ("ParameterValue(LaunchConfiguration('n', default='5'), value_type=str)", "5"),
+        ("ParameterValue('1', value_type=str)", "1"),
+    ],
+)
+def test_a_parameter_has_the_type_that_launch_gives_it(
+    tmp_path: Path, given: str, kept: object
+) -> None:
+    found = one(
+        read(
+            tmp_path, f"Node(package='a', executable='b', parameters=[{{'p': {{'q': {given}}}}}]),"
+        )
+    )
+    (text,) = found.parameters
+    values = yaml.safe_load(text.text)["/**"]["ros__parameters"]
+    assert values == {"p.q": kept} and type(values["p.q"]) is type(kept)
+
+
+# launch jazzy, include_launch_description.py: it looks for arguments before anything is started.
+@pytest.mark.slow
+@pytest.mark.parametrize("given", ["", "launch_arguments=[('ip', '1')]"])
+def test_an_include_without_a_required_argument_starts_nothing(tmp_path: Path, given: str) -> None:
+    inner = tmp_path / "inner.launch.py"
+    own = "GroupAction([DeclareLaunchArgument('ip', description='Its address')]),"
+    inner.write_text(f"{HEAD}Node(package='a', executable='b'), {own}\n    ])\n")
+    graph = read(tmp_path, f"IncludeLaunchDescription({str(inner)!r}, {given}),")
+    missing = "missing required argument 'ip' (description: 'Its address')"
+    assert [missing in it.message for it in graph.notes] == ([] if given else [True])
+    assert len(graph.nodes) == bool(given)
+
+
+# launch jazzy, share/launch/frontend/grammar.lark.
+@pytest.mark.slow
+def test_substitutions_in_a_parameter_file_are_read(tmp_path: Path) -> None:
+    (tmp_path / "p.yaml").write_text(
+        "/**:\n  ros__parameters:\n    a: $(var one)\n    b: $(not $(var yes))\n"
+        "    c: \"$(env NOWHERE 'x y')\"\n    d: $(if $(equals $(var one) 1) 'a b' c)\n"
+        "    e: \\$(var one) $x\n"
+    )
+    file = str(tmp_path / "p.yaml")
+    found = one(
+        read(
+            tmp_path,
+            f"""SetLaunchConfiguration('one', '1'), SetLaunchConfiguration('yes', 'true'),
+        Node(package='a', executable='b', parameters=[ParameterFile({file!r}, allow_substs=True)]),""",
+        )
+    )
+    (text,) = found.parameters
+    values = yaml.safe_load(text.text)["/**"]["ros__parameters"]
+    assert values == {"a": 1, "b": False, "c": "x y", "d": "a b", "e": "$(var one) $x"}
+
+
+@pytest.mark.sample(2)
+@pytest.mark.parametrize("coroutine", ["OpaqueCoroutine(coroutine=None)", "launch.LaunchService()"])
+@pytest.mark.skipif(not without(), reason="launch is here")
+def test_what_the_stand_in_does_not_read_has_its_name_in_a_note(
+    tmp_path: Path, coroutine: str
+) -> None:
+    file = tmp_path / "bringup.launch.py"
+    file.write_text(f"import launch\n{HEAD}{coroutine},\n    ])\n")
+    (note,) = launch_graph(LaunchOrder(str(file), (), (), True)).notes
+    assert "OpaqueCoroutine" in note.message or "LaunchService" in note.message

@@ -6,7 +6,8 @@ import pytest
 from launched_nodes import launched, runs, started
 
 from multibot_rewrite.producers.launch.records import ParameterText
-from multibot_rewrite.spelling.transforms import Edge, sent_by
+from multibot_rewrite.spelling.transforms import sent_by
+from multibot_rewrite.system.records import Edge, edge_of
 
 ZEROS = ("0",) * 6
 FILE = "/**:\n  ros__parameters: {frame_id: map, child_frame_id: odom}\n"
@@ -29,7 +30,7 @@ def sends(
     ],
 )
 def test_its_arguments_name_the_frames(words: tuple[str, ...]) -> None:
-    assert sends(*words) == [Edge("odom", "dock", True)]
+    assert sends(*words) == [edge_of("odom", "dock", True)]
 
 
 @pytest.mark.parametrize("words", [(), ("odom", "dock"), (*ZEROS, "odom"), ("--frame-id", "odom")])
@@ -39,8 +40,8 @@ def test_a_frame_that_is_not_named_is_not_known(words: tuple[str, ...]) -> None:
 
 def test_a_component_has_its_frames_as_parameters_and_arguments_come_first() -> None:
     plugin = "tf2_ros::StaticTransformBroadcasterNode"
-    assert sends(executable=plugin, text=FILE) == [Edge("map", "odom", True)]
-    assert sends(*ZEROS, "odom", "dock", text=FILE) == [Edge("odom", "dock", True)]
+    assert sends(executable=plugin, text=FILE) == [edge_of("map", "odom", True)]
+    assert sends(*ZEROS, "odom", "dock", text=FILE) == [edge_of("odom", "dock", True)]
 
 
 def test_a_frame_below_itself_is_sent_by_nobody() -> None:

@@ -5,7 +5,6 @@ The faults come from thought (``graph_faults.py``), what a source lacks from its
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -23,31 +22,20 @@ from multibot_rewrite.producers.bags.recording import RecordedTopic, as_snapshot
 from multibot_rewrite.rules.check import ABSENCE
 from multibot_rewrite.system.json import to_json
 
-# Of each source but a file the fast tests have one row of so many.
-EACH = 4
 NAMED = {it.name: it for it in FAULTS}
 
 
-def rows(names: Iterator[str]) -> list[object]:
-    """Each name with each source."""
-    return [
-        pytest.param(name, source, marks=() if is_fast(at, number) else pytest.mark.slow)
-        for at, name in enumerate(names)
-        for number, source in enumerate(SOURCES)
-    ]
-
-
-def is_fast(row: int, source: int) -> bool:
-    return source == 0 or (row + source) % EACH == 0
-
-
-@pytest.mark.parametrize(("name", "source"), rows(iter(SYSTEMS)))
+@pytest.mark.sample(11)
+@pytest.mark.parametrize("source", SOURCES)
+@pytest.mark.parametrize("name", SYSTEMS)
 def test_a_healthy_system_has_no_finding(name: str, source: str) -> None:
     read = SOURCES[source].read(SYSTEMS[name]())
     assert [str(it) for it in diagnose(read).findings] == []
 
 
-@pytest.mark.parametrize(("name", "source"), rows(iter(NAMED)))
+@pytest.mark.sample(47)
+@pytest.mark.parametrize("source", SOURCES)
+@pytest.mark.parametrize("name", NAMED)
 def test_a_fault_has_its_code_and_cause_in_every_source(name: str, source: str) -> None:
     """Where the source lacks what the fault rests on, it is not made up either."""
     fault = NAMED[name]
@@ -60,6 +48,7 @@ def test_a_fault_has_its_code_and_cause_in_every_source(name: str, source: str) 
     assert {*seen.codes} <= {fault.code, *fault.also}
 
 
+@pytest.mark.sample(17)
 @pytest.mark.parametrize(
     "fault", [it for it in FAULTS if it.system in PLANS], ids=lambda it: it.name
 )
@@ -77,12 +66,14 @@ def test_a_build_reads_it_back(name: str) -> None:
     planned = planned_cell(fault)
     assert planned
     own = {fault.code} if fault.code in planned.codes else {*planned.codes} - LACKS
-    assert own <= {*in_a_build(fault)}
+    codes = {*in_a_build(fault)}
+    assert own <= codes or (fault.code in ABSENCE and LACKS & codes), codes
 
 
+@pytest.mark.slow
 def test_a_whole_fleet_is_silent_when_it_is_read_back() -> None:
-    plan, files = fleet()
-    assert [str(it) for it in read_back(plan, files, OUT)] == []
+    plan, made = fleet()
+    assert [str(it) for it in read_back(plan, made, OUT)] == []
 
 
 def test_there_are_faults_enough_and_no_need_without_a_fault() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,8 @@ from rule_examples import BUILT, COMPANIONS
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
@@ -37,13 +40,26 @@ ROW = """\
   gz_type_name: gz.msgs.LaserScan
   {}
 """
+TREE = """\
+<root BTCPP_format="4">
+  <BehaviorTree ID="Main">
+    {}
+  </BehaviorTree>
+</root>
+"""
+LUA = """\
+options = {{
+  map_frame = "map",
+  tracking_frame = "{}",
+}}
+"""
 # Kind of a file, its text, and the code, line and column of what is wrong in it. What the nodes make
 # of each: robot_localization ros_filter.cpp (frequency, publish_tf), amcl_node.cpp (max_beams is an
 # integer), rcl_validate_topic_name, tf2 validateFrameId, rcl_yaml_param_parser, bridge_config.cpp.
 BROKEN = {
-    "a misspelt parameter": ("params", EKF.format("frequncy: 30.0"), "MB850:3:5"),
-    "a text for a switch": ("params", EKF.format('publish_tf: "yes"'), "MB851:3:17"),
-    "a fraction of a beam": ("params", AMCL.format("max_beams: 60.5"), "MB851:3:16"),
+    "a misspelt parameter": ("params", EKF.format("frequncy: 30.0"), "MB110:3:5"),
+    "a text for a switch": ("params", EKF.format('publish_tf: "yes"'), "MB120:3:17"),
+    "a fraction of a beam": ("params", AMCL.format("max_beams: 60.5"), "MB120:3:16"),
     "a topic with a digit": ("params", AMCL.format("scan_topic: 1scan"), "MB312:3:17"),
     "a misspelt frame": ("params", AMCL.format("base_frame_id: base_lnik"), "MB853:3:20"),
     "a misspelt joint": ("params", ARM.format("left_whel_joint"), "MB854:3:14"),
@@ -67,6 +83,13 @@ BROKEN = {
     "a bridge's key": ("bridge", ROW.format("lazzy: true"), "MB858:5:3"),
     "a bridge's direction": ("bridge", ROW.format("direction: GZ_TO_ROSS"), "MB855:5:14"),
     "a bridge's frame": ("bridge", ROW.format("frame_id: lidar_lnk"), "MB853:5:13"),
+    "a tree's frame": ("tree", TREE.format('<Go global_frame="base_lnik"/>'), "MB853:3:23"),
+    "a tree's slash": ("tree", TREE.format('<Go global_frame="/base_link"/>'), "MB301:3:23"),
+    "a tree's topic": ("tree", TREE.format('<Go topic_name="2d"/>'), "MB312:3:21"),
+    "a tree's robot": ("tree", TREE.format('<Go topic_name="/robot2/scan"/>'), "MB863:3:21"),
+    "Lua's frame": ("lua", LUA.format("base_lnik"), "MB853:3:20"),
+    "Lua's slash": ("lua", LUA.format("/base_link"), "MB301:3:20"),
+    "Lua's space": ("lua", LUA.format("base_link "), "MB865:3:20"),
     "a bridge's topic": ("bridge", ROW.replace("e: scan\n", "e: 2d\n", 1).format(""), "MB312:1:19"),
 }
 
@@ -76,15 +99,26 @@ def places(findings: list[Finding], file: str, rules: set[str]) -> list[str]:
     return [f"{it.code}:{it.line}:{it.column}" for it in ours]
 
 
-def by_both(kind: str, text: str, folder: Path, rules: set[str]) -> tuple[list[str], list[str]]:
-    """What the lint says of a file in the rover's package, and what a build does."""
+def by_both(
+    kind: str,
+    text: str,
+    folder: Path,
+    rules: set[str],
+    beside: Mapping[str, str] = ROVER,
+    distro: str = NEWEST_LTS,
+) -> tuple[list[str], list[str]]:
+    """What the lint says of a file in a package (of the rover, where it has none), and what a build."""
     file, key = COMPANIONS[kind]
-    for name, content in {**ROVER, file: text}.items():
+    for name, content in {**ROVER, **beside, file: text}.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(content)
-    linted = lint_file(str(folder / file), Settings(robots=ROBOTS))
+    linted = lint_file(
+        str(folder / file), Settings(robots=ROBOTS, naming=make_naming("both"), distro=distro)
+    )
     robots = [{"name": it, "description": "urdf/rover.urdf"} for it in ROBOTS]
-    fleet = {"layout": "both", "robots": robots, "companions": {key: file}}
+    params = [it for it in beside if it.endswith(".yaml")]
+    companions = {"params": params, key: file} if params else {key: file}
+    fleet = {"layout": "both", "robots": robots, "companions": companions, "distro": distro}
     (folder / "fleet.yaml").write_text(yaml.safe_dump(fleet))
     built = make_outputs(plan_fleet(read_fleet(str(folder / "fleet.yaml"), "", {}))).findings
     return places(linted, file, rules), places(list(built), file, rules)
@@ -95,20 +129,23 @@ IN_BOTH = [it for it in EVERY if BUILT not in it.options]
 CODES = {it.code for it in (*EVERY, *SHARED)}
 
 
+@pytest.mark.sample(17)
 @pytest.mark.parametrize("name", BROKEN)
 def test_lint_and_build_say_the_same(name: str, tmp_path: Path) -> None:
     kind, text, expected = BROKEN[name]
     assert by_both(kind, text, tmp_path, CODES) == ([expected], [expected])
 
 
+@pytest.mark.sample(8)
 @pytest.mark.parametrize("rule", IN_BOTH, ids=lambda it: it.code)
 def test_an_example_is_found_by_both(rule: Rule, tmp_path: Path) -> None:
-    linted, built = by_both(rule.formats[0], rule.bad, tmp_path, {rule.code})
+    distro = str(rule.options.get("distro", NEWEST_LTS))
+    linted, built = by_both(rule.formats[0], rule.bad, tmp_path, {rule.code}, rule.beside, distro)
     assert linted == built
     assert [int(it.split(":")[1]) for it in built] == [rule.line]
 
 
 def test_a_comment_silences_both(tmp_path: Path) -> None:
     kind, text, _ = BROKEN["a misspelt parameter"]
-    text = text.replace("30.0", "30.0  # urdf-lint: ignore MB850 - ours")
+    text = text.replace("30.0", "30.0  # urdf-lint: ignore MB110 - ours")
     assert by_both(kind, text, tmp_path, CODES) == ([], [])

@@ -12,13 +12,14 @@ import pytest
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.base.rosnames import bind, parse_remap, resolve_bound
+from multibot_rewrite.fleet.checks.meeting import with_meetings
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import load_stack
 from multibot_rewrite.live.rehearsal import stub_nodes
-from multibot_rewrite.spelling.applied_rules import running_nodes
 from multibot_rewrite.spelling.records import NodeTable, Table
-from multibot_rewrite.spelling.started import arguments, started
 from multibot_rewrite.spelling.table import build_table
+from multibot_rewrite.spelling.way_checks import running_nodes
+from multibot_rewrite.spelling.ways import arguments, started
 
 ROBOTS = ("robot1", "robot2")
 
@@ -31,6 +32,7 @@ def found(table: Table, node: str) -> NodeTable:
     return next(it for it in table.nodes if it.node == node and it.robot == "robot1")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("release", RELEASES)
 @pytest.mark.parametrize("stack", ["nav2", "nav2_composed"])
 def test_a_costmap_keeps_its_name_and_its_server_has_a_namespace(release: str, stack: str) -> None:
@@ -43,6 +45,7 @@ def test_a_costmap_keeps_its_name_and_its_server_has_a_namespace(release: str, s
     assert table.problems == made(release, "no_robot_state_publisher").problems
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("release", RELEASES)
 @pytest.mark.parametrize("stack", ["nav2", "nav2_composed"])
 def test_topics_of_a_costmap_are_those_that_others_use(release: str, stack: str) -> None:
@@ -69,6 +72,7 @@ def test_topics_of_a_costmap_are_those_that_others_use(release: str, stack: str)
     assert name(costmap, "/tf") == name("amcl", "/tf") == "/tf/robot1"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("release", RELEASES)
 def test_the_lifecycle_manager_finds_a_server_in_its_namespace(release: str) -> None:
     rules = {
@@ -96,8 +100,10 @@ def test_a_shared_name_stays_the_same_from_a_namespace() -> None:
 
 def test_nodes_of_two_robots_with_one_name_are_reported() -> None:
     nodes = [NodeFacts("driver_left", "acme", ()), NodeFacts("driver", "acme", ())]
-    table = build_table(("robot1", "left_robot1"), nodes, make_naming("L4"), release="jazzy")
-    assert [it.code for it in table.problems] == ["MR106"]
+    naming = make_naming("L4")
+    table = build_table(("robot1", "left_robot1"), nodes, naming, release="jazzy")
+    table = with_meetings(table, (), naming)
+    assert [it.code for it in table.problems] == ["MG301"]
     assert "/driver_left_robot1" in table.problems[0].message
 
 
@@ -120,6 +126,7 @@ def test_a_rehearsal_places_a_costmap_as_its_code_does() -> None:
     assert not any("__node" in word for word in own.arguments)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("release", "rule"),
     [("jazzy", None), ("kilted", "/speed_limit/robot1"), ("lyrical", "/speed_limit/robot1")],
@@ -132,3 +139,15 @@ def test_a_name_that_is_joined_with_the_namespace_above(release: str, rule: str 
     assert rules["speed_limit"] == "/global_costmap/speed_limit/robot1"
     server = {it.source: it.target for it in found(table, "controller_server").rules}
     assert server["speed_limit"] == "/speed_limit/robot1"
+
+
+@pytest.mark.parametrize("release", ["humble", "jazzy", "lyrical"])
+def test_a_shared_map_reaches_a_costmap_in_its_namespace(release: str) -> None:
+    """Its layer asks for /robot1/map (nav2_costmap_2d layer.cpp, joinWithParentNamespace)."""
+    naming = make_naming("both", shared_topics=["map"])
+    table = build_table(ROBOTS, load_stack("nav2", release), naming, release=release)
+    rules = {it.source: it.target for it in found(table, "global_costmap/global_costmap").rules}
+    assert rules["/robot1/map"] == "/map"
+    alone = build_table(ROBOTS, load_stack("nav2", release), make_naming("both"), release=release)
+    own = {it.source: it.target for it in found(alone, "global_costmap/global_costmap").rules}
+    assert "/robot1/map" not in own

@@ -12,16 +12,15 @@ import yaml
 from lxml import etree
 from paths import FIXTURES
 
-from multibot_rewrite.base.findings.finding import ERROR
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description.library import rewrite_all
 from multibot_rewrite.description.readback.reading import Reading, read
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.fleet.checks.meeting import with_meetings
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
-from multibot_rewrite.spelling.plugin_nodes import plugin_nodes
 from multibot_rewrite.spelling.records import NodeRule, NodeTable, Table
-from multibot_rewrite.spelling.table import build_table
+from multibot_rewrite.spelling.table import build_table, plugin_nodes
 from multibot_rewrite.spelling.table_formats import FORMS, as_data
 from multibot_rewrite.system.records import (
     ACTION,
@@ -179,7 +178,7 @@ def test_a_shared_node_runs_once_as_it_is() -> None:
 @pytest.mark.parametrize("affix", ["prefix", "postfix"])
 def test_robots_meet_in_shared_names_only(layout: str, affix: str) -> None:
     found = table(layout, affix=affix)
-    assert [problem for problem in found.problems if problem.level == ERROR] == []
+    assert with_meetings(found, (), make_naming(layout)).problems == found.problems
     ours, theirs = ({n.name for n in found.names if n.robot == robot} for robot in ROBOTS)
     shared = {"/clock", "/rosout"} | ({"/tf", "/tf_static"} if layout == "L2" else set())
     assert ours & theirs == shared
@@ -255,23 +254,20 @@ def plugin(*given: tuple[str, str]) -> dict[str, list[tuple[NodeFacts, NodeTable
     ("given", "codes"),
     [
         pytest.param([("/scan", "scan")], [], id="right"),
-        pytest.param([], ["MR102"], id="no-rule"),
-        pytest.param([("/scan", "/all/scan")], ["MR102"], id="joins-two-robots"),
+        pytest.param([], ["MG320"], id="no-rule"),
+        pytest.param([("/scan", "/all/scan")], ["MG320"], id="joins-two-robots"),
         pytest.param([("/scna", "x"), ("/scan", "scan")], ["MR103"] * 2, id="matches-nothing"),
         pytest.param([("/scan", "scan"), ("/scan", "x")], ["MR104"] * 2, id="shadowed"),
     ],
 )
 def test_rules_that_do_harm_or_nothing(given: list[tuple[str, str]], codes: list[str]) -> None:
-    found = build_table(ROBOTS, (), make_naming("L2"), plugin(*given), release=NEWEST_LTS)
+    naming = make_naming("L2")
+    found = build_table(ROBOTS, (), naming, plugin(*given), release=NEWEST_LTS)
+    found = with_meetings(found, (), naming)
     assert [problem.code for problem in found.problems] == codes
 
 
-def test_one_robot_alone_is_held_against_another() -> None:
-    alone = {"robot1": plugin()["robot1"]}
-    assert [
-        p.code
-        for p in build_table(["robot1"], (), make_naming("L2"), alone, release=NEWEST_LTS).problems
-    ] == []
+def test_one_robot_alone_has_no_other_in_its_table() -> None:
     found = build_table(["robot1"], (DRIVER,), make_naming("L2"), release=NEWEST_LTS)
     assert {name.robot for name in found.names} == {"robot1"}
 
@@ -292,7 +288,7 @@ def test_plugins_of_a_rewritten_description_keep_robots_apart() -> None:
         for one in rewrite_all(source, ROBOTS, layout=layout):
             plugins[one.robot] = list(plugin_nodes(reading(one.data), one.robot))
         found = build_table(ROBOTS, (), make_naming(layout), plugins, release=NEWEST_LTS)
-        assert [p for p in found.problems if p.level == ERROR] == [], layout
+        assert with_meetings(found, (), make_naming(layout)).problems == (), layout
         drive = [n for n in found.names if n.robot == "robot1" and n.endpoint.name == "cmd_vel"]
         assert [n.name for n in drive] == [
             "/cmd_vel/robot1" if layout == "L4" else "/robot1/cmd_vel"

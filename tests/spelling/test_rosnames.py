@@ -69,6 +69,7 @@ def test_a_refusal_says_what_is_wrong_and_what_would_do(
     assert "\n" not in message
 
 
+@pytest.mark.slow
 @given(st.text(max_size=8) | st.text("1_", min_size=240, max_size=260))
 def test_a_proposal_is_always_valid(name: str) -> None:
     proposal = propose_token(name)

@@ -14,8 +14,8 @@ from paths import ROBOTS
 from multibot_rewrite.base.policy import Policy
 from multibot_rewrite.fleet.fleet import make_fleet
 from multibot_rewrite.spelling.records import Table
-from multibot_rewrite.spelling.started import arguments, started
 from multibot_rewrite.spelling.table_formats import FORMS
+from multibot_rewrite.spelling.ways import arguments, started
 
 GZ = str(ROBOTS / "rover_gz.urdf")
 
@@ -99,6 +99,7 @@ def test_the_launch_form_has_each_key_once_and_what_is_started_alone(release: st
     assert spawner["arguments"] == ["diff_drive_controller", *rules]
 
 
+@pytest.mark.slow
 def test_the_data_says_where_each_rule_stands() -> None:
     found = yaml.safe_load(FORMS["yaml"](table("lyrical", "gz_ros2_control", "nav2")))
     assert found["distro"] == "lyrical"

@@ -8,6 +8,7 @@ import pytest
 
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.fleet.checks.meeting import with_meetings
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.spelling.records import NodeTable, Table
 from multibot_rewrite.spelling.table import build_table
@@ -32,7 +33,8 @@ def node(name: str, *endpoints: Endpoint) -> NodeFacts:
 
 
 def table(layout: str, *nodes: NodeFacts) -> Table:
-    return build_table(ROBOTS, nodes, make_naming(layout), release=NEWEST_LTS)
+    naming = make_naming(layout)
+    return with_meetings(build_table(ROBOTS, nodes, naming, release=NEWEST_LTS), (), naming)
 
 
 def rules(made: Table, robot: str = "robot1") -> dict[str, str]:
@@ -113,14 +115,15 @@ def alike(*pairs: tuple[str, Sequence[Endpoint]]) -> Table:
         robot: [(node(f"{robot}_plugin", *ends), NodeTable(robot, "p", "/", f"{robot}_plugin", ()))]
         for robot, ends in pairs
     }
-    return build_table(ROBOTS, (), make_naming("both"), plugins, release=NEWEST_LTS)
+    naming = make_naming("both")
+    return with_meetings(build_table(ROBOTS, (), naming, plugins, release=NEWEST_LTS), (), naming)
 
 
 def both(first: Endpoint, second: Endpoint) -> list[tuple[str, str]]:
     return problems(alike(("robot1", [first]), ("robot2", [second])))
 
 
-MEETING = [("MR102", "/robot2_plugin")]
+DATA, SERVERS = [("MG320", "/robot1_plugin")], [("MG305", "/robot1_plugin")]
 
 
 @pytest.mark.parametrize("name", ["/reset", "reset"])
@@ -131,17 +134,19 @@ def test_a_topic_and_a_service_of_one_name_do_not_meet(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("first", "second"),
+    ("first", "second", "found"),
     [
-        (Endpoint(TOPIC, PUBLISHES, "/reset"), Endpoint(TOPIC, SUBSCRIBES, "/reset")),
-        (Endpoint(SERVICE, SERVES, "/reset"), Endpoint(SERVICE, CALLS, "/reset")),
-        (Endpoint(ACTION, SERVES, "/reset"), Endpoint(ACTION, CALLS, "/reset")),
+        (Endpoint(TOPIC, PUBLISHES, "/reset"), Endpoint(TOPIC, SUBSCRIBES, "/reset"), DATA),
+        (Endpoint(SERVICE, SERVES, "/reset"), Endpoint(SERVICE, CALLS, "/reset"), SERVERS),
+        (Endpoint(ACTION, SERVES, "/reset"), Endpoint(ACTION, CALLS, "/reset"), SERVERS),
     ],
 )
-def test_names_of_one_kind_meet(first: Endpoint, second: Endpoint) -> None:
-    assert both(first, second) == MEETING
+def test_names_of_one_kind_meet(
+    first: Endpoint, second: Endpoint, found: list[tuple[str, str]]
+) -> None:
+    assert both(first, second) == found
 
 
 def test_a_topic_and_a_service_that_each_meet_are_two_problems() -> None:
     ends = [Endpoint(TOPIC, PUBLISHES, "/reset"), Endpoint(SERVICE, SERVES, "/reset")]
-    assert problems(alike(("robot1", ends), ("robot2", ends))) == MEETING * 2
+    assert problems(alike(("robot1", ends), ("robot2", ends))) == DATA + SERVERS

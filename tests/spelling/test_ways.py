@@ -13,9 +13,9 @@ from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import RELEASES, has_release
 from multibot_rewrite.knowledge.controller_ways import CONTROLLER_WAYS
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
-from multibot_rewrite.spelling.applied_rules import RunningNode, running_nodes
 from multibot_rewrite.spelling.records import Home, NodeRule, NodeTable, Table
 from multibot_rewrite.spelling.table import build_table
+from multibot_rewrite.spelling.way_checks import RunningNode, running_nodes
 from multibot_rewrite.spelling.ways import deliveries, rules_by_taker
 from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SUBSCRIBES, TOPIC
 

@@ -7,7 +7,7 @@ from node_answers import told
 
 from multibot_rewrite.base.findings.finding import WARNING
 from multibot_rewrite.system.answers import Answer, with_answers
-from multibot_rewrite.system.records import Heard
+from multibot_rewrite.system.records import DEVICE, Address, Heard, Lookup
 
 MANAGERS = "/robot1/controller_manager", "/robot1/gz/controller_manager"
 
@@ -79,5 +79,25 @@ def state_rows() -> tuple[Fault, ...]:
             "controllers that no spawner activated", nav,
             answered(told(MANAGERS[0], controllers=(spare,))),
             "MG513", ("arm_controller (inactive)", "spawners"), WARNING,
+        ),
+    )  # fmt: skip
+
+
+def file_rows() -> tuple[Fault, ...]:
+    """What only files of the robots say."""
+    arms = tuple(
+        Address(DEVICE, "robot_ip", "10.0.0.2", f"/{it}/robot_state_publisher")
+        for it in ("robot1", "robot2")
+    )
+    asked = Lookup("/robot1/bt_navigator", "base_link")
+    return (
+        Fault(
+            "two arms at one address", nav, lambda it: it._replace(addresses=arms),
+            "MB412", ("/robot2/robot_state_publisher", "one device has one driver"), WARNING,
+        ),
+        Fault(
+            "bt_navigator asks for the bare base_link", shared_tf,
+            lambda it: it._replace(lookups=(asked,)),
+            "MG413", ("/robot1/bt_navigator", "use a frame that is sent"), WARNING,
         ),
     )  # fmt: skip

@@ -15,11 +15,10 @@ from graph_faults import needed
 from paths import ROOT
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.fleet.build import Outputs, make_outputs
 from multibot_rewrite.fleet.checks.read_back import read_back
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
-from multibot_rewrite.fleet.outputs.output_file import OutputFile
 from multibot_rewrite.rules.check import ABSENCE
 
 LAUNCH, OUT = "fleet.launch.py", "/anywhere/out"
@@ -37,21 +36,27 @@ Edit = Callable[[str, str], str]
 
 
 @cache
-def fleet() -> tuple[FleetPlan, tuple[OutputFile, ...]]:
+def fleet() -> tuple[FleetPlan, Outputs]:
     """Two robots with Nav2, as `build` makes them."""
     with TemporaryDirectory() as folder:
         file = Path(folder) / "fleet.yaml"
         file.write_text(FLEET)
         plan = plan_fleet(read_fleet(str(file), "", os.environ), trust=True)
-        return plan, tuple(make_outputs(plan, OUT).files)
+        return plan, make_outputs(plan, OUT)
 
 
 def read(edit: Edit) -> list[Finding]:
     """What is found of the files with a fault in them."""
-    plan, files = fleet()
-    texts = {it.path: edit(it.path, it.data.decode()) for it in files}
-    assert any(texts[it.path] != it.data.decode() for it in files), "nothing was changed"
-    return read_back(plan, [it._replace(data=texts[it.path].encode()) for it in files], OUT)
+    plan, made = fleet()
+    return read_back(plan, edited(made, edit), OUT)
+
+
+def edited(made: Outputs, edit: Edit) -> Outputs:
+    """The outputs of a build with other texts in their files."""
+    texts = {it.path: edit(it.path, it.data.decode()) for it in made.files}
+    assert any(texts[it.path] != it.data.decode() for it in made.files), "nothing was changed"
+    files = (it._replace(data=texts[it.path].encode()) for it in made.files)
+    return made._replace(files=tuple(files))
 
 
 @cache
@@ -66,6 +71,11 @@ def why_not(fault: Fault) -> str:
     if lacking:
         return f"no {lacking}"
     return "others may start it" if fault.code in ABSENCE else "not of a fleet"
+
+
+def in_file(path: str, old: str, new: str) -> Edit:
+    """Another word in one file, where it is first."""
+    return lambda it, text: text.replace(old, new, 1) if it == path else text
 
 
 def in_launch(change: Callable[[str], str]) -> Edit:
@@ -184,6 +194,26 @@ BUILT: Mapping[str, Edit] = {
             )
             for it in ("robot1", "robot2")
         )
+    ),
+    "a costmap's relative scan": in_file(
+        "robot2/nav2_params.yaml", "topic: /robot2/scan", "topic: scan"
+    ),
+    "a costmap's source misspelled": in_file(
+        "robot2/nav2_params.yaml", "topic: /robot2/scan", "topic: /robot2/scann"
+    ),
+    "the namespace twice: /robot2/robot2/scan": in_file(
+        "robot2/nav2_params.yaml", "scan_topic: scan", "scan_topic: robot2/scan"
+    ),
+    "the namespace twice in a costmap": in_file(
+        "robot2/nav2_params.yaml", "topic: /robot2/scan", "topic: robot2/scan"
+    ),
+    "a lifecycle manager in the root": node(
+        "robot2",
+        "lifecycle_manager_navigation",
+        lambda it: it.replace('            namespace="/robot2",\n', ""),
+    ),
+    "amcl is not on simulated time": node(
+        "robot1", "amcl", lambda it: it.replace("CLOCK]", 'CLOCK, {"use_sim_time": False}]')
     ),
     "the controller sends past collision_monitor": node(
         "robot2", "controller_server", without("cmd_vel")

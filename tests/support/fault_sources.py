@@ -61,6 +61,9 @@ TRANSFORMS, SENDERS, READERS, HEADERS, STATES, PARAMETERS, QOS, HASHES, NODES, S
     *("transforms", "who sends", "readers", "headers", "states"),
     *("parameters", "quality of service", "versions of types", "nodes", "services"),
 )
+# What only the parameters and descriptions of nodes tell.
+LOOKUPS, ADDRESSES = "look-ups of nodes", "addresses"
+IN_FILES = (LOOKUPS, ADDRESSES)
 
 
 class Source(NamedTuple):
@@ -252,22 +255,34 @@ def launched(graph: System) -> tuple[tuple[LaunchedNode, ...], Mapping[str, Node
     for number, name in enumerate(it.name for it in graph.nodes):
         mine, sent = ends.get(name, []), edges.get(name, [])
         simulated = told.get(name, any(it.name == CLOCK for it in mine))
-        one = _launched(name, mine, sent, number, simulated)
+        asked = {f"asked_{at}": it.frame for at, it in enumerate(graph.lookups) if it.node == name}
+        held = {it.name: it.value for it in graph.addresses if it.node == name}
+        one = _launched(name, mine, sent, number, simulated, asked, held)
         made.append(one)
-        facts[one.executable] = _facts(one, mine, sent)
+        own = _facts(one, mine, sent)
+        frames = tuple(FrameParameter(key, it, given=True) for key, it in asked.items())
+        facts[one.executable] = own._replace(frames=(*own.frames, *frames))
     return tuple(made), facts
 
 
 def _launched(
-    name: str, ends: list[End], edges: list[Edge], number: int, simulated: bool
+    name: str,
+    ends: list[End],
+    edges: list[Edge],
+    number: int,
+    simulated: bool,
+    asked: Mapping[str, str],
+    held: Mapping[str, str],
 ) -> LaunchedNode:
+    """A node, with the frames that it is ``asked`` for, and what the hardware of its description
+    ``held``."""
     space, _, last = name.rpartition("/")
     # No rule leads an action elsewhere (rcl_action action_client.c): its name is in the code.
     outside = [it for it in ends if not it.name.startswith(f"{space}/") and it.kind != ACTION]
     rules = tuple((_code_name(it), it.name) for it in outside)
-    values = {SIM_TIME: "true"} if simulated else {}
+    values = {**({SIM_TIME: "true"} if simulated else {}), **asked}
     if _is_description(ends):
-        values["robot_description"] = repr(_urdf(edges))
+        values["robot_description"] = repr(_urdf(edges, held))
     package = "robot_state_publisher" if _is_description(ends) else f"package_{number}"
     own = "".join(f"    {key}: {value}\n" for key, value in values.items())
     text = f"/**:\n  ros__parameters:\n{own}" if values else ""
@@ -291,13 +306,16 @@ def _is_description(ends: list[End]) -> bool:
     )
 
 
-def _urdf(edges: list[Edge]) -> str:
+def _urdf(edges: list[Edge], held: Mapping[str, str]) -> str:
+    params = "".join(f'<param name="{key}">{it}</param>' for key, it in held.items())
+    driver = f"<hardware><plugin>acme/Arm</plugin>{params}</hardware>"
+    control = f'<ros2_control name="arm" type="system">{driver}</ros2_control>' if held else ""
     joints = "".join(
         f'<joint name="j{at}" type="{"fixed" if it.static else "continuous"}">'
         f'<parent link="{it.parent}"/><child link="{it.child}"/></joint>'
         for at, it in enumerate(edges)
     )
-    return f'<robot name="r">{joints}</robot>'
+    return f'<robot name="r">{joints}{control}</robot>'
 
 
 def _facts(node: LaunchedNode, ends: list[End], edges: list[Edge]) -> NodeFacts:
@@ -336,8 +354,10 @@ def _edges_by_sender(graph: System) -> dict[str, list[Edge]]:
 
 SOURCES: Mapping[str, Source] = {
     "file": Source(from_file),
-    "Zenoh": Source(from_zenoh, (HEADERS, STATES, PARAMETERS, QOS)),
-    "rosgraph": Source(from_rosgraph, (TRANSFORMS, HEADERS, STATES, PARAMETERS)),
-    "recorded": Source(from_bag, (NODES, READERS, SERVICES, SENDERS, STATES, PARAMETERS)),
+    "Zenoh": Source(from_zenoh, (HEADERS, STATES, PARAMETERS, QOS, *IN_FILES)),
+    "rosgraph": Source(from_rosgraph, (TRANSFORMS, HEADERS, STATES, PARAMETERS, *IN_FILES)),
+    "recorded": Source(
+        from_bag, (NODES, READERS, SERVICES, SENDERS, STATES, PARAMETERS, *IN_FILES)
+    ),
     "check-launch": Source(from_launch, (HEADERS, STATES, QOS, HASHES)),
 }

@@ -51,10 +51,12 @@ from multibot_rewrite.system.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
+    Address,
     Edge,
     End,
     Heard,
     Interface,
+    Lookup,
     Node,
     Parameter,
     Qos,
@@ -80,7 +82,9 @@ PLANNED_STATE = re.compile(r"state of (/\S+): (\w+)")
 PLANNED_PARAMETER = re.compile(r"parameter (\w+) of (/\S+): ([\w/]+)")
 HOST = re.compile(r"host of (/\S+): (\w+)")
 MACHINE = re.compile(r"(/\S+) on machine (\d)")
-INTERFACE = re.compile(r"(/\S+) (exports|claims) (command|state) (\S+)")
+INTERFACE = re.compile(r"(/\S+) (exports|claims) (command|state|joint) (\S+)")
+HOLDS = re.compile(r"(/\S+) holds (device|calibration|computer|own) (\S+) (\S+)")
+LOOKS_UP = re.compile(r"(/\S+) looks up (\S+)")
 CONTROLS = re.compile(r"(/\S+) controls (\S+) by (\w+)")
 CAME = re.compile(r"(/\S+) came (\d+) times")
 FRAME_ID = re.compile(r"frame_id (\S+) on (/\S+)")
@@ -162,7 +166,7 @@ def _with_node(plan: System, name: str) -> System:
 def _is_known(line: str) -> bool:
     states = (PLANNED_STATE, PLANNED_PARAMETER, HOST)
     planned = (FRAMES, SHARED, TOPIC_OF, BRIDGED, ONE_OF, ENCLAVE, *states)
-    every = (NODE, TRANSFORM, FRAME_ID, INTERFACE, CAME, *planned, *ANSWERS)
+    every = (NODE, TRANSFORM, FRAME_ID, INTERFACE, HOLDS, LOOKS_UP, CAME, *planned, *ANSWERS)
     return any(it.fullmatch(line) for it in every)
 
 
@@ -242,6 +246,10 @@ def read_graph(lines: list[str]) -> System:
         interfaces=tuple(
             Interface(kind, name, node, role) for node, role, kind, name in _words(INTERFACE, lines)
         ),
+        addresses=tuple(
+            Address(kind, name, value, node) for node, kind, name, value in _words(HOLDS, lines)
+        ),
+        lookups=tuple(Lookup(node, frame) for node, frame in _words(LOOKS_UP, lines)),
     )
     return with_answers(seen, read_states(lines))
 

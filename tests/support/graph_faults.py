@@ -6,12 +6,14 @@ to it, the code that has to be found, and words that the finding must have: who 
 
 from __future__ import annotations
 
-from answered_faults import header_rows, state_rows
+from answered_faults import file_rows, header_rows, state_rows
 from chain_faults import chain_rows
 from fault_changes import Fault
 from fault_sources import (
+    ADDRESSES,
     HASHES,
     HEADERS,
+    LOOKUPS,
     NODES,
     PARAMETERS,
     QOS,
@@ -33,6 +35,7 @@ FAULTS = (
     *header_rows(),
     *state_rows(),
     *chain_rows(),
+    *file_rows(),
 )
 # What a fault with this code cannot be seen without.
 NEEDS = {
@@ -47,6 +50,8 @@ NEEDS = {
     **dict.fromkeys(("MG511", "MG512", "MG513"), (STATES,)),
     "MG307": (QOS, READERS),
     "MG514": (PARAMETERS,),
+    "MB412": (ADDRESSES,),
+    "MG413": (LOOKUPS, TRANSFORMS),
 }
 # Of single faults.
 MORE_NEEDS = {"two versions of a message": (HASHES, READERS)}

@@ -34,8 +34,8 @@ them; where a source cannot show it, the cell says what is not in the source.
 - *Zenoh*: `check --zenoh`, by the tokens of a router. *rosgraph*: a message of `rosgraph_msgs`.
   *recorded*: a bag. *check-launch*: a launch file that starts these nodes.
 - *build*: the fault put into the files of a built fleet (`tests/support/built_faults.py`), and what
-  `build` says of the folder that it reads back. *others may start it*: what is missing there is no
-  fault yet. *not of a fleet*: a tool that somebody starts, or another fleet.
+  `build` says of the folder that it reads back. *others may start it*: what a simulator, a driver or
+  somebody by hand may still give. *not of a fleet*: a tool that somebody starts, or another fleet.
 """
 # The systems that are those of a plan.
 PLANS = {

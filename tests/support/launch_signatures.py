@@ -1,9 +1,9 @@
-"""What classes of launch and launch_ros take, by the real ones: fixtures/launch_signatures.json.
+"""What launch and launch_ros have, and what their classes take: fixtures/launch_signatures.json.
 
     python tests/support/launch_signatures.py > fixtures/launch_signatures.json
 
-Needs launch and launch_ros. Without them the stand-in has to have these signatures, and the tests
-refuse by this table the options that launch_ros would refuse.
+Needs launch and launch_ros. Without them the stand-in has to have these names and signatures, and the
+tests refuse by this table the options that launch_ros would refuse.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from importlib import import_module
 from typing import Any
 
 from multibot_rewrite.producers.launch.stand_in import contents
+from multibot_rewrite.producers.launch.stand_in.names import READ
 from multibot_rewrite.producers.launch.stand_in.values import Kept
 
 CLASSES = {
@@ -30,6 +31,9 @@ _MADE = {"self", "cmd", "process_description", "matcher", "action_matcher", "on_
 _MADE |= {"target_action_cls", "target_event_cls"}
 # Newer releases have it.
 _LATER = {"autostart"}
+# Classes that others extend, or that are made for a launch file, and types.
+_NONE = {"Condition", "LaunchDescriptionSource", "StateTransition", "Substitution"}
+_NONE |= {"SomeEntitiesType", "SomeSubstitutionsType"}
 
 
 def options(module: str, name: str) -> list[str]:
@@ -51,10 +55,22 @@ def stand_in() -> dict[str, list[str]]:
 
 
 def _classes() -> Iterator[tuple[str, Any]]:
-    for module, content in contents().items():
-        for name, it in content.items():
-            if module.startswith("launch") and inspect.isclass(it) and name != "Substitution":
+    for module, names in READ.items():
+        for name in names.split() if module.startswith("launch") else ():
+            it = contents()[module][name]
+            if inspect.isclass(it) and not issubclass(it, Exception) and name not in _NONE:
                 yield f"{module}.{name}", it
+
+
+def public_names() -> dict[str, list[str]]:
+    """What each package of the real ones offers, by the modules that a launch file imports from."""
+    found = {}
+    for module in (it for it in READ if it.partition(".")[0] in ("launch", "launch_ros")):
+        real = import_module(module)
+        # launch_ros.utilities promises two that it has not.
+        own = {it: vars(real).get(it) for it in getattr(real, "__all__", ())}
+        found[module] = sorted(it for it in own if own[it] and not inspect.ismodule(own[it]))
+    return found
 
 
 def _taken(kind: Any) -> set[str]:
@@ -67,7 +83,8 @@ def table() -> dict[str, Any]:
     """Options by the name of each class of launch_ros; below ``launch`` those that the stand-in has."""
     real = {name: options(module, name) for module, names in CLASSES.items() for name in names}
     names = (name.rpartition(".") for name, _ in _classes())
-    return {**real, "launch": {".".join((it[0], it[2])): options(it[0], it[2]) for it in names}}
+    made = {".".join((it[0], it[2])): options(it[0], it[2]) for it in names}
+    return {**real, "launch": made, "names": public_names()}
 
 
 if __name__ == "__main__":

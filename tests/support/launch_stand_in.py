@@ -107,8 +107,9 @@ FRONTEND = {
 def install(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let ``import launch`` find this."""
     monkeypatch.setattr(Action, "parse", staticmethod(parse), raising=False)
+    stood_in = contents().keys()
     with standing_in(**{"launch.frontend": FRONTEND}):
-        made = {name: it for name, it in sys.modules.items() if name in contents()}
+        made = {name: it for name, it in sys.modules.items() if name in stood_in}
     for name, module in made.items():
         if not (
             name.startswith("ament") or (name in sys.modules and name.startswith("launch_ros"))

@@ -22,8 +22,7 @@ from rclpy.parameter import Parameter
 from multibot_rewrite.live import stub_nodes
 from multibot_rewrite.live.rehearsal import TF, StubEndpoint, substitute_type
 from multibot_rewrite.producers.ros.worker import Send, run_worker
-from multibot_rewrite.spelling.transforms import Edge
-from multibot_rewrite.system.records import TOPIC
+from multibot_rewrite.system.records import TOPIC, edge_of
 
 SECONDS = 0.1
 # What code adds to the name that a parameter gives, for a second topic (costmap_subscriber.cpp,
@@ -82,9 +81,9 @@ def endpoints(stubs: Any, node: Any, one: dict[str, Any]) -> list[Any]:
     def value(name: str, default: Any = None) -> Any:
         return node.get_parameter(name).value if node.has_parameter(name) else default
 
-    edges = [Edge(value(*parent), value(*child), False) for parent, child in one["sends"]] + list(
-        described(value("robot_description", ""))
-    )
+    edges = [
+        edge_of(value(*parent), value(*child), False) for parent, child in one["sends"]
+    ] + list(described(value("robot_description", "")))
     made: list[Any] = []
     helpers: dict[str, Any] = {}
     for kind, role, name, type_, parameter, helped, by, above in one["endpoints"]:
@@ -149,7 +148,7 @@ def described(text: str) -> Any:
         ends = [joint.find(it) for it in ("parent", "child")]
         if all(it is not None for it in ends):
             parent, child = (it.get("link") for it in ends)
-            yield Edge(parent, child, joint.get("type") == "fixed")
+            yield edge_of(parent, child, joint.get("type") == "fixed")
 
 
 if __name__ == "__main__":

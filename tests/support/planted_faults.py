@@ -9,8 +9,7 @@ from collections.abc import Callable, Iterator
 from lxml import etree
 
 from multibot_rewrite.base.model import Edit
-from multibot_rewrite.description.steps.apply import cut, fill
-from multibot_rewrite.description.steps.template import Template
+from multibot_rewrite.description.steps.apply import Template, cut, fill
 
 # What a text is made of; the first that fits.
 TOKENS = {

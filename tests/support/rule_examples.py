@@ -12,8 +12,8 @@ from graph_examples import read_example, read_system
 
 from multibot_rewrite import RewriteRefused, rewrite_all, strip
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.findings.grouping import grouped
 from multibot_rewrite.base.findings.rule import SRDF, URDF, XACRO, Rule
+from multibot_rewrite.base.findings.selection import grouped
 from multibot_rewrite.base.policy import Policy
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.fleet.build import make_outputs

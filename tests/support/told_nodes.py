@@ -16,9 +16,9 @@ import yaml
 
 from multibot_rewrite.fleet.scripts import LoadedFleet
 from multibot_rewrite.live.rehearsal import StubEndpoint, StubNode, stub_nodes
-from multibot_rewrite.spelling.applied_rules import running_nodes
-from multibot_rewrite.spelling.transforms import Edge, with_odometry
-from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
+from multibot_rewrite.spelling.transforms import with_odometry
+from multibot_rewrite.spelling.way_checks import running_nodes
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Edge, edge_of
 
 Told = Mapping[str, Any]
 ROS_ARGS = "--ros-args"
@@ -154,7 +154,7 @@ def _odometry(name: str, fleet: LoadedFleet) -> Iterator[Edge]:
     for robot in robots or fleet.plan.robots:
         planned = fleet.planned
         _, added = with_odometry(planned.edges, robot.spec.namespace, planned.naming)
-        yield from (Edge(*added.split(" -> "), False) for _ in [added] if added)
+        yield from (edge_of(*added.split(" -> ")) for _ in [added] if added)
 
 
 _TF = "tf2_msgs/msg/TFMessage"

@@ -19,7 +19,7 @@ from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.fleet.outputs.shape_outputs import vendor_commands
-from multibot_rewrite.fleet.robots.with_start_pose_nodes import split_per_robot
+from multibot_rewrite.fleet.robots.robot_groups import split_per_robot
 
 ROBOT, MARK = "robot2", "made"
 

@@ -37,6 +37,7 @@ def lists() -> Iterator[tuple[str, set[str]]]:
                     yield f"{path.relative_to(PACKAGE)}:{node.lineno}", {str(it) for it in words}
 
 
+@pytest.mark.slow
 def test_no_other_list_of_frames_or_of_shared_topics() -> None:
     found = [at for at, words in lists() if words <= FRAME_WORDS or words <= {*EVERYBODYS}]
     assert found == []

@@ -11,11 +11,14 @@ from graph_cases import CASES
 from jsonschema import Draft202012Validator
 from paths import ROOT
 
+from multibot_rewrite import system_of_description
+from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.system.json import from_json, to_json
 from multibot_rewrite.system.records import (
     MAY,
     Controller,
+    Edge,
     Heard,
     Node,
     Parameter,
@@ -34,6 +37,9 @@ ALL = System(
     parameters=(Parameter("/r1/amcl", "use_sim_time", "true"),),
     controllers=(Controller("/r1/controller_manager", "arm", "active", ("j1/position",)),),
     robots=(Robot("r1", ("r1/base_link",), "/r1/tf"),),
+    # A plan: who sends a transform, not on which topic, and what is open.
+    edges=(Edge("r1/base_link", "r1/odom", "", False, ("/r1/ekf",)),),
+    gaps=(Finding("MG102", "warning", "nothing sends /scan", "start a driver", "a.yaml", 3, 1),),
 )
 
 
@@ -41,6 +47,7 @@ def test_the_published_schema_is_that_of_the_records() -> None:
     assert json.loads(TEXT) == schema(), "python -m multibot_rewrite.system.schema > ...schema.json"
 
 
+@pytest.mark.sample(8)
 @pytest.mark.parametrize("path", [f"{it.stem}.json" for it in CASES])
 def test_what_is_written_is_valid(path: str) -> None:
     VALID.validate(json.loads((ROOT / path).read_bytes()))
@@ -51,9 +58,20 @@ def test_every_kind_of_record_is_valid_and_comes_back() -> None:
     assert from_json(to_json(ALL), "g") == ALL
 
 
+def test_a_plan_is_written_as_any_system() -> None:
+    robots, policy = ["robot1", "robot2"], {"layout": "both"}
+    rover = ROOT / "fixtures" / "robots" / "rover.urdf"
+    plan = system_of_description(rover, robots, stacks=["nav2"], policy=policy)
+    assert any(not it.topic for it in plan.edges)
+    VALID.validate(json.loads(to_json(plan)))
+    assert from_json(to_json(plan), "plan") == plan
+
+
 @pytest.mark.parametrize(
     ("key", "value"),
     [
+        ("gaps", [{"code": "MG102", "level": "bad", "message": "m"}]),
+        ("edges", [{"child": "a", "parent": "b", "topic": "tf", "static": True, "publishers": []}]),
         ("nodes", [{"name": "amcl"}]),
         ("nodes", [{"name": "/amcl", "pid": 3}]),
         ("nodes", [{"name": "/amcl", "sure": {"word": "perhaps"}}]),

@@ -54,12 +54,14 @@ def test_every_fact_has_its_source(release: str) -> None:
     assert all(it.place.path and it.place.line > 0 for it in facts(release))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("release", RELEASES)
 def test_every_difference_is_excepted(release: str) -> None:
     new = [it for it in found(release) if not excepted(it, EXCEPTIONS)]
     assert sorted(new) == []
 
 
+@pytest.mark.slow
 def test_every_exception_is_needed_and_says_why() -> None:
     every = {it for release in RELEASES for it in found(release)}
     unused = [it for it in EXCEPTIONS if not any(excepted(one, (it,)) for one in every)]

@@ -74,6 +74,7 @@ def graph(release: str, name: str) -> tuple[System, System]:
     return plan, System(tuple(Node(it, it) for it in owners), tuple(ends), (), around)
 
 
+@pytest.mark.sample(8)
 @pytest.mark.parametrize("release", RELEASES)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_a_healthy_system_has_no_finding(release: str, name: str) -> None:
@@ -84,6 +85,7 @@ def test_a_healthy_system_has_no_finding(release: str, name: str) -> None:
     assert {it.names for it in found} == unfed
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["/robot1/initialpose", "/tf", "/robot1/follow_path"])
 def test_what_a_node_lacks_is_found(name: str) -> None:
     plan, seen = graph("jazzy", "nav2")

@@ -11,7 +11,6 @@ import pytest
 from paths import FIXTURES, ROOT
 
 from multibot_rewrite.base.releases import RELEASES
-from multibot_rewrite.producers.launch.launch_files import LaunchedNode
 from tools.interfaces.launch_comparison import (
     NOT_OURS,
     NOT_STARTED,
@@ -23,6 +22,7 @@ from tools.interfaces.launch_comparison import (
     launch_files,
     stack_nodes,
 )
+from tools.interfaces.launch_files import LaunchedNode
 from tools.interfaces.parameter_tables import LaunchFact, launch_lines, read_launches
 from tools.interfaces.records import Place
 
@@ -52,11 +52,13 @@ def found(release: str) -> tuple[LaunchDifference, ...]:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("release", RELEASES)
 def test_every_difference_is_excepted(release: str) -> None:
     assert [it for it in found(release) if it not in EXCEPTIONS] == []
 
 
+@pytest.mark.slow
 def test_every_exception_is_needed_and_says_why() -> None:
     needed = {it for release in RELEASES for it in found(release)}
     assert sorted(EXCEPTIONS.keys() - needed) == []
@@ -77,6 +79,7 @@ def test_a_table_is_read_as_it_is_written(release: str) -> None:
     assert "".join(f"{it}\n" for it in launch_lines(facts(release))) == text
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("node", "releases"),
     [

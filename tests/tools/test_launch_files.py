@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from multibot_rewrite.producers.launch.launch_files import LaunchedNode, launched_nodes
+from tools.interfaces.launch_files import LaunchedNode, launched_nodes
 
 PYTHON = """\
 def generate_launch_description():

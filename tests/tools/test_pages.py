@@ -8,12 +8,14 @@ from functools import cache
 import pytest
 from paths import ROOT
 
-from multibot_rewrite.base.findings.rule_docs import examples
+from multibot_rewrite.base.findings.codes import examples
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
 from multibot_rewrite.description.rewriters.vocabulary import check_vocabulary, load_vocabulary
 from multibot_rewrite.lint import catalogue
 from tools.pages.__main__ import main
 from tools.pages.every import SECTIONS, STANDS_FOR, every_page, meant
+
+pytestmark = pytest.mark.slow
 
 made = cache(every_page)
 WRITTEN = (ROOT / "docs" / STANDS_FOR).read_text()

@@ -56,17 +56,20 @@ def found(release: str) -> tuple[Difference, ...]:
     return tuple(differences(ours, facts(release), release, plugin_owners().below))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("release", RELEASES)
 def test_every_difference_is_excepted(release: str) -> None:
     assert [it for it in found(release) if it.key not in EXCEPTIONS] == []
 
 
+@pytest.mark.slow
 def test_every_exception_is_needed_and_says_why() -> None:
     needed = {it.key for release in RELEASES for it in found(release)}
     assert sorted(EXCEPTIONS.keys() - needed) == []
     assert all(len(reason.split()) >= 3 for reason in EXCEPTIONS.values())
 
 
+@pytest.mark.slow
 def test_what_was_corrected_stays_so() -> None:
     wrong = {(*it.key, it.release) for release in RELEASES for it in found(release)}
     corrected = {

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from multibot_rewrite.description.rewriters.vocabulary import Vocabulary
 from tools.interfaces import plugin_files, sdf_elements
 from tools.interfaces.__main__ import main
 from tools.interfaces.hardware_parameters import read_hardware
@@ -101,6 +102,11 @@ class Timer {
 """
 
 
+def made_of(folders: list[Path]) -> str:
+    """What is printed where nothing is known yet."""
+    return plugin_files.new_values(folders, Vocabulary({}, ""))
+
+
 def test_helpers_read_by_a_prefix(tmp_path: Path) -> None:
     folder = tmp_path / "acme+gps@main"
     headers = folder / "include/acme"
@@ -115,11 +121,11 @@ def test_helpers_read_by_a_prefix(tmp_path: Path) -> None:
         "#include <acme/gps.h>\nvoid Gps::Load(M m, sdf::ElementPtr _sdf) {\n"
         '  speed.Load(_sdf, "speed"); height.Load(node, _sdf); timer.Load(world, _sdf);\n}\n'
     )
-    rows = plugin_files.to_schema([folder]).rstrip().splitlines()[-3:]
+    rows = made_of([folder]).rstrip().splitlines()[-3:]
     assert rows == [
-        "noise number include/acme/model.h:4",
-        "speedNoise vector include/acme/model.h:4",
-        "updateRate number include/acme/timer.h:4",
+        "noise value number read=include/acme/model.h:4",
+        "speedNoise value vector read=include/acme/model.h:4",
+        "updateRate value number read=include/acme/timer.h:4",
     ]
 
 
@@ -132,8 +138,8 @@ def test_a_library_for_each_word_of_a_list(tmp_path: Path) -> None:
     )
     for name in ("Wing", "Tail"):
         (folder / f"{name}.cc").write_text("void Load(M m) {}\n")
-    heads = [it for it in plugin_files.to_schema([folder]).splitlines() if it.startswith("[")]
-    assert [it.split()[0] for it in heads] == ["[Tail]", "[Wing]"]
+    heads = [it for it in made_of([folder]).splitlines() if it.startswith("[")]
+    assert heads == ["[values Tail]", "[values Wing]"]
 
 
 def test_variables_are_those_of_their_function() -> None:
@@ -149,9 +155,9 @@ def test_what_plugins_share_is_a_section_that_they_name(tmp_path: Path) -> None:
         'N Node::Get(E sdf) { sdf = sdf->GetElement("ros"); sdf->HasElement("namespace"); }\n'
     )
     (home / "qos.cpp").write_text("")
-    made = plugin_files.to_schema([folder])
-    assert "[gazebo_ros::Node] acme/gz ros2 gazebo_ros/src\nros any node.cpp:1\n" in made
-    assert "src/systems/drive +gazebo_ros::Node\nx integer Drive.cc:2\n" in made
+    made = made_of([folder])
+    assert "[block ros]\nread: acme/gz ros2 gazebo_ros/src\nros value any read=node.cpp:1\n" in made
+    assert "src/systems/drive\nwith: ros\nx value integer read=Drive.cc:2\n" in made
 
 
 def test_a_library_of_a_catkin_package_is_of_ros_1(tmp_path: Path) -> None:
@@ -162,9 +168,11 @@ def test_a_library_of_a_catkin_package_is_of_ros_1(tmp_path: Path) -> None:
         'void Drive::Load ( physics::ModelPtr m, sdf::ElementPtr _sdf ) { _sdf->Get<int>("x"); }'
     )
     assert (
-        plugin_files.to_schema([folder])
+        made_of([folder])
         .rstrip()
-        .endswith("[ros1 drive] acme/gazebo noetic .\nx integer drive.cpp:1")
+        .endswith(
+            "[values drive]\nread: acme/gazebo noetic .\nros: 1\nx value integer read=drive.cpp:1"
+        )
     )
 
 
@@ -221,14 +229,19 @@ def test_a_row_has_the_newest_tag_and_the_releases_that_read_it(tmp_path: Path) 
     new = checkout(
         tmp_path, "gz-sim8_8.1.0", 'a(_sdf->Get<int>("both"),\n  _sdf->Get<int>("new"));'
     )
-    *_, head, both, later, older = plugin_files.to_schema([old, new]).rstrip().splitlines()
-    assert head == (
-        "[gz-sim-drive-system gz::sim::systems::Drive] acme/gz gz-sim8_8.1.0 src/systems/drive "
-        "releases=humble,jazzy"
-    )
-    assert both == "both integer Drive.cc:2"
-    assert later == "new integer Drive.cc:3 releases=jazzy"
-    assert older == "old integer Drive.cc:2 ignition-gazebo6_6.1.0 releases=humble"
+    *_, head, read_in, both, later, older = made_of([old, new]).rstrip().splitlines()
+    assert head == "[values gz-sim-drive-system gz::sim::systems::Drive]"
+    assert read_in == "read: acme/gz gz-sim8_8.1.0 src/systems/drive"
+    assert both == "both value integer read=Drive.cc:2"
+    assert later == "new value integer read=Drive.cc:3 releases=jazzy"
+    assert older == "old value integer read=Drive.cc:2@ignition-gazebo6_6.1.0 releases=humble"
+
+
+def test_what_the_vocabulary_has_is_not_printed(tmp_path: Path) -> None:
+    folder = checkout(tmp_path, "gz-sim8_8.1.0", '_sdf->Get<int>("x");\n_sdf->Get<double>("y");')
+    known = made_of([folder]).replace("y value number", "y value integer")
+    (row,) = plugin_files.new_values([folder], Vocabulary({"a.vocab": known}, "")).splitlines()[4:]
+    assert row == "y value number read=Drive.cc:3"
 
 
 def test_what_some_tags_need_is_not_required(tmp_path: Path) -> None:
@@ -236,8 +249,8 @@ def test_what_some_tags_need_is_not_required(tmp_path: Path) -> None:
     needs = checkout(tmp_path / "a", "gz-sim8_8.1.0", asked)
     reads = checkout(tmp_path / "b", "gz-sim9_9.1.0", '_sdf->Get<int>("x");')
     again = checkout(tmp_path / "c", "gz-sim9_9.2.0", asked)
-    assert plugin_files.to_schema([needs, reads]).rstrip().endswith("x integer Drive.cc:2")
-    assert plugin_files.to_schema([needs, again]).rstrip().endswith("x any Drive.cc:2 required")
+    assert made_of([needs, reads]).rstrip().endswith("x value integer read=Drive.cc:2")
+    assert made_of([needs, again]).rstrip().endswith("x value any read=Drive.cc:2 required=yes")
 
 
 def test_hardware_and_what_it_needs(tmp_path: Path) -> None:
@@ -309,4 +322,4 @@ def test_what_is_no_checkout_is_an_error(
 def test_the_command_prints_both(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--sdf", str(sdformat(tmp_path))]) == 0
     assert main(["--plugins", str(checkout(tmp_path, "gz-sim8_8.1.0", ""))]) == 0
-    assert "[gz-sim-drive-system" in capsys.readouterr().out
+    assert "[values gz-sim-drive-system" in capsys.readouterr().out

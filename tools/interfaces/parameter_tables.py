@@ -16,7 +16,6 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.knowledge.declared import READ, YAML
-from multibot_rewrite.producers.launch.launch_files import LaunchedNode, launched_nodes
 from multibot_rewrite.rules.files.parameter_files import file_parameters
 from tools.interfaces.cpp import read_cpp
 from tools.interfaces.declared_parameters import (
@@ -24,6 +23,7 @@ from tools.interfaces.declared_parameters import (
     python_parameters,
     shared_constants,
 )
+from tools.interfaces.launch_files import LaunchedNode, launched_nodes
 from tools.interfaces.parameter_facts import PLACE_COLUMNS, ParameterFact, parameter_lines
 from tools.interfaces.records import Place
 

@@ -1,4 +1,4 @@
-"""Checkouts of simulator plugins and ros2_control hardware -> ``rules/schema/plugins.schema``.
+"""Checkouts of simulator plugins and ros2_control hardware -> values for the vocabulary.
 
 Which libraries there are and what they are made of is in CMakeLists.txt, which classes in the
 macros that register them; hardware classes are in the files that describe plugins.
@@ -7,12 +7,14 @@ macros that register them; hardware classes are in the files that describe plugi
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Container, Iterable, Iterator
 from pathlib import Path
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import RELEASES
+from multibot_rewrite.description.rewriters.vocabulary import Value, Vocabulary
+from multibot_rewrite.description.rewriters.vocabulary.values import VALUE, read_values
 from tools.interfaces.hardware_parameters import read_hardware
 from tools.interfaces.helper_classes import by_prefix
 from tools.interfaces.plugin_parameters import (
@@ -23,19 +25,7 @@ from tools.interfaces.plugin_parameters import (
     reads_any,
 )
 
-HEAD = """\
-# Parameters that plugins of simulators and ros2_control hardware read. Made by
-# python -m tools.interfaces --plugins FOLDER... >
-# multibot_rewrite/rules/schema/plugins.schema
-#
-#   [NAME...] REPOSITORY TAG FOLDER [open] [+SECTION] [releases=WORDS]
-#                                               a plugin by its library and classes,
-#                                               "ros1 LIBRARY" or "hardware CLASS"; open: it takes any
-#                                               other parameter too; +: all of that section as well
-#   NAME TYPE FILE:LINE [TAG] [releases=WORDS] [required] [one:A|B] [=DEFAULT]
-#                                               TAG where it is another one than the section's; a/b: in
-#                                               <a>; a/*: whatever <a> has
-"""
+HEAD = "# What code reads and the vocabulary has not: lines to be put in, or to correct it by.\n"
 # The releases of a tag by how it begins, or of the folder that a checkout is in; in the order of time.
 OF_RELEASES = (
     (("ignition-gazebo6", "humble"), ("humble",)),
@@ -52,12 +42,18 @@ ALSO_FILES = {
 ALSO_NAMES = {"gazebo_ros::SensorFrameID(": "frame_name"}
 _CAMERA = "gazebo_ros_camera_utils.cpp"
 _HELPERS = "include/gazebo_plugins/gazebo_ros_utils.h"
-# What plugins of several packages call, a section of its own: name, what calls it, its files.
+# What plugins of several packages call, a block: its name, what calls it, its files.
 SHARED = (
-    ("gazebo_ros::Node", "gazebo_ros::Node::Get(", "gazebo_ros/src", ("node.cpp", "qos.cpp")),
-    ("GazeboRos", "GazeboRosPtr", "gazebo_plugins", ("src/gazebo_ros_utils.cpp", _HELPERS)),
-    ("Camera", "GazeboRosCameraUtils", "gazebo_plugins/src", (_CAMERA,)),
+    ("ros", "gazebo_ros::Node::Get(", "gazebo_ros/src", ("node.cpp", "qos.cpp")),
+    (
+        "gazebo_ros_utils",
+        "GazeboRosPtr",
+        "gazebo_plugins",
+        ("src/gazebo_ros_utils.cpp", _HELPERS),
+    ),
+    ("gazebo_ros_camera_utils", "GazeboRosCameraUtils", "gazebo_plugins/src", (_CAMERA,)),
 )
+ROS_1, BLOCK, HARDWARE = "ros1 ", "block ", "hardware "
 # A package of ROS 1.
 _CATKIN = "catkin_package("
 _SYSTEM = re.compile(r"(?:gz|ign)_add_system\(\s*([\w-]+)([^)]*)\)")
@@ -86,14 +82,15 @@ class Plugin(NamedTuple):
     shared: tuple[str, ...] = ()
 
 
-def to_schema(folders: Iterable[Path]) -> str:
-    """The text of ``plugins.schema``; raises UsageError for what is no checkout."""
+def new_values(folders: Iterable[Path], vocabulary: Vocabulary) -> str:
+    """Sections of what the vocabulary has not, or otherwise; raises UsageError for what is no
+    checkout."""
     found: dict[str, list[Plugin]] = {}
     for folder in folders:
         for it in read_plugins(folder):
             found.setdefault(it.names[0], []).append(it)
-    sections = (_section(found[name]) for name in sorted(found))
-    return "\n".join([HEAD, *("\n".join(it) + "\n" for it in sections)])
+    sections = (_section(found[name], vocabulary) for name in sorted(found))
+    return "\n".join([HEAD, *("\n".join(it) + "\n" for it in sections if it)])
 
 
 def read_plugins(folder: Path) -> Iterator[Plugin]:
@@ -105,7 +102,7 @@ def read_plugins(folder: Path) -> Iterator[Plugin]:
     for cmake in sorted(folder.rglob("CMakeLists.txt")):
         if "test" in cmake.relative_to(folder).parts:
             continue
-        of_ros_1 = "ros1 " * (_CATKIN in cmake.read_text(encoding="utf-8", errors="replace"))
+        of_ros_1 = ROS_1 * (_CATKIN in cmake.read_text(encoding="utf-8", errors="replace"))
         for library, files in _libraries(cmake):
             plugin = _plugin(of_ros_1 + library, files, folder)
             if plugin:
@@ -113,7 +110,7 @@ def read_plugins(folder: Path) -> Iterator[Plugin]:
     for it in _shared(folder):
         yield it._replace(repository=repository, tag=tag, releases=releases)
     for class_, path, parameters in read_hardware(folder):
-        names = (f"hardware {class_}",)
+        names = (f"{HARDWARE}{class_}",)
         yield Plugin(names, repository, tag, releases, path, False, parameters)
 
 
@@ -207,7 +204,7 @@ def _shared(folder: Path) -> Iterator[Plugin]:
         paths = [folder / where / it for it in files]
         if all(it.exists() for it in paths):
             texts = ((it.relative_to(folder).as_posix(), it.read_text()) for it in paths)
-            yield Plugin((name,), "", "", (), where, False, parameters_of(texts))
+            yield Plugin((f"{BLOCK}{name}",), "", "", (), where, False, parameters_of(texts))
 
 
 def _place(texts: dict[str, str], word: str) -> tuple[str, int]:
@@ -215,32 +212,49 @@ def _place(texts: dict[str, str], word: str) -> tuple[str, int]:
     return path, text.count("\n", 0, text.index(word)) + 1
 
 
-def _section(plugins: list[Plugin]) -> Iterator[str]:
+def _section(plugins: list[Plugin], vocabulary: Vocabulary) -> list[str]:
     """A plugin over all its tags, each row as the newest tag that has it says it."""
     newest = plugins[-1]
-    names = dict.fromkeys(name for it in plugins for name in it.names)
     # A library that was renamed keeps the classes it was known by.
+    names = list(dict.fromkeys(name for it in plugins for name in it.names))
     there = _together(it.releases for it in plugins)
-    head = [f"[{' '.join(names)}]", newest.repository, newest.tag, newest.folder]
-    head += ["open"] * any(it.is_open for it in plugins)
-    head += [f"+{it}" for it in newest.shared]
-    yield " ".join([*head, *_words(there, RELEASES)])
     rows: dict[str, list[tuple[Plugin, Parameter]]] = {}
     for plugin in plugins:
         for it in plugin.parameters:
             rows.setdefault(it.name, []).append((plugin, it))
-    for name in sorted(rows):
-        yield _row(rows[name], newest, there)
+    made = [_row(rows[name], newest, there) for name in sorted(rows)]
+    known = _known(names[0], vocabulary)
+    new = [it for it in made if next(read_values("", 0, [it])) not in known]
+    kind, _, own = names[0].rpartition(" ")
+    head = [f"[{'block' if kind == 'block' else 'values'} {' '.join([own, *names[1:]])}]"]
+    head += [f"read: {newest.repository} {newest.tag} {newest.folder}"]
+    head += ["open: yes"] * any(it.is_open for it in plugins)
+    head += [f"with: {' '.join(newest.shared)}"] * bool(newest.shared)
+    head += ["ros: 1"] * (kind == "ros1")
+    return [*head, *new] if new or (not made and not known) else []
+
+
+def _known(name: str, vocabulary: Vocabulary) -> Container[Value]:
+    """What the vocabulary has, without what it knows from elsewhere: units and ranges."""
+    kind, _, own = name.rpartition(" ")
+    found = vocabulary.values(own, kind == "ros1")
+    return [
+        it._replace(unit="", low=None, high=None, is_open=False, checked=it.place)
+        for it in (found.rows.values() if found else ())
+    ]
 
 
 def _row(rows: list[tuple[Plugin, Parameter]], newest: Plugin, there: tuple[str, ...]) -> str:
     plugin, it = rows[-1]
+    of_hardware = newest.names[0].startswith(HARDWARE)
     path = it.path.removeprefix(f"{plugin.folder}/")
-    words = [it.name, it.type, f"{path}:{it.line}", plugin.tag if plugin.tag != newest.tag else ""]
+    tag = f"@{plugin.tag}" * (plugin.tag != newest.tag)
+    words = [f"param[@name={it.name}]" if of_hardware else it.name, VALUE, it.type]
+    words += [f"read={path}:{it.line}{tag}"]
     words += _words(_together(one.releases for one, _ in rows), there)
-    words += ["required"] if it.required and all(one.required for _, one in rows) else []
-    words += [f"one:{'|'.join(it.words)}"] if it.words else []
-    return " ".join(filter(None, [*words, it.default and f"={it.default}"]))
+    words += ["required=yes"] if it.required and all(one.required for _, one in rows) else []
+    words += [f"one={'|'.join(it.words)}"] if it.words else []
+    return " ".join(words)
 
 
 def _together(releases: Iterable[tuple[str, ...]]) -> tuple[str, ...]:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from multibot_rewrite.base.findings.codes import examples, listed
 from multibot_rewrite.base.findings.rule import Rule
-from multibot_rewrite.base.findings.rule_docs import examples, listed
 from multibot_rewrite.lint.catalogue import HOMES, declared
 from multibot_rewrite.lint.groups import GROUPS
 from multibot_rewrite.lint.registry import RULES

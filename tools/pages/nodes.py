@@ -72,6 +72,9 @@ def _reach(node: NodeFacts) -> Iterator[str]:
     """The rows of names that no rule reaches."""
     for text in node.fixed:
         yield _row([f"`{node.name}`", "", plain(text)])
+    if node.prefix_switch:
+        why = f"its namespace is put before its frames, unless `{node.prefix_switch}` is false"
+        yield _row([f"`{node.name}`", "", why])
     for frame in node.frames:
         why = "; ".join((f"a frame: parameter `{frame.parameter}`", *_in(frame.releases)))
         yield _row([f"`{node.name}`", f"`{frame.default}`", why])

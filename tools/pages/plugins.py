@@ -6,12 +6,12 @@ from collections.abc import Iterable
 from itertools import groupby
 
 from multibot_rewrite.base.model import Site
+from multibot_rewrite.description.rewriters.lookup import facts
 from multibot_rewrite.description.rewriters.vocabulary import (
     VocabularySection,
     check_vocabulary,
     load_vocabulary,
 )
-from multibot_rewrite.description.rewriters.vocabulary.describe import facts
 from tools.pages.markdown import plain
 
 HEAD = """\

@@ -22,13 +22,12 @@ BREAKS = {
     "tag.",
     "MB103": "xacro stops with `Invalid parameter` (`xacro/__init__.py`): there is no description. "
     "The macro `load_robot` has other parameters since, and some have no default.",
-    "MB205": "`ros2_control_node` is given both arms in one description and throws `Hardware name "
+    "MB201": "`ros2_control_node` is given both arms in one description and throws `Hardware name "
     "UFRobotSystem is duplicated` (ros2_control, `resource_manager.cpp`, Humble to "
     "Rolling).",
     "MB501": "urdfdom refuses the file: `Two root links found: [base] and [env]` (urdfdom_headers, "
     "`model.h`; `check_urdf` says the same). robot_state_publisher does not start.",
     "MB606": _INERTIA,
-    "MB607": _INERTIA,
     "MB701": "The file is not in the repository at this revision; one of that name is in another "
     "folder or format. RViz: `Could not load resource` (`rviz_rendering/mesh_loader.cpp`); "
     "the link has no shape.",

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.nearest import nearest
 
 
@@ -26,6 +27,14 @@ def no_rule(word: str, rules: Mapping[str, Rule], listing: str) -> str:
     return f"no rule has the code {word!r}, and none begins with it; {hint}"
 
 
+def check_codes(codes: Iterable[str], where: str, rules: Mapping[str, Rule]) -> None:
+    """Raise UsageError for what is neither a rule's code nor the beginning of one."""
+    known = known_beginnings(rules)
+    for code in codes:
+        if code not in known:
+            raise UsageError(f"{where}: {no_rule(code, rules, 'multibot explain')}")
+
+
 def _near(word: str, rules: Mapping[str, Rule]) -> str:
     """The code of a rule's name, the longest code that the word begins with, or what is like it."""
     named = next((code for code, it in rules.items() if it.name == word), "")
@@ -34,3 +43,24 @@ def _near(word: str, rules: Mapping[str, Rule]) -> str:
     found = named or next((it for it in begun if it in known), "")
     names = [it.name for it in rules.values()]
     return found or nearest(word.upper(), sorted(known)) or nearest(word, names)
+
+
+def explained(rule: Rule) -> str:
+    """A rule with its examples, for a terminal."""
+    head = f"{rule.code} {rule.name} ({rule.level})"
+    parts = [head, "", rule.what, "", f"Why: {rule.why}", "", f"Fix: {rule.fix}"]
+    for title, example in examples(rule):
+        parts += ["", f"{title}:", "", *(f"    {line}" for line in example.splitlines())]
+    return "\n".join(parts) + "\n"
+
+
+def listed(rules: Iterable[Rule]) -> Iterator[tuple[str, str, str, str]]:
+    """Code, level, name and first sentence of each."""
+    return ((it.code, it.level, it.name, it.what.partition(". ")[0].rstrip(".")) for it in rules)
+
+
+def examples(rule: Rule) -> list[tuple[str, str]]:
+    """Titles and texts of its examples."""
+    good = "" if rule.good == rule.fixed else rule.good
+    texts = (("Bad", rule.bad), ("Fixed by --fix", rule.fixed), ("Good", good))
+    return [(title, text) for title, text in texts if text]

@@ -2,13 +2,48 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 from multibot_rewrite.base.model import Edit, MultibotError
 from multibot_rewrite.base.printable import one_line
 from multibot_rewrite.base.record import NamedTuple
 
+# What is counted once: a file may have thousands of findings, and be one line.
+_BLOCK = 4096
+# In UTF-8 a character is one byte that is none of these.
+_FOLLOWING = bytes(range(0x80, 0xC0))
 ERROR, WARNING, NOTE, INCONCLUSIVE = "error", "warning", "note", "inconclusive"
 # From the worst on. Inconclusive is no level to ask for: the view of the graph was incomplete.
 LEVELS = (ERROR, WARNING, NOTE)
+
+
+def locate(source: bytes, offset: int) -> tuple[int, int]:
+    """Line and column, from 1, of a byte offset; the column counts characters."""
+    block = offset // _BLOCK
+    return _behind(*_blocks(source)[block], source[block * _BLOCK : offset])
+
+
+@lru_cache(maxsize=4)
+def _blocks(source: bytes) -> list[tuple[int, int]]:
+    """Line and column of the start of each block."""
+    here = 1, 1
+    found = [here]
+    for at in range(0, len(source), _BLOCK):
+        here = _behind(*here, source[at : at + _BLOCK])
+        found.append(here)
+    return found
+
+
+def _behind(line: int, column: int, text: bytes) -> tuple[int, int]:
+    """Line and column behind a text that starts at these."""
+    lines = text.count(b"\n")
+    if not lines:
+        return line, column + _characters(text)
+    return line + lines, _characters(text[text.rfind(b"\n") + 1 :]) + 1
+
+
+def _characters(text: bytes) -> int:
+    return len(text) if text.isascii() else len(text.translate(None, _FOLLOWING))
 
 
 class Finding(NamedTuple):

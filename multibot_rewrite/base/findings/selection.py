@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
+from functools import partial
 from typing import Protocol
 
 from multibot_rewrite.base.findings.finding import LEVELS, Finding
@@ -11,6 +13,9 @@ from multibot_rewrite.base.record import NamedTuple
 # In the place of a level: the rule is off.
 OFF = "off"
 NO_LEVELS: Mapping[str, str] = {}
+# Stands for the robot in a text that two robots share. A name counts where no letter or digit is next
+# to it: ``robot1`` in ``base_link_robot1``, not in ``robot11``.
+_SLOT = "\0"
 
 
 class Selecting(Protocol):
@@ -70,3 +75,65 @@ def _level_key(selection: Selecting, code: str) -> str:
     if not selection.levels:
         return ""
     return max((it for it in selection.levels if code.startswith(it)), key=len, default="")
+
+
+def grouped(findings: Iterable[Finding], names: Mapping[str, str]) -> list[Finding]:
+    """The findings in their order; of those that differ only in the robot the first, with the
+    ``others``.
+
+    ``names`` maps each word that stands for a robot in texts (its name, its prefix) to the robot.
+    """
+    return [first for first, _ in with_members(findings, names)]
+
+
+def with_members(
+    findings: Iterable[Finding], names: Mapping[str, str]
+) -> list[tuple[Finding, list[Finding]]]:
+    """As ``grouped``, each with the findings that it stands for."""
+    groups: dict[Finding, list[tuple[str, Finding]]] = {}
+    for it in findings:
+        robot = it.robot or _only_robot(it, names)
+        groups.setdefault(_without(it, robot, names), []).append((robot, it))
+    return [(_first(members), [it for _, it in members]) for members in groups.values()]
+
+
+def _only_robot(finding: Finding, names: Mapping[str, str]) -> str:
+    """The robot that a finding without one speaks of; empty for none or several."""
+    text = f"{finding.message} {finding.hint} {finding.node}"
+    found = {robot for word, robot in names.items() if _pattern(word).search(text)}
+    return found.pop() if len(found) == 1 else ""
+
+
+def _without(finding: Finding, robot: str, names: Mapping[str, str]) -> Finding:
+    """The finding with a slot for the robot; as it is without one."""
+    words = sorted((word for word, of in names.items() if of == robot), key=len, reverse=True)
+    if not robot or not words:
+        return finding
+    pattern = _pattern("|".join(map(re.escape, words)), escaped=True)
+    blank = partial(pattern.sub, _SLOT)
+    return finding._replace(
+        message=blank(finding.message),
+        hint=blank(finding.hint),
+        node=blank(finding.node),
+        robot=_SLOT,
+        names=tuple(map(blank, finding.names)),
+        others=(),
+    )
+
+
+def said_of(text: str, finding: Finding, robot: str) -> str:
+    """A text of a finding as it is of one of the ``others``; of any other robot the text itself."""
+    return _pattern(finding.robot).sub(robot, text) if robot in finding.others else text
+
+
+def _pattern(word: str, *, escaped: bool = False) -> re.Pattern[str]:
+    inner = word if escaped else re.escape(word)
+    return re.compile(rf"(?<![A-Za-z0-9])(?:{inner})(?![A-Za-z0-9])")
+
+
+def _first(members: list[tuple[str, Finding]]) -> Finding:
+    (robot, first), *more = members
+    # What is grouped already keeps its robots.
+    met = [*first.others, *(name for it, found in more for name in (it, *found.others))]
+    others = dict.fromkeys(name for name in met if name and name != robot)
+    return first._replace(others=tuple(others))

@@ -7,6 +7,7 @@ rcl ``validate_topic_name.c`` and ``expand_topic_name.c``; rmw ``validate_full_t
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from itertools import pairwise
 
 from multibot_rewrite.base.lazy import lazy_compile
@@ -101,10 +102,6 @@ def _first_letters(name: str) -> NameFault | None:
     # Two characters, as "~a", pass: rcl never looks at the last one here.
     if name[0] == "~" and len(name) > 2 and name[1] != "/":
         return _at(name, 1, "follows '~', after which only a slash may stand")
-    return _digits_after_slashes(name)
-
-
-def _digits_after_slashes(name: str) -> NameFault | None:
     for at, (letter, following) in enumerate(pairwise(name), 1):
         if letter == "/" and following in _DIGITS:
             return _digit_first(name, at)
@@ -187,6 +184,16 @@ def check_robot_name(name: str) -> str:
     if not problem:
         return name
     raise UsageError(f"robot name {name!r}: {problem}; use for example {propose_token(name)!r}")
+
+
+def check_robot_names(names: Iterable[str]) -> tuple[str, ...]:
+    """The names of several robots, each once; raises UsageError as ``check_robot_name``."""
+    seen: dict[str, str] = {}
+    for name in names:
+        if check_robot_name(name) in seen:
+            raise UsageError(f"robot name {name!r} is given twice; every robot needs its own")
+        seen[name] = name
+    return tuple(seen)
 
 
 def _token_problem(name: str) -> str:

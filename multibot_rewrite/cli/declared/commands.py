@@ -6,15 +6,9 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from multibot_rewrite.cli.declared.description import LINT, POSTFIX
-from multibot_rewrite.cli.declared.fleet import BUILD, INIT, PLAN, REHEARSE
-from multibot_rewrite.cli.declared.graph import (
-    CHECK,
-    CHECK_LAUNCH,
-    LEARN,
-    SNAPSHOT,
-)
+from multibot_rewrite.cli.declared.fleet import BUILD, INIT, PLAN, REHEARSE, VIEW
+from multibot_rewrite.cli.declared.graph import CHECK, CHECK_LAUNCH, LEARN, SNAPSHOT
 from multibot_rewrite.cli.declared.knowledge import EXPLAIN, INSPECT
-from multibot_rewrite.cli.declared.view import VIEW
 from multibot_rewrite.cli.options import Command
 
 PROGRAMS = (POSTFIX, LINT)

@@ -6,7 +6,6 @@ from multibot_rewrite.base.findings.finding import ERROR
 from multibot_rewrite.cli import values
 from multibot_rewrite.cli.declared.shared import (
     DISTRO,
-    EXPLAIN_OPTION,
     FINDINGS,
     FINDINGS_OUTPUT,
     GENERAL,
@@ -23,6 +22,7 @@ from multibot_rewrite.cli.options import (
     OptionGroup,
     argument,
     output,
+    path_option,
     several,
     switch,
     value,
@@ -44,10 +44,7 @@ POSTFIX = Command(
         Example("urdf-postfix rover.urdf robot1 --layout frames-per-robot --affix prefix"),
         Example("urdf-postfix rover.urdf left --affix prefix --separator _", "left_base_link"),
         Example("urdf-postfix rover.srdf robot1 --urdf rover.urdf", "an SRDF with its URDF"),
-        Example(
-            "urdf-postfix nav2_params.yaml robot1 robot2 --urdf rover.urdf -o 'out/{robot}.yaml'",
-            "parameters, RViz, MoveIt, a bridge, a tree",
-        ),
+        Example("urdf-postfix nav2_params.yaml robot1 --urdf rover.urdf", "or RViz, MoveIt"),
         Example("urdf-postfix robot1.urdf robot1 --strip", "undo it"),
         Example("urdf-postfix --why rover.urdf:34", "why is this (not) renamed?"),
         Example("cat rover.urdf | urdf-postfix - robot1 --diff"),
@@ -81,24 +78,17 @@ POSTFIX = Command(
                 output("write the result there; {robot} stands for the robot's name"),
                 switch("--in-place", about="write the result over the input file"),
                 switch("--diff", about="print a unified diff instead of the result"),
-                value(
-                    "--changes",
-                    metavar="FILE",
-                    about="write every change as JSON",
-                    type=values.path,
-                ),
+                path_option("--changes", "write every change as JSON"),
             ),
         ),
         OptionGroup(
             "other jobs",
             (
                 switch("--strip", about="undo a rewrite; give the options it was made with"),
-                value(
+                path_option(
                     "--xacro",
-                    metavar="FILE",
-                    about="with --strip: the xacro whose arguments (NAME:=VALUE) put the robot's name"
+                    "with --strip: the xacro whose arguments (NAME:=VALUE) put the robot's name"
                     " into names; these stay",
-                    type=values.path,
                 ),
                 switch("--again", about="rewrite although it was rewritten for this robot"),
                 value(
@@ -106,7 +96,6 @@ POSTFIX = Command(
                     metavar="FILE:LINE",
                     about="show which rule reads the values in that line, and why",
                 ),
-                EXPLAIN_OPTION,
             ),
         ),
         NAMING,
@@ -126,16 +115,13 @@ LINT = Command(
     "%(prog)s PATH... [NAME:=VALUE...] [options]",
     "Find what is wrong with robot descriptions, alone and among other robots.",
     (
-        Example(
-            "urdf-lint urdf/",
-            "descriptions, SRDF, parameters, RViz, MoveIt",
-        ),
+        Example("urdf-lint urdf/", "descriptions, SRDF, parameters, RViz, MoveIt"),
         Example("urdf-lint rover.urdf --select MB2,MB5", "references and structure only"),
         Example("urdf-lint rover.urdf.xacro sim:=gz", "with xacro arguments, too"),
         Example("urdf-lint rover.urdf --robots robot1,robot2 --layout frames-per-robot"),
         Example("urdf-lint urdf/ --format sarif -o out/lint.sarif"),
         Example("urdf-lint rover.urdf --fix --diff", "show what --fix would change"),
-        Example("urdf-lint --explain MB202"),
+        Example("multibot explain MB202", "what a finding is, why, the fix"),
     ),
     (
         OptionGroup(
@@ -163,7 +149,6 @@ LINT = Command(
                 FINDINGS_OUTPUT,
                 switch("--fix", about="apply the safe fixes"),
                 switch("--diff", about="with --fix: print what would change, write nothing"),
-                switch("--statistics", about="print how often each rule found something"),
             ),
         ),
         OptionGroup(
@@ -172,12 +157,7 @@ LINT = Command(
                 ROBOTS,
                 several("--target", "A,B", "names must suit these formats, too: usd, mjcf"),
                 value("--baseline", metavar="FILE", about="report only findings not in FILE"),
-                value(
-                    "--write-baseline",
-                    metavar="FILE",
-                    about="write today's findings, for --baseline",
-                    type=values.path,
-                ),
+                path_option("--write-baseline", "write today's findings, for --baseline"),
                 value(
                     "--jobs",
                     metavar="N",
@@ -189,7 +169,6 @@ LINT = Command(
         ),
         NAMING,
         FINDINGS,
-        OptionGroup("rules", (EXPLAIN_OPTION,)),
         GENERAL,
     ),
     "0 nothing found (notes do not count); 1 findings; 2 wrong use, nothing to lint, or a rule that"

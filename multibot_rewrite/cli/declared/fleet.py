@@ -1,10 +1,11 @@
-"""The commands about a fleet: build, init, plan, rehearse."""
+"""The commands about a fleet: build, init, plan, rehearse, view."""
 
 from __future__ import annotations
 
 from multibot_rewrite.base.findings.finding import ERROR
 from multibot_rewrite.cli import values
 from multibot_rewrite.cli.declared.shared import (
+    BAG,
     DISTRO,
     FINDINGS,
     FINDINGS_OUTPUT,
@@ -17,6 +18,7 @@ from multibot_rewrite.cli.declared.shared import (
     PICTURES,
     ROBOTS,
     ROOTS,
+    SAVED,
     TRUST,
     VOCABULARY,
 )
@@ -29,17 +31,18 @@ from multibot_rewrite.cli.options import (
     form,
     output,
     output_group,
+    path_option,
     repeated,
     several,
     switch,
     value,
 )
 
-# The plan, and besides those of ``remap.table_formats``, which a help text does not import.
+# The plan, and besides those of ``spelling.table_formats``, which a help text does not import.
 PLAN_FORMS = ("plan", "table", "ros-args", "launch", "yaml", "json", "gazebo", "bridge", "sros2")
 # Those of ``fleet/shapes.yaml``.
 SHAPES = ("clearpath", "husarion", "nav2", "turtlebot4")
-# Those of ``remap.ways``.
+# Those of ``spelling.ways``.
 EVERY_WAY = "all"
 WAYS = ("process", "host", "component", "spawner", "plugin")
 
@@ -153,13 +156,7 @@ BUILD = Command(
     ),
     (
         OptionGroup(
-            "input",
-            (
-                argument("fleet", "FLEET", "the fleet file, YAML"),
-                _COUNT,
-                DISTRO,
-                TRUST,
-            ),
+            "input", (argument("fleet", "FLEET", "the fleet file, YAML"), _COUNT, DISTRO, TRUST)
         ),
         output_group(
             output("write everything into that folder", required=True),
@@ -235,11 +232,8 @@ REHEARSE = Command(
         _DESCRIPTION,
         output_group(
             FINDINGS_OUTPUT,
-            value(
-                "--save-snapshot",
-                metavar="FILE",
-                about="write the graph that came up, as multibot snapshot does",
-                type=values.path,
+            path_option(
+                "--save-snapshot", "write the graph that came up, as multibot snapshot does"
             ),
         ),
         OptionGroup(
@@ -267,4 +261,38 @@ REHEARSE = Command(
     " check does. A type that is not installed is replaced.",
     fail_on=ERROR,
     findings_first=True,
+)
+VIEW = Command(
+    "view",
+    "view",
+    "%(prog)s INPUT [ROBOT...] [NAME:=VALUE...] [options]",
+    "Show the robots in 3D, in one HTML file that needs no network.",
+    (
+        Example("multibot view fleet.yaml", "all robots at their poses, in view.html"),
+        Example("multibot view rover.urdf robot1 robot2 -o rover.html"),
+        Example("multibot view fleet.yaml --snapshot graph.json", "what is on tf, and where?"),
+    ),
+    (
+        OptionGroup(
+            "input",
+            (
+                argument(
+                    "input", "INPUT", "the robot's description before any rewrite, or a fleet file"
+                ),
+                argument("words", "ROBOT", "names of robots; NAME:=VALUE is for xacro", "*"),
+                ROBOTS,
+                SAVED,
+                BAG,
+                DISTRO,
+                TRUST,
+            ),
+        ),
+        output_group(output("the page; default: view.html; - prints it", default="view.html")),
+        NAMING,
+        FINDINGS,
+        GENERAL,
+    ),
+    "0 done; 1 the description is refused; 2 wrong use or unreadable input; 4 no yourdfpy or rosbags",
+    more="It needs pip install 'multibot_rewrite[view]'. Meshes are put into the page.",
+    fail_on=ERROR,
 )

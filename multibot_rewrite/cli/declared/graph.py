@@ -29,6 +29,7 @@ from multibot_rewrite.cli.options import (
     choice,
     output,
     output_group,
+    path_option,
     several,
     switch,
     value,
@@ -36,7 +37,8 @@ from multibot_rewrite.cli.options import (
 
 STATE = switch(
     "--state",
-    about="also ask nodes for their state, within 5 s: life cycle, use_sim_time, controllers",
+    about="also ask nodes for their state, within 5 s: life cycle, use_sim_time, controllers, and the"
+    " parameters that multibot build wrote beside PLAN",
 )
 HEADERS = switch(
     "--no-frame-ids",
@@ -76,18 +78,10 @@ CHECK = Command(
             FINDINGS_OUTPUT,
             WATCH,
             STATE,
-            value(
-                "--built",
-                metavar="FOLDER",
-                about="what multibot build wrote: with --state, or a snapshot that has states,"
-                " parameters of nodes are compared with its files; default: the folder of PLAN",
-                type=values.path,
-            ),
-            value(
+            path_option(
                 "--suggest",
-                metavar="FOLDER",
-                about="without PLAN: write a first fleet file, plan and description of what is seen",
-                type=values.path,
+                "without PLAN: write a first fleet file, plan and description of what is seen",
+                "FOLDER",
             ),
         ),
         PICTURES,
@@ -121,11 +115,10 @@ CHECK_LAUNCH = Command(
                     " system_model.yaml. The file is a program, which runs; nothing is started",
                     "+",
                 ),
-                value(
+                path_option(
                     "--plan",
-                    metavar="PLAN",
-                    about="compare with it, too: what multibot plan wrote, or a fleet file",
-                    type=values.path,
+                    "compare with it, too: what multibot plan wrote, or a fleet file",
+                    "PLAN",
                 ),
                 *KNOWN_NODES,
                 ROOTS,

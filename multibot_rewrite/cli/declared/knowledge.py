@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from multibot_rewrite.cli import values
 from multibot_rewrite.cli.declared.shared import DISTRO, GENERAL, RESULT_OUTPUT, TRUST, VOCABULARY
 from multibot_rewrite.cli.options import (
     Command,
@@ -11,7 +10,7 @@ from multibot_rewrite.cli.options import (
     argument,
     form,
     output_group,
-    value,
+    path_option,
 )
 
 REPORT_FORMS = ("table", "json")
@@ -39,12 +38,10 @@ INSPECT = Command(
                     " searched for *.urdf and *.sdf; NAME:=VALUE is for xacro",
                     "*",
                 ),
-                value(
+                path_option(
                     "--suggest",
-                    metavar="FILE",
-                    about="write a vocabulary file for what this description loads and nothing"
+                    "write a vocabulary file for what this description loads and nothing"
                     " knows; NAME:=VALUE is for xacro",
-                    type=values.path,
                 ),
                 VOCABULARY,
                 DISTRO,

@@ -9,18 +9,16 @@ from multibot_rewrite.base.naming import DEFAULT_LAYOUT, LAYOUTS, SEPARATORS
 from multibot_rewrite.base.releases import NEWEST_LTS, RELEASES, VARIABLE
 from multibot_rewrite.cli import values
 from multibot_rewrite.cli.options import (
-    Option,
     OptionGroup,
     choice,
     output,
+    path_option,
     repeated,
     several,
     switch,
     value,
 )
 
-# argparse's word for an option that leaves what is there alone.
-SUPPRESS = "==SUPPRESS=="
 _LAYOUTS = ", ".join(f"{it.name} ({it.short}: {it.about})" for it in LAYOUTS)
 LAYOUT_NAMES = tuple(name for it in LAYOUTS for name in (it.name, it.short))
 _SEPARATORS = " ".join(f"{kind}={mark}" for kind, mark in SEPARATORS.items())
@@ -70,12 +68,7 @@ ROBOTS = several("--robots", "A,B", "names of robots", [])
 VOCABULARY = several(
     "--vocabulary", "FILE", "what more plugins mean by their parameters (docs/add-a-plugin.md)", []
 )
-URDF = value(
-    "--urdf",
-    metavar="FILE",
-    about="the URDF that an SRDF or another file belongs to",
-    type=values.path,
-)
+URDF = path_option("--urdf", "the URDF that an SRDF or another file belongs to")
 DISTRO = choice(
     "--distro",
     "NAME",
@@ -88,11 +81,11 @@ TRUST = switch(
     about="let xacro files do anything: else they only compute, and read what is near (SECURITY.md)",
 )
 KNOWN_NODES = (
-    value("--nodes", metavar="FILE", about="your own nodes and stacks, YAML", type=values.path),
     several(
-        "--nodl",
+        "--nodes",
         "PATH",
-        "NoDL files or folders of them, besides those of installed packages; none: use no NoDL",
+        "your own nodes and stacks, a YAML file; NoDL files or folders of them, besides those of"
+        " installed packages (none: use no NoDL)",
         [],
     ),
 )
@@ -109,12 +102,7 @@ FINDINGS = OptionGroup(
             "LEVEL",
             LEVELS,
             "the lowest level that makes the exit code 1: error (default; urdf-lint: warning),"
-            " warning or note",
-        ),
-        Option(
-            ("--strict",),
-            "the same as --fail-on warning: what is not proved fails",
-            {"action": "store_const", "dest": "fail_on", "const": "warning", "default": SUPPRESS},
+            " warning (what is not proved fails) or note",
         ),
         choice(
             "--format",
@@ -146,12 +134,7 @@ GENERAL = OptionGroup(
 LIVE = OptionGroup(
     "live graph",
     (
-        value(
-            "--timeout",
-            metavar="S",
-            about="look S seconds (default: 15)",
-            type=values.seconds,
-        ),
+        value("--timeout", metavar="S", about="look S seconds (default: 15)", type=values.seconds),
         value(
             "--domain",
             metavar="N",
@@ -174,20 +157,16 @@ SAVED = repeated(
     "what multibot snapshot wrote, or a rosgraph_msgs/Graph in YAML, instead of the live graph;"
     " written again for each machine that was looked from",
 )
-BAG = value(
+BAG = path_option(
     "--bag",
-    metavar="BAG",
-    about="a recording of rosbag2, a folder or a file .mcap or .db3: its topics and frames; needs no"
+    "a recording of rosbag2, a folder or a file .mcap or .db3: its topics and frames; needs no"
     " ROS (docs/bags.md)",
-    type=values.path,
+    "BAG",
 )
 SOURCE = OptionGroup("where the graph comes from", (SAVED, ZENOH, *LIVE.options))
 SOURCE_OR_BAG = SOURCE._replace(options=(SAVED, BAG, ZENOH, *LIVE.options))
 
 
-EXPLAIN_OPTION = value(
-    "--explain", metavar="CODE", about="explain a finding's code, as multibot explain does"
-)
 FINDINGS_OUTPUT = output("write the findings there, not to standard output")
 
 LIVE_CODES = (
@@ -197,17 +176,8 @@ LIVE_CODES = (
 )
 PICTURES = OptionGroup(
     "report",
-    (
-        value(
-            "--report", metavar="FILE", about="write a page to look at, one HTML file",
-            type=values.path,
-        ),
-        value(
-            "--view", metavar="FLEET", type=values.path,
-            about="with --report: show the robots of this fleet file in 3D; default: that of the input",
-        ),
-    ),
-)  # fmt: skip
+    (path_option("--report", "write a page to look at, one HTML file"),),
+)
 
 
 RESULT_OUTPUT = output("write the result there, not to standard output")

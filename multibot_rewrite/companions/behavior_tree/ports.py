@@ -8,7 +8,7 @@ from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
 from multibot_rewrite.base.bounded import load_yaml
-from multibot_rewrite.base.findings.place import locate
+from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.placeholders import without_robot
 from multibot_rewrite.companions.sites import UNCLEAR, XML, Site, Slot

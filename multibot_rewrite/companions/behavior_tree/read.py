@@ -31,11 +31,13 @@ def named_tree(data: bytes, file: str, context: Context) -> NamedFile:
 
 def named_ports(document: Document, context: Context) -> NamedFile:
     """What was found in a tree."""
-    free = [it for element, it in ports_of(document) if element.tag != "include"]
+    every = list(ports_of(document))
+    free = [it for element, it in every if element.tag != "include"]
+    included = tuple(it for element, it in every if element.tag == "include")
     names = tuple(it for it in free if it.kind)
     others = tuple(site for it in free if not it.kind for site in _others(it))
     text = document.source.decode()
-    return NamedFile(TREE, document.file, text, context, {}, names, others)
+    return NamedFile(TREE, document.file, text, context, {}, names, others, included=included)
 
 
 def _others(site: Site) -> Iterator[Site]:

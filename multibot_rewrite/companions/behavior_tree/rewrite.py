@@ -10,7 +10,6 @@ from collections.abc import Iterator
 from functools import partial
 
 from multibot_rewrite.base.releases import has_release
-from multibot_rewrite.companions.behavior_tree.checks import included_files
 from multibot_rewrite.companions.behavior_tree.ports import (
     character,
     is_model,
@@ -28,7 +27,7 @@ from multibot_rewrite.description.steps.document import Document
 
 
 def rewrite_behavior_tree(data: bytes, file: str, context: Context) -> Companion:
-    """A behavior tree with slots for a robot, and the findings about it.
+    """A behavior tree with slots for a robot.
 
     Raises InputError for a file that is not a behavior tree.
     """
@@ -41,7 +40,7 @@ def rewrite_behavior_tree(data: bytes, file: str, context: Context) -> Companion
         *_default_splices(document, context),
     ]
     template = make_template(named.text, splices)
-    return Companion(template, tuple(included_files(document)), named)
+    return Companion(template, named)
 
 
 def _default_splices(document: Document, context: Context) -> Iterator[Splice]:

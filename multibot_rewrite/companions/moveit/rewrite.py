@@ -13,7 +13,6 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.companions.companion import Companion
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.engine import name_splices, text_of
-from multibot_rewrite.companions.moveit.checks import file_findings
 from multibot_rewrite.companions.moveit.controller_manager import inserted_namespace
 from multibot_rewrite.companions.moveit.read import read_moveit
 from multibot_rewrite.companions.names.node_topics import facts_by_name
@@ -25,7 +24,7 @@ from multibot_rewrite.knowledge.records import NodeFacts
 def rewrite_moveit(
     document: YamlText, context: Context, facts: Iterable[NodeFacts] = ()
 ) -> Companion:
-    """A MoveIt file with slots for a robot, and the findings about it.
+    """A MoveIt file with slots for a robot.
 
     Groups of an SRDF are known if they are declared (``with_srdf``); ``facts`` are those of the robot's
     nodes, whose remap rules move topics too. Raises InputError for a file that is not MoveIt's, and
@@ -42,4 +41,4 @@ def rewrite_moveit(
     splices = [*name_splices(file, speller), *inserted_namespace(document, context)]
     shift = [Splice(0, 0, document.bom)] if document.bom else []
     template = make_template(document.text, [*shift, *splices])
-    return Companion(template, file_findings(document, file), file)
+    return Companion(template, file)

@@ -42,7 +42,7 @@ def fleet_topics(table: Table, facts: Iterable[NodeFacts], robot: str) -> dict[s
     """Topics of a single robot's nodes -> the same topics of ``robot`` in a fleet's table."""
     ours = {node.name for node in facts if not node.shared}
     stack = {
-        f"{node.namespace.rstrip('/')}/{node.name}": node.node
+        node.full_name: node.node
         for node in table.nodes
         if node.robot == robot and node.node in ours
     }

@@ -14,7 +14,14 @@ from multibot_rewrite.companions.params.sections import ParamSection
 from multibot_rewrite.companions.sites import FROM_NODE, FROM_PARENT, IN_FULL, Site, slot_of
 from multibot_rewrite.companions.yaml_text import YamlText, items, line_of
 from multibot_rewrite.knowledge.parameter_entries import PREFIX_KINDS
-from multibot_rewrite.knowledge.parameters import Branch, KnownNode, KnownNodes, guess, is_absolute
+from multibot_rewrite.knowledge.parameters import (
+    Branch,
+    KnownNode,
+    KnownNodes,
+    guess,
+    is_absolute,
+    is_below_costmap,
+)
 from multibot_rewrite.knowledge.records import Param
 
 STRING = "tag:yaml.org,2002:str"
@@ -162,9 +169,9 @@ def _in_key(mark: _Mark, param: Param) -> Site:
 def _reach(param: Param | None, layer: yaml.MappingNode, release: str) -> str:
     if param is None or not param.absolute:
         return FROM_NODE
-    # The one filter that does not resolve its topics in the robot's namespace.
     plugin = next((str(it.value) for key, it in layer.value if key.value == "plugin"), "")
-    return IN_FULL if is_absolute(param, release) or "BinaryFilter" in plugin else FROM_PARENT
+    outside = is_absolute(param, release) or is_below_costmap(plugin)
+    return IN_FULL if outside else FROM_PARENT
 
 
 def _values(

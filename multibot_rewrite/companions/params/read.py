@@ -53,6 +53,7 @@ def read_params(
         pages,
         known,
         sent=known.sent | _own_frames(pages),
+        is_for_one=bool(own),
     )
 
 

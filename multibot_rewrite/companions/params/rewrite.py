@@ -2,8 +2,7 @@
 
 ``knowledge.parameters`` knows which parameters hold names. One step each: ``sections`` finds
 and renames sections, ``name_sites`` finds names, ``values`` renames them, ``shared_defaults`` inserts
-what is missing. Checks that need the rewrite: ``section_checks``,
-``name_checks``, ``robot_names``, ``unknown_parameters``; ``rules.files`` asks what needs no rewrite.
+what is missing. They tell what only a rewrite knows; ``rules.files`` asks all else.
 """
 
 from __future__ import annotations
@@ -15,18 +14,13 @@ from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.companions.companion import Companion
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.names.node_topics import facts_by_name
-from multibot_rewrite.companions.params.calibrations import shared_calibrations
 from multibot_rewrite.companions.params.controller_sections import (
     controller_sections,
     takes_sections,
 )
-from multibot_rewrite.companions.params.name_checks import name_findings
-from multibot_rewrite.companions.params.name_sites import Page, SectionNames
+from multibot_rewrite.companions.params.name_sites import Page
 from multibot_rewrite.companions.params.read import read_params
-from multibot_rewrite.companions.params.robot_names import namespace_findings
-from multibot_rewrite.companions.params.section_checks import shared_findings
 from multibot_rewrite.companions.params.sections import (
-    ParamSection,
     RawSection,
     controller_types,
     identify_node,
@@ -37,10 +31,8 @@ from multibot_rewrite.companions.params.sections import (
 )
 from multibot_rewrite.companions.params.shared_defaults import (
     default_lines,
-    sources_without_topic,
     without_section,
 )
-from multibot_rewrite.companions.params.unknown_parameters import guessed_names
 from multibot_rewrite.companions.params.values import ParamsJob, clock_splices, name_splices
 from multibot_rewrite.companions.template import (
     NAMESPACE_SLOT,
@@ -99,7 +91,7 @@ def _params(job: ParamsJob, beside: Sequence[YamlText]) -> Companion:
     findings = [it for it in made if isinstance(it, Finding)]
     template = make_template(document.text, splices)
     pieces = (document.bom + template.pieces[0], *template.pieces[1:])
-    return Companion(FileTemplate(pieces), _once(findings), file)
+    return Companion(FileTemplate(pieces), file, _once(findings))
 
 
 def _made(
@@ -110,21 +102,9 @@ def _made(
     yield from key_splices(job.document, sections)
     for section in sections:
         yield from clock_splices(job, section)
-        if not section.shared:
-            yield from namespace_findings(job.document, section, job.context)
-    yield from shared_findings(job.document, sections)
     for section, names in pages:
         yield from name_splices(job, section, names)
-        yield from _about_names(job, section, names)
     yield from default_lines(job, pages, others)
-
-
-def _about_names(job: ParamsJob, section: ParamSection, names: SectionNames) -> Iterator[Finding]:
-    for site in names.sites:
-        yield from name_findings(job, site)
-    yield from guessed_names(job, section, names)
-    yield from sources_without_topic(job, section)
-    yield from shared_calibrations(job, section)
 
 
 def _once(findings: Iterable[Finding]) -> tuple[Finding, ...]:

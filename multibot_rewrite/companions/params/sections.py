@@ -323,3 +323,12 @@ def flattened(node: yaml.Node, above: str = "") -> Iterator[tuple[str, yaml.Scal
             yield from flattened(value, name)
         else:
             yield name, key
+
+
+def scalars(node: yaml.Node) -> Iterator[tuple[yaml.ScalarNode, yaml.ScalarNode]]:
+    """Every key with a single value, and that value."""
+    for key, value in pairs(node):
+        if isinstance(value, yaml.ScalarNode):
+            yield key, value
+        else:
+            yield from scalars(value)

@@ -9,11 +9,9 @@ import yaml
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.findings.rule import declare
-from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.names.by_kind import SPELLERS, expressible
-from multibot_rewrite.companions.params.name_checks import prefix_only
 from multibot_rewrite.companions.params.name_sites import SectionNames
 from multibot_rewrite.companions.params.sections import (
     ParamSection,
@@ -23,9 +21,9 @@ from multibot_rewrite.companions.params.sections import (
 )
 from multibot_rewrite.companions.params.values import NO_PREFIX, ParamsJob, frames_stay
 from multibot_rewrite.companions.template import NAMESPACE_SLOT
-from multibot_rewrite.companions.yaml_text import Splice, YamlText, found_at, pairs, quoted
+from multibot_rewrite.companions.yaml_text import Splice, YamlText, found_at, quoted
 from multibot_rewrite.knowledge.parameter_entries import PREFIX_KINDS
-from multibot_rewrite.knowledge.parameters import KnownNode, is_absolute
+from multibot_rewrite.knowledge.parameters import KnownNode
 
 DEFAULT = "# multibot: the default is every robot's"
 OFF = "# multibot: the default puts the namespace before frames"
@@ -59,15 +57,6 @@ def default_lines(
         lines = list(missing_defaults(job.context, section.node, there))
         if lines:
             yield inserted(job.document, section.body, lines)
-        yield from _inexpressible(job, section, section.node, here)
-
-
-def _inexpressible(
-    job: ParamsJob, section: ParamSection, node: KnownNode, here: set[str]
-) -> Iterator[Finding]:
-    for param in node.defaults:
-        if param.path not in here and not expressible(job.context, param.kind):
-            yield prefix_only(job.document, section.keys[-1], param.path)
 
 
 def missing_defaults(context: Context, node: KnownNode, here: set[str]) -> Iterator[DefaultLine]:
@@ -164,64 +153,6 @@ def _texts(lines: Sequence[DefaultLine]) -> Iterator[str]:
     for comment in dict.fromkeys(line.comment for line in lines):
         yield comment
         yield from (f"{it.path}: {it.value}" for it in lines if it.comment == comment)
-
-
-NO_TOPIC = declare(
-    "MF127",
-    "costmap-source-without-topic",
-    WARNING,
-    what="A source of a costmap layer has no topic, so its id is the topic.",
-    why="The id is a relative name: up to Jazzy, scan becomes /robot1/local_costmap/scan, where nobody "
-    "publishes, and without namespaces all robots use one topic.",
-    fix="Add its topic.",
-    bad="""\
-local_costmap:
-  local_costmap:
-    ros__parameters:
-      obstacle_layer:
-        observation_sources: scan
-        scan: {clearing: true}
-""",
-    good="""\
-local_costmap:
-  local_costmap:
-    ros__parameters:
-      obstacle_layer:
-        observation_sources: scan
-        scan: {topic: /scan, clearing: true}
-""",
-    line=5,
-    formats=("params",),
-    options={"distro": "jazzy"},
-)
-
-
-def sources_without_topic(job: ParamsJob, section: ParamSection) -> Iterator[Finding]:
-    """Observation sources of a costmap layer without a topic: their id is the topic."""
-    top = "observation_sources"
-    param = section.node.params.get("<id>.<id>.topic") if section.node else None
-    namespaced = job.context.topics.naming.topics == NAMESPACE
-    if param is None or (namespaced and not is_absolute(param, job.context.distro)):
-        return
-    names = dict(flattened(section.body))
-    values = {id(key): value for key, value in _scalars(section.body)}
-    for name, key in names.items():
-        layer, _, last = name.rpartition(".")
-        if last != top or not layer:
-            continue
-        for source in values.get(id(key), "").split():
-            if f"{layer}.{source}.topic" not in names:
-                message = f"source {source} of {layer} has no topic, so it subscribes to {source!r}"
-                hint = f"add {layer}.{source}.topic: /{source}; it is renamed for each robot"
-                yield found_at(job.document, key, NO_TOPIC, message, hint)
-
-
-def _scalars(node: yaml.Node) -> Iterator[tuple[yaml.ScalarNode, str]]:
-    for key, value in pairs(node):
-        if isinstance(value, yaml.ScalarNode):
-            yield key, str(value.value)
-        else:
-            yield from _scalars(value)
 
 
 NO_SECTION = declare(

@@ -16,7 +16,7 @@ from multibot_rewrite.companions.engine import GRAPH, spell_site, splices_of, wr
 from multibot_rewrite.companions.names.by_kind import SPELLERS, is_component, is_plain
 from multibot_rewrite.companions.names.node_topics import Facts, TopicText
 from multibot_rewrite.companions.names.placeholders import filled, is_robot
-from multibot_rewrite.companions.names.rename_map import is_declared
+from multibot_rewrite.companions.names.rename_map import KINDS, is_declared
 from multibot_rewrite.companions.params.name_sites import SectionNames
 from multibot_rewrite.companions.params.sections import ParamSection
 from multibot_rewrite.companions.sites import Site, found_in
@@ -29,8 +29,8 @@ from multibot_rewrite.knowledge.records import Param
 # Controllers make an empty prefix of it; an empty parameter may stand for the namespace.
 NO_PREFIX = "/"
 SIM_TIME = "use_sim_time"
-# Kinds that are only guessed where the description declares the name.
-_UNSURE = ("frame", "sensor", "interface")
+# Kinds that are only guessed where the description declares the name: none declares a prefix.
+_UNSURE = ("frame", "sensor", "interface", *RUN_TIME)
 _SPELLED = frozenset((*GRAPH, *SPELLERS))
 
 
@@ -131,7 +131,8 @@ def renamed(context: Context, site: Site) -> str:
 def _is_certain(context: Context, site: Site) -> bool:
     if site.kind == "interface":
         return any(is_component(context, it) for it in site.text.split("/")[:-1])
-    return is_declared(context.names, site.kind, site.text.lstrip("/")) or site.text == "odom"
+    declared = site.kind in KINDS and is_declared(context.names, site.kind, site.text.lstrip("/"))
+    return declared or site.text == "odom"
 
 
 WRONG_TARGET = declare(

@@ -33,15 +33,6 @@ from multibot_rewrite.description.steps.document import Document, without_commen
 if TYPE_CHECKING:
     from multibot_rewrite.description.steps.renames import RenameMap
 
-__all__ = [
-    "audit",
-    "included_models",
-    "is_unknown",
-    "other_releases",
-    "other_ros",
-    "unknown_hardware",
-    "unknown_plugins",
-]
 ANOTHER_RELEASE = (
     "name the release that the description is for with --distro, or distro: in a fleet file"
 )

@@ -7,14 +7,7 @@ from collections.abc import Iterator
 from functools import partial
 from typing import TYPE_CHECKING
 
-from multibot_rewrite.base.naming import (
-    FRAME_KINDS,
-    NAMESPACE,
-    POSTFIX,
-    PREFIX,
-    TF_TOPICS,
-    Naming,
-)
+from multibot_rewrite.base.naming import FRAME_KINDS, NAMESPACE, POSTFIX, PREFIX, TF_TOPICS, Naming
 from multibot_rewrite.base.rosnames import split_remap
 from multibot_rewrite.description.checks.problem import Problem, about
 from multibot_rewrite.description.rewriters.forms import IN_FRONT

@@ -74,13 +74,7 @@ def read_robot(root: _Element) -> Robot:
     above = _by_name((it.child, it) for it in joints)
     below = _by_name((it.parent, it) for it in joints)
     return Robot(
-        links,
-        joints,
-        _firsts(links),
-        _firsts(joints),
-        above,
-        below,
-        _bodies(links, above, below),
+        links, joints, _firsts(links), _firsts(joints), above, below, _bodies(links, above, below)
     )
 
 

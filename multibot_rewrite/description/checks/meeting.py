@@ -8,20 +8,26 @@ from itertools import islice
 from lxml.etree import _Element
 
 from multibot_rewrite.base.model import InputError, ProofError
-from multibot_rewrite.base.naming import NAMESPACE, TOPIC_KINDS, TWIN, Naming, spelled
+from multibot_rewrite.base.naming import NAMESPACE, TWIN, Naming, spelled
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.description.readback.lost_rules import lost_rules
-from multibot_rewrite.description.readback.meeting import meetings, same_for_all
-from multibot_rewrite.description.readback.reading import FRAME, NODE, Reading, RuntimeName, read
+from multibot_rewrite.description.readback.meeting import (
+    NOT_TAKEN,
+    advice,
+    code_of,
+    lost_rules,
+    meetings,
+    said,
+    same_for_all,
+)
+from multibot_rewrite.description.readback.reading import Reading, RuntimeName, read
 from multibot_rewrite.description.rewriters.vocabulary import Vocabulary
 from multibot_rewrite.description.steps.apply import fill
 from multibot_rewrite.description.steps.document import Document
 
-SHARED_TOPIC, SHARED_NODE, SHARED_FRAME, SHARED_LOOKUP = "MB430", "MB431", "MB432", "MB425"
-CONTROLLERS, LOST_RULE = "MB435", "MB436"
+LOST_RULE = "MB436"
+ALL = "all robots would"
 # Stands for the name of a robot in a hint.
 ROBOT = "ROBOT"
-SHARED_CODES = frozenset({SHARED_TOPIC, SHARED_NODE, SHARED_FRAME, SHARED_LOOKUP, CONTROLLERS})
 
 
 def shared_by_all(
@@ -54,13 +60,14 @@ def shared_by_both(
     """The names that these two robots would have, but not every robot, as ``arm_left`` of ``b`` and
     ``arm`` of ``left_b``."""
     twin = _unused(document)
-    readings = {it: read(fill(pieces, it), document.file, vocabulary) for it in (*robots, twin)}
-    every = {(it.kind, it.name) for it in same_for_all(readings.pop(twin), twin, naming)}
-    for robot, other, it in meetings(readings, naming):
+    named = {it: read(fill(pieces, it), document.file, vocabulary).names for it in (*robots, twin)}
+    every = {(it.kind, it.name) for it in same_for_all(named.pop(twin), twin, naming)}
+    for met in meetings(named, naming):
+        it = met.name
         if (it.kind, it.name) not in every:
-            message = f"{robot} and {other} would both have the {it.kind} {it.name!r}"
+            message = said(f"{met.robot} and {met.other} would both", it)
             hint = "rename a robot or choose another separator"
-            yield Problem(document.root, message, None, hint, (), "MB421")
+            yield Problem(document.root, message, None, hint, (), code_of(it))
 
 
 def shared_with(
@@ -77,13 +84,12 @@ def shared_with(
         )
     yield from _lost(document, reading, naming, vocabulary)
     of_plugins: dict[int, list[RuntimeName]] = {}
-    for it in same_for_all(reading, robot, naming):
+    for it in same_for_all(reading.names, robot, naming):
         if it.of_controllers:
             of_plugins.setdefault(it.number, []).append(it)
         else:
-            yield Problem(
-                _element(document, it), _message(it), None, _hint(it, naming), (), code_of(it)
-            )
+            element, message = _element(document, it), said(ALL, it)
+            yield Problem(element, message, None, advice(it), (), code_of(it))
     for names in of_plugins.values():
         yield _of_controllers(_element(document, names[0]), names, naming, vocabulary.release)
 
@@ -113,43 +119,14 @@ def _of_controllers(
     """What the controllers of a plugin would share, though the plugin has rules for it."""
     shared = ", ".join(it.name for it in names)
     message = (
-        f"all robots would have {shared} of their controllers, which take no rules of this plugin on"
-        f" {release}"
+        f"{ALL} have {shared} of their controllers, which take no rules of this plugin on {release}"
     )
     rules = " ".join(f"-r {_rule(it.name, naming)}" for it in names)
     hint = (
         f'start each controller with its spawner and --controller-ros-args "{rules}"; multibot plan'
         " and build print the lines"
     )
-    return Problem(element, message, None, hint, (), CONTROLLERS)
-
-
-def code_of(name: RuntimeName) -> str:
-    """The rule that a shared name of this kind is about."""
-    if name.of_controllers:
-        return CONTROLLERS
-    if name.kind in TOPIC_KINDS:
-        return SHARED_TOPIC
-    return {NODE: SHARED_NODE, FRAME: SHARED_FRAME}.get(name.kind, SHARED_LOOKUP)
-
-
-def _message(name: RuntimeName) -> str:
-    if code_of(name) == SHARED_LOOKUP:
-        return (
-            f"the {name.kind} {name.name!r} is looked up by bare name in the whole world: "
-            "it may find that of another robot"
-        )
-    return f"all robots would have the {name.kind} {name.name!r} ({name.path})"
-
-
-def _hint(name: RuntimeName, naming: Naming) -> str:
-    if name.kind in TOPIC_KINDS:
-        return "set a topic that is renamed for each robot, or allow it with --shared-topics"
-    if name.kind == NODE:
-        return "give the plugin a namespace or another name"
-    if code_of(name) == SHARED_LOOKUP:
-        return f"use --layout both, which renames {name.kind}s for each robot"
-    return "set the frame for each robot, or allow it with --shared-frames"
+    return Problem(element, message, None, hint, (), NOT_TAKEN)
 
 
 def _rule(name: str, naming: Naming) -> str:

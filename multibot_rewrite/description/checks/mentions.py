@@ -9,9 +9,11 @@ from functools import lru_cache
 
 from lxml import etree
 
+from multibot_rewrite.base.conventions import USUAL_FRAMES
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import Site
+from multibot_rewrite.base.naming import TF_TOPICS, Naming, spelled
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.rewriters.text import text_of
@@ -21,6 +23,8 @@ from multibot_rewrite.description.steps.document import finding, value_slot
 
 # Kinds whose names are looked for in values without a site.
 MENTIONED = ("link", "joint", "light")
+# Frames that no description declares are common words: they count where the key says so.
+_FRAME_KEY = lazy_compile(r"(?:^|_)(?:frame|frame_id|link)$")
 # What is between names: of lists and paths, of structures, and of what has parts. A name may hold
 # what is between others, so that each is a look of its own.
 _BETWEEN = (
@@ -33,35 +37,11 @@ _PARTED = lazy_compile(r"[\s,;/\[\](){}\"'=|:.]")
 _SPACED = lazy_compile(r"[\s,;\[\](){}\"'=|]+")
 # A file is found by its name, whatever the links are called.
 _FILES = (
-    *(
-        ".dae",
-        ".stl",
-        ".obj",
-        ".ply",
-        ".glb",
-        ".gltf",
-        ".usd",
-        ".usda",
-        ".usdc",
-        ".mtl",
-        ".material",
-    ),
-    *(".png", ".jpg", ".jpeg", ".tga", ".dds", ".pgm", ".bmp", ".svg", ".urdf", ".xacro", ".srdf"),
-    *(".sdf", ".world", ".rviz", ".yaml", ".yml", ".xml", ".json", ".toml", ".ini", ".csv", ".txt"),
-    *(
-        ".lua",
-        ".py",
-        ".sh",
-        ".so",
-        ".bin",
-        ".pt",
-        ".onnx",
-        ".engine",
-        ".pcd",
-        ".bag",
-        ".db3",
-        ".mcap",
-    ),
+    *(".dae", ".stl", ".obj", ".ply", ".glb", ".gltf", ".usd", ".usda", ".usdc"),
+    *(".mtl", ".material", ".png", ".jpg", ".jpeg", ".tga", ".dds", ".pgm", ".bmp"),
+    *(".svg", ".urdf", ".xacro", ".srdf", ".sdf", ".world", ".rviz", ".yaml", ".yml"),
+    *(".xml", ".json", ".toml", ".ini", ".csv", ".txt", ".lua", ".py", ".sh", ".so"),
+    *(".bin", ".pt", ".onnx", ".engine", ".pcd", ".bag", ".db3", ".mcap"),
 )
 _NUMERIC = "-+0123456789.eE \t\n\r\v\f"
 
@@ -81,12 +61,16 @@ class Mention(NamedTuple):
 
 
 def find_mentions(
-    inventory: Inventory, values: list[str], names: Collection[str], tree: Tree
+    inventory: Inventory,
+    values: list[str],
+    names: Collection[str],
+    tree: Tree,
+    usual: Collection[str] = (),
 ) -> list[Finding]:
     """A warning for each of ``unclaimed_mentions``, at the value itself."""
     document = inventory.document
     found = []
-    for it in unclaimed_mentions(inventory, values, names, tree):
+    for it in unclaimed_mentions(inventory, values, names, tree, usual):
         slot = value_slot(document.source, it.start, it.attribute, it.value)
         problem = as_problem(it)
         at = slot[0] if slot else it.start
@@ -95,14 +79,18 @@ def find_mentions(
 
 
 def unclaimed_mentions(
-    inventory: Inventory, values: list[str], names: Collection[str], tree: Tree
+    inventory: Inventory,
+    values: list[str],
+    names: Collection[str],
+    tree: Tree,
+    usual: Collection[str] = (),
 ) -> list[Mention]:
     """Each unclaimed value that is one of ``names`` or holds one as a list item, path segment,
-    scope or side of a remap rule; ``values`` are all of ``slot_values``. Values with a ``keep``
-    site are no mention."""
-    if not names:
+    scope or side of a remap rule, or is a ``usual`` frame or topic of tf; ``values`` are all of
+    ``slot_values``. Values with a ``keep`` site are no mention."""
+    if not (names or usual):
         return []
-    telling = _telling(values, frozenset(names))
+    telling = _telling(values, frozenset(names)) | {it: it for it in values if it in usual}
     count = Counter(filter(telling.__contains__, values))
     claimed = Counter([claim.value for claim in inventory.claims])
     suspects = {value for value in telling if count[value] > claimed[value]}
@@ -113,7 +101,20 @@ def unclaimed_mentions(
         Mention(*slot, telling[slot[3]])
         for slot in _unclaimed(inventory, suspects)
         if not kept(slot[0], slot[2], tree, nodes)
+        and (telling[slot[3]] in names or _is_meant(slot[0], slot[2], slot[3]))
     ]
+
+
+def _is_meant(element: etree._Element, attribute: str, value: str) -> bool:
+    """Is a usual frame at a key for frames? A topic of tf is meant wherever it is."""
+    return value.startswith("/") or _FRAME_KEY.search(attribute or str(element.tag)) is not None
+
+
+def usual_names(naming: Naming) -> frozenset[str]:
+    """The frames and topics of tf that no description declares and that a rewrite makes others."""
+    topics = (f"/{it}" for it in TF_TOPICS if naming.layout.tf_per_robot)
+    frames = (it for it in USUAL_FRAMES if spelled(naming, "robot", "frame", it) != it)
+    return frozenset((*topics, *frames))
 
 
 def _telling(values: list[str], names: frozenset[str]) -> dict[str, str]:

@@ -1,4 +1,4 @@
-"""Where the links of a URDF are, with every joint at 0.
+"""An ``<origin>`` as it is written, and where the links of a URDF are, with every joint at 0.
 
 Source: urdfdom and sdformat: the origin of a joint is the child's frame in the parent's, and its
 axis is in the child's.
@@ -12,20 +12,62 @@ from math import sqrt
 
 from lxml.etree import _Element
 
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.links_and_joints import Joint, Robot, roots
 from multibot_rewrite.description.checks.numbers import Vector, numbers, vector
-from multibot_rewrite.description.checks.pose import Pose, pose_of
 from multibot_rewrite.description.checks.rotation import (
     Matrix,
+    Quaternion,
     matrix_of_quaternion,
     product,
     quaternion_of_rpy,
     turned,
 )
 
+ZERO = "0 0 0"
+ROTATIONS = ("rpy", "quat_xyzw")
 STRAIGHT: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-HERE = Pose((0.0, 0.0, 0.0), STRAIGHT)
 X: Vector = (1.0, 0.0, 0.0)
+
+
+class Pose(NamedTuple):
+    """Where something is, and how it is turned."""
+
+    at: Vector
+    matrix: Matrix
+
+
+HERE = Pose((0.0, 0.0, 0.0), STRAIGHT)
+
+
+def pose_of(origin: _Element | None) -> Pose | None:
+    """The pose of an ``<origin>``, none of which is no pose; None where its values are not numbers.
+
+    Of two rotations the quaternion counts.
+    """
+    at = vector(ZERO if origin is None else origin.get("xyz", ZERO))
+    turn = quaternion(origin) or _rolled(origin)
+    return None if at is None or turn is None else Pose(at, matrix_of_quaternion(turn))
+
+
+def quaternion(origin: _Element | None) -> Quaternion | None:
+    """The four numbers of ``quat_xyzw``; None where it is missing or something else."""
+    found = None if origin is None else numbers(origin.get("quat_xyzw", ""))
+    if found is None or len(found) != 4:
+        return None
+    x, y, z, w = found
+    return x, y, z, w
+
+
+def rolled(origin: _Element) -> Matrix | None:
+    """The rotation of ``rpy`` alone."""
+    turn = _rolled(origin)
+    return None if turn is None else matrix_of_quaternion(turn)
+
+
+def _rolled(origin: _Element | None) -> Quaternion | None:
+    rpy = vector(ZERO if origin is None else origin.get("rpy", ZERO))
+    return None if rpy is None else quaternion_of_rpy(rpy)
 
 
 def link_poses(robot: Robot) -> Mapping[str, Pose]:

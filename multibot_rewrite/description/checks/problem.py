@@ -17,7 +17,7 @@ class Problem(NamedTuple):
 
     ``attribute`` is the name of the attribute at fault, empty for the element's text, None for the
     element itself. ``edits`` fix it without a change of meaning; empty where that is not safe.
-    ``code`` is the rule's; it may be empty in a lint rule, which has the code itself.
+    ``code`` and ``level`` are the rule's; they may be empty in a lint rule, which has them itself.
     """
 
     element: _Element
@@ -26,6 +26,7 @@ class Problem(NamedTuple):
     hint: str = ""
     edits: tuple[Edit, ...] = ()
     code: str = ""
+    level: str = ""
 
 
 def about(claim: Claim, code: str, message: str, hint: str = "") -> Problem:

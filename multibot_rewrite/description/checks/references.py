@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Iterator
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.place import locate
+from multibot_rewrite.base.findings.finding import WARNING, locate
 from multibot_rewrite.base.model import Claim, Site
 from multibot_rewrite.base.naming import CLOSED_KINDS, is_keyword
 from multibot_rewrite.base.nearest import Guesses
@@ -17,23 +17,10 @@ from multibot_rewrite.description.rewriters.spelling import kind_of, must_be_dec
 from multibot_rewrite.description.steps.collect import Inventory
 
 SRDF_ROBOT = "element srdf.robot"
-# How the section and the path of a site begin -> its code; the first that fits.
-_THEMES = (
-    ("element joint", "parent@", "MB202"),
-    ("element joint", "child@", "MB202"),
-    ("element joint", "", "MB211"),
-    ("element gazebo", "@reference", "MB212"),
-    ("element transmission", "", "MB213"),
-    ("element ros2_control", "hardware/", "MB215"),
-    ("element ros2_control", "", "MB214"),
-    (SRDF_ROBOT, "@name", "MB802"),
-    (SRDF_ROBOT, "disable_", "MB807"),
-    (SRDF_ROBOT, "enable_", "MB807"),
-)
-# Of what is not there by its kind: in parameters of a plugin or hardware class, and in an SRDF.
-_PARAMETERS = {"joint": "MB215", "link": "MB216"}
+# How the section and the path of a site of an SRDF begin -> its code, else by kind.
+_SRDF_THEMES = (("@name", "MB802"), ("disable_", "MB807"), ("enable_", "MB807"))
 _SRDF = {"link": "MB803", "joint": "MB804", "group": "MB805"}
-_OTHER = "MB220"
+_LINK, _JOINT = "MB202", "MB211"
 # Only SDF has scopes.
 _SCOPE = "MB219"
 
@@ -83,7 +70,9 @@ def undeclared_names(loose: Iterable[Loose], declared: Declared) -> Iterator[Pro
         known = (known for kind in part.kinds for known in declared.get(kind, ()))
         message = f"{where(claim)} names the {' or '.join(part.kinds)} {part.text!r}, "
         message += _fault(part, declared)
-        yield about(claim, _code(claim.site, part), message, guesses.hint(part.text, known))
+        code, hint = _code(claim.site, part), guesses.hint(part.text, known)
+        mild = code in (_LINK, _JOINT) and not _ends_the_loading(claim.site)
+        yield about(claim, code, message, hint)._replace(level=WARNING if mild else "")
 
 
 def _fault(part: NamePart, declared: Declared) -> str:
@@ -92,16 +81,20 @@ def _fault(part: NamePart, declared: Declared) -> str:
     return f"which is a {other}" if other else "which is not declared"
 
 
+def _ends_the_loading(site: Site) -> bool:
+    """Is a description rejected for a name that nothing declares there?"""
+    of_system = site.section == "element ros2_control" and not site.path.startswith("hardware/")
+    return of_system or site.section == "element joint"
+
+
 def _code(site: Site, part: NamePart) -> str:
     if site.form in ("scoped", "member"):
         return _SCOPE
-    for section, path, code in _THEMES:
-        if site.section == section and site.path.startswith(path):
-            return code
-    if site.section == SRDF_ROBOT:
-        return _SRDF.get(part.kinds[0], _OTHER)
-    is_parameter = site.section.partition(" ")[0] != "element" or site.section == "element plugin"
-    return _PARAMETERS.get(part.kinds[0], _OTHER) if is_parameter else _OTHER
+    other = _JOINT if part.kinds[0] == "joint" else _LINK
+    if site.section != SRDF_ROBOT:
+        return other
+    themes = (code for path, code in _SRDF_THEMES if site.path.startswith(path))
+    return next(themes, _SRDF.get(part.kinds[0], other))
 
 
 def where(claim: Claim) -> str:

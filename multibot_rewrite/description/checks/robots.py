@@ -130,14 +130,12 @@ def meeting(
     for robot, other, _ in pairs:
         ours = {(name[0], renames.spelled(robot, *name)) for name in names}
         for kind, both in sorted(ours & {(n[0], renames.spelled(other, *n)) for n in names}):
-            message = f"{robot} and {other} would both have a {kind} {both!r}"
+            message = f"{robot} and {other} would both have the {kind} {both!r}"
             hint = "rename a robot or choose another separator"
             yield Problem(inventory.document.root, message, None, hint, (), "MB421")
 
 
-def meeting_descriptions(
-    made: Iterable[tuple[str, Inventory, RenameMap]],
-) -> Iterator[Problem]:
+def meeting_descriptions(made: Iterable[tuple[str, Inventory, RenameMap]]) -> Iterator[Problem]:
     """Names that two robots both have, each in a description of its own."""
     first: dict[tuple[str, str], str] = {}
     for robot, inventory, renames in made:
@@ -145,7 +143,7 @@ def meeting_descriptions(
         for kind, name in sorted(names | set(renames.naming.own)):
             other = first.setdefault((kind, name), robot)
             if other != robot:
-                message = f"{other} and {robot} would both have a {kind} {name!r}"
+                message = f"{other} and {robot} would both have the {kind} {name!r}"
                 hint = "rename a robot, or give its xacro another argument"
                 yield Problem(inventory.document.root, message, None, hint, (), "MB421")
 

@@ -10,8 +10,15 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.numbers import Vector, numbers, vector
-from multibot_rewrite.description.checks.pose import Pose
-from multibot_rewrite.description.checks.poses import STRAIGHT, dot, minus, plus, point_in, scaled
+from multibot_rewrite.description.checks.poses import (
+    STRAIGHT,
+    Pose,
+    dot,
+    minus,
+    plus,
+    point_in,
+    scaled,
+)
 
 
 class Extent(NamedTuple):

@@ -7,6 +7,15 @@ from collections.abc import Iterable
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.plural import plural
+from multibot_rewrite.description.readback.meeting import (
+    COMMAND,
+    DATA,
+    FRAMES,
+    LOOKUP,
+    NOT_TAKEN,
+    TWO_NODES,
+    TWO_SERVERS,
+)
 
 SHARED = "shared by all robots"
 # Code -> what is counted and what is said of it. A rewrite with one of these findings is not proved.
@@ -16,11 +25,13 @@ REASONS = {
     "MB902": ("plugin", "not known"),
     "MB903": ("hardware class", "not known"),
     "MB906": ("included model", "not read"),
-    "MB430": ("topic", SHARED),
-    "MB431": ("node", SHARED),
-    "MB435": ("plugin", "whose controllers take rules of their spawner alone"),
-    "MB432": ("frame", SHARED),
-    "MB425": ("name", "looked up in the whole world"),
+    DATA: ("topic", SHARED),
+    COMMAND: ("command", SHARED),
+    TWO_SERVERS: ("service", SHARED),
+    TWO_NODES: ("node", SHARED),
+    NOT_TAKEN: ("plugin", "whose controllers take rules of their spawner alone"),
+    FRAMES: ("frame", SHARED),
+    LOOKUP: ("name", "looked up in the whole world"),
     "MB410": ("description name", SHARED),
     "MB416": ("world system", "in every robot"),
     "MB436": ("remap rule", "that matches no name any more"),

@@ -1,46 +1,69 @@
-"""Where robots meet: names in the running system that two of them have and that are not shared."""
+"""Where robots meet: names in the running system that two of them have and that are not shared; and
+remap rules that matched a name of their plugin before a rewrite, and match none after it.
+
+A rewrite, a lint, a remap table and a build ask here: what they find has the code of the rule that
+finds it in a system that runs.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from multibot_rewrite.base.naming import Naming, is_keyword
+from multibot_rewrite.base.naming import TOPIC_KINDS, Naming, is_keyword
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.description.readback.nodes import SERVICE, TOPIC
-from multibot_rewrite.description.readback.reading import FRAME, Reading, RuntimeName
+from multibot_rewrite.base.rosnames import expand
+from multibot_rewrite.description.readback.nodes import ReadEndpoint, ReadNode, full_name, itself
+from multibot_rewrite.description.readback.reading import FRAME, NODE, Reading, RuntimeName
+from multibot_rewrite.system.records import ACTION, KINDS, SERVICE
+from multibot_rewrite.system.words import is_order
+
+TWO_NODES, TWO_SERVERS, COMMAND, DATA = "MG301", "MG305", "MG310", "MG320"
+FRAMES, LOOKUP, NOT_TAKEN = "MG402", "MB425", "MR105"
+SHARED_CODES = frozenset({TWO_NODES, TWO_SERVERS, COMMAND, DATA, FRAMES, LOOKUP, NOT_TAKEN})
+# The type of a topic called as one that moves a robot, where it is not known.
+_USUAL = "geometry_msgs/msg/Twist"
+_ALLOW = "rename it for each robot, or allow it with --shared-topics"
+_ADVICE = {
+    TWO_NODES: "give each robot's node a name or namespace of its own",
+    TWO_SERVERS: _ALLOW,
+    COMMAND: _ALLOW,
+    DATA: _ALLOW,
+    FRAMES: "set the frame for each robot, or allow it with --shared-frames",
+}
 
 
 class Meeting(NamedTuple):
-    """A name of ``robot`` that ``other`` has, too."""
+    """A name of ``robot`` that ``other`` has, too, as ``twin``."""
 
     robot: str
     other: str
     name: RuntimeName
+    twin: RuntimeName
 
 
-def same_for_all(reading: Reading, word: str, naming: Naming) -> Iterator[RuntimeName]:
+def same_for_all(names: Iterable[RuntimeName], word: str, naming: Naming) -> Iterator[RuntimeName]:
     """The names without ``word``, which stands for the robot: every robot would have them.
 
     Each name once, at its first place.
     """
     seen: set[tuple[str, str]] = set()
-    for it in _own(reading.names, naming):
+    for it in _own(names, naming):
         if word not in it.name and (it.kind, it.name) not in seen:
             seen.add((it.kind, it.name))
             yield it
 
 
-def meetings(readings: Mapping[str, Reading], naming: Naming) -> Iterator[Meeting]:
+def meetings(named: Mapping[str, Iterable[RuntimeName]], naming: Naming) -> Iterator[Meeting]:
     """The names that two of these robots have, each once."""
     first: dict[tuple[str, str], tuple[str, RuntimeName]] = {}
     seen: set[tuple[str, str]] = set()
-    for robot, reading in readings.items():
-        for it in _own(reading.names, naming):
+    for robot, names in named.items():
+        for it in _own(names, naming):
             key = it.kind, it.name
             other, name = first.setdefault(key, (robot, it))
             if other != robot and key not in seen:
                 seen.add(key)
-                yield Meeting(other, robot, name)
+                yield Meeting(other, robot, name, it)
 
 
 def _own(names: Iterable[RuntimeName], naming: Naming) -> Iterator[RuntimeName]:
@@ -51,10 +74,81 @@ def _own(names: Iterable[RuntimeName], naming: Naming) -> Iterator[RuntimeName]:
             # Where each robot has a tf topic of its own, frames may be the same.
             at_run_time = naming.layout.at_run_time and it.tag == "link"
             shared = at_run_time or not naming.layout.frames or bare in naming.shared_frames
-        elif it.kind in (TOPIC, SERVICE):
+        elif it.kind in KINDS:
             # __default_topic__ is no topic: the simulator makes one from the model's name.
             shared = bare in naming.shared_topics or is_keyword(bare)
         else:
             shared = False
         if not shared:
             yield it
+
+
+def code_of(name: RuntimeName) -> str:
+    """The rule that a shared name is about."""
+    if name.of_controllers:
+        return NOT_TAKEN
+    if name.kind in (SERVICE, ACTION):
+        return TWO_SERVERS
+    if name.kind in TOPIC_KINDS:
+        return COMMAND if is_order(name.name, name.type or _USUAL) else DATA
+    return {NODE: TWO_NODES, FRAME: FRAMES}.get(name.kind, LOOKUP)
+
+
+def said(who: str, *names: RuntimeName) -> str:
+    """That these robots would (both) have a name, and who of them has it."""
+    name, by = names[0], " and ".join(dict.fromkeys(it.path for it in names))
+    if code_of(name) == LOOKUP:
+        return (
+            f"the {name.kind} {name.name!r} is looked up by bare name in the whole world: "
+            "it may find that of another robot"
+        )
+    return f"{who} have the {name.kind} {name.name!r} ({by})"
+
+
+def advice(name: RuntimeName) -> str:
+    """What to do about a shared name, but for those of controllers."""
+    of_all = f"use --layout both, which renames {name.kind}s for each robot"
+    return _ADVICE.get(code_of(name), of_all)
+
+
+class LostRule(NamedTuple):
+    """A rule, the full name that it was for, and the plugin: the ``number``-th of the file."""
+
+    number: int
+    rule: str
+    name: str
+
+
+def lost_rules(before: Reading, after: Reading) -> Iterator[LostRule]:
+    """Each rule once for each name."""
+    now = {node.number: node for node in after.nodes}
+    for node in before.nodes:
+        if node.rules and node.number in now:
+            yield from dict.fromkeys(_lost(node, now[node.number]))
+
+
+def _lost(node: ReadNode, new: ReadNode) -> Iterator[LostRule]:
+    for old, end in zip(node.endpoints, new.endpoints, strict=False):
+        name, at = _applied(node, old)
+        if at is None:
+            continue
+        now = _applied(new, end)[1]
+        # An inserted rule may do its work: /tf:=x for tf:=x, which is another name in a namespace.
+        if now is None or new.rules[now].rule.target != new.rules[at].rule.target:
+            rule = node.rules[at].rule
+            yield LostRule(node.number, f"{rule.source}:={rule.target}", name)
+
+
+def _applied(node: ReadNode, end: ReadEndpoint) -> tuple[str, int | None]:
+    """The full name of an endpoint without rules for topics, and the number of the one that gives it
+    another; None where it keeps its own.
+
+    Those of ``<remapping>`` are counted from the end: what is inserted stands before them.
+    """
+    bound = itself(node)
+    name = full_name(end.name, end.kind, bound)
+    sources = [expand(it.rule.source, bound.namespace, bound.node) for it in node.rules]
+    if end.full == name or name not in sources:
+        return name, None
+    at = sources.index(name)
+    return name, at if node.rules[at].tag == "argument" else at - len(sources)

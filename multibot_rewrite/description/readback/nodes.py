@@ -84,11 +84,7 @@ class ReadNode(NamedTuple):
 
 
 def node_of(
-    plugin: _Element,
-    number: int,
-    section: VocabularySection,
-    links: Container[str],
-    release: str,
+    plugin: _Element, number: int, section: VocabularySection, links: Container[str], release: str
 ) -> ReadNode | None:
     """The ROS 2 node that a plugin starts; None where it starts none.
 
@@ -180,10 +176,7 @@ def full_name(name: str, kind: str, bound: BoundNode) -> str:
 
 
 def _endpoints(
-    plugin: _Element,
-    section: VocabularySection,
-    bound: BoundNode,
-    rules: tuple[ReadRule, ...],
+    plugin: _Element, section: VocabularySection, bound: BoundNode, rules: tuple[ReadRule, ...]
 ) -> Iterator[ReadEndpoint]:
     off = switched_off(plugin, section)
     for_all = [it.rule for it in rules if not it.rule.node]

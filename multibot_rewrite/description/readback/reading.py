@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterator
+from collections.abc import Container, Iterator, Sequence
 
 from lxml.etree import _Element
 
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import Site
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.readback.nodes import (
@@ -15,14 +16,14 @@ from multibot_rewrite.description.readback.nodes import (
     node_of,
     resolved,
 )
-from multibot_rewrite.description.readback.own_defaults import MODEL, around, is_nested
-from multibot_rewrite.description.readback.parameters import default_of, values_of
-from multibot_rewrite.description.readback.sections import (
-    hardware_section,
-    plugin_section,
-    sensor_sections,
+from multibot_rewrite.description.readback.parameters import (
+    MODEL,
+    around,
+    default_of,
+    is_nested,
+    values_of,
 )
-from multibot_rewrite.description.readback.xml import read_xml, values_at
+from multibot_rewrite.description.readback.xml import child_text, read_xml, values_at
 from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, VocabularySection
 
 NODE, FRAME = "node", "frame"
@@ -32,12 +33,19 @@ WITH_TOPICS = (
     ("sdf.link", "particle_emitter"),
     ("webots", "webots"),
 )
+# gz-sim's loader takes a library with or without lib and .so, versions, and the old name
+# (gazebosim/gz-sim src/SystemLoader.cc).
+_LIBRARY = lazy_compile(r"(?:.*/)?(?:lib)?(.*?)(?:\.so|\.dylib|\.dll)?")
+_SYSTEM = lazy_compile(r"(?:ignition-gazebo|gz-sim)\d*-?(.*)")
+ROS_1, ROS_2 = "1", "2"
+# Every plugin that is not known and has a <ros> is a node.
+WITH_ROS = "any_with_ros"
 
 
 class RuntimeName(NamedTuple):
     """A name in the running system: its kind (topic, service, node, frame, or what a plugin looks up
     in the whole world), its text, and where it comes from: the ``number``-th element with this
-    ``tag``, and ``path``, the parameter; ``of_controllers`` as in ``ReadEndpoint``."""
+    ``tag``, and ``path``, the parameter; ``of_controllers`` and ``type`` as in ``ReadEndpoint``."""
 
     kind: str
     name: str
@@ -45,6 +53,7 @@ class RuntimeName(NamedTuple):
     number: int
     path: str
     of_controllers: bool = False
+    type: str = ""
 
 
 class Reading(NamedTuple):
@@ -132,7 +141,7 @@ def _of_nodes(nodes: tuple[ReadNode, ...]) -> Iterator[RuntimeName]:
             # What is below a stem is named by it.
             if not it.off and it.parameter not in above:
                 path, of = it.parameter or it.name, it.of_controllers
-                yield RuntimeName(it.kind, it.full, "plugin", node.number, path, of)
+                yield RuntimeName(it.kind, it.full, "plugin", node.number, path, of, it.type)
         for path, full in node.stems:
             yield RuntimeName(TOPIC, full, "plugin", node.number, path)
 
@@ -206,3 +215,52 @@ def _lookups(root: _Element, host: _Host, vocabulary: Vocabulary) -> Iterator[Ru
             for value in dict.fromkeys(values_of(host.element, site)):
                 if value in there:
                     yield RuntimeName(kind, value, tag, host.number, site.path)
+
+
+def plugin_section(
+    plugin: _Element, vocabulary: Vocabulary
+) -> tuple[VocabularySection | None, bool]:
+    """The section of a plugin, None where it has none, and whether the plugin itself is known."""
+    with_ros = plugin.find("ros") is not None
+    for key in _keys(plugin):
+        found = vocabulary.find("plugin", key)
+        # Nothing in ROS 1 reads a <ros>.
+        if found and not (with_ros and all(it.ros == ROS_1 for it in found)):
+            return _of_release(found, plugin), True
+    if not with_ros:
+        return None, False
+    return vocabulary.find("plugin", WITH_ROS)[0], False
+
+
+def _keys(plugin: _Element) -> Iterator[str]:
+    library = _LIBRARY.fullmatch(plugin.get("filename", "").strip())
+    name = library[1] if library else ""
+    system = _SYSTEM.fullmatch(name)
+    yield f"gz-sim-{system[1]}" if system else name
+    class_ = plugin.get("name", "").strip()
+    if "::" in class_:
+        yield class_.replace("ignition::gazebo::", "gz::sim::")
+
+
+def _of_release(found: Sequence[VocabularySection], plugin: _Element) -> VocabularySection:
+    """ROS 1 and ROS 2 have plugins of one name. Only ROS 2 reads <ros>; without it the release that
+    reads more of its parameters counts, ROS 2 if both do."""
+    by_release = {section.ros: section for section in found}
+    new, old = by_release.get(ROS_2, found[0]), by_release.get(ROS_1)
+    if old is None or plugin.find("ros") is not None:
+        return new
+    tags = {child.tag for child in plugin}
+    return old if len(tags & old.tags) > len(tags & new.tags) else new
+
+
+def hardware_section(system: _Element, vocabulary: Vocabulary) -> VocabularySection | None:
+    """The section of the class that a ros2_control system loads."""
+    hardware = system.find("hardware")
+    class_ = child_text(hardware, "plugin") if hardware is not None else None
+    return next(iter(vocabulary.find("hardware", class_ or "")), None)
+
+
+def sensor_sections(sensor: _Element, vocabulary: Vocabulary) -> list[VocabularySection]:
+    """What is known about every sensor, and about those of this type."""
+    type_ = sensor.get("type", "").strip()
+    return [*vocabulary.find("element", "sensor"), *vocabulary.find("sensor", type_)]

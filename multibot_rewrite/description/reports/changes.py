@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from multibot_rewrite.base.findings.place import locate
+from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.model import Change, Claim
 from multibot_rewrite.description.rewriters.spelling import ROBOT_SLOT, respelled
-from multibot_rewrite.description.steps.template import Template
+from multibot_rewrite.description.steps.apply import Template
 
 
 def list_changes(template: Template, robot: str) -> list[Change]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from multibot_rewrite.base.model import VocabularyError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import split_remap
+from multibot_rewrite.base.wording import clip
 from multibot_rewrite.description.checks.mentions import MENTIONED
 from multibot_rewrite.description.reports.paths import short_name
 from multibot_rewrite.description.reports.survey import loaded_by
@@ -47,7 +48,6 @@ _LISTED = ("joint", "link", "frame")
 _EMPTY = frozenset({"name", "names", "id", "ids", "list", "value", "text"})
 _PIECES = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+")
 _NO_NAME = re.compile(r"[-+0-9.eE\s,]*$|(?:true|false|yes|no|on|off|none)$", re.IGNORECASE)
-_LONGEST = 60
 
 
 class Guess(NamedTuple):
@@ -257,8 +257,7 @@ def _by_tag(value: str, word: str) -> Guess | None:
 
 def shown(value: str) -> str:
     """A value in quotes, on one line and not too long."""
-    line = " ".join(value.split())
-    return repr(line if len(line) <= _LONGEST else f"{line[: _LONGEST - 1]}…")
+    return repr(clip(value))
 
 
 def vocabulary_text(sections: Iterable[SuggestedSection], file: str) -> str:

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TypeVar
 
-from multibot_rewrite.base.findings.place import locate
+from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.model import Claim
 from multibot_rewrite.base.naming import DECLARED_KINDS
 from multibot_rewrite.base.record import NamedTuple

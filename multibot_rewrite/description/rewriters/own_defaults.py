@@ -107,14 +107,12 @@ def second_senders(hosts: Hosts, naming: Naming) -> frozenset[etree._Element]:
     second = set()
     for host in senders:
         model = model_of(host)
-        if host not in given and (model in taken or _is_nested(model)):
+        if host not in given and (
+            model in taken or (next(model.iterancestors("model"), None) is not None)
+        ):
             second.add(host)
         taken.add(model)
     return frozenset(second)
-
-
-def _is_nested(model: etree._Element) -> bool:
-    return next(model.iterancestors("model"), None) is not None
 
 
 def frame_sites(host: etree._Element, section: VocabularySection, naming: Naming) -> list[Site]:

@@ -44,15 +44,8 @@ def qualified(name: str) -> str:
 
 # What a node knows once it is made.
 _CONTENT = (
-    "section",
-    "children",
-    "active",
-    "attributes",
-    "text",
-    "keeps",
-    "select",
-    "asked",
-    "values",
+    *("section", "children", "active", "attributes", "text"),
+    *("keeps", "select", "asked", "values"),
 )
 
 # The section for unknown plugins with a <ros> block, which gazebo_ros::Node reads.

@@ -7,7 +7,7 @@ import re
 import sys
 from collections.abc import Mapping
 
-from multibot_rewrite.base.findings.place import locate
+from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.access import BOUNDED, Access, Find, Reach, check_file

@@ -18,7 +18,7 @@ from functools import lru_cache
 from time import monotonic
 
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.description.sources.child.commands import COMMAND, END, ENDED, REPLY, START
+from multibot_rewrite.description.sources.child.frames import COMMAND, END, ENDED, REPLY, START
 
 _MODULE = "multibot_rewrite.description.sources.child.serve"
 # Python finds what this process finds, and nothing by the variables of the environment.

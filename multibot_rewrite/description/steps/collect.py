@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from lxml import etree
 
-from multibot_rewrite.base.findings.place import locate
+from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.model import Claim, InputError, Site
 from multibot_rewrite.base.naming import DECLARED_KINDS
 from multibot_rewrite.base.record import NamedTuple

@@ -15,8 +15,7 @@ from operator import sub
 from lxml import etree
 
 from multibot_rewrite.base.bounded import MAX_BYTES
-from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.findings.place import locate
+from multibot_rewrite.base.findings.finding import Finding, locate
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import Edit, InputError
 from multibot_rewrite.base.record import NamedTuple

@@ -1,28 +1,38 @@
-"""The fleet of a fleet file with what is open in its robots: plan, remap, rehearse and check say it."""
+"""The fleet of a fleet file with what is open in its robots, before and after their rewrite: build,
+plan, rehearse and check say it. What a rewrite opens is an error."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.gc_pause import gc_paused
-from multibot_rewrite.companions.yaml_text import read_yaml
-from multibot_rewrite.fleet.checks.closing import closing
+from multibot_rewrite.fleet.checks.judged import (
+    apart,
+    contradicted,
+    controlled,
+    missing,
+    not_sent,
+    whose_names,
+)
+from multibot_rewrite.fleet.checks.written_files import written_findings
+from multibot_rewrite.fleet.checks.written_system import of_each_kind, with_robots, written_system
 from multibot_rewrite.fleet.fleet import Fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.bridge_outputs import bridge_outputs
-from multibot_rewrite.fleet.outputs.bridged import BOTH, once
 from multibot_rewrite.fleet.outputs.companion_files import companion_files
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
-from multibot_rewrite.fleet.outputs.output_values import OutputText
 from multibot_rewrite.fleet.robots.robot_groups import group_robots
-from multibot_rewrite.fleet.robots.with_start_pose_nodes import with_start_pose_nodes
+from multibot_rewrite.fleet.robots.start_poses import with_start_pose_nodes
+from multibot_rewrite.fleet.robots.systems import system_after, system_before
+from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.producers.ends import BRIDGE_FILE, bridge_ends
+from multibot_rewrite.spelling.bridged_topics import BOTH, once
 from multibot_rewrite.system.records import Topic
 
 # Rules about a file that names what the robot does not have.
 NAMES_NOTHING = frozenset(
-    "MB803 MB804 MB805 MB810 MB853 MB854 MB874 MF127".split()  # noqa: SIM905
+    "MB803 MB804 MB805 MB810 MB853 MB854 MB857 MB874 MB877 MB878 MB885".split()  # noqa: SIM905
 )
 
 
@@ -34,24 +44,24 @@ def closed_plan(plan: FleetPlan) -> Fleet:
     with gc_paused():
         fleet, few = with_start_pose_nodes(plan), _one_of_each(plan)
         made = [*companion_files(few), *bridge_outputs(few)]
-        texts = texts_of(it for it in made if isinstance(it, OutputFile))
+        texts = [it for it in made if isinstance(it, OutputFile)]
         found = [it for it in made if isinstance(it, Finding)]
         found += (it for robot in few.robots for it in robot.findings)
         gaps = gaps_of(plan, fleet, texts, found)
         rows = [it for it in bridge_outputs(plan) if isinstance(it, OutputFile)]
-        return fleet._replace(gaps=gaps, bridged=bridged_by(demanded(plan, texts_of(rows))))
+        return fleet._replace(gaps=gaps, bridged=bridged_by(demanded(plan, rows)))
 
 
-def bridged_by(texts: Iterable[OutputText]) -> tuple[Topic, ...]:
+def bridged_by(texts: Iterable[OutputFile]) -> tuple[Topic, ...]:
     """What the bridge files among the texts carry."""
     files = [it for it in texts if it.path.rpartition("/")[2] == BRIDGE_FILE]
-    rows = (end for it in files for end in bridge_ends(read_yaml(it.text.encode(), it.path)))
+    rows = (end for it in files for end in bridge_ends(it.yaml))
     return once(
         Topic(end.name, bridge=(end.role,) if end.role else BOTH, type=end.type) for end in rows
     )
 
 
-def demanded(plan: FleetPlan, texts: Iterable[OutputText]) -> Iterator[OutputText]:
+def demanded(plan: FleetPlan, texts: Iterable[OutputFile]) -> Iterator[OutputFile]:
     """The files without the bridges of robots that may be real, and without that of what all share
     where all may be."""
     maybe = plan.fleet.maybe_real
@@ -61,19 +71,35 @@ def demanded(plan: FleetPlan, texts: Iterable[OutputText]) -> Iterator[OutputTex
     return (it for it in texts if it.path not in left)
 
 
-def texts_of(files: Iterable[OutputFile]) -> list[OutputText]:
-    """Files of a build as texts."""
-    return [OutputText(it.path, it.data.decode("utf-8", "replace"), it.sources) for it in files]
-
-
 def gaps_of(
-    plan: FleetPlan, fleet: Fleet, texts: Sequence[OutputText], of_files: Iterable[Finding]
+    plan: FleetPlan, fleet: Fleet, texts: Sequence[OutputFile], of_files: Iterable[Finding]
 ) -> tuple[Finding, ...]:
     """What is open in the robots of a fleet, by place; ``of_files`` is what was found as ``texts`` were
     made."""
-    named = (it for it in of_files if it.code in NAMES_NOTHING)
-    found = {*named, *closing(plan, fleet, texts)}
+    named = [it for it in of_files if it.code in NAMES_NOTHING]
+    found = {*named, *_gaps(plan, fleet, texts, named)}
     return tuple(sorted(found, key=lambda it: (it.file, it.line, it.column, it.code, it.message)))
+
+
+def _gaps(
+    plan: FleetPlan, fleet: Fleet, texts: Sequence[OutputFile], known: Collection[Finding]
+) -> Iterator[Finding]:
+    """Robots of the same sources are looked at once."""
+    shown = of_each_kind(plan)
+    few = with_robots(fleet, shown)
+    whole, whose = written_system(plan, few, shown, texts), whose_names(few)
+    yield from contradicted(plan, whole, whose)
+    parameters = load_known_nodes(plan.file.nodes, plan.file.distro)
+    for group in group_robots(plan):
+        robot = group.robots[0]
+        evidence = plan.evidence_of(robot)
+        before = system_before(robot, evidence, plan.jobs[robot.spec.sources].srdf)
+        after = system_after(robot, evidence, texts, parameters, whole)
+        yield from controlled(robot, before.control, after.control, texts)
+        yield from apart(robot, before.system, after.system, whose)
+        yield from not_sent(robot, before.system)
+        yield from missing(robot, before.system, after.system, whose)
+        yield from written_findings(plan, group, texts, known)
 
 
 def _one_of_each(plan: FleetPlan) -> FleetPlan:

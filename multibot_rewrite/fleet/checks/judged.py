@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from itertools import count
 from typing import cast
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.fleet.fleet import Fleet, planned
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
-from multibot_rewrite.fleet.outputs.output_values import OutputText, line_in_source
+from multibot_rewrite.fleet.outputs.output_file import OutputFile, line_in_source
 from multibot_rewrite.fleet.robots.rewritten_robots import SET_PREFIX, RewrittenRobot
 from multibot_rewrite.producers.ends import NEEDS
 from multibot_rewrite.rules.check import absences, contradictions
@@ -18,6 +19,7 @@ from multibot_rewrite.rules.system.interfaces import (
     interface_not_exported,
     open_claims,
 )
+from multibot_rewrite.rules.system.lookups import frame_not_sent
 from multibot_rewrite.rules.system.states import interface_commanded_twice
 from multibot_rewrite.rules.system.tf_topics import tf_tree_in_pieces
 from multibot_rewrite.rules.system.unsent import no_longer_sent, open_ends
@@ -25,31 +27,42 @@ from multibot_rewrite.system.index import Index, index
 from multibot_rewrite.system.ownership import (
     ALONE,
     Whose,
-    frame_ownership,
-    name_ownership,
     whose_by_plan,
 )
-from multibot_rewrite.system.records import CLAIMS, EXPORTS, NOWHERE, RUNS, End, Interface, System
+from multibot_rewrite.system.records import (
+    CLAIMS,
+    EXPORTS,
+    JOINT,
+    NOWHERE,
+    RUNS,
+    End,
+    Interface,
+    System,
+)
 
 Key = tuple[str, ...]
 
 
 def whose_names(fleet: Fleet) -> Whose:
     """Whose the names of a fleet are, by its plan."""
-    plan = planned(fleet)
-    return whose_by_plan(plan, name_ownership(plan), frame_ownership(plan))
+    return whose_by_plan(planned(fleet))
 
 
 def contradicted(plan: FleetPlan, whole: System, whose: Whose) -> Iterator[Finding]:
     """What nodes that surely run do to each other; in one robot they did so before its rewrite.
 
-    What all robots are told to share is meant.
+    What all robots are told to share is meant, where robots meet is said with the table.
     """
+    met = {(it.code, name) for it in plan.fleet.table.problems for name in it.names}
     shared = {f"/{it}" for it in plan.fleet.naming.shared_topics}
     robots = {it.spec.namespace: it for it in plan.robots}
     sure = tuple(it for it in whole.ends if it.sure == RUNS)
     found = contradictions(index(whole._replace(ends=sure), whose))
-    for it in (it for it in found if not it.names or not shared.issuperset(it.names)):
+    for it in found:
+        if it.names and shared.issuperset(it.names):
+            continue
+        if any((it.code, about) in met for about in (*it.names, it.node)):
+            continue
         level = WARNING if it.robot and it.level == ERROR else it.level
         yield in_file(it._replace(level=level), robots.get(it.robot) or plan.robots[-1])
 
@@ -69,7 +82,8 @@ def missing(
         if key not in was_open
     }
     in_sources = {_about(it, before): it for it in absences(old) if it.node}
-    for it in (it for it in absences(new) if it.code != tf_tree_in_pieces.code):
+    asked = {tf_tree_in_pieces.code, frame_not_sent.code}
+    for it in (it for it in absences(new) if it.code not in asked):
         if it.node and (it.node, it.names[0]) in lost:
             del lost[it.node, it.names[0]]
             yield in_file(it, robot)
@@ -94,18 +108,24 @@ def apart(robot: RewrittenRobot, before: System, after: System, whose: Whose) ->
             yield in_file(it._replace(level=ERROR), robot)
 
 
+def not_sent(robot: RewrittenRobot, before: System) -> Iterator[Finding]:
+    """The frames that the robot's files name and nothing of it sends."""
+    for it in _ask((frame_not_sent,), before):
+        yield in_file(it, robot, by_sources=True)
+
+
 def controlled(
-    robot: RewrittenRobot, before: System, after: System, texts: Sequence[OutputText]
+    robot: RewrittenRobot, before: System, after: System, texts: Sequence[OutputFile]
 ) -> Iterator[Finding]:
     """What is wrong between a robot's controllers and its hardware, by its sources; an error where only
     its rewrite has opened it."""
     for it in _ask(
         (interface_not_exported, interface_claimed_twice, interface_commanded_twice), before
     ):
-        yield in_file(it._replace(level=WARNING), robot, by_sources=True)
+        yield in_file(_of_sources(it), robot, by_sources=True)
     was_open = open_claims(before.interfaces)
-    old = {at for at, it in enumerate(_claims(before)) if it in was_open}
-    left = [it for at, it in enumerate(_claims(after)) if at not in old]
+    old = {key for key, it in _claims(before) if it in was_open}
+    left = [it for key, it in _claims(after) if key not in old]
     exports = [it for it in after.interfaces if it.role == EXPORTS]
     opened = after._replace(interfaces=(*exports, *left))
     for it in _ask((interface_not_exported,), opened):
@@ -122,8 +142,16 @@ def _ask(rules: Iterable[Rule], system: System) -> Iterator[Finding]:
         yield from cast(Callable[[Index], Iterator[Finding]], rule.check)(seen)
 
 
-def _claims(system: System) -> list[Interface]:
-    return [it for it in system.interfaces if it.role == CLAIMS]
+def _claims(system: System) -> Iterator[tuple[tuple[bool, int], Interface]]:
+    """The claims of controllers, and those of MoveIt, each by its number."""
+    numbers = {True: count(), False: count()}
+    for it in (it for it in system.interfaces if it.role == CLAIMS):
+        yield (it.kind == JOINT, next(numbers[it.kind == JOINT])), it
+
+
+def _of_sources(finding: Finding) -> Finding:
+    """What a rewrite has not made is no error."""
+    return finding._replace(level=NOTE if finding.level == NOTE else WARNING)
 
 
 def _asked(before: System, after: System) -> System:

@@ -1,13 +1,22 @@
-"""Where the robots of a fleet meet, by the second reading of what was written for each."""
+"""Where the robots of a fleet meet: by the second reading of what was written for each, and by the
+remap table, for what no description starts."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.naming import Naming
-from multibot_rewrite.description.checks.meeting import CONTROLLERS, SHARED_LOOKUP, code_of
-from multibot_rewrite.description.readback.meeting import Meeting, meetings
+from multibot_rewrite.description.readback.meeting import (
+    LOOKUP,
+    NOT_TAKEN,
+    Meeting,
+    advice,
+    code_of,
+    meetings,
+    said,
+)
+from multibot_rewrite.description.readback.reading import NODE, RuntimeName
 from multibot_rewrite.fleet.robots.member import Member, line_of
 from multibot_rewrite.spelling.records import Table
 
@@ -15,46 +24,58 @@ from multibot_rewrite.spelling.records import Table
 def with_meetings(table: Table, members: Sequence[Member], naming: Naming) -> Table:
     """The table with an error for each name that two robots have and that is not shared.
 
-    The table's own checks name the topics of ROS nodes; these are the topics of the simulator, nodes
-    and frames besides. Controllers that a stack names are in the table, with their spawners' rules.
+    Controllers that a stack names are in the table, with their spawners' rules.
     """
-    named = {name for it in table.problems for name in it.names}
-    found = [it for it in _meetings(members, naming) if named.isdisjoint(it.names)]
-    kept = dict.fromkeys(without_started(found, table, [it.robot for it in members]))
-    return table._replace(problems=(*table.problems, *kept))
+    found = tuple(dict.fromkeys(_meetings(table, members, naming)))
+    return table._replace(problems=(*table.problems, *found))
 
 
-def without_started(
-    findings: Iterable[Finding], table: Table, robots: Iterable[str]
-) -> Iterator[Finding]:
-    """The findings about these robots without those of controllers, if their spawners have rules."""
+def _meetings(table: Table, members: Sequence[Member], naming: Naming) -> Iterator[Finding]:
+    shared = [it for member in members for it in member.shared]
     spawned = {it.robot for it in table.nodes if it.home.is_controller}
-    started = spawned.issuperset(robots)
-    return (it for it in findings if not (started and it.code == CONTROLLERS))
-
-
-def _meetings(members: Sequence[Member], naming: Naming) -> Iterator[Finding]:
+    if not spawned.issuperset(it.robot for it in members):
+        # The rewrite says what to do about these.
+        yield from (it for it in shared if it.code == NOT_TAKEN)
     if len(members) == 1:
         # There is no second robot: what a rewrite says of any two of them.
-        yield from (it._replace(level=_level(it.code)) for it in members[0].shared)
+        yield from (it._replace(level=_level(it.code)) for it in shared if it.code != NOT_TAKEN)
         return
     by_robot = {it.robot: it for it in members}
-    for it in meetings({it.robot: it.reading for it in members}, naming):
-        if not it.name.of_controllers:
-            yield _finding(it, by_robot[it.robot])
-    # The rewrite says what to do about these.
-    yield from (it for member in members for it in member.shared if it.code == CONTROLLERS)
+    for it in meetings(_named(table, members), naming):
+        yield _finding(it, by_robot.get(it.robot))
 
 
-def _finding(met: Meeting, member: Member) -> Finding:
-    name, source = met.name, member.source
-    line = line_of(source, name.tag, name.number)
-    message = f"{met.robot} and {met.other} would both have the {name.kind} {name.name!r}"
-    hint = f"it comes from {name.path} here; urdf-postfix on this file says more"
-    code = code_of(name)
-    return Finding(code, _level(code), message, hint, source.file, line, 1, names=(name.name,))
+def _named(table: Table, members: Sequence[Member]) -> Mapping[str, Sequence[RuntimeName]]:
+    """What each robot has, first by its description."""
+    found = {
+        it.robot: [name for name in it.reading.names if not name.of_controllers] for it in members
+    }
+    for it in table.nodes:
+        if it.robot and not it.home.written:
+            found.setdefault(it.robot, []).append(_of_table(NODE, it.full_name, it.node))
+    for end in table.names:
+        # That no rule reaches one is told of its node.
+        if end.robot and not end.endpoint.fixed:
+            kind, type_ = end.endpoint.kind, end.endpoint.type
+            found.setdefault(end.robot, []).append(_of_table(kind, end.name, end.node, type_))
+    return found
+
+
+def _of_table(kind: str, name: str, node: str, type_: str = "") -> RuntimeName:
+    return RuntimeName(kind, name, "", 0, node, type=type_)
+
+
+def _finding(met: Meeting, member: Member | None) -> Finding:
+    """At the element of the description that has the name first, else at the node."""
+    name, code = met.name, code_of(met.name)
+    message = said(f"{met.robot} and {met.other} would both", name, met.twin)
+    found = Finding(code, _level(code), message, advice(name), names=(name.name,))
+    if name.tag and member:
+        line = line_of(member.source, name.tag, name.number)
+        return found._replace(file=member.source.file, line=line, column=1)
+    return found._replace(robot=met.robot, node=name.path)
 
 
 def _level(code: str) -> str:
     """Whether one robot finds another's sensor depends on the order in which they are spawned."""
-    return WARNING if code in (SHARED_LOOKUP, CONTROLLERS) else ERROR
+    return WARNING if code in (LOOKUP, NOT_TAKEN) else ERROR

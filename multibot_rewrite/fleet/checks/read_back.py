@@ -9,29 +9,31 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from tempfile import TemporaryDirectory
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.model import MultibotError
+from multibot_rewrite.fleet.build import Outputs
+from multibot_rewrite.fleet.checks.as_planned import not_as_planned
+from multibot_rewrite.fleet.fleet import known_nodes
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.launch_file import LAUNCH
-from multibot_rewrite.fleet.outputs.output_file import PLAN, OutputFile
+from multibot_rewrite.fleet.outputs.output_file import OutputFile
+from multibot_rewrite.knowledge.nodl.facts import declared
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.producers.launch.findings import NOT_WHOLE
 from multibot_rewrite.producers.launch.read import UnreadableError, read_own
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import NO_TREE, REFUSED, would_run
-from multibot_rewrite.rules.check import ABSENCE, check
-from multibot_rewrite.spelling.plan_file import read_plan
 from multibot_rewrite.system.records import Place, System
 
 _HINT = "the fleet would not start as planned; please report it, with the fleet file"
 
 
-def read_back(plan: FleetPlan, files: Sequence[OutputFile], folder: str) -> list[Finding]:
+def read_back(plan: FleetPlan, made: Outputs, folder: str) -> list[Finding]:
     """What is wrong with the files of a fleet, which will be in ``folder``.
 
     Raises MultibotError where no temporary file can be written.
@@ -39,19 +41,25 @@ def read_back(plan: FleetPlan, files: Sequence[OutputFile], folder: str) -> list
     with _temporary_folder() as above:
         home, own = os.path.join(above, "built"), os.path.join(above, "launch")
         os.makedirs(own)
-        _write(files, plan.file.installed or folder, home)
+        _write(made.files, plan.file.installed or folder, home)
         try:
             graph = read_own(os.path.join(home, LAUNCH), own)
         except UnreadableError as error:
             return [_fault(f"{error}", Place(LAUNCH, 1), home)]
-        known = Knowledge(
-            {it.name: it for one in plan.evidence.values() for it in one.known.values()},
-            load_known_nodes(plan.file.nodes, plan.file.distro),
-            plan.file.distro,
-        )
-        seen = would_run(graph, known)
-        planned = read_plan(next(it.data for it in files if it.path == PLAN), PLAN)
-        return [*_lost(graph, seen, home), *_wrong(planned, seen)]
+        seen = would_run(graph, _known(plan))
+        wrong = not_as_planned(made.planned, seen, made.started, made.findings)
+        return [*_lost(graph, seen, home), *(_in_folder(it, home) for it in wrong)]
+
+
+def _known(plan: FleetPlan) -> Knowledge:
+    """What is known of nodes in the release of the fleet, as its file and NoDL documents have them."""
+    file = plan.file
+    facts = known_nodes(file.nodes, file.distro, file.nodl)
+    nodes = dict(facts.library.nodes)
+    named = {it.kind for one in plan.evidence.values() for it in one.nodes}
+    nodes |= {it.name: it for one in plan.evidence.values() for it in one.known.values()}
+    nodes |= {name: declared(facts, nodes[name]) for name in sorted(named & nodes.keys())}
+    return Knowledge(nodes, load_known_nodes(file.nodes, file.distro), file.distro)
 
 
 @contextmanager
@@ -79,7 +87,7 @@ def _lost(graph: LaunchGraph, seen: System, home: str) -> Iterator[Finding]:
     to start."""
     for note in graph.notes:
         # A file that a plugin names and that is no file of the fleet is told where it is rewritten.
-        if not note.parameters or f"{home}/" in note.message:
+        if not note.parameters or note.file.startswith(f"{home}/"):
             yield _fault(note.message, note.place, home)
     for it in graph.nodes:
         for path in _named(it, home):
@@ -104,9 +112,6 @@ def _fault(message: str, place: Place, home: str) -> Finding:
     return NOT_WHOLE.finding(text, _HINT, **own)._replace(level=ERROR)
 
 
-def _wrong(planned: System, seen: System) -> Iterator[Finding]:
-    """What a check of the running fleet would say: warnings, since parameters can still be set where it
-    runs. What is missing may be started by others, as a simulator or a driver is."""
-    for it in check(planned, seen):
-        if it.level == ERROR and it.code not in ABSENCE:
-            yield it._replace(level=WARNING)
+def _in_folder(it: Finding, home: str) -> Finding:
+    """The finding with the file of the folder that it is about."""
+    return it._replace(file=it.file.replace(f"{home}/", ""))

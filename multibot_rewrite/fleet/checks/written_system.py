@@ -6,16 +6,14 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 
 from multibot_rewrite.base.conventions import OF_EVERY_NODE, is_tool_word
-from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.description.rewriters.own_defaults import frame_sites
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.fleet.fleet import Fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
-from multibot_rewrite.fleet.outputs.output_values import OutputText, line_in_source
+from multibot_rewrite.fleet.outputs.output_file import OutputFile, line_in_source
 from multibot_rewrite.fleet.robots.member import line_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_groups import group_robots
-from multibot_rewrite.fleet.robots.robot_nodes import node_sources
 from multibot_rewrite.producers.ends import (
     BRIDGE_FILE,
     BRIDGE_NODE,
@@ -28,7 +26,6 @@ from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.producers.transforms import edge
 from multibot_rewrite.spelling.plan import tf_topic
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
-from multibot_rewrite.spelling.transforms import Edge as Pair
 from multibot_rewrite.spelling.ways import merged
 from multibot_rewrite.system.records import (
     MAY,
@@ -43,6 +40,7 @@ from multibot_rewrite.system.records import (
     Place,
     Robot,
     System,
+    edge_of,
     place_of,
 )
 
@@ -75,7 +73,7 @@ def with_robots(fleet: Fleet, robots: Iterable[RewrittenRobot]) -> Fleet:
 
 
 def written_system(
-    plan: FleetPlan, fleet: Fleet, shown: Sequence[RewrittenRobot], texts: Sequence[OutputText]
+    plan: FleetPlan, fleet: Fleet, shown: Sequence[RewrittenRobot], texts: Sequence[OutputFile]
 ) -> System:
     """What runs on these robots by the files that were made, with the places in the sources."""
     robots = {it.spec.namespace: it for it in shown}
@@ -96,13 +94,13 @@ def written_system(
 
 def _conditional(plan: FleetPlan, robot: RewrittenRobot) -> frozenset[str]:
     """The nodes of a robot that are started under a condition."""
-    facts = plan.evidence[node_sources(robot.spec)].nodes
+    facts = plan.evidence_of(robot).nodes
     return frozenset(it.name for it in facts if it.when)
 
 
 def _sections(plan: FleetPlan, robot: RewrittenRobot) -> Sections:
     """What the robot's own files set, by node; their places are those of the sources."""
-    return {it.name: it for it in plan.evidence[node_sources(robot.spec)].given}
+    return {it.name: it for it in plan.evidence_of(robot).given}
 
 
 def _nodes(
@@ -136,7 +134,7 @@ def _ends(fleet: Fleet, nodes: Iterable[Node], given: Mapping[str, Sections]) ->
         )
 
 
-def _bridges(robots: Iterable[RewrittenRobot], texts: Iterable[OutputText]) -> Iterator[Node]:
+def _bridges(robots: Iterable[RewrittenRobot], texts: Iterable[OutputFile]) -> Iterator[Node]:
     paths = {it.path for it in texts}
     for it in robots:
         if f"{it.spec.name}/{BRIDGE_FILE}" in paths:
@@ -144,13 +142,13 @@ def _bridges(robots: Iterable[RewrittenRobot], texts: Iterable[OutputText]) -> I
             yield Node(f"/{name}/{BRIDGE_NODE}", robot=name, known=BRIDGE_NODE)
 
 
-def _bridged(robots: Iterable[RewrittenRobot], texts: Iterable[OutputText]) -> Iterator[End]:
+def _bridged(robots: Iterable[RewrittenRobot], texts: Iterable[OutputFile]) -> Iterator[End]:
     """What the bridges carry; a row for both ways may be for one of them."""
     spaces = {f"{it.spec.name}/{BRIDGE_FILE}": f"/{it.spec.namespace}" for it in robots}
     spaces[BRIDGE_FILE] = ""
     for text in (it for it in texts if it.path in spaces):
         node = f"{spaces[text.path]}/{BRIDGE_NODE}"
-        for it in bridge_ends(read_yaml(text.text.encode(), text.path)):
+        for it in bridge_ends(text.yaml):
             place = Place(*line_in_source(text, it.place.line)) if text.sources else NOWHERE
             yield from either_way(it._replace(node=node, place=place))
 
@@ -197,13 +195,13 @@ def _edges(plan: FleetPlan, fleet: Fleet, robot: RewrittenRobot) -> Iterator[Edg
             )
 
 
-def _simulated(robot: RewrittenRobot) -> Iterator[Pair]:
+def _simulated(robot: RewrittenRobot) -> Iterator[Edge]:
     """The transforms of gz-sim's drive and odometry systems, which the bridge brings to tf."""
     for host, section in robot.member.inventory.served:
         sites = frame_sites(host, section, robot.names.naming)
         given = [text_at(host, it.path) for it in sites]
         if len(given) == 2 and all(given):
-            yield Pair(given[0], given[1], False)
+            yield edge_of(given[0], given[1])
 
 
 def _section(node: str, given: Sections) -> Place:

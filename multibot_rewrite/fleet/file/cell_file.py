@@ -13,8 +13,7 @@ from multibot_rewrite.base.conventions import SHARED_TOPICS
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.fleet.file.fleet_data import FleetData
-from multibot_rewrite.fleet.file.fleet_paths import listed
+from multibot_rewrite.fleet.file.fleet_data import FleetData, listed
 
 CELL, MOVE_GROUP, JOINT_STATES = "cell", "move_group", "/joint_states"
 

@@ -12,7 +12,7 @@ from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.yaml_text import line_of, pairs, read_yaml, refuse_anchors
-from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.knowledge.yaml_with_lines import refuse_xml
 
 Path = tuple[Any, ...]
 # JSON Schema's types in plain words.
@@ -34,14 +34,10 @@ class CheckedYaml(NamedTuple):
     lines: Mapping[Path, int]
 
 
-def read_checked(path: str, schema: Mapping[str, Any], hint: str) -> CheckedYaml:
-    """Read a file; InputError with its line, the key and what is allowed. ``hint`` says what to write
-    into an empty file."""
-    return text_checked(read_file(path), path, schema, hint)
-
-
 def text_checked(text: bytes, path: str, schema: Mapping[str, Any], hint: str) -> CheckedYaml:
-    """The same of a text, which errors call ``path``."""
+    """The data of a file; InputError with its line, the key and what is allowed. ``hint`` says what to
+    write into an empty file."""
+    refuse_xml(text, path)
     document = read_yaml(text, path)
     if document.root is None:
         raise InputError(f"{path}: the file is empty; {hint}")

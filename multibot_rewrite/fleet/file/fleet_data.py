@@ -1,22 +1,101 @@
-"""A fleet file with those it includes, or a dict -> checked data, with the place of each value."""
+"""A fleet file with those it includes, or a dict -> checked data, with the place of each value;
+paths are relative to the file's folder, and there."""
 
 from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cache
 from importlib.resources import files
 from typing import Any
 
 import yaml
 
-from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import RELEASES
-from multibot_rewrite.fleet.file.checked_yaml import CheckedYaml, read_checked, text_checked
-from multibot_rewrite.fleet.file.fleet_paths import Places, check_files, listed, with_paths
+from multibot_rewrite.description.sources.own_names import filled
+from multibot_rewrite.description.sources.read import is_xacro, read_file
+from multibot_rewrite.fleet.file.checked_yaml import CheckedYaml, Path, text_checked
+from multibot_rewrite.knowledge.nodl.lookup import NO_DOCUMENTS, find_interfaces
+
+PATHS = ("include", "description", "simulated", "srdf", "nodes", "vocabulary")
+Places = Mapping[Path, tuple[str, int]]
+
+
+def check_files(data: Mapping[str, Any], at: Path, places: Places) -> None:
+    """Check that every named file exists; its content is checked later."""
+    for key in (*PATHS, "launch", "companions", "robots"):
+        value = data.get(key, ())
+        if key == "robots":
+            for number, robot in enumerate(value):
+                check_files(robot, ("robots", number), places)
+            continue
+        if key == "launch":
+            value = [it.partition(" ")[0] for it in listed(value) if not _of_package(it)]
+        kinds = value.items() if key == "companions" and value else [("", value)]
+        for kind, paths in kinds:
+            here = (*at, key, kind) if kind else (*at, key)
+            for path in (it for it in listed(paths) if not os.path.isfile(it)):
+                file, line = places[here]
+                what = "is a folder, not a file" if os.path.isdir(path) else "does not exist"
+                raise InputError(f"{file}:{line}: {path} {what}; correct the path")
+
+
+def with_paths(folder: str, data: dict[str, Any]) -> dict[str, Any]:
+    """The data with every path relative to the working directory."""
+
+    def resolve(value: Any) -> Any:
+        return (
+            os.path.join(folder, value) if isinstance(value, str) else [resolve(it) for it in value]
+        )
+
+    result = dict(data)
+    for key in PATHS:
+        if key in result:
+            result[key] = resolve(result[key])
+    if result.get("nodl", NO_DOCUMENTS) != NO_DOCUMENTS:
+        result["nodl"] = resolve(result["nodl"])
+    if "launch_roots" in result:
+        result["launch_roots"] = resolve(result["launch_roots"])
+    if "launch" in result:
+        result["launch"] = [_launch_path(folder, it) for it in listed(result["launch"])]
+    if "companions" in result:
+        result["companions"] = {kind: resolve(it) for kind, it in result["companions"].items()}
+    if "robots" in result:
+        result["robots"] = [with_paths(folder, robot) for robot in result["robots"]]
+    return result
+
+
+def _launch_path(folder: str, text: str) -> str:
+    """What follows ``ros2 launch``, with the path of its file relative to the working directory."""
+    if _of_package(text):
+        return text
+    file, blank, arguments = text.partition(" ")
+    return f"{os.path.join(folder, file)}{blank}{arguments}"
+
+
+def _of_package(text: str) -> bool:
+    """Is it a package and the name of a file in it, not a path?"""
+    words = text.split()
+    return len(words) > 1 and not any("=" in it for it in words[:2])
+
+
+def listed(value: Any) -> Sequence[Any]:
+    """A list as it is, one word as a list."""
+    return [value] if isinstance(value, str) else value
+
+
+def nodl_files(nodl: Sequence[str], places: Places) -> list[str]:
+    """The NoDL files that a fleet file names, those in its folders too; InputError with its line."""
+    try:
+        return list(find_interfaces(nodl).given.values())
+    except UsageError as error:
+        file, line = places["nodl",]
+        raise InputError(f"{file}:{line}: {error}") from None
+
 
 SCHEMA = "fleet.schema.json"
 EXAMPLE = "robots: [{name: robot1}, {name: robot2}]"
@@ -61,7 +140,8 @@ def _with_includes(read: FleetData, above: tuple[str, ...]) -> FleetData:
 
 
 def _of_file(path: str) -> FleetData:
-    return _placed(path, os.path.dirname(path), read_checked(path, _wanted(), f"write {EXAMPLE}"))
+    checked = text_checked(read_file(path), path, _wanted(), f"write {EXAMPLE}")
+    return _placed(path, os.path.dirname(path), checked)
 
 
 def _placed(path: str, folder: str, checked: CheckedYaml) -> FleetData:
@@ -86,3 +166,26 @@ def schema() -> dict[str, Any]:
     result["properties"]["layout"]["enum"] = names
     result["properties"]["distro"]["enum"] = list(RELEASES)
     return result
+
+
+def given_arguments(
+    data: Mapping[str, Any], own: Mapping[str, Any], description: str, place: str
+) -> dict[str, str]:
+    """The xacro arguments of a robot, over those of the fleet; only for xacro files.
+
+    Raises InputError for arguments without a xacro, and for an unknown placeholder.
+    """
+    files = (description, *(own.get(it, data.get(it, "")) for it in ("srdf", "simulated")))
+    if not any(is_xacro(it) for it in files):
+        if own.get("arguments"):
+            hint = "remove them, or give a xacro"
+            raise InputError(f"{place}: {own['name']!r} has arguments but no xacro file; {hint}")
+        return {}
+    arguments = {**data.get("arguments", {}), **own.get("arguments", {})}
+    # YAML's true is xacro's true.
+    texts = {k: str(it).lower() if isinstance(it, bool) else str(it) for k, it in arguments.items()}
+    try:
+        filled(texts, own["name"])
+    except UsageError as error:
+        raise InputError(f"{place}: {own['name']!r}: {error}") from None
+    return texts

@@ -16,13 +16,16 @@ from multibot_rewrite.companions.rviz.colours import read_colour
 from multibot_rewrite.description.sources.own_names import filled, name_robot
 from multibot_rewrite.fleet.file.cell_file import Cell, cell_of, with_cell
 from multibot_rewrite.fleet.file.checked_yaml import Path
-from multibot_rewrite.fleet.file.fleet_data import FleetData, read_data
-from multibot_rewrite.fleet.file.fleet_paths import listed, nodl_files
-from multibot_rewrite.fleet.file.given_arguments import given_arguments
+from multibot_rewrite.fleet.file.fleet_data import (
+    FleetData,
+    given_arguments,
+    listed,
+    nodl_files,
+    read_data,
+)
 from multibot_rewrite.fleet.file.robot_choice import ALL, Choice, with_robots
 from multibot_rewrite.fleet.fleet import facts_of
-from multibot_rewrite.fleet.outputs.zenoh_configuration import Setup
-from multibot_rewrite.fleet.outputs.zenoh_file import zenoh_of
+from multibot_rewrite.fleet.outputs.zenoh_configuration import Setup, zenoh_of
 from multibot_rewrite.producers.launch.records import LaunchOrder, launch_order
 
 KINDS = ("params", "rviz", "moveit", "bridge", "behavior_trees", "lua")

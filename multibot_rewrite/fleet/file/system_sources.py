@@ -17,6 +17,7 @@ from multibot_rewrite.fleet.checks.closed_plan import closed_plan
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet import expected, known_nodes, make_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
+from multibot_rewrite.fleet.launch.launch_file import LAUNCH
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.producers.snapshot_file import read_snapshots
@@ -79,6 +80,12 @@ def system_of_launch(
     library = known_nodes(None, release, ()).library
     known = Knowledge(library.nodes, load_known_nodes("", release), release)
     return would_run(launch_graph(order), known)
+
+
+def system_of_folder(path: Path, *, distro: str = "") -> System:
+    """What a folder that ``multibot build`` wrote would start, read as ``system_of_launch`` reads its
+    launch file and with no look at its plan. Raises InputError for a folder without one."""
+    return system_of_launch(os.path.join(os.fspath(path), LAUNCH), distro=distro)
 
 
 def system_of_files(*paths: Path) -> System:

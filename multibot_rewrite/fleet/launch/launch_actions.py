@@ -13,29 +13,28 @@ from typing import Any
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.file.cell_file import MOVE_GROUP
 from multibot_rewrite.fleet.file.fleet_file import BRINGUP, REAL
-from multibot_rewrite.fleet.file.fleet_starts import Component, File, RobotStarts, Start, Text
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.launch.starts import Component, File, RobotStarts, Start, Text
 from multibot_rewrite.fleet.outputs import moveit_parameters, spawn
 from multibot_rewrite.fleet.outputs.cell_outputs import parameters_path
 from multibot_rewrite.fleet.outputs.output_file import expanded_name, path_for
-from multibot_rewrite.fleet.outputs.relays import Relay, relays
+from multibot_rewrite.fleet.outputs.relays import relays
 from multibot_rewrite.fleet.outputs.rviz_outputs import RvizOutput, window_path
 from multibot_rewrite.fleet.robots import start_poses
 from multibot_rewrite.fleet.robots.node_names import NodeNames, names_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
-from multibot_rewrite.fleet.robots.robot_nodes import node_sources
 from multibot_rewrite.knowledge.programs import (
     LIFECYCLE_MANAGER,
-    PROGRAMS,
+    NAV2,
     Program,
-    activates_itself,
+    is_unmanaged,
+    known_program,
     program_of,
 )
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.evidence.parameter_files import OWN_TYPE
 from multibot_rewrite.spelling.records import EndpointName
-from multibot_rewrite.spelling.started import SPAWN, Started, spawner_arguments
-from multibot_rewrite.spelling.ways import COMPONENT, SPAWNER
+from multibot_rewrite.spelling.ways import COMPONENT, SPAWN, SPAWNER, Started, spawner_arguments
 from multibot_rewrite.system.records import PUBLISHES
 
 STATE, JOINT_STATES, BRIDGE = "robot_state_publisher", "joint_state_publisher", "bridge.yaml"
@@ -49,7 +48,7 @@ def of_robot(one: FleetPlan, files: Collection[str], bridged: Collection[str]) -
     topics that bridges bring from a simulator."""
     (robot,) = one.robots
     names = names_of(one.fleet.table, robot.spec.namespace)
-    facts = {it.name: it for it in one.evidence[node_sources(robot.spec)].nodes}
+    facts = {it.name: it for it in one.evidence_of(robot).nodes}
     given = _Given(one, robot, names, facts, files, bridged)
     left = dict(_left(given))
     simulated = spawn.is_simulated(robot)
@@ -61,12 +60,13 @@ def of_robot(one: FleetPlan, files: Collection[str], bridged: Collection[str]) -
         spawned += [_bridge(names, robot, bridge)] if bridge in files else []
     placed = start_poses.start_poses(one).transforms
     about = f"{os.path.basename(robot.spec.description)} in {_where(names)}"
-    starts += [_transform(it) for it in placed]
+    starts += [it.start for it in placed]
     copied, bridged_tf = _relays(given)
     starts += copied
     params = tuple(path_for(robot, it) for it in robot.spec.companions.get("params", ()))
     found = tuple(starts), tuple(spawned), tuple(left.items())
-    return RobotStarts(robot.spec.name, about, params, *found, bridged_tf)
+    nodes = tuple(_nodes(names, left))
+    return RobotStarts(robot.spec.name, about, params, *found, bridged_tf, nodes=nodes)
 
 
 class _Given(NamedTuple):
@@ -80,6 +80,13 @@ class _Given(NamedTuple):
     @property
     def release(self) -> str:
         return self.plan.file.distro
+
+
+def _nodes(names: NodeNames, left: Collection[str]) -> Iterator[str]:
+    """The nodes that are started, and those in their processes."""
+    for name in (it for it in names.started if it not in left):
+        yield names.full_name(name)
+        yield from (names.full_name(it) for it in names.inside(name) if it not in left)
 
 
 def _where(names: NodeNames) -> str:
@@ -108,7 +115,7 @@ def _left(given: _Given) -> Iterator[tuple[str, str]]:
 
 def _is_needed(given: _Given, it: NodeFacts) -> bool:
     """A node under a condition: joint states that nobody else sends are needed."""
-    if (it.known or it.name) != JOINT_STATES:
+    if it.kind != JOINT_STATES:
         return False
     sent = [one for one in given.plan.fleet.table.names if _sends_joint_states(one)]
     mine = {one.name for one in sent if one.node == given.names.full_name(it.name)}
@@ -137,7 +144,7 @@ def _started(given: _Given, name: str) -> Iterator[Start]:
             it.rules,
             program.words,
             tuple(_components(given, name)),
-            not activates_itself(facts, given.release),
+            is_unmanaged(facts, given.release),
         )
 
 
@@ -162,7 +169,9 @@ def _parameters(given: _Given, name: str) -> tuple[File | Mapping[str, Any], ...
     found: list[File | Mapping[str, Any]] = [
         File(path_for(robot, it)) for it in robot.spec.companions.get("params", ())
     ]
-    known = facts.known or facts.name
+    known = facts.kind
+    if facts.usual and all(it.known != known for it in given.plan.evidence_of(robot).given):
+        found.append(dict(facts.usual))
     if known == start_poses.AMCL and path_for(robot, "start_pose.yaml") in given.files:
         found.append(File(path_for(robot, "start_pose.yaml")))
     if known == STATE:
@@ -195,32 +204,36 @@ def _description(robot: RewrittenRobot) -> str:
 
 
 def _controller(given: _Given, it: Started) -> Start:
-    """The spawner of a controller, with the file that has its type where that is its own section."""
-    package, executable = SPAWN
-    words: list[str | File] = list(spawner_arguments(it))
-    evidence = given.plan.evidence[node_sources(given.robot.spec)]
-    own = next((one for one in evidence.given if one.name == it.node.node), None)
-    params = given.robot.spec.companions.get("params", ())
+    """The spawner of a controller."""
+    words = (*spawner_arguments(it), *as_declared(given.plan, it.node.node))
+    return Start(*SPAWN, it.node.namespace, arguments=words)
+
+
+def as_declared(plan: FleetPlan, controller: str) -> Iterator[str | File]:
+    """The file of a controller whose own section has its type, and if a launch file leaves it
+    inactive."""
+    (robot,) = plan.robots
+    evidence = plan.evidence_of(robot)
+    own = next((it for it in evidence.given if it.name == controller), None)
+    params = robot.spec.companions.get("params", ())
     if own and OWN_TYPE in own.values and own.values[OWN_TYPE].place.file in params:
-        words += ["--param-file", File(path_for(given.robot, own.values[OWN_TYPE].place.file))]
-    if it.node.node in evidence.spawned and evidence.spawned[it.node.node].inactive:
-        words.append("--inactive")
-    return Start(package, executable, it.node.namespace, arguments=tuple(words))
+        yield from ("--param-file", File(path_for(robot, own.values[OWN_TYPE].place.file)))
+    if controller in evidence.spawned and evidence.spawned[controller].inactive:
+        yield "--inactive"
 
 
 def _spawner(given: _Given) -> Start:
     """What puts the robot into its simulator; an SDF is read from its file, nobody publishes it."""
     (it,), _ = spawn.spawns(given.plan)
-    classic = is_classic(given.robot)
-    package, executable = spawn.CLASSIC if classic else spawn.GZ
-    words: list[str | File] = list((spawn.classic_arguments if classic else spawn.gz_arguments)(it))
+    start = spawn.spawner(it, spawn.is_classic(given.robot))
+    words = list(start.arguments)
     own_file = it.file
     if given.robot.member.inventory.document.root.tag == "sdf":
         own_file = it.file or _description(given.robot)
     if own_file:
         at = words.index(it.source[0])
         words[at : at + 2] = ["-file", File(own_file)]
-    return Start(package, executable, arguments=tuple(words))
+    return start._replace(arguments=tuple(words))
 
 
 def _bridge(names: NodeNames, robot: RewrittenRobot, path: str) -> Start:
@@ -231,34 +244,19 @@ def _bridge(names: NodeNames, robot: RewrittenRobot, path: str) -> Start:
     return Start(*_BRIDGE[:2], namespace, name, found)
 
 
-def _transform(it: start_poses.StaticTransform) -> Start:
-    words = start_poses.arguments(it)
-    return Start("tf2_ros", "static_transform_publisher", arguments=tuple(words))
-
-
 def _relays(given: _Given) -> tuple[tuple[Start, ...], tuple[Start, ...]]:
     """What brings its tf to ``/tf``, if the fleet file says so; and what does it with the bridge, which
     may not be installed."""
     naming, file = given.plan.fleet.naming, given.plan.file
     made = relays(given.robot.spec.namespace, naming, file)
-    starts = tuple(_relay(it) for it in made)
+    starts = tuple(it.start for it in made)
     return (starts, ()) if naming.layout.frames else ((), starts)
-
-
-def _relay(it: Relay) -> Start:
-    told = (dict(it.parameters),) if it.parameters else ()
-    return Start(*it.program, it.table.namespace, it.table.name, told, arguments=it.arguments)
-
-
-def is_classic(robot: RewrittenRobot) -> bool:
-    """Is its simulator Gazebo Classic?"""
-    return spawn.CLASSIC_PLUGIN.encode() in (robot.simulated or robot.description)
 
 
 def simulators(plan: FleetPlan) -> list[str]:
     """The simulators of the robots: ``classic``, ``gz``, none."""
     simulated = [it for it in plan.robots if spawn.is_simulated(it) and it.spec.simulator != REAL]
-    return sorted({"classic" if is_classic(it) else "gz" for it in simulated})
+    return sorted({"classic" if spawn.is_classic(it) else "gz" for it in simulated})
 
 
 def of_all(plan: FleetPlan, files: Collection[str]) -> tuple[Start, ...]:
@@ -277,16 +275,16 @@ def _shared(plan: FleetPlan, names: NodeNames, known: Mapping[str, NodeFacts]) -
     for name, it in names.started.items():
         facts = known.get(name)
         program = program_of(facts, plan.file.distro) if facts and name not in _BY_HAND else None
-        if program is None or name == "ros_gz_bridge":
+        if facts is None or program is None or name == "ros_gz_bridge":
             continue
         files = [File(path_for(first, one)) for one in first.spec.companions.get("params", ())]
-        if program in PROGRAMS.values():
+        if facts.kind in NAV2:
             started.append(it.node.name)
         if plan.file.cell and name == MOVE_GROUP:
             files = [File(parameters_path(plan.file.cell))]
         yield Start(*program[:2], it.node.namespace, it.node.name, tuple(files), it.rules)
     if started:
-        manager = PROGRAMS[LIFECYCLE_MANAGER]
+        manager = known_program(LIFECYCLE_MANAGER, plan.file.distro)
         values = {"autostart": True, "node_names": started}
         yield Start(*manager[:2], "", f"{LIFECYCLE_MANAGER}_shared", (values,))
 

@@ -7,10 +7,10 @@ from collections.abc import Collection, Sequence
 
 from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.releases import facts_of_release
-from multibot_rewrite.fleet.file.fleet_starts import GZ, File, FleetStarts, RobotStarts, Start
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch import launch_actions
 from multibot_rewrite.fleet.launch.launch_python import to_python
+from multibot_rewrite.fleet.launch.starts import GZ, File, FleetStarts, RobotStarts, Start
 from multibot_rewrite.fleet.outputs import teleop, world_file
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
 from multibot_rewrite.fleet.outputs.rviz_outputs import RvizOutput
@@ -18,28 +18,28 @@ from multibot_rewrite.fleet.outputs.rviz_outputs import RvizOutput
 LAUNCH = "fleet.launch.py"
 
 
-def launch_file(
+def launch_file(starts: FleetStarts) -> OutputFile:
+    """The launch file."""
+    return OutputFile(LAUNCH, to_python(starts).encode())
+
+
+def started(starts: FleetStarts) -> frozenset[str]:
+    """The full names of the planned nodes that the launch file starts."""
+    shared = (f"{it.namespace.rstrip('/')}/{it.name}" for it in starts.shared if it.name)
+    return frozenset((*shared, *(node for it in starts.robots for node in it.nodes)))
+
+
+def fleet_starts(
     plan: FleetPlan,
     each: Sequence[FleetPlan],
     configs: Sequence[RvizOutput],
     files: Sequence[OutputFile],
     bridged: Collection[str],
-) -> OutputFile:
-    """The launch file; ``each`` is every robot as a fleet of its own, ``configs`` are the windows of
-    RViz, ``files`` what else is built, ``bridged`` the topics that bridges bring."""
+) -> FleetStarts:
+    """What the launch file starts; ``each`` is every robot as a fleet of its own, ``configs`` are the
+    windows of RViz, ``files`` what else is built, ``bridged`` the topics that bridges bring."""
     paths = frozenset(it.path for it in files)
     robots = [launch_actions.of_robot(one, paths, bridged) for one in each]
-    starts = _starts(plan, each, configs, paths, robots)
-    return OutputFile(LAUNCH, to_python(starts).encode())
-
-
-def _starts(
-    plan: FleetPlan,
-    each: Sequence[FleetPlan],
-    configs: Sequence[RvizOutput],
-    paths: frozenset[str],
-    robots: Sequence[RobotStarts],
-) -> FleetStarts:
     simulators = launch_actions.simulators(plan)
     clocks = {it.spec.use_sim_time for it in plan.robots}
     clock = clocks.pop() if len(clocks) == 1 else None

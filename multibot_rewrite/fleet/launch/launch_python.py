@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-from multibot_rewrite.fleet.file.fleet_starts import (
+from multibot_rewrite.fleet.launch.starts import (
     CLASSIC,
     GZ,
     Component,
@@ -21,20 +22,30 @@ from multibot_rewrite.fleet.outputs.relays import BRIDGE, not_bridged
 _Files = tuple[File, ...]
 
 
+# The names that it imports where it uses them, in this order.
+_IMPORTS = {
+    "ament_index_python.packages": ("PackageNotFoundError", "get_package_prefix"),
+    "launch": ("LaunchDescription",),
+    "launch.actions": (
+        *("DeclareLaunchArgument", "EmitEvent", "GroupAction", "IncludeLaunchDescription"),
+        *("LogInfo", "OpaqueFunction", "RegisterEventHandler"),
+    ),
+    "launch.conditions": ("IfCondition",),
+    "launch.events": ("matches_action",),
+    "launch.substitutions": ("LaunchConfiguration", "PathJoinSubstitution", "PythonExpression"),
+    "launch_ros.actions": ("ComposableNodeContainer", "LifecycleNode", "Node"),
+    "launch_ros.descriptions": ("ComposableNode",),
+    "launch_ros.event_handlers": ("OnStateTransition",),
+    "launch_ros.events.lifecycle": ("ChangeState",),
+    "launch_ros.parameter_descriptions": ("ParameterValue",),
+    "launch_ros.substitutions": ("FindPackageShare",),
+    "lifecycle_msgs.msg": ("Transition",),
+}
+# For who adds to it.
+_ALWAYS = frozenset(("GroupAction", "IfCondition", "Node"))
 _BODY = '''\
-from pathlib import Path
-
-{prefix}from launch import LaunchDescription
-from launch.actions import (
-    {actions},
-)
-from launch.conditions import IfCondition
-{events}from launch.substitutions import {substitutions}
-from launch_ros.actions import {ros_actions}
-{more}from launch_ros.parameter_descriptions import ParameterValue
-{share}{messages}
 FOLDER = Path(__file__).resolve().parent
-CLOCK = {{"use_sim_time": ParameterValue(LaunchConfiguration("use_sim_time"), value_type=bool)}}
+CLOCK = {"use_sim_time": ParameterValue(LaunchConfiguration("use_sim_time"), value_type=bool)}
 
 
 def file(name):
@@ -72,11 +83,6 @@ def brought_up(node):
     )
     return [node, RegisterEventHandler(configured), change(Transition.TRANSITION_CONFIGURE)]
 '''
-_LIFECYCLE = """\
-from launch_ros.event_handlers import OnStateTransition
-from launch_ros.events.lifecycle import ChangeState
-"""
-_PREFIX = "from ament_index_python.packages import PackageNotFoundError, get_package_prefix\n"
 _CHOSEN = '''\
 def first(count):
     """The names of so many robots."""
@@ -100,15 +106,18 @@ def chosen(context):
 
 def to_python(it: FleetStarts) -> str:
     """The text of the file."""
-    return "".join(f"{line}\n" for part in _parts(it) for line in part)
+    body = _text(_BODY.splitlines(), *_parts(it))
+    return _text(_head(it), _imports(body)) + body
+
+
+def _text(*parts: Iterable[str]) -> str:
+    return "".join(f"{line}\n" for part in parts for line in part)
 
 
 def _parts(it: FleetStarts) -> Iterator[Iterable[str]]:
-    yield _head(it)
-    yield _imports(it)
     if any(robot.bridged_tf for robot in it.robots):
         yield "", "", *_INSTALLED.splitlines()
-    if _has_life_cycle(it):
+    if any(start.brought_up for robot in it.robots for start in robot.starts):
         yield "", "", *_BROUGHT_UP.splitlines()
     for robot in it.robots:
         yield ("", "", *_robot(robot, bool(it.simulators)))
@@ -133,39 +142,16 @@ def _head(it: FleetStarts) -> Iterator[str]:
     yield ""
 
 
-def _imports(it: FleetStarts) -> list[str]:
-    components = any(start.components for robot in it.robots for start in robot.starts)
-    actions = ["DeclareLaunchArgument", "GroupAction", "OpaqueFunction"]
-    managed = _has_life_cycle(it)
-    if managed:
-        actions += ["EmitEvent", "RegisterEventHandler"]
-    prefix = ""
-    if any(robot.bridged_tf for robot in it.robots):
-        actions.append("LogInfo")
-        prefix = _PREFIX
-    substitutions = ["LaunchConfiguration"]
-    if it.simulators:
-        actions.append("IncludeLaunchDescription")
-        substitutions += ["PathJoinSubstitution", "PythonExpression"]
-    ros = ["ComposableNodeContainer"] * components + ["LifecycleNode"] * managed + ["Node"]
-    more = "from launch_ros.descriptions import ComposableNode\n" if components else ""
-    more += _LIFECYCLE if managed else ""
-    share = "from launch_ros.substitutions import FindPackageShare\n" if it.simulators else ""
-    body = _BODY.format(
-        actions=",\n    ".join(sorted(actions)),
-        events="from launch.events import matches_action\n" if managed else "",
-        messages="from lifecycle_msgs.msg import Transition\n" if managed else "",
-        substitutions=", ".join(substitutions),
-        ros_actions=", ".join(ros),
-        more=more,
-        prefix=prefix,
-        share=share,
-    )
-    return body.splitlines()
-
-
-def _has_life_cycle(it: FleetStarts) -> bool:
-    return any(start.brought_up for robot in it.robots for start in robot.starts)
+def _imports(body: str) -> Iterator[str]:
+    yield from ("from pathlib import Path", "")
+    used = _ALWAYS.union(re.findall(r"\w+", body))
+    for module, every in _IMPORTS.items():
+        names = [name for name in every if name in used]
+        if module == "launch.actions":
+            yield from (f"from {module} import (", *(f"    {name}," for name in names), ")")
+        elif names:
+            yield f"from {module} import {', '.join(names)}"
+    yield ""
 
 
 def _robot(it: RobotStarts, simulated: bool) -> Iterator[str]:

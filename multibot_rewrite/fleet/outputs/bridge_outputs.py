@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import cast
 
-from multibot_rewrite.base.findings.finding import WARNING, Finding
+import yaml
+
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.bridge import BridgeFile, rewrite_bridge
-from multibot_rewrite.companions.bridge_entry import BOTH, GZ
+from multibot_rewrite.companions.bridge_entry import BOTH, GZ, GZ_MODEL, MODEL_SLOT, ROS
 from multibot_rewrite.companions.rviz.read_config import text_of
-from multibot_rewrite.companions.yaml_text import items, read_yaml
+from multibot_rewrite.companions.template import FileTemplate, fill_template
+from multibot_rewrite.companions.yaml_blocks import blocks, cut_out, moved
+from multibot_rewrite.companions.yaml_text import YamlText, found_at, items, read_yaml
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
-from multibot_rewrite.fleet.outputs.bridge_merge import as_spawned, fill_bridge, merge_bridges
 from multibot_rewrite.fleet.outputs.companion_files import of_fleet
 from multibot_rewrite.fleet.outputs.output_file import (
     FilesAndFindings,
@@ -24,9 +29,13 @@ from multibot_rewrite.fleet.outputs.output_file import (
 from multibot_rewrite.fleet.robots.member import line_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_groups import RobotGroup, group_robots
-from multibot_rewrite.fleet.robots.robot_nodes import node_sources
 from multibot_rewrite.rules.files.judge import judged_once
-from multibot_rewrite.spelling.bridged_topics import BridgedTopic, UnbridgedTopic, bridged_topics
+from multibot_rewrite.spelling.bridged_topics import (
+    BridgedTopic,
+    UnbridgedTopic,
+    as_yaml,
+    bridged_topics,
+)
 
 BRIDGE = "bridge.yaml"
 
@@ -48,13 +57,16 @@ def bridge_outputs(plan: FleetPlan) -> FilesAndFindings:
     groups = [_read(group) for group in group_robots(plan)]
     for group, files in groups:
         for file in files.values():
-            yield from (*file.own.findings, *judged_once(of_fleet(plan, file.own.file)))
+            yield from (
+                *file.own.findings,
+                *judged_once(of_fleet(plan, file.own.file, group.robots)),
+            )
         for robot in group.robots:
             made = list(_for_robot(robot, files, topics))
             yield from made
             own = [it for it in unbridged if it.robot == robot.spec.namespace]
             texts = [it for it in made if isinstance(it, OutputFile)]
-            given = plan.evidence[node_sources(robot.spec)].arguments
+            given = plan.evidence_of(robot).arguments
             open_ = (it for it in own if not _is_launched(it, given))
             yield from (_unbridged(robot, it) for it in open_ if not _is_carried(it, texts, topics))
     yield from _for_all(groups, topics)
@@ -160,3 +172,111 @@ def _unbridged(robot: RewrittenRobot, topic: UnbridgedTopic) -> Finding:
     hint = "give it a topic in the description, so that a bridge can name it"
     place = {"file": robot.spec.description, "line": _line(robot, topic), "column": 1}
     return NO_TOPIC.finding(message, hint, **place)
+
+
+# Topics that several gz topics may come out on.
+TF = frozenset({"/tf", "/tf_static"})
+# What gz-transport takes in a topic (gz-transport TopicUtils).
+_GZ_WORD = re.compile(r"[A-Za-z0-9_.-]+(?:/[A-Za-z0-9_.-]+)*")
+
+
+def fill_bridge(template: FileTemplate, namespace: str, tag: str, model: str) -> str:
+    """A robot's bridge file; InputError if its model's name cannot be part of a gz topic."""
+    text = fill_template(template, namespace, tag)
+    if MODEL_SLOT in text and not _GZ_WORD.fullmatch(model):
+        raise InputError(
+            f"model {model!r} cannot be part of a gz topic; use letters, digits, _ . and - only"
+        )
+    return text.replace(MODEL_SLOT, model)
+
+
+def as_spawned(
+    topics: Iterable[BridgedTopic], robots: Iterable[RewrittenRobot]
+) -> list[BridgedTopic]:
+    """The bridged topics of descriptions, with the names that the models are spawned with.
+
+    ``ros_gz_sim create -name`` gives a model another name than its description has.
+    """
+    names = {it.spec.namespace: it for it in robots}
+    return [_spawned(it, names[it.robot]) if it.robot in names else it for it in topics]
+
+
+def _spawned(it: BridgedTopic, robot: RewrittenRobot) -> BridgedTopic:
+    # If frames stay bare, the generated name is the robot's, not that of the description.
+    inner = robot.member.inventory.document.root.get("name", "")
+    found = GZ_MODEL.fullmatch(it.gz)
+    if not found or found["model"] not in (inner, robot.spec.namespace):
+        return it
+    return it._replace(gz=f"{found['above']}{robot.spec.model}{found['rest'] or ''}")
+
+
+def merge_bridges(
+    texts: Iterable[tuple[str, str]], generated: Iterable[BridgedTopic]
+) -> tuple[str, tuple[Finding, ...]]:
+    """One file from several (file, text) and the bridged topics of descriptions.
+
+    An entry of a file wins over a generated one with the same gz topic. Two gz topics that are
+    bridged to one ROS topic are an error.
+    """
+    parts: list[str] = []
+    findings: list[Finding] = []
+    bridged: dict[str, tuple[int, str]] = {}
+    for at, (file, text) in enumerate(texts):
+        document = read_yaml(text.encode(), file)
+        root = document.root
+        if not isinstance(root, yaml.SequenceNode) or not root.value:
+            continue
+        for node, (start, end, column) in zip(root.value, blocks(document, root), strict=True):
+            gz = _full(text_of(node, BOTH) or text_of(node, GZ) or text_of(node, ROS))
+            ros = _full(text_of(node, BOTH) or text_of(node, ROS) or text_of(node, GZ))
+            # Topics for all robots, such as the clock, are bridged once, by the first file.
+            if bridged.setdefault(gz, (at, ros))[0] == at:
+                findings += _same_ros_topic(document, node, gz, ros, bridged)
+                parts.append(moved(cut_out(document, start, end), -column))
+    more = [it for it in generated if _full(it.gz) not in bridged]
+    return "".join(parts) + as_yaml(more), tuple(findings)
+
+
+def _full(name: str) -> str:
+    return f"/{name.lstrip('/')}"
+
+
+ONE_ROS_TOPIC = declare(
+    "MF506",
+    "bridge-two-on-one-topic",
+    ERROR,
+    what="Two gz topics are bridged to one ROS topic.",
+    why="The data of both is mixed: who subscribes gets scans of two sensors in turn.",
+    fix="Give each entry its own ros_topic_name.",
+    bad="""\
+- ros_topic_name: scan
+  gz_topic_name: front_scan
+  ros_type_name: sensor_msgs/msg/LaserScan
+  gz_type_name: gz.msgs.LaserScan
+- ros_topic_name: scan
+  gz_topic_name: rear_scan
+  ros_type_name: sensor_msgs/msg/LaserScan
+  gz_type_name: gz.msgs.LaserScan
+""",
+    good="""\
+- ros_topic_name: scan
+  gz_topic_name: front_scan
+  ros_type_name: sensor_msgs/msg/LaserScan
+  gz_type_name: gz.msgs.LaserScan
+- ros_topic_name: rear_scan
+  gz_topic_name: rear_scan
+  ros_type_name: sensor_msgs/msg/LaserScan
+  gz_type_name: gz.msgs.LaserScan
+""",
+    line=5,
+    formats=("bridge",),
+)
+
+
+def _same_ros_topic(
+    document: YamlText, node: yaml.Node, gz: str, ros: str, bridged: Mapping[str, tuple[int, str]]
+) -> Iterator[Finding]:
+    first = next((other for other, (_, name) in bridged.items() if name == ros), gz)
+    if first != gz and ros not in TF and text_of(node, "direction") != "ROS_TO_GZ":
+        message = f"gz topics {first} and {gz} are both bridged to ROS topic {ros}"
+        yield found_at(document, node, ONE_ROS_TOPIC, message, "give each its own ros_topic_name")

@@ -1,4 +1,5 @@
-"""The files of a cell: the URDF and SRDF of all arms, and the parameters of their one move_group.
+"""The files of a cell: the URDF and SRDF of all arms, the parameters of their one move_group, and one
+window of RViz, whose MotionPlanning reads the parameters of its process.
 
 Controllers stay in the namespaces of their arms, and so does the name by which move_group asks for
 their actions (moveit2 2.12.4 action_based_controller_handle.h, ``getActionName``).
@@ -10,10 +11,17 @@ import shlex
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
+import yaml
+
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import NAMESPACE
+from multibot_rewrite.companions.engine import splices_of
+from multibot_rewrite.companions.names.rename_map import spell
+from multibot_rewrite.companions.rviz.read_config import every, fixed_frame, read_config, targets
+from multibot_rewrite.companions.rviz.rewrite import RvizText
+from multibot_rewrite.companions.yaml_text import Splice, YamlText, replaced, spliced
 from multibot_rewrite.fleet.file.cell_file import MOVE_GROUP, Cell
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.moveit_parameters import (
@@ -161,3 +169,29 @@ def _disagree(robot: RewrittenRobot, name: str, first: object, other: object) ->
     message = f"{spec.name!r} has {name} {other!r}, an arm before it {first!r}, which is taken"
     hint = "give all arms of the cell one value"
     return DISAGREE.finding(message, hint, file=spec.file, line=spec.line, column=1)
+
+
+_GROUP = "group"
+
+
+def cell_window(
+    document: YamlText, cell: Cell, first: RewrittenRobot, world: str
+) -> RvizText | None:
+    """The window, seen from ``world``; it starts with the cell's first group, or with that of the
+    ``first`` arm. None for a config without planning groups; raises as ``read_config``."""
+    config = read_config(document)
+    shown = (place for it in every(config.displays) for place in it.places)
+    groups = [it for it in shown if it.kind == _GROUP]
+    if not groups:
+        return None
+    own = spell(first.names, _GROUP, groups[0].slot.value)
+    group = next(iter(cell.groups), own)
+    splices = [*splices_of(document.text, document.file, ((it, group) for it in groups))]
+    splices += _seen_from((fixed_frame(config), *targets(config)), world)
+    return RvizText(cell.name, spliced(document, splices))
+
+
+def _seen_from(nodes: tuple[yaml.Node | None, ...], world: str) -> Iterator[Splice]:
+    for it in nodes:
+        if isinstance(it, yaml.ScalarNode) and it.value not in ("", "<Fixed Frame>"):
+            yield replaced(it, world)

@@ -3,12 +3,13 @@ starts MoveIt."""
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Iterable, Iterator
 
 from multibot_rewrite.base.releases import facts_of_release
 from multibot_rewrite.fleet.file.fleet_file import BRINGUP
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.launch.launch_actions import as_declared
+from multibot_rewrite.fleet.launch.starts import Start, shell_line
 from multibot_rewrite.fleet.outputs import spawn, teleop
 from multibot_rewrite.fleet.outputs.cell_outputs import cell_commands
 from multibot_rewrite.fleet.outputs.moveit_parameters import moveit_commands
@@ -16,12 +17,9 @@ from multibot_rewrite.fleet.outputs.output_file import FilesAndFindings, OutputF
 from multibot_rewrite.fleet.outputs.relays import relays
 from multibot_rewrite.fleet.outputs.shape_outputs import vendor_commands
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
-from multibot_rewrite.fleet.robots.robot_nodes import node_sources
-from multibot_rewrite.fleet.robots.start_poses import InitialPose, command, start_poses
-from multibot_rewrite.producers.evidence.parameter_files import OWN_TYPE
-from multibot_rewrite.spelling.started import SPAWN, arguments, ros_arguments, started
+from multibot_rewrite.fleet.robots.start_poses import InitialPose, start_poses
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
-from multibot_rewrite.spelling.ways import SPAWNER
+from multibot_rewrite.spelling.ways import SPAWN, SPAWNER, spawner_arguments, started
 
 COMMANDS, START = "commands.md", "start_pose.yaml"
 TAKING = "\nThe vendor's launch files take its files, in the folder of this file:\n\n```sh\n"
@@ -44,10 +42,12 @@ def commands_file(
         rows.append(f"\n## {robot.spec.name}\n\n```sh\n")
         clock = robot.spec.use_sim_time
         clocks.add(clock)
-        rows += [f"{with_clock(command(it), clock)}\n" for it in poses.transforms]
+        rows += [f"{with_clock(shell_line(it.start), clock)}\n" for it in poses.transforms]
         rows += [spawn.either(it, robot) for it in spawned if spawn.is_simulated(robot)]
         rows += _controllers(one)
-        rows += [f"{with_clock(it, clock)}\n" for it in (*_relays(one), *moveit_commands(one))]
+        made = relays(robot.spec.namespace, one.fleet.naming, one.file)
+        relayed = (shell_line(it.start) for it in made)
+        rows += [f"{with_clock(it, clock)}\n" for it in (*relayed, *moveit_commands(one))]
         driven = (with_clock(teleop.command(it), clock) for it in teleop.teleops(one))
         rows += [*(f"{it}\n" for it in driven), "```\n", *_prefixed(robot)]
         if taking := list(vendor_commands(one)):
@@ -62,15 +62,6 @@ def commands_file(
     if lines := [f"{with_clock(it, both)}\n" for it in windows]:
         rows += ["\n## RViz\n\n```sh\n", *lines, "```\n"]
     yield OutputFile(COMMANDS, "".join(rows).encode())
-
-
-def _relays(plan: FleetPlan) -> Iterator[str]:
-    """The commands that relay a robot's tf, if its fleet file says so."""
-    (robot,) = plan.robots
-    for it in relays(robot.spec.namespace, plan.fleet.naming, plan.file):
-        own = ros_arguments(it.table.namespace, it.table.name, ())
-        told = [word for pair in it.parameters.items() for word in ("-p", ":=".join(pair))]
-        yield shlex.join(["ros2", "run", *it.program, *it.arguments, *own, *told])
 
 
 def _prefixed(robot: RewrittenRobot) -> Iterator[str]:
@@ -93,23 +84,10 @@ def _controllers(plan: FleetPlan) -> Iterator[str]:
     for it in started(plan.fleet.table):
         if it.way == SPAWNER:
             condition = when.get(it.node.node, "")
-            name, *more = arguments(it)
-            words = [name, *_as_declared(plan, it.node.node), *more]
-            line = shlex.join(["ros2", "run", *SPAWN, *words])
+            name, *more = spawner_arguments(it)
+            words = (name, *as_declared(plan, it.node.node), *more)
+            line = shell_line(Start(*SPAWN, it.node.namespace, arguments=words))
             yield f"{line}  # {condition}\n" if condition else f"{line}\n"
-
-
-def _as_declared(plan: FleetPlan, controller: str) -> Iterator[str]:
-    """The file of a controller whose own section has its type, and if a launch file leaves it
-    inactive."""
-    (robot,) = plan.robots
-    evidence = plan.evidence[node_sources(robot.spec)]
-    given = next((it for it in evidence.given if it.name == controller), None)
-    params = robot.spec.companions.get("params", ())
-    if given and OWN_TYPE in given.values and given.values[OWN_TYPE].place.file in params:
-        yield from ("--param-file", path_for(robot, given.values[OWN_TYPE].place.file))
-    if controller in evidence.spawned and evidence.spawned[controller].inactive:
-        yield "--inactive"
 
 
 def _start_parameters(plan: FleetPlan, pose: InitialPose) -> bytes:
@@ -117,7 +95,6 @@ def _start_parameters(plan: FleetPlan, pose: InitialPose) -> bytes:
 
     tables = plan.fleet.table.nodes
     node = next(it for it in tables if (it.robot, it.node) == (pose.robot, pose.node))
-    full = f"{node.namespace.rstrip('/')}/{node.name}"
-    data = {full: {"ros__parameters": dict(pose.values)}}
+    data = {node.full_name: {"ros__parameters": dict(pose.values)}}
     dumper = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
     return str(yaml.dump(data, None, dumper, sort_keys=False)).encode()

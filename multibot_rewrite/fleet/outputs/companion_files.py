@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterable, Iterator, Sequence
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.model import InputError
-from multibot_rewrite.companions.behavior_tree.rewrite import rewrite_behavior_tree
+from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.companions.companion import Companion
-from multibot_rewrite.companions.lua import rewrite_lua
-from multibot_rewrite.companions.moveit.rewrite import rewrite_moveit
+from multibot_rewrite.companions.formats import made_for_any
+from multibot_rewrite.companions.kinds import LUA, MOVEIT, PARAMS, TREE
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.rewrite import nodes_without_section, rewrite_params
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT, fill_template
@@ -20,15 +19,19 @@ from multibot_rewrite.fleet.outputs.output_file import (
     OutputFile,
     params_of,
     path_for,
-    yaml_of,
 )
-from multibot_rewrite.fleet.robots.prefix_parameters import at_run_time
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_groups import RobotGroup, group_robots
-from multibot_rewrite.fleet.robots.robot_nodes import node_sources
-from multibot_rewrite.knowledge.parameters import load_known_nodes
+from multibot_rewrite.knowledge.parameter_entries import RUN_TIME
+from multibot_rewrite.knowledge.parameters import KnownNodes, load_known_nodes
 from multibot_rewrite.producers.evidence.nodes import children_of
+from multibot_rewrite.producers.evidence.records import GivenNode
+from multibot_rewrite.rules.files.given import Beside
 from multibot_rewrite.rules.files.judge import judged_once
+from multibot_rewrite.rules.files.wheels import with_wheels
+
+# The key of a fleet file -> the kind of the files that it names.
+_KINDS = {"params": PARAMS, "moveit": MOVEIT, "behavior_trees": TREE, "lua": LUA}
 
 
 def companion_files(plan: FleetPlan) -> FilesAndFindings:
@@ -36,22 +39,33 @@ def companion_files(plan: FleetPlan) -> FilesAndFindings:
 
     Raises InputError for a file that cannot be read or rewritten.
     """
-    for kind, rewrite in _KINDS.items():
+    for key, kind in _KINDS.items():
         for group in group_robots(plan):
-            for path in group.companions.get(kind, ()):
-                made = rewrite(plan, group, path)
-                found = (*made.findings, *judged_once(of_fleet(plan, made.file)))
+            for path in group.companions.get(key, ()):
+                made = _made(plan, group, kind, path)
+                evidence = plan.evidence_of(group.robots[0])
+                made.file.memo[Beside] = Beside(evidence.given, evidence.known)
+                found = (*made.findings, *judged_once(of_fleet(plan, made.file, group.robots)))
                 yield from (_with_names_of(group.robots[0], it) for it in found)
                 for robot in group.robots:
                     text = fill_template(made.template, robot.spec.namespace, robot.spec.tag)
                     yield OutputFile(path_for(robot, path), text.encode(), (path,))
 
 
-def of_fleet(plan: FleetPlan, file: NamedFile) -> NamedFile:
-    """A file with what a fleet knows: the words for its robots, and frames that its nodes send."""
+def _made(plan: FleetPlan, group: RobotGroup, kind: str, path: str) -> Companion:
+    if kind == PARAMS:
+        made = _params(plan, group, path)
+        return made._replace(file=with_wheels(made.file, group.robots[0].member.source))
+    return made_for_any(kind, read_file(path), path, group.context, group.facts)
+
+
+def of_fleet(plan: FleetPlan, file: NamedFile, robots: Sequence[RewrittenRobot]) -> NamedFile:
+    """A file for some robots with what a fleet knows: the words for its robots, and frames that its
+    nodes send."""
     known = load_known_nodes(plan.file.nodes, plan.file.distro)
     words = {name for it in plan.robots for name in (it.spec.namespace, it.spec.tag)}
-    return file._replace(robots=frozenset(words), sent=file.sent | known.sent)
+    own = frozenset(robots[0].spec.words if len(robots) == 1 else ())
+    return file._replace(robots=frozenset(words), own=own, sent=file.sent | known.sent)
 
 
 def _with_names_of(robot: RewrittenRobot, finding: Finding) -> Finding:
@@ -67,9 +81,9 @@ def _params(plan: FleetPlan, group: RobotGroup, path: str) -> Companion:
     read = params_of(group.robots[0].spec)
     others = [document for it, document in read.items() if it != path]
     known = load_known_nodes(plan.file.nodes, plan.file.distro)
-    evidence = plan.evidence[node_sources(group.robots[0].spec)]
+    evidence = plan.evidence_of(group.robots[0])
     nodes = evidence.nodes
-    bare = at_run_time(plan.fleet.naming, evidence.given, known)
+    bare = _at_run_time(plan.fleet.naming, evidence.given, known)
     known = known._replace(sent=known.sent | {it for node in nodes for it in children_of(node)})
     own = group.robots[0].spec.words if len(group.robots) == 1 else ()
     made = rewrite_params(
@@ -88,25 +102,20 @@ def _params(plan: FleetPlan, group: RobotGroup, path: str) -> Companion:
     return made._replace(findings=(*made.findings, *more))
 
 
-def _moveit(plan: FleetPlan, group: RobotGroup, path: str) -> Companion:
-    return rewrite_moveit(yaml_of(path), group.context, group.facts)
+def _at_run_time(naming: Naming, given: Iterable[GivenNode], known: KnownNodes) -> frozenset[str]:
+    """The nodes that put the robot's name before their frames, by their files and launch files: those
+    frames stay bare."""
+    if not naming.layout.at_run_time:
+        return frozenset()
+    return frozenset(
+        node.name.rpartition("/")[2]
+        for node in given
+        if node.known in known.nodes and any(_prefixes(known, node))
+    )
 
 
-def _behavior_tree(plan: FleetPlan, group: RobotGroup, path: str) -> Companion:
-    return rewrite_behavior_tree(read_file(path), path, group.context)
-
-
-def _lua(plan: FleetPlan, group: RobotGroup, path: str) -> Companion:
-    try:
-        text = read_file(path).decode()
-    except UnicodeDecodeError:
-        raise InputError(f"{path}: it is not UTF-8; save it as UTF-8") from None
-    return rewrite_lua(text, path, group.context)
-
-
-_KINDS: dict[str, Callable[[FleetPlan, RobotGroup, str], Companion]] = {
-    "params": _params,
-    "moveit": _moveit,
-    "behavior_trees": _behavior_tree,
-    "lua": _lua,
-}
+def _prefixes(known: KnownNodes, node: GivenNode) -> Iterator[str]:
+    params = known.nodes[node.known].params
+    for name, given in node.values.items():
+        if given.value and name in params and params[name].kind in RUN_TIME:
+            yield name

@@ -15,13 +15,15 @@ from typing import Any
 import yaml
 
 from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.base.releases import has_release
-from multibot_rewrite.companions.moveit.file_kind import file_kind
+from multibot_rewrite.companions.moveit.file_kind import EMPTY, file_kind
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import OutputFile, expanded_name, path_for, yaml_of
-from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
-from multibot_rewrite.spelling.started import arguments, started
+from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
+from multibot_rewrite.spelling.ways import arguments, started
 
 FILE = "moveit_parameters.yaml"
 # Package and executable of the nodes that take it, by their names in the stack.
@@ -39,6 +41,8 @@ _ABOVE = {
     "joint_limits": "robot_description_planning",
     _SERVO: SERVO_PARAMETERS,
 }
+# Files that are none of move_group's.
+_OF_OTHERS = (_SERVO, "initial_positions", EMPTY)
 _OMPL = "ompl"
 _REQUEST, _RESPONSE = "default_planning_request_adapters", "default_planning_response_adapters"
 _PLANNING = {
@@ -134,6 +138,26 @@ def _parameters(srdf: str, texts: Mapping[str, str], release: str) -> Mapping[st
     return found | {"planning_pipelines": pipelines, "default_planning_pipeline": first}
 
 
+def move_group_parameters(description: str, srdf: str, texts: Mapping[str, str]) -> dict[str, Any]:
+    """What ``to_dict`` of moveit_configs_utils has for move_group; ``texts`` are the MoveIt files
+    by path.
+
+    Raises InputError for a file that is none.
+    """
+    found: dict[str, Any] = {"robot_description": description}
+    if srdf:
+        found[SEMANTIC] = srdf
+    for path, text in texts.items():
+        kind, data = file_kind(read_yaml(text.encode(), path)), load_yaml(text)
+        if kind in _OF_OTHERS:
+            continue
+        # Planners are below the first word of their file: ompl_planning.yaml.
+        name = os.path.basename(path).partition("_")[0] if kind == "planning" else _ABOVE.get(kind)
+        below = found.setdefault(name, {}) if name else found
+        below.update(data)
+    return found
+
+
 def _pipeline(path: str) -> str:
     """``ompl`` of ``ompl_planning.yaml``; empty for a file that is of none."""
     stem = os.path.splitext(os.path.basename(path))[0]
@@ -160,3 +184,56 @@ def _plain(value: Any) -> Any:
         return [float(it) for it in value]
     # rcl takes lists of one type, launch_ros refuses others, too.
     return value if len(types) == 1 and not types & {dict, list} else None
+
+
+_PACKAGES = ("moveit_ros_move_group", "moveit_servo", "moveit_ros_planning")
+_FLEET = """\
+layout: LAYOUT
+affix: prefix
+description: arm.urdf
+stack: moveit
+robots:
+  - {name: left}
+"""
+# moveit2 2.12.4 planning_scene_monitor.cpp (``getUpdatedFrameTransforms``: every frame of tf is
+# looked up from the root link or the virtual joint's parent, by its name in the URDF and SRDF),
+# current_state_monitor.cpp (a moving virtual joint: the same of its child),
+# planning_scene_display.cpp (``calculateOffsetPosition``). No parameter puts a prefix before them.
+PREFIXED_LATER = declare(
+    "MF837",
+    "moveit-with-frame-prefix",
+    ERROR,
+    what="A robot runs MoveIt in layout frame-prefix: links have a prefix in tf, and none in the URDF.",
+    why="MoveIt looks up in tf what the URDF calls its root link, which no robot has there: it cannot "
+    "place goals in other frames, sensors or objects, its displays in RViz stand at the origin, two "
+    "arms cannot be told from each other. No parameter of MoveIt puts a prefix before links.",
+    fix="Take layout frames-per-robot with affix prefix: links have the same names in URDF, SRDF "
+    "and tf. Leave frame_prefix of robot_state_publisher empty then.",
+    bad=_FLEET.replace("LAYOUT", "frame-prefix"),
+    good=_FLEET.replace("LAYOUT", "frames-per-robot"),
+    line=6,
+    formats=("fleet",),
+    beside={
+        "arm.urdf": """\
+<robot name="arm">
+  <link name="base"/><link name="hand"/>
+  <joint name="elbow" type="fixed"><parent link="base"/><child link="hand"/></joint>
+</robot>
+"""
+    },
+)
+
+
+def moveit_frames(plan: FleetPlan) -> Iterator[Finding]:
+    """The robots whose MoveIt would look for frames that tf does not have."""
+    if not plan.fleet.naming.layout.at_run_time:
+        return
+    those = {it.name for it in plan.fleet.facts if it.package in _PACKAGES}
+    running = {it.robot: it.node for it in reversed(plan.fleet.table.nodes) if it.node in those}
+    for robot in plan.robots:
+        if node := running.get(robot.spec.namespace):
+            root = next(iter(robot.links), "")
+            what = "looks for the links of the URDF in tf, which has"
+            message = f"{node} of {robot.spec.name!r} {what} {root!r}"
+            hint = "take layout frames-per-robot with affix: prefix"
+            yield at_robot(PREFIXED_LATER, robot, message, hint)

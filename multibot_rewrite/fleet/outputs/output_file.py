@@ -1,12 +1,15 @@
-"""A file that a build writes, and what each step of a build yields: files and findings."""
+"""A file that a build writes with the source line of each line, and what each step of a build yields:
+files and findings."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Collection, Iterator
+from functools import lru_cache
 from typing import TypeAlias
 
 from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.description.sources.read import read_file
@@ -23,6 +26,16 @@ class OutputFile(NamedTuple):
     path: str
     data: bytes
     sources: tuple[str, ...] = ()
+
+    @property
+    def text(self) -> str:
+        """The bytes as str; raises nothing."""
+        return self.data.decode("utf-8", "replace")
+
+    @property
+    def yaml(self) -> YamlText:
+        """The file as YAML; raises InputError as ``read_yaml``."""
+        return read_yaml(self.data, self.path)
 
 
 FilesAndFindings: TypeAlias = Iterator[OutputFile | Finding]
@@ -70,3 +83,24 @@ def params_of(spec: RobotSpec) -> dict[str, YamlText]:
 def yaml_of(path: str) -> YamlText:
     """Read a YAML file; raises InputError as ``read_yaml``."""
     return read_yaml(read_file(path), path)
+
+
+def line_in_source(file: OutputFile, line: int) -> tuple[str, int]:
+    """The source of a file, and its line that a line of the file was made from."""
+    for start, end, first, last in _changes(file):
+        if first < line <= last:
+            return file.sources[0], max(1, min(start + line - first, end))
+    return file.sources[0], 1
+
+
+@lru_cache(maxsize=16)
+def _changes(file: OutputFile) -> tuple[tuple[int, int, int, int], ...]:
+    """The lines of the source, and those of the file that were made from them, piece by piece."""
+    from difflib import SequenceMatcher
+
+    try:
+        old = read_file(file.sources[0]).decode("utf-8", "replace").splitlines()
+    except InputError:
+        return ()
+    codes = SequenceMatcher(None, old, file.text.splitlines(), False).get_opcodes()
+    return tuple(it[1:] for it in codes)

@@ -19,6 +19,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.rviz.rewrite import world_frame
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.fleet import Fleet
+from multibot_rewrite.fleet.launch.starts import Start
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.spelling.bridged_topics import TF_TYPE
 from multibot_rewrite.spelling.records import EndpointName, NodeTable
@@ -41,6 +42,13 @@ class Relay(NamedTuple):
     writes: tuple[str, ...]
     parameters: Mapping[str, str] = {}
     arguments: tuple[str, ...] = ()
+
+    @property
+    def start(self) -> Start:
+        """Its process; raises nothing."""
+        told = (self.parameters,) if self.parameters else ()
+        own = self.table.namespace, self.table.name
+        return Start(*self.program, *own, told, arguments=self.arguments)
 
 
 def check_relayed(file: FleetFile, naming: Naming) -> None:
@@ -78,13 +86,8 @@ def _bridge(robot: str, naming: Naming, world: str) -> Iterator[Relay]:
     table = _table(robot, BRIDGE, naming)
     yield Relay(table, (BRIDGE, BRIDGE), reads, writes)
     if frame := world or world_frame(naming):
-        words = ("--frame-id", frame, "--child-frame-id", bridged_frame(robot, frame))
+        words = ("--frame-id", frame, "--child-frame-id", f"{robot}/{frame}")
         yield Relay(_table(robot, _WORLD, naming), _STATIC, (), writes[1:], arguments=words)
-
-
-def bridged_frame(robot: str, frame: str) -> str:
-    """What the bridge of a robot (its namespace) makes of a frame."""
-    return f"{robot}/{frame}"
 
 
 def not_bridged(robot: str) -> str:

@@ -15,8 +15,7 @@ from multibot_rewrite.companions.rviz.rewrite import RvizText, rewrite_rviz, sta
 from multibot_rewrite.companions.rviz.values import RvizRobot
 from multibot_rewrite.companions.rviz.window_checks import ONE_TF_TOPIC
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
-from multibot_rewrite.fleet.outputs.cell_outputs import parameters_path
-from multibot_rewrite.fleet.outputs.cell_window import cell_window
+from multibot_rewrite.fleet.outputs.cell_outputs import cell_window, parameters_path
 from multibot_rewrite.fleet.outputs.companion_files import of_fleet
 from multibot_rewrite.fleet.outputs.moveit_parameters import FILE, has_moveit
 from multibot_rewrite.fleet.outputs.output_file import (
@@ -26,8 +25,8 @@ from multibot_rewrite.fleet.outputs.output_file import (
     yaml_of,
 )
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleet.robots.robot_groups import split_per_robot
 from multibot_rewrite.fleet.robots.start_poses import world_of
-from multibot_rewrite.fleet.robots.with_start_pose_nodes import split_per_robot
 from multibot_rewrite.rules.files.judge import judged_once
 
 RVIZ = "rviz2"
@@ -64,7 +63,7 @@ def rviz_outputs(plan: FleetPlan, each: Iterable[FleetPlan]) -> Iterator[RvizOut
             texts, found = (window, *texts), (*found, *bare)
         found = (
             *found,
-            *judged_once(of_fleet(plan, read_for(yaml_of(path), shown, plan.file.distro))),
+            *judged_once(of_fleet(plan, read_for(yaml_of(path), shown, plan.file.distro), robots)),
         )
         done = ONE_TF_TOPIC.code if relayed else ""
         yield RvizOutput(path, texts, tuple(it for it in found if it.code != done))

@@ -6,7 +6,6 @@ Sources: ros_gz jazzy ``ros_gz_sim/src/create.cpp``; gazebo_ros_pkgs ros2 ``spaw
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Iterator
 
 from lxml import etree
@@ -19,6 +18,7 @@ from multibot_rewrite.companions.names.robot_topics import NOTHING, fleet_topics
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.fleet.file.fleet_file import REAL, Pose
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.launch.starts import Start, shell_line
 from multibot_rewrite.fleet.outputs.output_file import expanded_name, path_for
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 
@@ -76,6 +76,11 @@ def is_simulated(robot: RewrittenRobot) -> bool:
     return gazebo or root.tag == "sdf" or next(root.iter("ros2_control"), None) is None
 
 
+def is_classic(robot: RewrittenRobot) -> bool:
+    """Is its simulator Gazebo Classic?"""
+    return CLASSIC_PLUGIN.encode() in (robot.simulated or robot.description)
+
+
 def spawn(robot: RewrittenRobot, topic: str = "") -> Spawn:
     """How one robot is spawned; ``topic`` is that of its description if it is not the usual one."""
     spec = robot.spec
@@ -106,20 +111,16 @@ def classic_arguments(it: Spawn) -> list[str]:
     return ["-entity", it.model, *it.source, *_pose(it.pose), *namespace]
 
 
-def gz_command(it: Spawn) -> str:
-    """The command that spawns a robot in gz-sim."""
-    return shlex.join(["ros2", "run", *GZ, *gz_arguments(it)])
-
-
-def classic_command(it: Spawn) -> str:
-    """The command that spawns a robot in Gazebo Classic."""
-    return shlex.join(["ros2", "run", *CLASSIC, *classic_arguments(it)])
+def spawner(it: Spawn, classic: bool) -> Start:
+    """What spawns a robot, in Gazebo Classic or in gz-sim."""
+    program, words = (CLASSIC, classic_arguments(it)) if classic else (GZ, gz_arguments(it))
+    return Start(*program, arguments=tuple(words))
 
 
 def either(it: Spawn, robot: RewrittenRobot) -> str:
     """The command for the description's simulator, with the other simulator's as a comment."""
-    gz, classic = gz_command(it), classic_command(it)
-    if CLASSIC_PLUGIN.encode() in (robot.simulated or robot.description):
+    gz, classic = (shell_line(spawner(it, classic)) for classic in (False, True))
+    if is_classic(robot):
         return f"{classic}\n# gz-sim: {gz}\n"
     return f"{gz}\n# Gazebo Classic: {classic}\n"
 
@@ -145,6 +146,17 @@ def _namespace(plugin: etree._Element) -> str:
     return text_at(plugin if ros is None else ros, "namespace")
 
 
+_LAMPS = """\
+<robot name="rover">
+  <link name="base_link"/>
+  <gazebo>
+    <plugin name="arm" filename="libgazebo_ros_acme_arm.so">
+      <ros><namespace>/rover</namespace></ros>
+    </plugin>
+    <plugin name="lamp" filename="libgazebo_ros_acme_lamp.so"{}
+  </gazebo>
+</robot>
+"""
 PARTLY_NAMESPACED = declare(
     "MF706",
     "plugins-partly-namespaced",
@@ -170,30 +182,10 @@ robots:
     line=3,
     formats=("fleet",),
     beside={
-        "half.urdf": """\
-<robot name="rover">
-  <link name="base_link"/>
-  <gazebo>
-    <plugin name="arm" filename="libgazebo_ros_acme_arm.so">
-      <ros><namespace>/rover</namespace></ros>
-    </plugin>
-    <plugin name="lamp" filename="libgazebo_ros_acme_lamp.so"/>
-  </gazebo>
-</robot>
-""",
-        "each.urdf": """\
-<robot name="rover">
-  <link name="base_link"/>
-  <gazebo>
-    <plugin name="arm" filename="libgazebo_ros_acme_arm.so">
-      <ros><namespace>/rover</namespace></ros>
-    </plugin>
-    <plugin name="lamp" filename="libgazebo_ros_acme_lamp.so">
-      <ros><namespace>/rover</namespace></ros>
-    </plugin>
-  </gazebo>
-</robot>
-""",
+        "half.urdf": _LAMPS.format("/>"),
+        "each.urdf": _LAMPS.format(
+            ">\n      <ros><namespace>/rover</namespace></ros>\n    </plugin>"
+        ),
     },
 )
 

@@ -6,21 +6,21 @@ Source: teleop_twist_keyboard jazzy (``stamped`` and ``frame_id``; it publishes 
 from __future__ import annotations
 
 import shlex
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.companions.bridge_entry import BOTH, GZ, ROS, below
 from multibot_rewrite.companions.names.robot_topics import robot_topic
-from multibot_rewrite.companions.rviz.read_config import text_of
-from multibot_rewrite.companions.yaml_text import items
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import yaml_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+from multibot_rewrite.producers.ends import bridge_ends
 from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, bridged_topics
-from multibot_rewrite.system.records import PUBLISHES, TOPIC
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
 
 PLAIN, STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
 COMMAND = "cmd_vel"
+# What drives call the commands that they read.
+COMMANDS = (COMMAND, "cmd_vel_unstamped", "reference", "reference_unstamped")
 TO_GZ = DIRECTIONS["out"]
 
 
@@ -33,11 +33,10 @@ class Teleop(NamedTuple):
     frame: str
 
 
-def teleops(plan: FleetPlan, stamped: Collection[str] = ()) -> tuple[Teleop, ...]:
-    """How each robot is driven that reads velocity commands; ``stamped`` are topics that are bridged
-    with a stamp. Raises InputError for a bridge file that cannot be read."""
-    driven = (it for it in plan.robots if _is_driven(plan, it) or _usual(it) in stamped)
-    return tuple(teleop(plan, robot, stamped) for robot in driven)
+def teleops(plan: FleetPlan) -> tuple[Teleop, ...]:
+    """How each robot is driven that reads velocity commands. Raises InputError for a bridge file that
+    cannot be read."""
+    return tuple(teleop(plan, robot) for robot in plan.robots if _is_driven(plan, robot))
 
 
 def _is_driven(plan: FleetPlan, robot: RewrittenRobot) -> bool:
@@ -51,14 +50,13 @@ def _usual(robot: RewrittenRobot) -> str:
     return robot_topic(robot.topics, f"/{COMMAND}")
 
 
-def teleop(plan: FleetPlan, robot: RewrittenRobot, stamped: Collection[str] = ()) -> Teleop:
+def teleop(plan: FleetPlan, robot: RewrittenRobot) -> Teleop:
     """The robot's ``cmd_vel`` if a node subscribes to it, else the first one with a subscriber."""
     name, usual = robot.spec.namespace, _usual(robot)
     heard = _listeners(plan, robot)
-    fed = usual in heard or usual in stamped or not heard
-    topic = usual if fed else next(iter(heard))
+    topic = usual if usual in heard or not heard else next(iter(heard))
     types = heard.get(topic, set())
-    with_stamp = topic in stamped or (STAMPED in types and PLAIN not in types)
+    with_stamp = STAMPED in types and PLAIN not in types
     return Teleop(name, topic, with_stamp, _base(robot) if with_stamp else "")
 
 
@@ -75,15 +73,16 @@ def command(it: Teleop) -> str:
 
 
 def _listeners(plan: FleetPlan, robot: RewrittenRobot) -> dict[str, set[str]]:
-    """Subscribed ``cmd_vel`` topics without a publisher in the plan, with their types, then those of
+    """Subscribed topics of commands without a publisher in the plan, with their types, then those of
     any name that bridges bring to the simulator."""
     names = (it for it in plan.fleet.table.names if it.robot == robot.spec.namespace)
     own = [it for it in names if it.endpoint.kind == TOPIC]
     sent = {it.name for it in own if it.endpoint.role == PUBLISHES}
     heard: dict[str, set[str]] = {}
     for name in own:
-        asked = name.endpoint.name.rpartition("/")[2]
-        if asked == COMMAND and name.endpoint.role != PUBLISHES and name.name not in sent:
+        asked = name.endpoint.name.rpartition("/")[2] in COMMANDS
+        asked = asked and name.endpoint.type in (PLAIN, STAMPED)
+        if asked and name.endpoint.role != PUBLISHES and name.name not in sent:
             heard.setdefault(name.name, set()).add(name.endpoint.type)
     for topic, type_ in _bridged(plan, robot):
         if type_ in (PLAIN, STAMPED) and topic not in sent:
@@ -95,14 +94,9 @@ def _bridged(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, str]
     """The topics that go to the simulator, with their types: those of the robot's bridge files, then
     those of the bridge that is made."""
     for path in robot.spec.companions.get("bridge", ()):
-        root = yaml_of(path).root
-        for entry in items(root) if root is not None else ():
-            ros = text_of(entry, BOTH) or text_of(entry, ROS) or text_of(entry, GZ)
-            if text_of(entry, "direction") == TO_GZ and ros:
-                yield (
-                    robot_topic(robot.topics, below(ros, robot.spec.bridge_namespace_of(path))),
-                    text_of(entry, "ros_type_name"),
-                )
+        for end in bridge_ends(yaml_of(path), robot.spec.bridge_namespace_of(path)):
+            if end.role == SUBSCRIBES:
+                yield robot_topic(robot.topics, end.name), end.type
     own = {robot.spec.namespace: plan.fleet.inventories[robot.spec.namespace]}
     made, _ = bridged_topics(own, plan.fleet.naming)
     yield from ((it.ros, it.ros_type) for it in made if it.direction == TO_GZ)

@@ -11,9 +11,8 @@ from collections.abc import Iterator, Mapping
 
 from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
-from multibot_rewrite.fleet.launch.launch_actions import is_classic
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
-from multibot_rewrite.fleet.outputs.spawn import is_simulated
+from multibot_rewrite.fleet.outputs.spawn import is_classic, is_simulated
 
 FILE = "world.sdf"
 # The release whose Gazebo has libraries of the old name.

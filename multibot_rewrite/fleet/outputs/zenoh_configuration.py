@@ -1,4 +1,5 @@
-"""Configurations of a fleet's Zenoh router and of each robot's sessions, as files. Pure.
+"""Configurations of a fleet's Zenoh router and of each robot's sessions, by the key ``zenoh`` of its
+file.
 
 rmw_zenoh reads such a file in place of its own default, so what it sets for ROS is set here as well:
 ``DEFAULT_RMW_ZENOH_SESSION_CONFIG.json5`` and ``..._ROUTER_CONFIG.json5`` at 30f3030, the values with
@@ -14,7 +15,9 @@ import json
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.fleet.file.fleet_data import FleetData, listed
 from multibot_rewrite.fleet.outputs.zenoh_access import (
     FLEET_ROUTER,
     OWN_ROUTER,
@@ -86,9 +89,7 @@ def _session(name: str) -> str:
 
 
 def _about_router(setup: Setup) -> str:
-    start = (
-        f"ZENOH_ROUTER_CONFIG_URI={ROUTER_FILE} (its full path) ros2 run rmw_zenoh_cpp rmw_zenohd"
-    )
+    start = _start(ROUTER_FILE)
     if setup.keystore:
         return f"The fleet's router: {start}. It tells robots apart by their certificates"
     return (
@@ -205,3 +206,36 @@ def _client(enclave: str, setup: Setup) -> Config:
     """A client: all that it says goes through the router, which may refuse it."""
     config = {"mode": "client", "connect": {"endpoints": [_endpoint(setup)]}}
     return config | _common(enclave, setup)
+
+
+ZENOH = "zenoh"
+
+
+def zenoh_of(read: FleetData) -> Setup | None:
+    """What a fleet file says of Zenoh, if it does; InputError where that does not fit together."""
+    if ZENOH not in read.data:
+        return None
+    given = read.data[ZENOH]
+    setup = Setup(
+        given["router"],
+        given.get("domain", 0),
+        given.get("keystore", "").rstrip("/"),
+        tuple(dict.fromkeys(listed(given.get("operators", [])))),
+        given.get("own_routers", False),
+    )
+    file, line = read.places[ZENOH,]
+    for what in _faults(setup, [it["name"] for it in read.data["robots"]]):
+        raise InputError(f"{file}:{line}: zenoh: {what}")
+    return setup
+
+
+def _faults(setup: Setup, robots: Sequence[str]) -> Iterator[str]:
+    if setup.operators and not setup.keystore:
+        yield "operators are known by certificates: give keystore as well"
+    for it in setup.operators:
+        if not it.startswith("/"):
+            yield f"{it!r} is no enclave; write /{it}"
+    names = file_names(robots, setup)
+    for name in sorted({it for it in names if names.count(it) > 1}):
+        word = name.removesuffix(".json5")
+        yield f"two of robots, operators and router are {word}; choose another name for one"

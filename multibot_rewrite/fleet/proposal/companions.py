@@ -14,9 +14,8 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.fleet.proposal.belonging import moveit_of_others, of_others
 from multibot_rewrite.fleet.proposal.looking import CLASSIC, GZ, NO_SIMULATOR, Looked
-from multibot_rewrite.fleet.proposal.searching import Found, without
+from multibot_rewrite.fleet.proposal.searching import Found, moveit_of_others, of_others, without
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 
@@ -67,6 +66,9 @@ def companions_of(robot: Looked, found: Found, release: str) -> Companions:
     found = without(found, left)
     files = {kind: tuple(_of_kind(kind, robot, found, left)) for kind in KINDS if kind != "params"}
     sections = dict(_sections(_nearest(robot, found.params), release, left))
+    idle = _controllers_of_others(robot, sections)
+    left |= idle
+    sections = {path: names for path, names in sections.items() if path not in idle}
     files["params"] = tuple(sections)
     srdf = _nearest(robot, found.srdf)[:1]
     left |= {it: "another SRDF was taken" for it in found.srdf if it not in srdf}
@@ -76,6 +78,14 @@ def companions_of(robot: Looked, found: Found, release: str) -> Companions:
     nodes = {name: path for path, names in sections.items() for name in names}
     chosen = {kind: its for kind, its in files.items() if its}
     return Companions(chosen, "".join(srdf), dict(_stacks(robot, nodes, "".join(srdf))), left)
+
+
+def _controllers_of_others(robot: Looked, sections: Mapping[str, frozenset[str]]) -> dict[str, str]:
+    """The files of controllers of the real robot, whose simulated one is driven by other plugins."""
+    if robot.control or robot.simulator == NO_SIMULATOR:
+        return {}
+    reason = "no plugin of the simulated robot makes a controller manager"
+    return {path: reason for path, names in sections.items() if _MANAGER in names}
 
 
 def _of_kind(kind: str, robot: Looked, found: Found, left: dict[str, str]) -> Iterator[str]:

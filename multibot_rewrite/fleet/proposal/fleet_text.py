@@ -3,30 +3,16 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from typing import Any
 
 from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.base.printable import one_line
-from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.fleet.proposal.choosing import Choice, Member
 from multibot_rewrite.fleet.proposal.looking import Looked
+from multibot_rewrite.fleet.proposal.propose import Member, Proposal
 
 # Files not taken that are named.
 MOST = 10
-
-
-class Proposal(NamedTuple):
-    """A fleet: its keys with their reasons, in the order in which they are written; its robots with
-    their poses. ``notes`` are said at the head of the file, ``others`` are descriptions not taken,
-    ``refused`` files that do not go with the robots, and why."""
-
-    keys: Mapping[str, Choice]
-    members: Sequence[Member]
-    poses: Mapping[str, Mapping[str, float]]
-    notes: tuple[str, ...] = ()
-    others: tuple[str, ...] = ()
-    refused: Mapping[str, str] = {}
 
 
 def data_of(it: Proposal, folder: str) -> dict[str, Any]:

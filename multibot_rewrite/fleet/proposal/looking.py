@@ -1,12 +1,16 @@
-"""A description -> what a fleet file has to know of it: simulator, xacro arguments, size."""
+"""A description -> what a fleet file has to know of it: simulator, xacro arguments, and the values for
+these that launch files have where nobody gave any."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
 
 from lxml import etree
 
+from multibot_rewrite.base.bounded import read_bytes
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
@@ -17,7 +21,6 @@ from multibot_rewrite.description.sources.expand import expand
 from multibot_rewrite.description.sources.own_names import filled
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.document import read_document
-from multibot_rewrite.fleet.proposal.needed_values import NeededValues
 
 GZ, CLASSIC, NO_SIMULATOR = "gz", "classic", "none"
 # How the file names of plugins for Gazebo Classic begin.
@@ -37,7 +40,7 @@ WORLD = "world"
 
 class Looked(NamedTuple):
     """A description: the name in it, its root's tag, how many links it has, its simulator, whether it
-    has ``<ros2_control>``.
+    has ``<ros2_control>``, for a simulator with the plugin that makes its controller manager.
 
     ``arguments`` give each robot its own names (``{robot}`` is its name) or are needed to expand it;
     ``needed`` are those of them that were not given. ``own_tf`` is whether its plugins send tf
@@ -105,7 +108,7 @@ def _looked(path: str, text: bytes, arguments: tuple[tuple[str, str], ...]) -> L
         str(root.tag),
         sum(1 for it in root.iter("link") if it.get("name")),
         _simulator(root),
-        next(root.iter("ros2_control"), None) is not None,
+        _is_controlled(root),
         arguments,
         (),
         any(_moves_tf(it) for it in root.iter("remapping", "argument")),
@@ -117,10 +120,26 @@ def _moves_tf(rule: etree._Element) -> bool:
     return (rule.text or "").strip() == "/tf:=tf"
 
 
+def _is_controlled(root: etree._Element) -> bool:
+    """A robot that other plugins drive in its simulator keeps the block of the real one."""
+    if next(root.iter("ros2_control"), None) is None:
+        return False
+    # gz_ros2_control, ign_ros2_control, gazebo_ros2_control and what vendors make of them.
+    made = any("ros2_control" in it for it in _plugin_files(root))
+    return made or _simulator(root) == NO_SIMULATOR
+
+
+def _parts(root: etree._Element) -> list[etree._Element]:
+    return [root] if root.tag == "sdf" else root.findall("gazebo")
+
+
+def _plugin_files(root: etree._Element) -> list[str]:
+    return [it.get("filename") or "" for part in _parts(root) for it in part.iter("plugin")]
+
+
 def _simulator(root: etree._Element) -> str:
     """By the plugins below ``<gazebo>``, or of an SDF; sensors alone are for gz-sim."""
-    parts = [root] if root.tag == "sdf" else root.findall("gazebo")
-    files = [it.get("filename") or "" for part in parts for it in part.iter("plugin")]
+    parts, files = _parts(root), _plugin_files(root)
     if any(it.startswith(tuple(_CLASSIC)) for it in files):
         return CLASSIC
     sensors = any(part.find(".//sensor") is not None for part in parts)
@@ -149,3 +168,59 @@ def _moves(it: Looked) -> bool:
     """Has it a joint that is not fixed? A house or a shelf has none."""
     joints = it.root.iter("joint") if it.root is not None else ()
     return any(joint.get("type", "fixed") != "fixed" for joint in joints)
+
+
+MOST_BYTES = 1_000_000
+# What gives each robot its own names.
+_PREFIX, _NAME = ("prefix", "tf_prefix"), ("name", "robot_name", "namespace", "ns")
+# A declaration in Python or XML: its default, or the first of its choices.
+_PYTHON = (
+    r"""["']%s["']\s*,(?:(?!Declare|LaunchConfiguration)[^\0]){0,400}?"""
+    r"""\b%s\s*=\s*\[?\s*["']([^"']+)"""
+)
+_XML = r"""<arg\b[^>]*\bname=["']%s["'][^>]*\bdefault=["']([^"'$]+)["']"""
+_DEFAULT, _CHOICES = "default(?:_value)?", "choices"
+_ARGUMENT = re.compile(r"""<xacro:arg\b[^>]*\bname=["'](\w+)["']""")
+
+
+class NeededValues(NamedTuple):
+    """Values that ``launch`` files give to the arguments of xacros."""
+
+    launch: Sequence[str]
+
+    def of(self, name: str) -> str:
+        """The value of an argument: the robot's name where it is called so, else what a launch file
+        declares; empty where none does. Raises nothing."""
+        if name in _PREFIX:
+            return "{robot}_"
+        if name in _NAME:
+            return "{robot}"
+        word = re.escape(name)
+        patterns = (_PYTHON % (word, _DEFAULT), _XML % word, _PYTHON % (word, _CHOICES))
+        return next(self._found(patterns), "")
+
+    def of_mandatory(self, path: str) -> dict[str, str]:
+        """The arguments of a xacro that every launch has to choose a value for, with the first of them:
+        the xacro's own default may be no value at all. Raises nothing."""
+        names = dict.fromkeys(_ARGUMENT.findall(_text(path)))
+        return {name: value for name in names if (value := self._choice(name))}
+
+    def _choice(self, name: str) -> str:
+        word = re.escape(name)
+        with_default = any(self._found((_PYTHON % (word, _DEFAULT),)))
+        return "" if with_default else next(self._found((_PYTHON % (word, _CHOICES),)), "")
+
+    def _found(self, patterns: Sequence[str]) -> Iterator[str]:
+        for pattern in patterns:
+            for path in self.launch:
+                found = re.search(pattern, _text(path))
+                if found:
+                    yield found[1]
+
+
+@lru_cache(maxsize=256)
+def _text(path: str) -> str:
+    try:
+        return read_bytes(path, MOST_BYTES).decode("utf-8", "replace")
+    except OSError:
+        return ""

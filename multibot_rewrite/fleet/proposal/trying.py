@@ -12,10 +12,16 @@ from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
-from multibot_rewrite.fleet.proposal.choosing import Choice, affix_of
-from multibot_rewrite.fleet.proposal.fleet_text import Proposal, data_of
+from multibot_rewrite.fleet.proposal.fleet_text import data_of
 from multibot_rewrite.fleet.proposal.looking import Looked
-from multibot_rewrite.fleet.proposal.propose import Wanted, propose, with_arguments
+from multibot_rewrite.fleet.proposal.propose import (
+    Choice,
+    Proposal,
+    Wanted,
+    affix_of,
+    propose,
+    with_arguments,
+)
 from multibot_rewrite.fleet.proposal.searching import Found
 
 # Builds without files that turned out not to go with a robot, and descriptions that are tried.

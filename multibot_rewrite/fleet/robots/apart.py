@@ -13,7 +13,6 @@ from multibot_rewrite.fleet.file.fleet_file import Pose, RobotSpec
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.spawn import is_simulated
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
-from multibot_rewrite.fleet.robots.robot_nodes import node_sources
 
 _CART = """\
 <robot name="cart">
@@ -91,7 +90,7 @@ def too_near(plan: FleetPlan) -> Iterator[Finding]:
 def _is_spawned_here(plan: FleetPlan, robot: RewrittenRobot) -> bool:
     """Does its file say that it runs in a simulator, and start nothing that may spawn it?"""
     spec = robot.spec
-    nodes = plan.evidence[node_sources(spec)].nodes
+    nodes = plan.evidence_of(robot).nodes
     bridged = "bridge" in spec.companions or any(it.package == _BRIDGE for it in nodes)
     return not spec.launch and bool(spec.simulator or spec.simulated or bridged)
 

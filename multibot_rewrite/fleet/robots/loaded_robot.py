@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping
 from functools import cached_property
+from tempfile import TemporaryDirectory
 from typing import Any, Protocol
 
 from multibot_rewrite.base.arguments import checked
@@ -23,8 +24,7 @@ from multibot_rewrite.fleet.file.fleet_file import Pose
 from multibot_rewrite.fleet.fleet import Fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs import spawn, teleop
-from multibot_rewrite.fleet.outputs.kept_files import KeptFiles
-from multibot_rewrite.fleet.outputs.move_group_parameters import move_group_parameters
+from multibot_rewrite.fleet.outputs.moveit_parameters import move_group_parameters
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
 from multibot_rewrite.fleet.outputs.relays import Relay, relays
 from multibot_rewrite.fleet.robots import start_poses
@@ -35,6 +35,23 @@ from multibot_rewrite.knowledge.stacks import is_apart
 from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.spelling.targets import placed, target_of
 from multibot_rewrite.system.records import TOPIC
+
+
+class KeptFiles:
+    """Files in a folder that is made with the first of them, and goes when the process ends."""
+
+    def __init__(self) -> None:
+        self._folder: TemporaryDirectory[str] | None = None
+
+    def path(self, robot: str, file: str, text: str) -> str:
+        """The path of a robot's file with this text; raises OSError where none can be written."""
+        if self._folder is None:
+            self._folder = TemporaryDirectory(prefix="multibot_")
+        path = os.path.join(self._folder.name, robot, os.path.basename(file))
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        with open(path, "wb") as out:
+            out.write(text.encode())
+        return path
 
 
 class OfFleet(Protocol):

@@ -12,8 +12,8 @@ from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import RemapRule, bind, resolve_bound
 from multibot_rewrite.description.checks.arguments import UNREAD
-from multibot_rewrite.description.checks.meeting import SHARED_CODES
 from multibot_rewrite.description.library import Rewrite
+from multibot_rewrite.description.readback.meeting import SHARED_CODES
 from multibot_rewrite.description.readback.nodes import rules_of
 from multibot_rewrite.description.readback.reading import Reading, read
 from multibot_rewrite.description.readback.xml import read_xml

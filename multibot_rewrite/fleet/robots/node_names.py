@@ -10,8 +10,7 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.spelling.records import EndpointName, NodeTable, Table
-from multibot_rewrite.spelling.started import Started, launch_arguments, started
-from multibot_rewrite.spelling.ways import COMPONENT, SPAWNER
+from multibot_rewrite.spelling.ways import COMPONENT, SPAWNER, Started, launch_arguments, started
 from multibot_rewrite.system.records import CALLS
 
 # What a lifecycle manager calls of each node that it manages (nav2_util lifecycle_service_client.cpp).

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from typing import Any
 
@@ -18,19 +18,20 @@ from multibot_rewrite.companions.names.rename_map import (
 )
 from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.checks.arguments import UNREAD
-from multibot_rewrite.description.checks.meeting import SHARED_CODES
 from multibot_rewrite.description.checks.twice import CARRYING
 from multibot_rewrite.description.library import Rewrite, rewrite_job
+from multibot_rewrite.description.readback.meeting import SHARED_CODES
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.sources.job import Job, Reader, job_for, joined_reads, reader
 from multibot_rewrite.description.sources.own_names import ROBOT, Arguments, common_to
 from multibot_rewrite.description.sources.read import is_xacro
+from multibot_rewrite.description.steps.apply import Template
 from multibot_rewrite.description.steps.collect import NOTHING
-from multibot_rewrite.description.steps.template import Template
 from multibot_rewrite.fleet.file.fleet_file import REAL, RobotSpec, Sources
 from multibot_rewrite.fleet.robots.member import Member, member
 from multibot_rewrite.fleet.robots.srdf_of_another import srdf_findings
-from multibot_rewrite.spelling.transforms import Edge, links_of, tree_of
+from multibot_rewrite.spelling.transforms import links_of, tree_of
+from multibot_rewrite.system.records import Edge
 
 # Kinds that are ROS names and get the namespace; the others get the tag.
 GRAPH_KINDS = frozenset({"namespace", "node", "topic", "subtopic", "service", "stem"})
@@ -169,12 +170,9 @@ def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobo
     if jobs.srdf:
         own = {**jobs.srdf.own.plain, **own}
     texts = _texts(jobs.description, group)
-    semantics: Iterable[Rewrite | None] = [None] * len(group)
-    if jobs.srdf:
-        semantics = _texts(jobs.srdf, group)
-    models: Iterable[Rewrite | None] = [None] * len(group)
-    if jobs.simulated:
-        models = _texts(jobs.simulated, group)
+    nothing = [None] * len(group)
+    semantics = _texts(jobs.srdf, group) if jobs.srdf else nothing
+    models = _texts(jobs.simulated, group) if jobs.simulated else nothing
     for robot, text, semantic, model in zip(group, texts, semantics, models, strict=True):
         data = _final(text, robot, naming)
         made, simulated = member(text, data, robot.tag, robot.simulator == REAL), b""

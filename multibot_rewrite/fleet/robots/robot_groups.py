@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Sequence
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.findings.grouping import grouped
+from multibot_rewrite.base.findings.selection import grouped
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.context import Context, make_context
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
-from multibot_rewrite.fleet.robots.robot_nodes import companion_nodes, node_sources, stack_nodes
+from multibot_rewrite.fleet.robots.robot_nodes import companion_nodes, stack_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.spelling.records import EndpointName, NodeTable
+from multibot_rewrite.system.records import Edge
 
 
 class RobotGroup(NamedTuple):
@@ -38,11 +41,29 @@ def group_robots(plan: FleetPlan) -> Iterator[RobotGroup]:
         groups.setdefault(key, []).append(robot)
     for robots in groups.values():
         spec = robots[0].spec
-        nodes = plan.evidence[node_sources(spec)].nodes
+        nodes = plan.evidence_of(robots[0]).nodes
         facts = tuple(companion_nodes(nodes, stack_nodes(spec, plan.file)))
         declared, naming, _, own = robots[0].names
         context = make_context(declared, naming, facts, plan.file.distro, own)
         yield RobotGroup(tuple(robots), facts, context)
+
+
+def split_per_robot(plan: FleetPlan) -> Iterator[FleetPlan]:
+    """Each robot as a fleet of its own, so that steps about one robot need not search all others."""
+    fleet = plan.fleet
+    nodes: dict[str, list[NodeTable]] = defaultdict(list)
+    names: dict[str, list[EndpointName]] = defaultdict(list)
+    for node in fleet.table.nodes:
+        nodes[node.robot].append(node)
+    for name in fleet.table.names:
+        names[name.robot].append(name)
+    edges: dict[str, dict[tuple[str, str], Sequence[Edge]]] = defaultdict(dict)
+    for key, sent in fleet.edges.items():
+        edges[key[0]][key] = sent
+    for robot in plan.robots:
+        own = robot.spec.namespace
+        table = fleet.table._replace(nodes=tuple(nodes[own]), names=tuple(names[own]), problems=())
+        yield plan._replace(robots=(robot,), fleet=fleet._replace(table=table, edges=edges[own]))
 
 
 def said_once(plan: FleetPlan, findings: Iterable[Finding]) -> list[Finding]:

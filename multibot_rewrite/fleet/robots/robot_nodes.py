@@ -1,13 +1,17 @@
-"""The nodes that a robot of a fleet file runs: its stacks, as its own files have them."""
+"""The nodes that a robot of a fleet file runs: its stacks, as its own files have them. Some run once
+for all robots, as one map_server with one map."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.finding import NOTE, Finding
+from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.file.fleet_file import FleetFile, RobotSpec, Sources
 from multibot_rewrite.fleet.fleet import facts_of, known_nodes
@@ -19,10 +23,15 @@ from multibot_rewrite.fleet.launch.launched_robot import (
 )
 from multibot_rewrite.fleet.outputs.output_file import params_of
 from multibot_rewrite.fleet.robots.member import Member
-from multibot_rewrite.fleet.robots.shared_nodes import apart
 from multibot_rewrite.knowledge.nodl.facts import declared
-from multibot_rewrite.knowledge.parameters import load_known_nodes
-from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
+from multibot_rewrite.knowledge.parameters import (
+    KnownNodes,
+    is_absolute,
+    is_below_costmap,
+    is_called,
+    load_known_nodes,
+)
+from multibot_rewrite.knowledge.records import MANAGER, MOVE_GROUP, Endpoint, NodeFacts
 from multibot_rewrite.producers.evidence.hardware import with_hardware
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 from multibot_rewrite.producers.evidence.records import GivenNode
@@ -30,7 +39,7 @@ from multibot_rewrite.producers.launch.of_robot import without_robot
 from multibot_rewrite.producers.launch.records import LaunchOrder
 from multibot_rewrite.producers.launch.spawners import Spawned
 
-MOVE_GROUP, WORLD = "move_group", "world"
+WORLD = "world"
 # What decides the nodes of a robot.
 NodeSources = tuple[tuple[str, ...], tuple[str, ...], tuple[LaunchOrder, ...], str, str, Sources]
 
@@ -76,12 +85,41 @@ def robot_nodes(
     nodes = with_hardware(wired, source.root, source.file, known)
     whole = launched is not None and launched.whole
     nodes = nodes if whole else (*nodes, *_of_srdf(spec, nodes, known))
-    marked, shared = apart(nodes, file)
+    marked, shared = apart(tuple(_as_written(nodes, own, parameters, file.distro)), file)
     unsimulated = launched is not None and launched.whole and not launched.simulated
     said = (*notes, *findings, *shared)
     started = launched.started.values() if launched else ()
     arguments = tuple(word for it in started for word in it.arguments)
     return RobotEvidence(given, known, marked, said, spawned, unsimulated, arguments)
+
+
+def _as_written(
+    nodes: Iterable[NodeFacts], own: Iterable[GivenNode], known: KnownNodes, release: str
+) -> Iterator[NodeFacts]:
+    """The nodes, with the topics of costmaps as the robot's files will have them: absolute, where the
+    node does not resolve a relative one in the robot's namespace."""
+    outside = {it.name: frozenset(_outside(it, known, release)) for it in own}
+    for it in nodes:
+        moved = outside.get(it.name, frozenset())
+        ends = (_absolute(end) if end.parameter in moved else end for end in it.endpoints)
+        yield it._replace(endpoints=tuple(ends)) if moved else it
+
+
+def _outside(it: GivenNode, known: KnownNodes, release: str) -> Iterator[str]:
+    """The parameters of a node whose relative topics are resolved outside of its robot's namespace."""
+    if it.known not in known.nodes:
+        return
+    params = [one for one in known.nodes[it.known].params.values() if one.absolute]
+    for name in it.values if params else ():
+        plugin = it.values.get(f"{name.rpartition('.')[0]}.plugin")
+        below = plugin is not None and is_below_costmap(str(plugin.value))
+        fitting = (one for one in params if is_called(one, name))
+        if any(below or is_absolute(one, release) for one in fitting):
+            yield name
+
+
+def _absolute(end: Endpoint) -> Endpoint:
+    return end if end.name[0] in "/~" else end._replace(name=f"/{end.name}")
 
 
 def _is_mounted(root: _Element) -> bool:
@@ -102,7 +140,7 @@ def _of_srdf(
     spec: RobotSpec, nodes: Iterable[NodeFacts], known: Mapping[str, NodeFacts]
 ) -> Iterator[NodeFacts]:
     """The node that reads an SRDF may run, where neither a stack nor a launch file says so."""
-    if spec.srdf and MOVE_GROUP not in {it.known or it.name for it in nodes}:
+    if spec.srdf and MOVE_GROUP not in {it.kind for it in nodes}:
         file = os.path.basename(spec.srdf)
         yield known[MOVE_GROUP]._replace(when=f"its SRDF is {file}", origin=f"{spec.srdf}:1")
 
@@ -127,3 +165,70 @@ def companion_nodes(nodes: Sequence[NodeFacts], stack: Sequence[NodeFacts]) -> I
     # A section for a node in a namespace below the robot's is known to be right if the node runs there.
     mine = (it for it in nodes if it.name in bare or it.host or "/" in it.name)
     yield from (bare.get(it.name, it) for it in mine)
+
+
+MANAGERS = "nav2_lifecycle_manager"
+NOT_MANAGED = declare(
+    "MF803",
+    "shared-node-not-managed",
+    NOTE,
+    what="A node that all robots share is managed by a lifecycle manager that each robot has; it is "
+    "left out of the plan there.",
+    why="Each manager configures it: the second one fails, since it is active already, and the whole "
+    "bringup of that robot stops.",
+    fix="Remove it from node_names of the robots' managers, and start it with a lifecycle manager of "
+    "its own.",
+    bad="""\
+shared_nodes: [map_server]
+shared_topics: [/map, /clock, /rosout, /parameter_events, /diagnostics]
+layout: both
+stack: nav2
+robots:
+  - {name: robot1, description: robot.urdf}
+  - {name: robot2, description: robot.urdf}
+""",
+    good="""\
+layout: both
+stack: nav2
+robots:
+  - {name: robot1, description: robot.urdf}
+  - {name: robot2, description: robot.urdf}
+""",
+    line=1,
+    formats=("fleet",),
+)
+
+
+def apart(
+    nodes: Sequence[NodeFacts], file: FleetFile
+) -> tuple[tuple[NodeFacts, ...], tuple[Finding, ...]]:
+    """The nodes, those that all robots share marked; findings about managers that would manage them."""
+    if not file.shared_nodes:
+        return tuple(nodes), ()
+    marked = [it._replace(shared=it.shared or it.name in file.shared_nodes) for it in nodes]
+    managers = [it for it in marked if it.package == MANAGERS and not it.shared]
+    left = {it.name: _without(it, file.shared_nodes) for it in managers}
+    kept = tuple(left.get(it.name, it) for it in marked)
+    return kept, tuple(_notes(managers, file))
+
+
+def _without(manager: NodeFacts, shared: Collection[str]) -> NodeFacts:
+    ends = (it for it in manager.endpoints if it.name.partition("/")[0] not in shared)
+    return manager._replace(endpoints=tuple(ends))
+
+
+def _notes(managers: Sequence[NodeFacts], file: FleetFile) -> Iterator[Finding]:
+    for it in managers:
+        heads = {end.name.partition("/")[0] for end in it.endpoints}
+        for name in (name for name in file.shared_nodes if name in heads):
+            message = f"{it.name} of each robot manages {name}, which all robots share"
+            hint = f"remove {name} from its node_names, and start {name} with a manager of its own"
+            yield NOT_MANAGED.finding(message, hint, file=file.file, line=1, column=1)
+
+
+def check_shared(file: FleetFile, run: Mapping[str, object]) -> None:
+    """Raises InputError for a shared node that is not among the nodes that robots ``run``."""
+    for name in file.shared_nodes:
+        if name not in run:
+            near = did_you_mean_one_of(name, tuple(run)) or "name a node of a robot's stack"
+            raise InputError(f"{file.file}: shared_nodes: no robot has a node {name!r}; {near}")

@@ -5,6 +5,11 @@ from __future__ import annotations
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.base.findings.rule import declare
 
+_TWO = """\
+robots:
+  - {name: robot1, description: robot.urdf, pose: {x: 1.0}}
+  - {name: robot2, description: robot.urdf}
+"""
 LOCALISED_ALREADY = declare(
     "MF701",
     "pose-of-localised-robot",
@@ -14,18 +19,8 @@ LOCALISED_ALREADY = declare(
     why="The frame would have two parents, and the robot would jump between two places.",
     fix="Start the robot at that place in the simulator, or remove the pose. amcl needs neither: it "
     "gets the pose in start_pose.yaml.",
-    bad="""\
-stack: slam_toolbox
-robots:
-  - {name: robot1, description: robot.urdf, pose: {x: 1.0}}
-  - {name: robot2, description: robot.urdf}
-""",
-    good="""\
-stack: amcl
-robots:
-  - {name: robot1, description: robot.urdf, pose: {x: 1.0}}
-  - {name: robot2, description: robot.urdf}
-""",
+    bad=f"stack: slam_toolbox\n{_TWO}",
+    good=f"stack: amcl\n{_TWO}",
     line=3,
     formats=("fleet",),
 )
@@ -42,11 +37,7 @@ robots:
   - {name: robot1, description: two_trees.urdf, pose: {x: 1.0}}
   - {name: robot2, description: robot.urdf}
 """,
-    good="""\
-robots:
-  - {name: robot1, description: robot.urdf, pose: {x: 1.0}}
-  - {name: robot2, description: robot.urdf}
-""",
+    good=_TWO,
     line=3,
     formats=("fleet",),
     beside={
@@ -75,11 +66,7 @@ robots:
   - {name: robot1, description: arm.urdf, pose: {x: 1.0}}
   - {name: robot2, description: robot.urdf}
 """,
-    good="""\
-robots:
-  - {name: robot1, description: robot.urdf, pose: {x: 1.0}}
-  - {name: robot2, description: robot.urdf}
-""",
+    good=_TWO,
     line=3,
     formats=("fleet",),
     beside={
@@ -100,18 +87,8 @@ NO_SHARED_FRAME = declare(
     why="Poses are in a frame that all robots share. Without one the pose is not published, and the "
     "robots are not connected in tf.",
     fix="Name a frame in shared_frames, or the frame of poses in world.",
-    bad="""\
-shared_frames: []
-robots:
-  - {name: robot1, description: robot.urdf, pose: {x: 1.0}}
-  - {name: robot2, description: robot.urdf}
-""",
-    good="""\
-shared_frames: [map]
-robots:
-  - {name: robot1, description: robot.urdf, pose: {x: 1.0}}
-  - {name: robot2, description: robot.urdf}
-""",
+    bad=f"shared_frames: []\n{_TWO}",
+    good=f"shared_frames: [map]\n{_TWO}",
     line=3,
     formats=("fleet",),
 )

@@ -6,7 +6,6 @@ Sources: tf2_ros jazzy ``static_transform_publisher``; nav2_amcl jazzy (``set_in
 from __future__ import annotations
 
 import re
-import shlex
 from collections.abc import Iterator, Mapping
 
 from multibot_rewrite.base.findings.finding import Finding
@@ -18,9 +17,11 @@ from multibot_rewrite.companions.rviz.rewrite import world_frame
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.fleet.file.fleet_file import FleetFile, Pose
+from multibot_rewrite.fleet.fleet import Fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.launch.starts import Start
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
-from multibot_rewrite.fleet.robots.robot_nodes import node_sources
+from multibot_rewrite.fleet.robots.robot_groups import said_once, split_per_robot
 from multibot_rewrite.fleet.robots.start_pose_rules import (
     LOCALISED_ALREADY,
     NO_SHARED_FRAME,
@@ -28,10 +29,11 @@ from multibot_rewrite.fleet.robots.start_pose_rules import (
     OWN_ODOMETRY,
     POSE_ON_WORLD,
 )
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.spelling.bridged_topics import TF_TYPE, bridge_data
+from multibot_rewrite.spelling.table import joined, names_of, node_table
 from multibot_rewrite.spelling.targets import placed, target_of
-from multibot_rewrite.spelling.transforms import Edge
-from multibot_rewrite.system.records import TOPIC
+from multibot_rewrite.system.records import PUBLISHES, TOPIC, Edge, edge_of
 
 NODE = "start_pose"
 AMCL = "amcl"
@@ -52,6 +54,11 @@ class StaticTransform(NamedTuple):
     namespace: str
     node: str
     remaps: tuple[tuple[str, str], ...]
+
+    @property
+    def start(self) -> Start:
+        """Its process; raises nothing."""
+        return Start("tf2_ros", "static_transform_publisher", arguments=tuple(arguments(self)))
 
 
 class InitialPose(NamedTuple):
@@ -137,11 +144,6 @@ def static_transform(
     return StaticTransform(robot, parent, child, pose, namespace, node, remaps)
 
 
-def command(it: StaticTransform) -> str:
-    """The command that publishes a transform."""
-    return shlex.join(["ros2", "run", "tf2_ros", "static_transform_publisher", *arguments(it)])
-
-
 def arguments(it: StaticTransform) -> list[str]:
     """What follows ``static_transform_publisher``; values may be negative, names come last."""
     words = [word for key, value in it.pose._asdict().items() for word in (f"--{key}", str(value))]
@@ -162,13 +164,14 @@ def _sent(plan: FleetPlan, robot: RewrittenRobot) -> dict[str, list[Edge]]:
     name, inventory = robot.spec.namespace, robot.member.inventory
     sent = {node: [*edges] for (own, node), edges in plan.fleet.edges.items() if own == name}
     tree = robot.tree
-    bare = set(robot.links) - {edge.child for edge in tree}
+    children = {edge.child for edge in tree}
+    bare = [link for link in robot.links if link not in children]
     odometry = list(_gz_odometry(inventory, robot.spec.model))
-    base = next(iter(sorted(bare)), "")
+    base = min(bare, default="")
     return {
         **sent,
-        "": [*tree, *(Edge(it, base, False) for it in odometry if base)]
-        or [Edge(link, link, True) for link in bare],
+        "": [*tree, *(edge_of(it, base) for it in odometry if base)]
+        or [edge_of(link, link, True) for link in bare],
     }
 
 
@@ -178,7 +181,7 @@ def _own_odometry(plan: FleetPlan, robot: RewrittenRobot) -> str:
     described = {it.name for it in plan.fleet.facts}
     own = (edges for (name, _), edges in plan.fleet.edges.items() if name == robot.spec.namespace)
     frames = {frame for edges in own for it in edges for frame in (it.parent, it.child)}
-    for node in plan.evidence[node_sources(robot.spec)].given:
+    for node in plan.evidence_of(robot).given:
         told = {} if node.known or node.name in described else node.values
         for name, it in told.items():
             value = it.value
@@ -233,3 +236,24 @@ def _roots(sent: Mapping[str, list[Edge]], naming: Naming) -> list[str]:
 
 def _finding(rule: Rule, robot: RewrittenRobot, what: str, hint: str) -> Finding:
     return at_robot(rule, robot, f"robot {robot.spec.name!r}: {what}", hint)
+
+
+STATIC = "/tf_static"
+POSE_NODE = NodeFacts(NODE, "tf2_ros", (Endpoint(TOPIC, PUBLISHES, STATIC, TF_TYPE),))
+
+
+def with_start_pose_nodes(plan: FleetPlan) -> Fleet:
+    """The planned fleet with a static transform publisher for each robot that needs one; why a pose
+    is not published is among the problems of its table."""
+    poses = [start_poses(one) for one in split_per_robot(plan)]
+    held = [it for one in poses for it in one.transforms]
+    problems = tuple(said_once(plan, (it for one in poses for it in one.findings)))
+    table = plan.fleet.table
+    fleet = plan.fleet._replace(table=table._replace(problems=(*table.problems, *problems)))
+    if not held:
+        return fleet
+    tables = [node_table(it.robot, POSE_NODE, fleet.naming) for it in held]
+    names = tuple(names_of([(POSE_NODE, table) for table in tables]))
+    edges = {(it.robot, NODE): [edge_of(it.parent, it.child, True)] for it in held}
+    more = fleet.table._replace(nodes=tuple(tables), names=names, problems=())
+    return fleet._replace(table=joined(fleet.table, more), edges={**fleet.edges, **edges})

@@ -6,13 +6,13 @@ from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.params.sections import PARAMETERS
-from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
+from multibot_rewrite.companions.yaml_text import YamlText
 from multibot_rewrite.description.readback.reading import FRAME, Reading, read
+from multibot_rewrite.description.sources.job import Job
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.fleet.checks.written_system import DRIVERS, of_robot
 from multibot_rewrite.fleet.file.fleet_file import REAL
-from multibot_rewrite.fleet.outputs.output_file import yaml_of
-from multibot_rewrite.fleet.outputs.output_values import OutputText
+from multibot_rewrite.fleet.outputs.output_file import OutputFile, expanded_name, path_for, yaml_of
 from multibot_rewrite.fleet.robots.member import line_of, without_simulator
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence
@@ -20,28 +20,37 @@ from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.ends import bridge_ends, either_way, node_ends, plugin_ends
 from multibot_rewrite.producers.evidence.hardware import Exported, exported
+from multibot_rewrite.producers.evidence.moveit import MANAGER, planning_system
 from multibot_rewrite.producers.evidence.nodes import children_of
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 from multibot_rewrite.producers.evidence.records import GivenNode
-from multibot_rewrite.producers.transforms import edges_off, joint_edges, node_edges
+from multibot_rewrite.producers.evidence.semantics import FIXED, Semantics, semantics
+from multibot_rewrite.producers.interfaces import control_system
+from multibot_rewrite.producers.launch.spawners import active
+from multibot_rewrite.producers.transforms import (
+    edges_off,
+    joint_edges,
+    lookups_of,
+    node_edges,
+    virtual_lookups,
+)
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, edges_in
-from multibot_rewrite.system.records import SUBSCRIBES, Edge, Node, Place, System
+from multibot_rewrite.system.records import SUBSCRIBES, Edge, Lookup, Node, Place, System
 
-FIXED, MOVEIT = "fixed", "moveit_simple_controller_manager"
+NONE = Semantics((), ())
 
 
 class RobotSystem(NamedTuple):
-    """What runs on a robot: what its files set for nodes, the interfaces of its hardware, the frames
-    that anything sends, its MoveIt files; ``system`` has its nodes, their ends and transforms."""
+    """What runs on a robot: ``control`` has its controllers and interfaces, ``system`` its nodes, their
+    ends, transforms and look-ups."""
 
-    given: tuple[GivenNode, ...]
-    exports: tuple[Exported, ...]
-    sent: frozenset[str]
-    moveit: tuple[YamlText, ...]
+    control: System
     system: System
 
 
-def system_before(robot: RewrittenRobot, evidence: RobotEvidence) -> RobotSystem:
+def system_before(
+    robot: RewrittenRobot, evidence: RobotEvidence, srdf: Job | None = None
+) -> RobotSystem:
     """The system of a robot's sources, if it were alone: nothing is renamed or remapped but what the
     usual launch files remap."""
     source, given, bridges = robot.member.source, evidence.given, _documents(robot, "bridge")
@@ -63,18 +72,47 @@ def system_before(robot: RewrittenRobot, evidence: RobotEvidence) -> RobotSystem
     ]
     sent = {child for node in nodes for child in children_of(node)}
     sent |= {it.name for it in reading.names if it.kind == FRAME and it.tag == "plugin"}
+    plain = [_plainly(robot, it) for it in given]
+    said = (
+        semantics(read_document(srdf.data, srdf.file).root, source.root, srdf.file)
+        if srdf
+        else NONE
+    )
+    exports = (_plain(robot, it) for it in exported(source.root, source.file))
     return RobotSystem(
-        tuple(_plainly(robot, it) for it in given),
-        tuple(_plain(robot, it) for it in exported(source.root, source.file)),
-        frozenset(sent),
-        tuple(_documents(robot, "moveit")),
+        _control(plain, evidence, exports, _documents(robot, "moveit"), said),
         System(
             nodes=tuple(_nodes_of(nodes, reading)),
             ends=tuple(ends),
             edges=tuple(_edges_of(robot, nodes, evidence, sent)),
             environment=DRIVERS,
+            lookups=tuple(_lookups(plain, evidence.known, said, sent)),
         ),
     )
+
+
+def _control(
+    given: Sequence[GivenNode],
+    evidence: RobotEvidence,
+    exports: Iterable[Exported],
+    moveit: Iterable[YamlText],
+    said: Semantics,
+) -> System:
+    made = control_system(given, evidence.known, exports, active(evidence.spawned))
+    planned = planning_system(moveit, said)
+    return made._replace(interfaces=(*made.interfaces, *planned.interfaces))
+
+
+def _lookups(
+    given: Iterable[GivenNode],
+    known: Mapping[str, NodeFacts],
+    said: Semantics,
+    sent: Container[str],
+) -> Iterator[Lookup]:
+    for it in given:
+        if it.known in known:
+            yield from lookups_of(f"/{it.name}", known[it.known], it.values)
+    yield from (it for it in virtual_lookups(said) if it.frame not in sent)
 
 
 def _nodes_of(nodes: Iterable[NodeFacts], reading: Reading) -> Iterator[Node]:
@@ -98,22 +136,24 @@ def _edges_of(
 
 def system_after(
     robot: RewrittenRobot,
-    texts: Sequence[OutputText],
+    evidence: RobotEvidence,
+    texts: Sequence[OutputFile],
     known: KnownNodes,
     whole: System,
 ) -> RobotSystem:
     """The system of the files that were made for a robot, under its remap rules; ``whole`` is that of
     the fleet."""
     own = [it for it in texts if it.path.startswith(f"{robot.spec.name}/")]
-    params = [_read(it) for it in own if PARAMETERS in it.text]
+    given = given_nodes([it.yaml for it in own if PARAMETERS in it.text], known)
     written = read_document(robot.description, robot.member.source.file)
-    return RobotSystem(
-        tuple(given_nodes(params, known)),
-        tuple(exported(written.root, robot.member.source.file)),
-        frozenset(it.child for it in robot.tree),
-        tuple(_read(it) for it in own if MOVEIT in it.text),
-        of_robot(whole, robot.spec.namespace),
+    path = path_for(robot, expanded_name(robot.spec.srdf))
+    said = (
+        semantics(read_document(robot.srdf, path).root, written.root, path) if robot.srdf else NONE
     )
+    moveit = [it.yaml for it in own if MANAGER in it.text]
+    exports = exported(written.root, robot.member.source.file)
+    control = _control(given, evidence, exports, moveit, said)
+    return RobotSystem(control, of_robot(whole, robot.spec.namespace))
 
 
 def _own(robot: RewrittenRobot) -> Mapping[str, str]:
@@ -154,10 +194,6 @@ def _root(robot: RewrittenRobot) -> str:
 
 def _documents(robot: RewrittenRobot, kind: str) -> list[YamlText]:
     return [yaml_of(path) for path in robot.spec.companions.get(kind, ())]
-
-
-def _read(text: OutputText) -> YamlText:
-    return read_yaml(text.text.encode(), text.path)
 
 
 def _runs(node: NodeFacts, moves: bool) -> NodeFacts:

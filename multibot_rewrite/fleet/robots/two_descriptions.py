@@ -61,18 +61,14 @@ def differences(plan: FleetPlan) -> Iterator[Finding]:
     """What the model of a robot and its description do not have in common."""
     for robot in plan.robots:
         if robot.simulated:
-            yield from _of_joints(robot)
+            described, model = _moving(robot.member.described), _moving(robot.member.inventory)
+            lacking = [it for it in described if it not in model]
+            if lacking:
+                what = "has no moving joint" if len(lacking) == 1 else "has no moving joints"
+                message = f"what the simulator gets of {robot.spec.name} {what} {_shown(lacking)}"
+                hint = "nothing in the simulator sends their states; give both files the same names"
+                yield at_robot(DIFFERENT, robot, message, hint)
             yield from _of_frames(robot)
-
-
-def _of_joints(robot: RewrittenRobot) -> Iterator[Finding]:
-    described, model = _moving(robot.member.described), _moving(robot.member.inventory)
-    lacking = [it for it in described if it not in model]
-    if lacking:
-        what = "has no moving joint" if len(lacking) == 1 else "has no moving joints"
-        message = f"what the simulator gets of {robot.spec.name} {what} {_shown(lacking)}"
-        hint = "nothing in the simulator sends their states; give both files the same names"
-        yield at_robot(DIFFERENT, robot, message, hint)
 
 
 def _moving(inventory: Inventory) -> list[str]:

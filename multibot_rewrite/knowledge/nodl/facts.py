@@ -64,10 +64,10 @@ def nodes_of(known: NodeKnowledge, stack: str) -> Iterator[NodeFacts]:
 
 def declared(known: NodeKnowledge, node: NodeFacts) -> NodeFacts:
     """The node as its NoDL document says; itself where there is none. Raises UsageError."""
-    usual = node.known or node.name
+    usual = node.kind
     if usual in known.own:
         return node
-    names = dict.fromkeys((node.name, *node.nodl, usual))
+    names = dict.fromkeys((node.name, *node.programs, usual))
     found = (file_of(known.interfaces, Identity(node.package, name)) for name in names)
     file = next(filter(None, found), "")
     if not file:

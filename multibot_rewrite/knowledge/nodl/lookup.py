@@ -191,7 +191,7 @@ def _resolved(include: Include, path: str, interfaces: Interfaces) -> str:
         raise UsageError(f"{include.where}: {ref} is not nodl://PACKAGE/NAME or local://FILE")
     found = file_of(interfaces, Identity(package, name))
     if not found:
-        hint = "source the workspace that has it, or name its folder with --nodl"
+        hint = "source the workspace that has it, or name its folder with --nodes"
         raise UsageError(f"{include.where}: {ref} is not installed; {hint}")
     return found
 

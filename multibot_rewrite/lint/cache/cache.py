@@ -3,19 +3,100 @@
 from __future__ import annotations
 
 import os
+from _thread import get_ident  # threading is slow to import
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from typing import Any
 
+from multibot_rewrite.base.bounded import load_json
 from multibot_rewrite.base.outside import Asked, Question, answer_now, digest
-from multibot_rewrite.lint.cache.shard import (
-    MOST_BYTES,
-    Entry,
-    bound,
-    read_shard,
-    shard_bytes,
-    write_shard,
-)
+from multibot_rewrite.base.record import NamedTuple
 
+# Of one file, and of all files of the cache; the oldest ones go.
+MOST_BYTES, MOST_IN_ALL, MOST_FILES = 16 * 2**20, 256 * 2**20, 4096
 FOLDER = os.path.join("multibot_rewrite", "lint")
+
+
+class Entry(NamedTuple):
+    """A result, which JSON can hold, and the answers that it rests on."""
+
+    value: Any
+    asked: Asked
+
+
+def read_shard(path: str) -> dict[str, Entry]:
+    """The entries of a file; none where it is not there, damaged or no file of the cache."""
+    try:
+        with open(path, "rb") as file:
+            data = file.read(MOST_BYTES + 1)
+        told, _, body = data.partition(b"\n")
+        if told.decode() != digest(body):
+            return {}
+        table, entries = load_json(body)
+        asked = [
+            (Question(name, _tuples(args), _tuples(named)), it) for name, args, named, it in table
+        ]
+        return {
+            key: Entry(value, dict(asked[number] for number in numbers))
+            for key, (value, numbers) in entries.items()
+        }
+    except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
+        return {}
+
+
+def shard_bytes(entries: Mapping[str, Entry]) -> bytes:
+    """The bytes of a file; a question that several entries have is written once."""
+    import json  # slow to import, and often nothing is new
+
+    numbers: dict[tuple[Question, str], int] = {}
+    written = {
+        key: (it.value, [numbers.setdefault(pair, len(numbers)) for pair in it.asked.items()])
+        for key, it in entries.items()
+    }
+    table = [(*question, answer) for question, answer in numbers]
+    body = json.dumps((table, written), separators=(",", ":")).encode()
+    return f"{digest(body)}\n".encode() + body
+
+
+def write_shard(path: str, data: bytes) -> None:
+    """Replace the file as a whole, whoever reads or writes it at the same time; raises OSError."""
+    os.makedirs(os.path.dirname(path), mode=0o700, exist_ok=True)
+    temporary = f"{path}.{os.getpid()}.{get_ident()}"
+    try:
+        with open(temporary, "wb") as file:
+            file.write(data)
+        os.replace(temporary, path)
+    except BaseException:
+        with suppress(OSError):
+            os.unlink(temporary)
+        raise
+
+
+def bound(folder: str) -> None:
+    """Remove the files that were not used for longest, until half of what may be is left."""
+    with os.scandir(folder) as found:
+        files = sorted(_sizes(found), reverse=True)
+    total = sum(size for _, size, _ in files)
+    if total <= MOST_IN_ALL and len(files) <= MOST_FILES:
+        return
+    left = 0
+    for number, (_, size, path) in enumerate(files):
+        left += size
+        if left > MOST_IN_ALL // 2 or number >= MOST_FILES // 2:
+            with suppress(OSError):  # another run was faster
+                os.unlink(path)
+
+
+def _sizes(found: Iterable[os.DirEntry[str]]) -> Iterable[tuple[int, int, str]]:
+    for it in found:
+        with suppress(OSError):
+            state = it.stat(follow_symlinks=False)
+            yield state.st_mtime_ns, state.st_size, it.path
+
+
+def _tuples(value: Any) -> Any:
+    """Lists of JSON as the tuples that they were."""
+    return tuple(map(_tuples, value)) if isinstance(value, list) else value
 
 
 def cache_folder() -> str:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.findings.place import locate
+from multibot_rewrite.base.findings.finding import Finding, locate
 from multibot_rewrite.base.findings.selection import is_on, level_of
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import Edit

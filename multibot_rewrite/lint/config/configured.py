@@ -23,13 +23,13 @@ from multibot_rewrite.lint.config.values import (
     FIELDS,
     READERS,
     Given,
-    check_codes,
+    check_lint_codes,
     checked_robots,
     targets,
 )
 from multibot_rewrite.rules.settings import EVERY_FILE, ArgumentSet, Settings, matches
 
-__all__ = ["Configured", "check_codes", "configured", "is_excluded", "with_options"]
+__all__ = ["Configured", "check_lint_codes", "configured", "is_excluded", "with_options"]
 OWN, PROJECT, TABLE = "urdf-lint.toml", "pyproject.toml", "urdf-lint"
 MARKS = (b"urdf-lint", b"urdf_lint")
 NAMING = ("layout", "affix", "topics", "separators", "shared_frames", "shared_topics", "groups")
@@ -158,7 +158,7 @@ def with_options(it: Configured, **given: Any) -> Configured:
     if "fail_on" in options:
         options["fail_on"] = READERS["fail-on"](Given("--fail-on", "", options["fail_on"]))
     for name in ("select", "ignore"):
-        check_codes(options.get(name, ()), f"--{name}")
+        check_lint_codes(options.get(name, ()), f"--{name}")
     own = {
         name: options.pop(name) for name in ("exclude", "baseline", "fail_on") if name in options
     }

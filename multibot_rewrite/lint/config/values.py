@@ -6,13 +6,13 @@ import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.config import listed_files, type_name
-from multibot_rewrite.base.findings.codes import known_beginnings, no_rule
+from multibot_rewrite.base.findings.codes import check_codes
 from multibot_rewrite.base.findings.finding import LEVELS
 from multibot_rewrite.base.findings.selection import OFF
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import RELEASES
-from multibot_rewrite.base.rosnames.names import check_robot_name
+from multibot_rewrite.base.rosnames.names import check_robot_names
 from multibot_rewrite.rules.patterns import anchored, with_folders
 from multibot_rewrite.rules.settings import EVERY_FILE, TARGETS, ArgumentSet
 
@@ -52,26 +52,22 @@ def _table_of(given: Given) -> Iterator[tuple[str, Given]]:
 
 def _codes(given: Given) -> tuple[str, ...]:
     codes = _texts(given)
-    check_codes(codes, given.where)
+    check_lint_codes(codes, given.where)
     return codes
 
 
-def check_codes(codes: Sequence[str], where: str) -> None:
-    """Raise UsageError for what is neither a rule's code nor the beginning of one."""
-    if not codes:
-        return
-    from multibot_rewrite.lint.registry import RULES  # most lints name no code, and it imports all
+def check_lint_codes(codes: Sequence[str], where: str) -> None:
+    """As ``check_codes``, with the rules of the lint."""
+    if codes:
+        from multibot_rewrite.lint.registry import RULES  # most lints name none, and it imports all
 
-    known = known_beginnings(RULES)
-    wrong = next((it for it in codes if it not in known), None)
-    if wrong is not None:
-        raise UsageError(f"{where}: {no_rule(wrong, RULES, 'multibot explain')}")
+        check_codes(codes, where, RULES)
 
 
 def _levels(given: Given) -> dict[str, str]:
     levels = {}
     for code, it in _table_of(given):
-        check_codes((code,), given.where)
+        check_lint_codes((code,), given.where)
         levels[code] = _one_of(it, (*LEVELS, OFF))
     return levels
 
@@ -100,11 +96,8 @@ def _robots(given: Given) -> tuple[str, ...]:
 
 
 def checked_robots(robots: Sequence[str], where: str) -> tuple[str, ...]:
-    twice = next((it for it in robots if robots.count(it) > 1), None)
-    if twice is not None:
-        raise UsageError(f"{where}: the robot {twice!r} is named twice")
     try:
-        return tuple(check_robot_name(it) for it in robots)
+        return check_robot_names(robots)
     except UsageError as error:
         raise UsageError(f"{where}: {error}") from None
 

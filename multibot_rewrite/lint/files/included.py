@@ -11,6 +11,8 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.outside import is_file, real_path
 from multibot_rewrite.description.sources.known_arguments import KnownArguments, known_arguments
 from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.lint.files.pairing import named_urdfs
+from multibot_rewrite.rules.settings import Settings
 
 # No tag goes on behind a "<": every letter is looked at once.
 _INCLUDE = lazy_compile(rb"<xacro:include\s[^<>]*?filename\s*=\s*[\"']([^<\"']+)[\"']")
@@ -69,3 +71,11 @@ def _text(path: str) -> bytes:
         return read_file(path)
     except InputError:  # reported when it is linted
         return b""
+
+
+def set_among(paths: Sequence[str], settings: Settings) -> Settings:
+    """The settings with what the others include, the URDFs of SRDFs, and the arguments that xacro
+    files know."""
+    settings = settings._replace(included=included(paths))
+    known = known_elsewhere(paths) if settings.arguments else None
+    return settings._replace(urdfs=named_urdfs(paths, settings.included), elsewhere=known)

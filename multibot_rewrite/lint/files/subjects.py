@@ -10,10 +10,9 @@ from io import StringIO
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.rule import SRDF, URDF, XACRO
+from multibot_rewrite.base.findings.rule import SRDF, XACRO
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.description.checks.links_and_joints import read_robot
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.sources.packages import package_folder
@@ -23,10 +22,8 @@ from multibot_rewrite.description.steps.collect import NOTHING, collect
 from multibot_rewrite.description.steps.collect import SRDF as SRDF_SECTION
 from multibot_rewrite.description.steps.document import Document, read_document
 from multibot_rewrite.lint.files.named import SRDF_MARK
-from multibot_rewrite.rules.facts.elements import Elements
-from multibot_rewrite.rules.schema.faults import read_faults
 from multibot_rewrite.rules.settings import ArgumentSet, Settings, matches
-from multibot_rewrite.rules.subject import EXPANDED, Subject
+from multibot_rewrite.rules.subject import EXPANDED, Subject, subject_of
 
 # Makes the reader treat the root as that of an SRDF, whatever it contains.
 NO_URDF: Declared = {"link": {}}
@@ -55,7 +52,7 @@ def read_subjects(path: str, data: bytes, settings: Settings) -> Iterator[Subjec
     if part and (not xacro or document.root.tag not in ROOTS):
         return
     written = make_subject(document, settings)
-    yield written._replace(format=XACRO) if xacro else _shaped(written)
+    yield written._replace(format=XACRO) if xacro else written
     if xacro and not part:
         yield from _expansions(path, data, settings)
 
@@ -80,17 +77,11 @@ def _expanded(path: str, data: bytes, given: ArgumentSet, settings: Settings) ->
     # Warnings of xacro are not findings, and would be printed between them.
     with redirect_stderr(StringIO()):
         found = expand_traced(path, data, dict(given.arguments), find, reach_of(settings))
-    subject = _shaped(make_subject(read_document(found.data, path + EXPANDED), settings))
+    subject = make_subject(read_document(found.data, path + EXPANDED), settings)
     names = tuple(name for name, _ in given.arguments)
     return subject._replace(
         origins=found.origins, sources=found.sources, arguments=str(given), given=names
     )
-
-
-def _shaped(subject: Subject) -> Subject:
-    """The subject with the faults of its structure; the source of a xacro file has none yet."""
-    urdf = subject.format == URDF
-    return subject._replace(faults=read_faults(subject.document)) if urdf else subject
 
 
 def _only_defines(root: _Element) -> bool:
@@ -108,20 +99,20 @@ def _local(element: _Element) -> str:
 
 
 def make_subject(document: Document, settings: Settings) -> Subject:
-    """The subject of a document; a URDF's has no faults of its structure yet."""
+    """The subject of a document."""
     tree = builtin_tree(settings.vocabulary, settings.distro)
     called = SRDF_MARK in os.path.basename(document.file)
     inventory = collect(document, tree, NO_URDF if called else NOTHING)
-    elements, robot = Elements(document), read_robot(document.root)
+    written = subject_of(inventory, tree, settings)
     # In the source of a xacro file names are not complete yet.
     if (
         inventory.format != SRDF_SECTION
         or document.file.endswith(XACRO)
         or has_xacro(document.source)
     ):
-        return Subject(URDF, document, elements, inventory, tree, robot, settings, {})
+        return written
     from multibot_rewrite.lint.files.pairing import find_pair  # neither of this
 
     pair = find_pair(document.file.removesuffix(EXPANDED), inventory, settings)
     inventory = collect(document, tree, pair.declared or NO_URDF)
-    return Subject(SRDF, document, elements, inventory, tree, robot, settings, {}, pair.robot)
+    return written._replace(format=SRDF, inventory=inventory, beside=pair.robot)

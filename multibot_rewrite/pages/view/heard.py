@@ -11,8 +11,8 @@ from multibot_rewrite.base.conventions import WORLD_FRAMES
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.rotation import inverse, matrix_of_quaternion, product
 from multibot_rewrite.pages.view.models import Joint
-from multibot_rewrite.system.index import tree_topic
 from multibot_rewrite.system.records import Edge
+from multibot_rewrite.system.tf_copies import tree_topic
 
 # Frames that are where the world is, whoever has them (REP 105).
 # What rounding and single precision explain.

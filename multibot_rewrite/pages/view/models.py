@@ -10,7 +10,7 @@ import os
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from multibot_rewrite.base.model import InputError, MultibotError
+from multibot_rewrite.base.model import InputError, Unusable
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.packages import package_folder
 
@@ -20,10 +20,6 @@ MOST_FACES = 200_000
 GREY: tuple[float, ...] = (0.72, 0.75, 0.8, 1.0)
 _LIBRARY_END = "THREE.GLTFLoader=GLTFLoader;})();"
 Matrix = Sequence[Sequence[float]]
-
-
-class ViewUnusable(MultibotError):
-    """yourdfpy is missing; the message says what to do."""
 
 
 class Shape(NamedTuple):
@@ -69,7 +65,7 @@ class Mesh(NamedTuple):
 def load_model(data: bytes, source: str) -> Model:
     """The model of a URDF; ``source`` is the file it was made from.
 
-    Raises ViewUnusable without yourdfpy, InputError for what it cannot read.
+    Raises Unusable without yourdfpy, InputError for what it cannot read.
     """
     yourdfpy = _yourdfpy()
     try:
@@ -87,7 +83,7 @@ def _yourdfpy() -> Any:
     try:
         import yourdfpy
     except ImportError:
-        raise ViewUnusable(INSTALL) from None
+        raise Unusable(INSTALL) from None
     return yourdfpy
 
 
@@ -185,7 +181,7 @@ def _joint(it: Any) -> Joint:
 
 
 def three() -> str:
-    """three.js with its trackball controls, as trimesh brings them; raises ViewUnusable.
+    """three.js with its trackball controls, as trimesh brings them; raises Unusable.
 
     Source: trimesh resources/templates/viewer.zip (three.js, MIT).
     """
@@ -194,7 +190,7 @@ def three() -> str:
     try:
         import trimesh
     except ImportError:
-        raise ViewUnusable(INSTALL) from None
+        raise Unusable(INSTALL) from None
     path = os.path.join(os.path.dirname(trimesh.__file__), "resources", "templates", "viewer.zip")
     with zipfile.ZipFile(path) as archive:
         text = archive.read("viewer.html.template").decode()

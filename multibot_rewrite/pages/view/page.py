@@ -27,12 +27,12 @@ def meshes_of(scene: Scene) -> Meshes:
 
 
 def to_html(scene: Scene, meshes: Meshes, title: str) -> bytes:
-    """The page; raises ViewUnusable without trimesh."""
+    """The page; raises Unusable without trimesh."""
     return to_frame(scene, meshes, title).html.encode()
 
 
 def to_frame(scene: Scene, meshes: Meshes, title: str) -> Framed:
-    """The page, to be put into another; raises ViewUnusable without trimesh."""
+    """The page, to be put into another; raises Unusable without trimesh."""
     library, own = three(), _asset("viewer.js") + _asset("heard.js")
     style = _asset("viewer.css")
     scripts = f"{source_hash(library)} {source_hash(own)}"

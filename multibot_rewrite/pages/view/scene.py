@@ -18,8 +18,8 @@ from multibot_rewrite.pages.view.heard import HeardTree, LinkFrames, heard_trees
 from multibot_rewrite.pages.view.models import Model, load_model
 from multibot_rewrite.pages.view.sdf_model import declared, line_of, load_sdf
 from multibot_rewrite.spelling.plan import tf_topic
-from multibot_rewrite.system.index import tree_topic
 from multibot_rewrite.system.records import Edge, System
+from multibot_rewrite.system.tf_copies import tree_topic
 
 HEARD, ELSEWHERE, SILENT = "heard", "elsewhere", "silent"
 # What is changed for a robot, by its name.

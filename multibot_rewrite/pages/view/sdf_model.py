@@ -15,8 +15,7 @@ from lxml.etree import _Element
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.numbers import Vector, numbers, vector
-from multibot_rewrite.description.checks.pose import Pose
-from multibot_rewrite.description.checks.poses import HERE, minus, placed, sdf_pose
+from multibot_rewrite.description.checks.poses import HERE, Pose, minus, placed, sdf_pose
 from multibot_rewrite.description.checks.rotation import inverse, matrix_of_quaternion, turned
 from multibot_rewrite.pages.view.models import GREY, Joint, Matrix, Model, Shape, mesh_shape
 

@@ -14,7 +14,7 @@ from math import inf
 from typing import TYPE_CHECKING, Any
 
 from multibot_rewrite.base.bounded import load_yaml, read_text
-from multibot_rewrite.base.model import InputError, MultibotError
+from multibot_rewrite.base.model import InputError, Unusable
 from multibot_rewrite.base.printable import one_line
 from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.producers.bags.recording import RECORDER, RecordedTopic, Recording
@@ -44,17 +44,13 @@ _HEADED = frozenset(
 _NO_LIMIT_SECONDS = 9_223_372_036
 
 
-class BagsUnusable(MultibotError):
-    """rosbags is not installed; the message says what to do."""
-
-
 def read_bag(path: str) -> Recording:
-    """What a folder, or a file .mcap or .db3, holds; raises InputError, BagsUnusable."""
+    """What a folder, or a file .mcap or .db3, holds; raises InputError, Unusable."""
     try:
         from rosbags.rosbag2 import Reader
     except ImportError as error:
         hint = "pip install 'multibot_rewrite[bags]'"
-        raise BagsUnusable(f"a bag cannot be read: {error}; {hint}") from None
+        raise Unusable(f"a bag cannot be read: {error}; {hint}") from None
     if not os.path.exists(path):
         raise InputError(f"{path}: there is no such bag; name a folder, or a file .mcap or .db3")
     try:

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from functools import lru_cache
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.rosnames import check_topic_name
-from multibot_rewrite.knowledge.conditions import Values, holds, verdict
+from multibot_rewrite.knowledge.conditions import Values, chosen_type, holds, verdict
 from multibot_rewrite.knowledge.records import Endpoint, FrameParameter, NodeFacts, SentTransform
 from multibot_rewrite.producers.evidence.records import Given, GivenNode
 
@@ -114,7 +115,7 @@ def _checked(endpoint: Endpoint, listed: Given | None) -> Endpoint:
 
 def _typed(endpoint: Endpoint, value_of: Values) -> Endpoint:
     """The endpoint with the one type that its parameters choose."""
-    chosen = next((type_ for it, type_ in endpoint.types if holds(it, value_of)), "")
+    chosen = chosen_type(endpoint.types, value_of)
     return endpoint._replace(type=chosen, also=(), types=()) if chosen else endpoint
 
 
@@ -144,7 +145,7 @@ def _wanted(ids: Mapping[str, str], *texts: str) -> list[str]:
 
 def _are_listed(lists: Iterable[str], values: Mapping[str, Given]) -> bool:
     """Is each of these lists given?"""
-    return all(any(_pattern(it).fullmatch(name) for name in values) for it in lists)
+    return all(_called(it, values) for it in lists)
 
 
 def _bindings(
@@ -234,13 +235,21 @@ def _named(endpoint: Endpoint, values: Mapping[str, Given], ending: str) -> Iter
 def _set_names(parameter: str, values: Mapping[str, Given]) -> Iterator[tuple[str, str]]:
     """Parameters and the topics in them: of all that match a pattern, of a list each. An empty text
     is one, too: it stands for no topic."""
+    for name in _called(parameter, values):
+        given = values[name]
+        words = _words(given) if isinstance(given.value, list) else [str(given.value)]
+        yield from ((name, it) for it in words if not it or not check_topic_name(it))
+
+
+def _called(parameter: str, values: Mapping[str, Given]) -> list[str]:
+    """The values that a parameter may stand for, in their order."""
     pattern = _pattern(parameter)
-    for name, given in values.items():
-        if pattern.fullmatch(name):
-            words = _words(given) if isinstance(given.value, list) else [str(given.value)]
-            yield from ((name, it) for it in words if not it or not check_topic_name(it))
+    if pattern.pattern == re.escape(parameter):
+        return [parameter] if parameter in values else []
+    return [name for name in values if pattern.fullmatch(name)]
 
 
+@lru_cache(maxsize=1024)
 def _pattern(parameter: str) -> re.Pattern[str]:
     text = re.escape(parameter).replace(r"\*", r"[^.]+")
     if parameter.endswith(_NUMBER) and parameter[:-1].islower():

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import suppress
+from functools import lru_cache
 
 import yaml
 
@@ -64,7 +65,7 @@ def given_nodes(
     Raises InputError for a file that is not a parameter file, and for a controller whose name no node
     can have.
     """
-    sections = [_section(document, it) for document in documents for it in raw_sections(document)]
+    sections = [it for document in documents for it in _sections(document)]
     controllers = {**dict(_typed(sections, known)), **dict(_controllers(sections))}
     for name, it in controllers.items():
         _check_name(name.rpartition("/")[2], it.type.place)
@@ -89,15 +90,20 @@ def named_values(
 
     Raises InputError for a file that is not a parameter file.
     """
-    sections = [(_section(document, it), pattern_of(it.path)) for it in raw_sections(document)]
+    sections = [(it, pattern_of(it.raw.path)) for it in _sections(document)]
     for node in nodes:
         own = [it for it, pattern in sections if re.fullmatch(pattern, node)]
         if any(it.name for it in own):
             yield node, {name: value for it in own for name, value in it.values.items()}
 
 
-def _section(document: YamlText, raw: RawSection) -> _Section:
-    return _Section(document.file, raw, dict(_flat(document, raw.body, "")))
+@lru_cache(maxsize=64)
+def _sections(document: YamlText) -> tuple[_Section, ...]:
+    """The sections of a file: each node of a launch file that gets it asks for them."""
+    return tuple(
+        _Section(document.file, it, dict(_flat(document, it.body, "")))
+        for it in raw_sections(document)
+    )
 
 
 def _flat(document: YamlText, body: yaml.Node, above: str) -> Iterator[tuple[str, Given]]:

@@ -18,7 +18,7 @@ from multibot_rewrite.producers.launch.stand_in import standing_in
 
 UNREADABLE = 4
 NO_LAUNCH = (
-    "launch is not installed here, and its stand-in knows plain launch files in Python: source ROS 2 "
+    "launch is not installed here, and its stand-in reads launch files in Python alone: source ROS 2 "
     "(. /opt/ros/jazzy/setup.bash), or give a system_model.yaml of play_launch"
 )
 

@@ -1,49 +1,93 @@
-"""What ros_gz_bridge is told -> its topics in ROS.
+"""What a bridge to Gazebo is told -> its topics and services in ROS.
 
-Source: ros_gz jazzy, ros_gz_bridge/src/parameter_bridge.cpp (``TOPIC@ROS_TYPE[GZ_TYPE``: ``[`` from the
-simulator, ``]`` to it, ``@`` both ways) and bridge_config.cpp (the keys of its file).
+Source: ros_gz jazzy 739cb42, ros_gz_bridge/src/parameter_bridge.cpp (``TOPIC@TYPE[GZ_TYPE``, with ``[``
+from Gazebo, ``]`` to Gazebo, ``@`` both; ``SERVICE@TYPE``), bridge_config.cpp (the keys of its file),
+ros_gz_image/src/image_bridge.cpp.
 """
 
 from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 import yaml
 
 from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.bridge_entry import BOTH, GZ, ROS
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
+from multibot_rewrite.knowledge.records import Endpoint
+from multibot_rewrite.producers.launch.records import LaunchedNode, RunningNode
+from multibot_rewrite.system.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
 
-if TYPE_CHECKING:
-    from multibot_rewrite.producers.launch.running import RunningNode
-
-_BRIDGE = "ros_gz_bridge"
-_WORD = re.compile(r"(?P<topic>[^@]+)@(?P<type>[^@\[\]]+)(?P<way>[@\[\]])[^@\[\]]+")
+_ROW = re.compile(r"(?P<name>[^@]+)@(?P<type>[\w/]+)(?P<way>[@\[\]]?)(?P<gz>.*)")
 _ROLES = {"[": (PUBLISHES,), "]": (SUBSCRIBES,), "@": (PUBLISHES, SUBSCRIBES)}
 _WAYS = {"GZ_TO_ROS": "[", "ROS_TO_GZ": "]", "BIDIRECTIONAL": "@"}
-Row = tuple[str, str, str, str]
+_IMAGE = "sensor_msgs/msg/Image"
+_BRIDGE = "ros_gz_bridge"
+_BRIDGES = ("ros_gz_bridge/parameter_bridge", "ros_ign_bridge/parameter_bridge")
+_OF_IMAGES = ("ros_gz_image/image_bridge", "ros_ign_image/image_bridge")
+
+
+class Row(NamedTuple):
+    """What a bridge has in ROS, and the name that it has in the simulator."""
+
+    end: Endpoint
+    inside: str
+
+
+def bridge_rows(node: LaunchedNode, words: Collection[str]) -> tuple[Endpoint, ...]:
+    """What the arguments of a bridge say that it has in ROS; nothing for another program.
+
+    The same text names the topic in Gazebo. With one of ``words`` in it, it is that of one robot: then
+    its remap rule counts, and without a rule the name is left out.
+    """
+    rules = {f"/{old.lstrip('/')}": new for old, new in node.remappings}
+    rows = _told(f"{node.package}/{node.executable}", node.arguments)
+    return tuple(end for it in rows for end in _for_any_robot(it.end, rules, words))
 
 
 def is_bridge(it: RunningNode) -> bool:
     """Does the node pass topics of a simulator on?"""
-    return it.facts is not None and (it.facts.known or it.facts.name) == _BRIDGE
+    known = it.facts is not None and it.facts.kind == _BRIDGE
+    return known or it.program in (*_BRIDGES, *_OF_IMAGES)
 
 
 def bridged_by(it: RunningNode) -> Iterator[Row]:
-    """Role, topic and type in ROS, and the topic in the simulator, of all that a bridge passes on."""
-    for word in it.arguments:
-        found = _WORD.fullmatch(word)
-        if found:
-            yield from _rows(found["topic"], found["type"], found["way"], found["topic"])
+    """All that a bridge passes on; nothing for another node."""
+    if not is_bridge(it):
+        return
+    yield from _told(it.program, it.arguments)
     given = it.values.get("config_file")
     path = str(given.value) if given else ""
     if path and os.path.isfile(path):
         yield from _of_text(read_file(path).decode("utf-8", "replace"))
     for text in it.texts:
         yield from _of_text(text)
+
+
+def _told(program: str, words: Sequence[str]) -> Iterator[Row]:
+    for word in words:
+        row = _ROW.fullmatch(word)
+        if program in _BRIDGES and row is not None:
+            yield from _of_row(row)
+        elif program in _OF_IMAGES and row is None and not word.startswith("-"):
+            yield Row(Endpoint(TOPIC, PUBLISHES, word, _IMAGE, transport=True), word)
+
+
+def _of_row(row: re.Match[str]) -> Iterator[Row]:
+    name, type_, way, _ = row.groups()
+    if "/srv/" in type_:
+        yield Row(Endpoint(SERVICE, SERVES, name, type_), name)
+    else:
+        yield from _topics(name, type_, way, name)
+
+
+def _topics(name: str, type_: str, way: str, inside: str) -> Iterator[Row]:
+    full = type_ if type_.count("/") > 1 else type_.replace("/", "/msg/")
+    for role in _ROLES.get(way, ()):
+        yield Row(Endpoint(TOPIC, role, name, full), inside)
 
 
 def _of_text(text: str) -> Iterator[Row]:
@@ -53,14 +97,23 @@ def _of_text(text: str) -> Iterator[Row]:
         return
     for entry in entries if isinstance(entries, list) else ():
         if isinstance(entry, Mapping):
-            topic = entry.get("ros_topic_name") or entry.get("topic_name")
+            # A row with one name has it on both sides.
+            topic = entry.get(BOTH) or entry.get(ROS) or entry.get(GZ)
             way = _WAYS.get(str(entry.get("direction", "BIDIRECTIONAL")), "@")
-            inside = entry.get("gz_topic_name") or topic
+            inside = entry.get(GZ) or topic
             if topic:
-                yield from _rows(str(topic), str(entry.get("ros_type_name", "")), way, str(inside))
+                yield from _topics(
+                    str(topic), str(entry.get("ros_type_name", "")), way, str(inside)
+                )
 
 
-def _rows(topic: str, type_: str, way: str, inside: str) -> Iterator[Row]:
-    package, _, name = type_.partition("/")
-    full = type_ if "/msg/" in type_ or not name else f"{package}/msg/{name}"
-    yield from ((role, topic, full, inside) for role in _ROLES[way])
+def _for_any_robot(
+    it: Endpoint, rules: dict[str, str], words: Collection[str]
+) -> Iterator[Endpoint]:
+    if not set(it.name.split("/")) & set(words):
+        yield it
+        return
+    target = rules.get(f"/{it.name.lstrip('/')}", "")
+    if target and not set(target.split("/")) & set(words):
+        # The layout decides where tf is, as for every node.
+        yield it._replace(name=f"/{target}" if target in ("tf", "tf_static") else target)

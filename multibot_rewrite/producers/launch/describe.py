@@ -54,9 +54,9 @@ class Visit(NamedTuple):
     later: str = ""
     events: int = 0
 
-    def note(self, message: str, parameters: bool = False) -> None:
-        """Keep what is not known here: nodes, or only ``parameters`` of one."""
-        self.notes.append(LaunchNote(self.place, message, parameters))
+    def note(self, message: str, parameters: bool = False, file: str = "") -> None:
+        """Keep what is not known here: nodes, or only ``parameters`` of one, as those of a ``file``."""
+        self.notes.append(LaunchNote(self.place, message, parameters, file))
 
 
 def failure(error: BaseException) -> str:
@@ -263,7 +263,7 @@ def _given(
 
 def _file(path: str, here: Visit) -> Iterator[ParameterText]:
     if not os.path.isfile(path) or os.path.getsize(path) > _LIMIT:
-        here.note(f"the parameter file {path!r} is not there", parameters=True)
+        here.note(f"the parameter file {path!r} is not there", parameters=True, file=path)
         return
     source = source_of(path, here.context)
     with open(path, encoding="utf-8", errors="replace") as file:

@@ -15,19 +15,22 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.description.readback.nodes import ReadNode
-from multibot_rewrite.description.readback.own_defaults import MODEL
+from multibot_rewrite.description.readback.parameters import MODEL
 from multibot_rewrite.description.readback.reading import FRAME, Reading, read
 from multibot_rewrite.description.readback.xml import read_xml, values_at
 from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import LaunchedNode, ParameterText
-from multibot_rewrite.spelling.transforms import Edge
-from multibot_rewrite.system.records import TOPIC, Place
+from multibot_rewrite.system.records import TOPIC, Edge, Place, edge_of
 
 _NAMED = "controller_manager_name"
 _PROGRAM = ("controller_manager", "ros2_control_node")
-_CLOCK = ParameterText("", "/**:\n  ros__parameters: {use_sim_time: true}\n")
+_PROGRAM_NAME = "controller_manager"
+# The plugin gives the manager the clock and, in Humble by its constructor, the description.
+_GIVEN = ParameterText(
+    "", "/**:\n  ros__parameters: {use_sim_time: true, robot_description: <robot/>}\n"
+)
 # Frames of systems of gz that send odometry, and their topic (gz-sim src/systems: diff_drive,
 # ackermann_steering, mecanum_drive, tracked_vehicle, odometry_publisher).
 _PARENTS, _CHILDREN = ("frame_id", "odom_frame"), ("child_frame_id", "robot_base_frame")
@@ -103,9 +106,11 @@ def managers(model: Model, files: Mapping[str, ParameterText]) -> Iterator[Launc
         named = values_at(plugins[node.number], "parameters")
         texts = (files[path.strip()] for path in named if path.strip() in files)
         home = node.namespace or "/"
-        given = (*texts, _CLOCK)
+        given = (*texts, _GIVEN)
         rules = tuple(rules_of(node))
-        yield LaunchedNode(*_PROGRAM, node.name, home, rules, given, "", (), "", model.place)
+        # Classic's plugin is a node of its own besides, with the plugin's name.
+        name = next(iter(values_at(plugins[node.number], _NAMED)), "").strip() or _PROGRAM_NAME
+        yield LaunchedNode(*_PROGRAM, name, home, rules, given, "", (), "", model.place)
 
 
 def is_manager(node: ReadNode) -> bool:
@@ -139,4 +144,4 @@ def _sent(model: Model) -> Iterator[tuple[str, Edge]]:
         parent = next((own[it] for it in _PARENTS if it in own), "")
         child = next((own[it] for it in _CHILDREN if it in own), "")
         if parent and child:
-            yield own.get(_TF, f"/model/{model.name}/tf"), Edge(parent, child, False)
+            yield own.get(_TF, f"/model/{model.name}/tf"), edge_of(parent, child)

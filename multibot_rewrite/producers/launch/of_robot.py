@@ -20,12 +20,13 @@ from multibot_rewrite.companions.params.sections import raw_sections
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.knowledge.parameters import KnownNodes
+from multibot_rewrite.knowledge.programs import runs
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.producers.evidence.nodes import MANAGER
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.producers.evidence.remapped import remapped
-from multibot_rewrite.producers.launch.bridge_rows import bridge_rows
+from multibot_rewrite.producers.launch.bridges import bridge_rows
 from multibot_rewrite.producers.launch.findings import launch_findings
 from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, ParameterText
@@ -147,21 +148,32 @@ def _pair(
     words: Collection[str],
 ) -> _Pair:
     base = known_node(it, stack, known)
-    own = programs().names.get(f"{it.package}/{it.executable}") or (base.name if base else "")
-    name = it.name or own or it.executable.rpartition(":")[2]
+    own = own_name(it, base)
+    name = it.name or own or last_word(it)
     facts = base or NodeFacts(name, it.package, ())
     unnamed = "" if it.name or own else NO_NAME
+    rows = bridge_rows(it, words)
     found = facts._replace(
         name=_below(it.namespace, name, words),
-        endpoints=bridge_rows(it, words) or _unmapped(facts),
-        known=facts.known or facts.name if base else "",
+        endpoints=rows or _unmapped(facts),
+        known=facts.kind if base else "",
         # A node that usually serves all robots, in the namespace of one, is that robot's.
         shared=facts.shared and not _is_of_robot(it.namespace, words),
         when=it.later or unnamed,
         container=_below(it.container, "", words),
         origin=_origin(it.place),
     )
-    return _Pair(it, found, base is not None)
+    return _Pair(it, found, base is not None or bool(rows))
+
+
+def own_name(it: LaunchedNode, facts: NodeFacts | None) -> str:
+    """The name that a node has by its code; empty where it is not known."""
+    return programs().names.get(f"{it.package}/{it.executable}") or (facts.name if facts else "")
+
+
+def last_word(it: LaunchedNode) -> str:
+    """The program, or the class of a component, without its namespace."""
+    return it.executable.rpartition(":")[2]
 
 
 def _unmapped(facts: NodeFacts) -> tuple[Endpoint, ...]:
@@ -173,14 +185,14 @@ def known_node(
     it: LaunchedNode, stack: Sequence[NodeFacts], known: Mapping[str, NodeFacts]
 ) -> NodeFacts | None:
     """What is known of a node: by its name in a stack, else by its package and executable."""
-    executable = _CAMEL.sub("_", it.executable.rpartition(":")[2]).lower()
-    named = programs().nodes.get(f"{it.package}/{it.executable}")
+    executable = _CAMEL.sub("_", last_word(it)).lower()
+    program = f"{it.package}/{it.executable}"
     of_stack = (node for node in stack if node.name == it.name and node.package == it.package)
-    wanted = {it.name, it.executable, executable, executable.removesuffix("_node"), named}
+    wanted = {it.name, it.executable, executable, executable.removesuffix("_node")}
     of_package = [node for node in known.values() if node.package == it.package and not node.host]
-    by_word = (node for node in of_package if wanted & {node.name, *node.nodl})
-    chosen = known.get(named) if named else None
-    return next(of_stack, None) or chosen or next(by_word, None)
+    by_word = (node for node in of_package if node.name in wanted)
+    chosen = (node for node in known.values() if runs(node, program))
+    return next(of_stack, None) or next(chosen, None) or next(by_word, None)
 
 
 def _is_of_robot(namespace: str, words: Collection[str]) -> bool:
@@ -304,6 +316,7 @@ def _stripped(name: str, words: Collection[str]) -> str:
     return rest if slash and above in words else name
 
 
+@lru_cache(maxsize=64)
 def has_sections(it: ParameterText) -> bool:
     """Is it a parameter file with sections of nodes?"""
     try:

@@ -11,11 +11,11 @@ from multibot_rewrite.base.record import NamedTuple
 
 
 class Programs(NamedTuple):
-    """Executables whose node is known under another word, those whose node has another name, and those
-    that are no node of a robot. ``spawners`` put a description into a simulator, ``simulators`` are
-    packages that only a simulated robot needs."""
+    """Executables whose node is called otherwise than its entry, and those that are no node of a robot.
 
-    nodes: Mapping[str, str]
+    ``spawners`` put a description into a simulator, ``simulators`` are packages that only a simulated
+    robot needs."""
+
     names: Mapping[str, str]
     passing: Collection[str]
     spawners: Collection[str]

@@ -11,8 +11,13 @@ from typing import Any
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.rosnames import expand
+from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.producers.evidence.records import Given
 from multibot_rewrite.producers.launch.package_files import file_of_package
 from multibot_rewrite.system.records import Place
+
+Rules = tuple[tuple[str, str], ...]
 
 
 class LaunchOrder(NamedTuple):
@@ -68,11 +73,12 @@ class LaunchedNode(NamedTuple):
 
 class LaunchNote(NamedTuple):
     """Something of a launch file whose nodes are not known, and why; with ``parameters`` the node is
-    known, and what a parameter file sets for it is not."""
+    known, and what a parameter file sets for it is not: the ``file``, where that is not there."""
 
     place: Place
     message: str
     parameters: bool = False
+    file: str = ""
 
 
 class LaunchGraph(NamedTuple):
@@ -89,6 +95,35 @@ class LaunchGraph(NamedTuple):
     def whole(self) -> bool:
         """Are these all nodes?"""
         return all(it.parameters for it in self.notes)
+
+
+class RunningNode(NamedTuple):
+    """A node as a launch starts it.
+
+    ``rules`` are its own ones; ``process_rules`` and ``process_namespace`` are those of its process,
+    which helper nodes in it have.
+    ``facts`` are its endpoints and frames with its parameters, None where nothing is known of it.
+    ``values`` are its parameters, ``texts`` other files that a parameter names. ``process`` tells the
+    processes of the launch apart.
+    """
+
+    name: str
+    namespace: str
+    rules: Rules
+    process_rules: Rules
+    process_namespace: str
+    facts: NodeFacts | None
+    values: Mapping[str, Given]
+    process: str
+    arguments: tuple[str, ...]
+    program: str
+    place: Place
+    texts: tuple[str, ...] = ()
+
+    @property
+    def full_name(self) -> str:
+        """Namespace and name."""
+        return expand(self.name, self.namespace, "")
 
 
 def launch_order(text: str, roots: Sequence[str] = ()) -> LaunchOrder:

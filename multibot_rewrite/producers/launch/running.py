@@ -27,7 +27,7 @@ from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
 from multibot_rewrite.producers.evidence.filling import filled
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
-from multibot_rewrite.producers.evidence.records import Given, GivenNode
+from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.producers.launch.models import (
     Model,
     Models,
@@ -37,15 +37,26 @@ from multibot_rewrite.producers.launch.models import (
     models_of,
     rules_of,
 )
-from multibot_rewrite.producers.launch.of_robot import document_of, has_sections, known_node, passes
-from multibot_rewrite.producers.launch.programs import programs as known_programs
-from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, LaunchNote
+from multibot_rewrite.producers.launch.of_robot import (
+    document_of,
+    has_sections,
+    known_node,
+    last_word,
+    own_name,
+    passes,
+)
+from multibot_rewrite.producers.launch.records import (
+    LaunchedNode,
+    LaunchGraph,
+    LaunchNote,
+    Rules,
+    RunningNode,
+)
 from multibot_rewrite.producers.launch.spawners import Spawned, spawned_in, texts_of
 from multibot_rewrite.producers.launch.static_transforms import with_static_transform
-from multibot_rewrite.spelling.plugin_nodes import plugin_nodes
-from multibot_rewrite.system.records import PUBLISHES, TOPIC, Place
+from multibot_rewrite.spelling.table import plugin_nodes
+from multibot_rewrite.system.records import PUBLISHES, TOPIC
 
-Rules = tuple[tuple[str, str], ...]
 DESCRIPTION = "robot_description"
 # The process of the managers that plugins make.
 SIMULATED = "simulator"
@@ -59,35 +70,6 @@ class Knowledge(NamedTuple):
     nodes: Mapping[str, NodeFacts]
     parameters: KnownNodes
     release: str
-
-
-class RunningNode(NamedTuple):
-    """A node as a launch starts it.
-
-    ``rules`` are its own ones; ``process_rules`` and ``process_namespace`` are those of its process,
-    which helper nodes in it have.
-    ``facts`` are its endpoints and frames with its parameters, None where nothing is known of it.
-    ``values`` are its parameters, ``texts`` other files that a parameter names. ``process`` tells the
-    processes of the launch apart.
-    """
-
-    name: str
-    namespace: str
-    rules: Rules
-    process_rules: Rules
-    process_namespace: str
-    facts: NodeFacts | None
-    values: Mapping[str, Given]
-    process: str
-    arguments: tuple[str, ...]
-    program: str
-    place: Place
-    texts: tuple[str, ...] = ()
-
-    @property
-    def full_name(self) -> str:
-        """Namespace and name."""
-        return expand(self.name, self.namespace, "")
 
 
 class Running(NamedTuple):
@@ -152,7 +134,10 @@ def _plugins(model: Model) -> Iterator[RunningNode]:
     for it in nodes:
         home, program = it.namespace or "/", it.section.names[0]
         names = (it.name, home, tuple(rules_of(it)), (), home)
-        yield RunningNode(*names, facts[it.name], {}, SIMULATED, (), program, model.place)
+        # Of what only a remap rule names it is not known whether it is sent or read.
+        known = tuple(end for end in facts[it.name].endpoints if end.role)
+        own = facts[it.name]._replace(endpoints=known)
+        yield RunningNode(*names, own, {}, SIMULATED, (), program, model.place)
 
 
 def _clock(graph: LaunchGraph) -> Iterator[RunningNode]:
@@ -169,9 +154,7 @@ def _clock(graph: LaunchGraph) -> Iterator[RunningNode]:
 
 def full_name(it: LaunchedNode, facts: NodeFacts | None) -> str:
     """The full name of a launched node; by its code where the launch file has none."""
-    program = f"{it.package}/{it.executable}"
-    own = known_programs().names.get(program) or (facts.name if facts else "")
-    return expand(it.name or own or it.executable.rpartition(":")[2], it.namespace, "")
+    return expand(it.name or own_name(it, facts) or last_word(it), it.namespace, "")
 
 
 def _started(
@@ -210,7 +193,7 @@ def _with_values(
 ) -> NodeFacts | None:
     if facts is None:
         return None
-    made = filled(facts, given)._replace(known=facts.known or facts.name)
+    made = filled(facts, given)._replace(known=facts.kind)
     return with_static_transform(made, words)
 
 

@@ -22,23 +22,23 @@ from multibot_rewrite.base.rosnames import (
     resolve_bound,
 )
 from multibot_rewrite.base.wording import SEVERAL, shorten
-from multibot_rewrite.knowledge.conditions import holds
+from multibot_rewrite.knowledge.conditions import chosen_type
 from multibot_rewrite.knowledge.records import Endpoint
+from multibot_rewrite.producers.addresses import of_hardware, of_parameters
 from multibot_rewrite.producers.launch.bridges import bridged_by, is_bridge
 from multibot_rewrite.producers.launch.findings import STOOD_IN
 from multibot_rewrite.producers.launch.models import Models, sent_in_simulator
-from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchNote
+from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchNote, RunningNode
 from multibot_rewrite.producers.launch.running import (
     CLOCK_TYPE,
     DESCRIPTION,
     Knowledge,
-    RunningNode,
     bound_of,
     running_nodes,
 )
 from multibot_rewrite.producers.launch.static_transforms import STATIC
+from multibot_rewrite.producers.transforms import lookups_of
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, edges_in, sent_by
-from multibot_rewrite.spelling.transforms import Edge as SentEdge
 from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import (
     ACTION,
@@ -47,17 +47,19 @@ from multibot_rewrite.system.records import (
     SIM_TIME,
     SUBSCRIBES,
     TOPIC,
+    Address,
     Caveat,
     Edge,
     End,
     Environment,
+    Lookup,
     Node,
     Parameter,
     System,
+    edge_of,
 )
 
 TF, TF_STATIC, TF_TYPE = "/tf", "/tf_static", "tf2_msgs/msg/TFMessage"
-_PREFIX_SWITCH = "tf_frame_prefix_enable"
 NOT_WHOLE, NOT_KNOWN, NO_TREE, REFUSED = (
     "launch-not-whole",
     "node-not-known",
@@ -66,7 +68,7 @@ NOT_WHOLE, NOT_KNOWN, NO_TREE, REFUSED = (
 )
 
 
-Sent = Mapping[str, Sequence[SentEdge]]
+Sent = Mapping[str, Sequence[Edge]]
 
 
 class _Part(NamedTuple):
@@ -74,7 +76,7 @@ class _Part(NamedTuple):
 
     name: str
     endpoints: tuple[End, ...]
-    edges: tuple[tuple[str, SentEdge], ...]
+    edges: tuple[tuple[str, Edge], ...]
 
 
 def would_run(graph: LaunchGraph, known: Knowledge) -> System:
@@ -97,15 +99,35 @@ def would_run(graph: LaunchGraph, known: Knowledge) -> System:
         tuple(_frames(parts)),
         Environment(caveats=caveats),
         parameters=tuple(_clocks(nodes)),
+        lookups=tuple(it for node in nodes for it in _lookups(node)),
+        addresses=tuple(it for node in nodes for it in _addresses(node, known, models)),
     )
+
+
+def _lookups(it: RunningNode) -> Iterator[Lookup]:
+    """What a node asks of tf by its parameters, with what it puts before its frames."""
+    for asked in lookups_of(it.full_name, it.facts, it.values) if it.facts else ():
+        yield asked._replace(frame=f"{_prefix(it)}{asked.frame}")
+
+
+def _addresses(it: RunningNode, known: Knowledge, models: Models) -> Iterator[Address]:
+    """What a node has alone: by its parameters, and by the hardware of its description, if that is no
+    model in a simulator."""
+    node = known.parameters.nodes.get(it.facts.known) if it.facts else None
+    yield from of_parameters(it.full_name, node.params if node else {}, it.values)
+    text = _value(it, DESCRIPTION)
+    root = None if any(one.spawned and one.text == text for one in models.found) else _root(text)
+    if root is not None:
+        yield from of_hardware(root, it.full_name, it.place)
 
 
 def _nodes(running: Iterable[RunningNode], parts: Iterable[_Part]) -> Iterator[Node]:
     """The nodes, each with those that its code makes beside it (``Endpoint.by``)."""
     for it, part in zip(running, parts, strict=True):
-        yield Node(part.name, it.process)
+        known = it.facts.kind if it.facts else ""
+        yield Node(part.name, it.process, place=it.place, known=known)
         own = dict.fromkeys(end.node for end in part.endpoints if end.node != part.name)
-        yield from (Node(name, it.process) for name in own)
+        yield from (Node(name, it.process, place=it.place, known=known) for name in own)
 
 
 def _stood_in(graph: LaunchGraph) -> Iterator[Caveat]:
@@ -122,7 +144,9 @@ def _refused(nodes: Sequence[str]) -> Iterator[Caveat]:
 def _caveats(notes: Iterable[LaunchNote], nodes: Sequence[RunningNode]) -> Iterator[Caveat]:
     for note in notes:
         yield Caveat(NOT_WHOLE, True, f"{note.place}: {note.message}")
-    unknown = [f"{it.full_name} ({it.program})" for it in nodes if it.facts is None]
+    unknown = [
+        f"{it.full_name} ({it.program})" for it in nodes if it.facts is None and not is_bridge(it)
+    ]
     if unknown:
         listed = shorten(unknown, SEVERAL)
         hint = "describe them in a file of nodes (--nodes, docs/stacks.md)"
@@ -143,8 +167,8 @@ def _of_bridges(nodes: Sequence[RunningNode], inside: Sent) -> Iterator[Caveat]:
 
 def _tf_topics(it: RunningNode) -> Iterator[str]:
     """The topics in the simulator that a bridge passes on as transforms."""
-    for role, _, type_, inside in bridged_by(it) if is_bridge(it) else ():
-        if (role, type_) == (PUBLISHES, TF_TYPE):
+    for end, inside in bridged_by(it):
+        if (end.role, end.type) == (PUBLISHES, TF_TYPE):
             yield inside
 
 
@@ -178,15 +202,8 @@ def _endpoints(it: RunningNode, name: str, bound: BoundNode, helper: BoundNode) 
         if not end.when and end.name and "<" not in end.name:
             own = end._replace(name=_below_namespace_above(it, end))
             full = _resolved(own, helper if end.helper else bound)
-            type_ = _type(it, end)
+            type_ = chosen_type(end.types, partial(_value, it)) or end.type
             yield End(end.kind, end.role, full, type_, "", f"{name}{end.by}", None, it.process)
-
-
-def _type(it: RunningNode, end: Endpoint) -> str:
-    """Its type, where a parameter such as ``enable_stamped_cmd_vel`` chooses between two."""
-    return next(
-        (type_ for asked, type_ in end.types if holds(asked, partial(_value, it))), end.type
-    )
 
 
 def _below_namespace_above(it: RunningNode, end: Endpoint) -> str:
@@ -205,12 +222,12 @@ def _resolved(end: Endpoint, bound: BoundNode) -> str:
 
 
 def _bridged(it: RunningNode, name: str, bound: BoundNode) -> Iterator[End]:
-    for role, topic, type_, _ in bridged_by(it) if is_bridge(it) else ():
-        full = resolve_bound(topic, TOPIC, bound)
-        yield End(TOPIC, role, full, type_, "", name, None, it.process)
+    for end, _ in bridged_by(it):
+        full = resolve_bound(end.name, end.kind, bound)
+        yield End(end.kind, end.role, full, end.type, "", name, None, it.process)
 
 
-def _edges(it: RunningNode, bound: BoundNode) -> Iterator[tuple[str, SentEdge]]:
+def _edges(it: RunningNode, bound: BoundNode) -> Iterator[tuple[str, Edge]]:
     """The transforms of a node, each with its topic."""
     if it.facts is None:
         return
@@ -223,32 +240,35 @@ def _edges(it: RunningNode, bound: BoundNode) -> Iterator[tuple[str, SentEdge]]:
             yield resolve_bound(named, TOPIC, bound), edge
 
 
-def _passed_on(it: RunningNode, bound: BoundNode, inside: Sent) -> Iterator[tuple[str, SentEdge]]:
+def _passed_on(it: RunningNode, bound: BoundNode, inside: Sent) -> Iterator[tuple[str, Edge]]:
     """The transforms of the simulator that a bridge passes on."""
-    for role, topic, type_, own in bridged_by(it) if is_bridge(it) else ():
-        if (role, type_) == (PUBLISHES, TF_TYPE):
-            full = resolve_bound(topic, TOPIC, bound)
+    for end, own in bridged_by(it):
+        if (end.role, end.type) == (PUBLISHES, TF_TYPE):
+            full = resolve_bound(end.name, TOPIC, bound)
             yield from ((full, edge) for edge in inside.get(own, ()))
 
 
-def _own_edges(it: RunningNode) -> Iterable[SentEdge]:
+def _own_edges(it: RunningNode) -> Iterable[Edge]:
     if it.facts is None:
         return ()
     if _publishes_a_tree(it):
         return _tree(it) or ()
     prefix = _prefix(it)
-    edges = sent_by(it.facts, "")
-    return [SentEdge(prefix + e.parent, prefix + e.child, e.static) for e in edges]
+    return _below(prefix, sent_by(it.facts, ""))
+
+
+def _below(prefix: str, edges: Iterable[Edge]) -> list[Edge]:
+    return [edge_of(prefix + it.parent, prefix + it.child, it.static) for it in edges]
 
 
 def _prefix(it: RunningNode) -> str:
     """What a node puts before its frames: robot_localization ros_filter.cpp (``tf_prefix``),
     ros2_controllers diff_drive_controller.cpp (its namespace, where no parameter says otherwise)."""
     prefix = _value(it, "tf_prefix")
-    fixed = it.facts.fixed if it.facts else ()
-    if any(text.startswith(_PREFIX_SWITCH) for text in fixed):
+    switch = it.facts.prefix_switch if it.facts else ""
+    if switch:
         own = _value(it, "tf_frame_prefix") or it.namespace
-        prefix = "" if _value(it, _PREFIX_SWITCH) is False else own
+        prefix = "" if _value(it, switch) is False else own
     bare = str(prefix or "").strip("/")
     return f"{bare}/" if bare else ""
 
@@ -257,17 +277,21 @@ def _publishes_a_tree(it: RunningNode) -> bool:
     return it.facts is not None and it.facts.package == STATE_PUBLISHER
 
 
-def _tree(it: RunningNode) -> list[SentEdge] | None:
+def _tree(it: RunningNode) -> list[Edge] | None:
     """The transforms of a description under ``frame_prefix``; None where that is not known."""
     prefix = str(_value(it, "frame_prefix") or "")
-    text = _value(it, DESCRIPTION)
+    root = _root(_value(it, DESCRIPTION))
+    return None if root is None else _below(prefix, edges_in(root))
+
+
+def _root(text: object) -> etree._Element | None:
+    """The root of a description; None where it is not known."""
     if not isinstance(text, str) or not text.strip():
         return None
     try:
-        root = etree.fromstring(text.encode(), etree.XMLParser(resolve_entities=False))
+        return etree.fromstring(text.encode(), etree.XMLParser(resolve_entities=False))
     except etree.XMLSyntaxError:
         return None
-    return [SentEdge(prefix + e.parent, prefix + e.child, e.static) for e in edges_in(root)]
 
 
 def _value(it: RunningNode, name: str) -> object:
@@ -278,7 +302,7 @@ def _value(it: RunningNode, name: str) -> object:
 def _frames(parts: Sequence[_Part]) -> Iterator[Edge]:
     """Each transform once, with all who send on its topic."""
     senders: dict[str, list[str]] = defaultdict(list)
-    times: dict[tuple[str, SentEdge], int] = defaultdict(int)
+    times: dict[tuple[str, Edge], int] = defaultdict(int)
     for part in parts:
         for end in part.endpoints:
             if (end.role, end.type) == (PUBLISHES, TF_TYPE):
@@ -287,7 +311,7 @@ def _frames(parts: Sequence[_Part]) -> Iterator[Edge]:
             times[topic, edge] += 1
     for (topic, edge), count in times.items():
         who = tuple(dict.fromkeys(senders[topic]))
-        yield Edge(edge.child, edge.parent, topic, edge.static, who, count > 1)
+        yield edge._replace(topic=topic, publishers=who, several=count > 1)
 
 
 def _clocks(nodes: Iterable[RunningNode]) -> Iterator[Parameter]:

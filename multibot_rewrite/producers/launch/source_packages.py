@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 import sys
-import xml.etree.ElementTree as ET
 from collections.abc import Iterable, Iterator
 
 _MANIFEST, _INDEX = (
@@ -54,6 +53,8 @@ def _below(folder: str, depth: int) -> Iterator[tuple[str, str]]:
 
 
 def _name(path: str) -> str:
+    import xml.etree.ElementTree as ET  # the stand-in, with which a build is read back, has no packages
+
     try:
         return (ET.parse(path).findtext("name") or "").strip()
     except (ET.ParseError, OSError):

@@ -15,15 +15,9 @@ from collections.abc import Generator, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from typing import IO, cast
 
+from multibot_rewrite.base.model import Unusable
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.producers.ros.request import (
-    ENDED,
-    NO_RCLPY,
-    RMW_MISMATCH,
-    Request,
-    RosUnusable,
-    to_text,
-)
+from multibot_rewrite.producers.ros.request import ENDED, NO_RCLPY, RMW_MISMATCH, Request, to_text
 from multibot_rewrite.system.answers import Answer
 from multibot_rewrite.system.json import from_json, record_from
 from multibot_rewrite.system.questions import Question
@@ -51,7 +45,7 @@ class RosProcess(NamedTuple):
     environ: Mapping[str, str]
 
     def next_message(self) -> bytes | None:
-        """The next message, or None at the end; raises RosUnusable if the process failed."""
+        """The next message, or None at the end; raises Unusable if the process failed."""
         assert self.process.stdout is not None
         length = self.process.stdout.readline()
         data = self.process.stdout.read(int(length)) if length else b""
@@ -62,11 +56,11 @@ class RosProcess(NamedTuple):
             return None
         self.errors.seek(0)
         output = self.errors.read().decode("utf-8", "replace")
-        raise RosUnusable(_explain(code, output, self.environ))
+        raise Unusable(_explain(code, output, self.environ))
 
 
 def observe(request: Request, environ: Mapping[str, str]) -> System:
-    """A snapshot of the graph with the variables of ``environ``; raises RosUnusable.
+    """A snapshot of the graph with the variables of ``environ``; raises Unusable.
 
     No process is left running, however this call ends.
     """
@@ -106,7 +100,7 @@ def _observe_once(request: Request, environ: Mapping[str, str]) -> System:
 def watch(request: Request, environ: Mapping[str, str]) -> Generator[System, None, None]:
     """Snapshots of the graph for ``request.timeout`` seconds, one after each change.
 
-    Raises RosUnusable. No process is left running once the iterator is closed.
+    Raises Unusable. No process is left running once the iterator is closed.
     """
     order = to_text(request._replace(watch=True))
     with running(OBSERVE, order, environ) as child:
@@ -122,7 +116,7 @@ def watch(request: Request, environ: Mapping[str, str]) -> Generator[System, Non
 def ask(
     asked: Iterable[Question], seconds: float, environ: Mapping[str, str]
 ) -> tuple[Answer, ...]:
-    """What nodes answer within ``seconds``, all asked at once; raises RosUnusable."""
+    """What nodes answer within ``seconds``, all asked at once; raises Unusable."""
     order = json.dumps((seconds, list(asked)))
     with running(ASK, order, environ, seconds + SLACK_SECONDS) as child:
         data = child.next_message()

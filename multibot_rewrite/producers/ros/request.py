@@ -6,17 +6,12 @@ import json
 from collections.abc import Collection, Mapping
 from typing import Any
 
-from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.base.record import NamedTuple
 
 # The child's exit codes besides 0; rcl itself ends a process with 102.
 NO_RCLPY, ENDED = 4, 130
 RMW_MISMATCH = 102
 _LINE = b"\n"
-
-
-class RosUnusable(MultibotError):
-    """rclpy (or zenoh, to ask a router) is missing or does not start; the message says what to do."""
 
 
 class Request(NamedTuple):

@@ -49,7 +49,7 @@ class Router(NamedTuple):
 def look(request: Request, router: Router) -> System:
     """A snapshot of what the router knows now, or once the nodes of ``request.expected`` are there.
 
-    Raises RosUnusable without zenoh, InputError for a bad configuration. Where no router answers the
+    Raises Unusable without zenoh, InputError for a bad configuration. Where no router answers the
     snapshot is empty and says so.
     """
     started = time.monotonic()

@@ -11,9 +11,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.model import InputError, Unusable
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.producers.ros.request import RosUnusable
 
 INSTALL = "pip install 'multibot_rewrite[zenoh]' (or pip install eclipse-zenoh)"
 # The router answers in milliseconds; over a slow network connecting takes some time.
@@ -99,7 +98,7 @@ class RouterSession(NamedTuple):
 
 @contextmanager
 def opened(router: str, seconds: float) -> Iterator[RouterSession]:
-    """A session as a client of the router; raises RosUnusable, NoRouter, InputError."""
+    """A session as a client of the router; raises Unusable, NoRouter, InputError."""
     zenoh = _zenoh()
     config = _config(zenoh, router, min(seconds, CONNECT_SECONDS))
     declared: list[Any] = []
@@ -119,7 +118,7 @@ def _zenoh() -> Any:
     try:
         import zenoh
     except (ImportError, OSError) as error:
-        raise RosUnusable(f"zenoh cannot be imported ({error}); {INSTALL}") from None
+        raise Unusable(f"zenoh cannot be imported ({error}); {INSTALL}") from None
     return zenoh
 
 

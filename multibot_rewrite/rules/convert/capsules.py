@@ -14,7 +14,7 @@ from lxml.etree import _Element
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.description.checks.numbers import Vector, number
-from multibot_rewrite.description.checks.pose import Pose, pose_of
+from multibot_rewrite.description.checks.poses import Pose, pose_of
 from multibot_rewrite.description.checks.rotation import turned
 from multibot_rewrite.description.steps.document import tag_end
 from multibot_rewrite.rules.convert.spans import Text, end_of, end_tag_of

@@ -12,7 +12,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.numbers import number
-from multibot_rewrite.description.checks.pose import ROTATIONS, pose_of
+from multibot_rewrite.description.checks.poses import ROTATIONS, pose_of
 from multibot_rewrite.description.checks.rotation import NO_ROTATION, SAME, matrix_of_quaternion
 from multibot_rewrite.rules.convert.capsules import capsules, ends_of
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from lxml.etree import _Element
 
 from multibot_rewrite.base.model import Edit
-from multibot_rewrite.description.checks.pose import pose_of, quaternion, rolled
+from multibot_rewrite.description.checks.poses import pose_of, quaternion, rolled
 from multibot_rewrite.description.checks.rotation import (
     is_same,
     length_of,

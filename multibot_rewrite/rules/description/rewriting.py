@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import partial
-from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING
 from multibot_rewrite.base.findings.rule import SRDF, URDF, rule
@@ -16,16 +15,17 @@ from multibot_rewrite.description.checks.audit import (
     unknown_hardware,
     unknown_plugins,
 )
-from multibot_rewrite.description.checks.mentions import MENTIONED, as_problem, unclaimed_mentions
+from multibot_rewrite.description.checks.mentions import (
+    MENTIONED,
+    as_problem,
+    unclaimed_mentions,
+    usual_names,
+)
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.description.steps.document import slot_values
 from multibot_rewrite.rules.subject import Subject
-
-if TYPE_CHECKING:
-    from multibot_rewrite.companions.named_file import NamedFile
-    from multibot_rewrite.rules.files.records import Remark
 
 
 @rule(
@@ -33,8 +33,8 @@ if TYPE_CHECKING:
     "name-of-unknown-use",
     WARNING,
     what="The name of a link, joint, light, frame or topic of the robot is at a value, key, parameter "
-    "or port that is not known to hold names. Of a file it is a note where it is not sure which robot "
-    "it is for.",
+    "or port that is not known to hold names, or /tf where each robot has a tf topic of its own. Of a "
+    "file it is a note where it is not sure which robot it is for.",
     why="It stays as it is when the file is written for several robots. If it is a name, a plugin or "
     "node looks for a link, frame or joint that no longer has that name, or two robots use the same "
     "topic.",
@@ -45,23 +45,13 @@ if TYPE_CHECKING:
     good='<link name="gripper_left"/><custom><grasp part="left"/></custom>',
     formats=(URDF, SRDF, *EVERY),
 )
-def unclaimed_mention(asked: Subject | NamedFile) -> Iterator[Problem | Remark]:
-    """In both."""
-    if isinstance(asked, Subject):
-        return _mentions(asked)
-    from multibot_rewrite.rules.files.names import unknown_uses  # a description needs none of it
-
-    return unknown_uses(asked)
-
-
-def _mentions(subject: Subject) -> Iterator[Problem]:
+def unclaimed_mention(subject: Subject) -> Iterator[Problem]:
     """Values that no site claims and that hold a declared name."""
     inventory = subject.inventory
     names = {name for kind in MENTIONED for name in inventory.declared[kind]}
-    if names:
-        values = slot_values(subject.document.root)
-        mentions = unclaimed_mentions(inventory, values, names, subject.tree)
-        yield from map(as_problem, mentions)
+    values, usual = slot_values(subject.document.root), usual_names(subject.settings.naming)
+    mentions = unclaimed_mentions(inventory, values, names, subject.tree, usual)
+    yield from map(as_problem, mentions)
 
 
 Audit = Callable[[Inventory, Tree], Iterator[Problem]]

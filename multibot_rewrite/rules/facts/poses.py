@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from multibot_rewrite.description.checks import poses
-from multibot_rewrite.description.checks.pose import Pose
+from multibot_rewrite.description.checks.poses import Pose
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.subject import Subject
 

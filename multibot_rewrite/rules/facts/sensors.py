@@ -7,8 +7,7 @@ from lxml.etree import _Element
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.links_and_joints import Link
 from multibot_rewrite.description.checks.numbers import number
-from multibot_rewrite.description.checks.pose import Pose
-from multibot_rewrite.description.checks.poses import sdf_pose
+from multibot_rewrite.description.checks.poses import Pose, sdf_pose
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.subject import Subject

@@ -2,7 +2,7 @@
 
 Sources: gz_hardware_plugins.xml and gz_system.cpp:326 of gz_ros2_control (jazzy), the same of
 ign_ros2_control (humble), gazebo_hardware_plugins.xml and gazebo_system.cpp of gazebo_ros2_control; for
-the plugins ``rules/schema/plugins.schema``.
+the plugins the vocabulary.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Rows of a ros_gz_bridge file as the bridge reads them.
+"""Rows of a ros_gz_bridge file as the bridge reads them, and the gz topics of a robot.
 
 Source: gazebosim/ros_gz ros_gz_bridge/src/bridge_config.cpp (parseEntry, and its messages).
 """
@@ -11,14 +11,31 @@ import yaml
 
 from multibot_rewrite.base.findings.finding import WARNING
 from multibot_rewrite.base.findings.rule import rule
-from multibot_rewrite.base.nearest import did_you_mean
-from multibot_rewrite.companions.bridge_entry import KEYS, TYPES, faults, row_of, text_in
+from multibot_rewrite.base.nearest import did_you_mean, nearest
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.bridge_entry import (
+    BOTH,
+    DIRECTIONS,
+    GZ,
+    KEYS,
+    SERVICE,
+    TYPES,
+    Row,
+    faults,
+    models,
+    row_of,
+    text_in,
+)
 from multibot_rewrite.companions.kinds import BRIDGE
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.yaml_text import items
 from multibot_rewrite.rules.files.examples import a_row
-from multibot_rewrite.rules.files.records import Remark, remark_at
+from multibot_rewrite.rules.files.given import did_you_mean_at
+from multibot_rewrite.rules.files.records import Remark, of_robots, remark_at
 from multibot_rewrite.spelling.bridged_topics import bridge_data
+from multibot_rewrite.system.records import NOWHERE, Place
+
+_BOTH_WAYS, _IN = DIRECTIONS[:2]
 
 
 @rule(
@@ -88,3 +105,141 @@ def not_converted(file: NamedFile) -> Iterator[Remark]:
         if belongs and others and bare not in belongs:
             message = f"{ros} and {gz} are not converted into each other"
             yield remark_at(node, message, f"with {gz} write {' or '.join(others)}")
+
+
+def _of_models(one: str, other: str) -> str:
+    """Two rows that are for a model each."""
+    return a_row().replace(
+        "gz_topic_name: scan", f"gz_topic_name: /model/{one}/odometry"
+    ) + a_row().replace("topic_name: scan", "topic_name: battery").replace(
+        "gz_topic_name: battery", f"gz_topic_name: /model/{other}/battery"
+    )
+
+
+@rule(
+    "MB889",
+    "bridge-of-second-model",
+    WARNING,
+    what="A bridge file has topics of two models. The first model is the robot; topics of the other "
+    "are bridged once for all robots.",
+    why="If the other model is a robot too, its topics stay as they are, and the copies of it that "
+    "are spawned for the fleet are not bridged.",
+    fix="Nothing, if it is a part of the world such as a door. Otherwise write the robot's model, or "
+    "give the other robot its own bridge file.",
+    bad=_of_models("rover", "rover_v2"),
+    good=_of_models("rover", "rover"),
+    line=6,
+    formats=(BRIDGE,),
+    options={"robots": ("robot1", "robot2")},
+)
+@of_robots
+def second_model(file: NamedFile) -> Iterator[Remark]:
+    """Each other model than the first, at its first entry."""
+    first: dict[str, yaml.Node] = {}
+    for node, name in models(file.document) if file.document else ():
+        first.setdefault(name, node)
+    own, *others = first or ("",)
+    for name in others:
+        message = f"model {name!r} is not the robot's model {own!r}"
+        hint = "its topics stay as they are and are bridged once for all robots"
+        yield remark_at(first[name], message, hint)
+
+
+@rule(
+    "MB890",
+    "bridge-not-per-robot",
+    WARNING,
+    what="A service has one entry for all robots.",
+    why="The robots share the service: each call goes to the one robot whose name it has in gz.",
+    fix="Write the service once for each robot.",
+    bad="- service_name: /model/rover/reset\n  ros_type_name: std_srvs/srv/Empty\n",
+    good="- service_name: /world/hall/control\n  ros_type_name: ros_gz_interfaces/srv/ControlWorld\n",
+    formats=(BRIDGE,),
+    options={"robots": ("robot1", "robot2")},
+)
+@of_robots
+def shared_service(file: NamedFile) -> Iterator[Remark]:
+    """Services that are not those of the world."""
+    for node in _rows(file):
+        service = text_in(row_of(node), SERVICE)
+        if service and not service.strip("/").startswith("world/") and not any(faults(node)):
+            message = f"service {service!r} is bridged once for all robots"
+            yield remark_at(node, message, "add an entry for each robot")
+
+
+class GzTopics(NamedTuple):
+    """The topics of the sensors and plugins of the robot that a bridge is for, by name."""
+
+    topics: Mapping[str, GzTopic]
+
+
+class GzTopic(NamedTuple):
+    """A topic of a sensor or plugin: its type, the direction of a row for it, and its line."""
+
+    type: str
+    direction: str
+    place: Place = NOWHERE
+
+
+@rule(
+    "MB879",
+    "bridge-row-without-gz-topic",
+    WARNING,
+    what="A row of a bridge reads a gz topic that nothing in the description sends, while a sensor or "
+    "plugin sends another one of the type; or the description has the topic, of another type or in the "
+    "other direction. Asked by `build` and `plan`, which know the robot and how it is spawned.",
+    why="The bridge waits for data that never comes.",
+    fix="Give the row the topic, the type and the direction of the sensor.",
+    bad=a_row("direction: GZ_TO_ROS").replace("gz_topic_name: scan", "gz_topic_name: lidar/scan"),
+    good=a_row("direction: GZ_TO_ROS"),
+    line=2,
+    formats=(BRIDGE,),
+    beside={
+        "robot.urdf": """\
+<robot name="rover">
+  <link name="base_link"/>
+  <gazebo reference="base_link">
+    <sensor name="lidar" type="gpu_lidar"><topic>scan</topic></sensor>
+  </gazebo>
+</robot>
+""",
+    },
+    options={"build": True},
+)
+def no_gz_topic(file: NamedFile) -> Iterator[Remark]:
+    """Rows for a gz topic of the description with another type or direction, and rows that read one
+    which is not there, although another one of their type is: what sends topics of other types is not
+    known."""
+    known: GzTopics | None = file.memo.get(GzTopics)
+    for row in map(row_of, _rows(file) if known else ()):
+        _, node = row.get(GZ) or row.get(BOTH) or (None, None)
+        if node is not None and known is not None:
+            yield from _of_row(node, row, known.topics)
+
+
+def _of_row(node: yaml.Node, row: Row, topics: Mapping[str, GzTopic]) -> Iterator[Remark]:
+    topic = f"/{str(node.value).lstrip('/')}"
+    way, type_ = text_in(row, "direction") or _BOTH_WAYS, _bare(text_in(row, TYPES[1]))
+    own = topics.get(topic)
+    if own is None:
+        incoming = [it for it, its in topics.items() if its.direction == _IN == way]
+        alike = [it for it in incoming if _bare(topics[it].type) == type_]
+        near = alike[0] if len(alike) == 1 else nearest(topic, alike)
+        hint = did_you_mean_at(near, topics[near].place) if near else "name one that is there"
+        if alike:
+            yield remark_at(node, f"nothing sends gz topic {topic}, which the row reads", hint)
+    elif way not in (own.direction, _BOTH_WAYS):
+        message = f"gz topic {topic} is in the other direction in the description"
+        yield remark_at(node, message, _write(own.direction, own))
+    elif type_ and type_ != _bare(own.type):
+        message = f"gz topic {topic} has another type in the description"
+        yield remark_at(node, message, _write(own.type, own))
+
+
+def _write(word: str, topic: GzTopic) -> str:
+    return f"write {word}" + (f", see {topic.place}" if topic.place != NOWHERE else "")
+
+
+def _bare(type_: str) -> str:
+    """The type without its package, which had another name before Garden."""
+    return type_.rpartition("msgs.")[2]

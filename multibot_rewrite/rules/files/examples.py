@@ -39,3 +39,15 @@ def a_row(line: str = "") -> str:
         "  gz_type_name: gz.msgs.LaserScan\n"
         f"{f'  {line}' if line else ''}\n"
     )
+
+
+def a_controller(declared: str, section: str) -> str:
+    """A controller that a manager declares, and from the fourth line a section for one."""
+    return (
+        "controller_manager:\n"
+        "  ros__parameters:\n"
+        f"    {declared}: {{type: joint_trajectory_controller/JointTrajectoryController}}\n"
+        f"{section}:\n"
+        "  ros__parameters: {joints: [left_wheel_joint], command_interfaces: [position],\n"
+        "    state_interfaces: [position]}\n"
+    )

@@ -5,34 +5,63 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from functools import cache
 
-from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.rules.description import rewriting
-from multibot_rewrite.rules.description.files import reading
+from multibot_rewrite.rules.description.files import reading, shape, values
+from multibot_rewrite.rules.description.multirobot import named_robots
 from multibot_rewrite.rules.description.names import ros_names as description_names
 from multibot_rewrite.rules.files import (
     bridges,
+    controllers,
+    declared,
     frames,
+    included,
     keys,
+    lists,
+    moveit,
     names,
-    parameters,
     releases,
+    robot_words,
     ros_names,
     rviz,
+    same_for_all,
+    sections,
+    wheels,
 )
 
-THEMES = (parameters, names, ros_names, frames, keys, releases, bridges, rviz)
-# They are asked of a description as well.
+THEMES = (
+    names,
+    ros_names,
+    robot_words,
+    frames,
+    keys,
+    lists,
+    controllers,
+    releases,
+    bridges,
+    rviz,
+    moveit,
+    included,
+    sections,
+    same_for_all,
+    wheels,
+)
+# They are asked of a description as well; here a file is looked at.
 SHARED: tuple[Rule, ...] = (
-    reading.leftover,
-    description_names.invalid_ros_name,
-    description_names.leading_slash,
-    rewriting.unclaimed_mention,
+    reading.leftover._replace(check=ros_names.placeholders),
+    description_names.invalid_ros_name._replace(check=ros_names.invalid_names),
+    description_names.leading_slash._replace(check=frames.slashes),
+    rewriting.unclaimed_mention._replace(check=names.unknown_uses),
+    shape.misspelt._replace(check=declared.unknown_parameters),
+    values.unreadable_value._replace(check=declared.wrong_types, level=WARNING),
+    named_robots.prefix_only._replace(check=same_for_all.prefix_only),
+    values.out_of_range._replace(check=declared.out_of_bounds, level=WARNING),
 )
 # Up to a reason, which is behind a dash.
-_COMMENT = lazy_compile(r"#\s*urdf-lint:\s*ignore\s+((?:MB\d+[,\s]*)+)(?:$|[-:])")
+_COMMENT = lazy_compile(r"(?:#|--)\s*urdf-lint:\s*ignore\s+((?:MB\d+[,\s]*)+)(?:$|[-:])")
 
 
 @cache

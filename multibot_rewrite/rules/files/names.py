@@ -6,18 +6,21 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.naming import TF_TOPICS
 from multibot_rewrite.base.nearest import HINTED, MISTYPED, did_you_mean, meant_name
 from multibot_rewrite.base.rosnames import check_topic_name
+from multibot_rewrite.companions.engine import GRAPH
 from multibot_rewrite.companions.kinds import BRIDGE, EVERY, LUA, MOVEIT, PARAMS, RVIZ, TREE
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.names.by_kind import is_component, is_plain, is_shared_frame
 from multibot_rewrite.companions.names.rename_map import KINDS, is_declared, spell
+from multibot_rewrite.companions.params.values import renamed
 from multibot_rewrite.companions.sites import Site
 from multibot_rewrite.description.checks.mentions import mentioned
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.rules.files.declared import unknown_parameters
 from multibot_rewrite.rules.files.examples import ROVER, a_section
-from multibot_rewrite.rules.files.records import Remark, remark
+from multibot_rewrite.rules.files.records import Remark, of_robots, remark
 
 _FRAMES = ("frame", "link")
 _PARTS = ("joint", "sensor", "group", "interface")
@@ -206,6 +209,7 @@ def _foreign(file: NamedFile) -> tuple[list[tuple[str, str]], int, Site | None]:
 
 def unknown_uses(file: NamedFile) -> Iterator[Remark]:
     """Texts of unknown use that are names, and in files of plugins those that hold one."""
+    yield from _guessed(file)
     if not file.others:
         return
     level = "" if file.is_certain else NOTE
@@ -217,6 +221,26 @@ def unknown_uses(file: NamedFile) -> Iterator[Remark]:
         if site.line not in misspelt:
             message = f"{found} of the robot, but its use here is not known"
             yield remark(site, message, "it stays as it is; if it is a name, rename it", level)
+
+
+@of_robots
+def _guessed(file: NamedFile) -> Iterator[Remark]:
+    """Parameters of a node that is not known, taken for names by their own: one remark a section."""
+    for section, names in file.pages:
+        if section.node is not None or section.wild:
+            continue
+        guessed = [it for it in names.sites if not it.is_sure and _is_taken(file, it)]
+        if guessed:
+            words = ", ".join(dict.fromkeys(it.key for it in guessed))
+            told = (
+                f"node {section.path} is not known; parameters that hold names are guessed: {words}"
+            )
+            yield remark(guessed[0], told, "describe the node in a file under nodes:")
+
+
+def _is_taken(file: NamedFile, site: Site) -> bool:
+    """Does the guess change the value?"""
+    return site.kind in GRAPH or renamed(file.context, site) != site.text
 
 
 def _renamed(file: NamedFile) -> frozenset[str]:
@@ -232,6 +256,9 @@ def _renamed(file: NamedFile) -> frozenset[str]:
 def _said(file: NamedFile, site: Site, known: Mapping[str, str], renamed: frozenset[str]) -> str:
     """What a text says of the robot; empty for nothing."""
     text = site.text
+    apart = file.is_certain and file.context.names.naming.layout.tf_per_robot
+    if apart and not site.in_key and text.removeprefix("/") in TF_TOPICS and text[0] == "/":
+        return f"{text!r} is a topic"
     if file.kind in _LOOSE:
         topic = (
             text[:1] == "/" and file.kind != LUA and is_plain(text) and not check_topic_name(text)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from functools import wraps
 from typing import Protocol
 
 import yaml
 
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.named_file import NamedFile
 
 
 class Placed(Protocol):
@@ -37,3 +40,17 @@ def remark_at(node: yaml.Node, message: str, hint: str = "", level: str = "") ->
     """A remark at a node of YAML."""
     mark = node.start_mark
     return Remark(mark.line + 1, mark.column + 1, message, hint, level)
+
+
+def of_robots(
+    find: Callable[[NamedFile], Iterator[Remark]],
+) -> Callable[[NamedFile], Iterator[Remark]]:
+    """A rule about what several robots get: asked of a file that is for a certain robot, and of one
+    alone where robots are named."""
+
+    @wraps(find)
+    def found(file: NamedFile) -> Iterator[Remark]:
+        if file.is_certain or file.robots:
+            yield from find(file)
+
+    return found

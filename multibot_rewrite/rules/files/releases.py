@@ -126,8 +126,8 @@ def _deprecated_parameters(section: ParamSection, release: str) -> Iterator[Rema
             there = has_release(param.releases, release)
             state = "is deprecated" if there else "is gone and has no effect"
             message = f"{name} {state} in {release}"
-            hint = f"{param.note}{_source(param.source)}"
-            yield remark_at(key, message, hint)
+            instead = f"use {' or '.join(param.instead)}" if param.instead else "delete it"
+            yield remark_at(key, message, f"{instead}{_source(param.source)}")
 
 
 def _of_another_release(section: ParamSection, release: str) -> Iterator[Remark]:

@@ -1,19 +1,19 @@
-"""Names that ROS refuses, placeholders in names, and names of robots in them."""
+"""Names that ROS refuses, and placeholders in names."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.base.findings.finding import NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.rosnames import check_node_name, check_topic_name
 from multibot_rewrite.companions.engine import GRAPH
-from multibot_rewrite.companions.kinds import EVERY, MOVEIT, PARAMS, RVIZ
+from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.names.by_kind import SPELLERS, is_filled, is_plain
 from multibot_rewrite.companions.names.placeholders import is_robot
-from multibot_rewrite.companions.sites import GZ_TOPIC, SECTION, Site
+from multibot_rewrite.companions.sites import SECTION, Site
 from multibot_rewrite.rules.files.examples import a_section
 from multibot_rewrite.rules.files.records import Remark, remark
 
@@ -93,34 +93,3 @@ def _placeholder(site: Site) -> str:
         return ""
     found = _IN_VALUE.search(site.text)
     return found[0] if found else ""
-
-
-@rule(
-    "MB863",
-    "robot-in-name-beside",
-    ERROR,
-    what="A name holds the name of a robot of the fleet, so the file is for that robot only. It is a "
-    "warning in a config of RViz.",
-    why="Every robot gets the file: all others would use the names of this robot, and in its own file "
-    "the name would be there twice, as in /robot1/robot1/scan.",
-    fix="Remove the robot's name from every name; the build adds it for each robot.",
-    bad=a_section("amcl", "scan_topic: /robot2/scan"),
-    good=a_section("amcl", "scan_topic: /scan"),
-    line=3,
-    formats=EVERY,
-    options={"robots": ("robot1", "robot2")},
-)
-def robot_in_name(file: NamedFile) -> Iterator[Remark]:
-    """The first name that holds one of the robots."""
-    for site in file.names if file.robots else ():
-        # In a topic of gz the model is the robot, whatever it is called; a planning group has any name.
-        if site.kind in (GZ_TOPIC, "group"):
-            continue
-        robot = next(iter(sorted(file.robots.intersection(site.text.strip("/").split("/")))), "")
-        if robot and (file.kind != RVIZ or "/" in site.text.strip("/")):
-            message = (
-                f"{site.text} includes the robot name {robot}, so the file is for that robot only"
-            )
-            hint = "remove the robot name from every name; the build adds it for each robot"
-            yield remark(site, message, hint, WARNING if file.kind == RVIZ else "")
-            return

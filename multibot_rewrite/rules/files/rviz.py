@@ -10,7 +10,7 @@ from multibot_rewrite.companions.kinds import RVIZ
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.rviz.read_config import rviz_data, text_of, value
 from multibot_rewrite.companions.yaml_text import pairs
-from multibot_rewrite.rules.files.records import Remark, remark_at
+from multibot_rewrite.rules.files.records import Remark, of_robots, remark_at
 
 
 def _display(lines: str) -> str:
@@ -71,3 +71,26 @@ def volatile_description(file: NamedFile) -> Iterator[Remark]:
         message = f"{names} misses a description published before rviz2 starts: it is Volatile"
         hint = "set Durability Policy: Transient Local below Description Topic"
         yield remark_at(found[0].node, message, hint)
+
+
+@rule(
+    "MB891",
+    "rviz-unknown-display",
+    WARNING,
+    what="The class of a display is not known, so only its Topic is renamed.",
+    why="Each plugin has its own keys for topics and frames. What is not renamed is a name that "
+    "no robot has any more, so that part of the display stays empty.",
+    fix="Check the other topics and frames of the display for each robot.",
+    bad="Visualization Manager:\n  Displays:\n    - Class: my_plugins/Colours\n      Topic: /scan\n",
+    good=_display("LaserScan\n      Topic: /scan\n"),
+    line=3,
+    formats=(RVIZ,),
+    options={"robots": ("robot1", "robot2")},
+)
+@of_robots
+def unknown_display(file: NamedFile) -> Iterator[Remark]:
+    """Each such display."""
+    for one in file.shown:
+        if not one.known:
+            message = f"display class {one.cls!r} is not known; only its Topic is renamed"
+            yield remark_at(one.node, message, "check its other topics and frames")

@@ -11,7 +11,14 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import yaml
 
+from multibot_rewrite.base.findings.finding import WARNING
+from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.companions.kinds import PARAMS
 from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.steps.collect import collect
+from multibot_rewrite.description.steps.document import Document
+from multibot_rewrite.rules.description.physics.shared import a_rover
 from multibot_rewrite.rules.facts.drives import (
     Wheel,
     are_opposite,
@@ -22,15 +29,58 @@ from multibot_rewrite.rules.facts.drives import (
 )
 from multibot_rewrite.rules.files.declared import Given, Section, sections
 from multibot_rewrite.rules.files.records import Remark, remark_at
-from multibot_rewrite.rules.subject import Robots, Subject
+from multibot_rewrite.rules.settings import Settings
+from multibot_rewrite.rules.subject import Robots, Subject, subject_of
 
 CONTROLLER = "diff_drive_controller"
-_LEFT, _RIGHT = "left_wheel_names", "right_wheel_names"
+LEFT, _RIGHT = "left_wheel_names", "right_wheel_names"
 _SEPARATION, _RADIUS = "wheel_separation", "wheel_radius"
 _Values = Mapping[str, Given]
 
 
-def faulty_wheels(file: NamedFile) -> Iterator[Remark]:
+def with_wheels(file: NamedFile, description: Document) -> NamedFile:
+    """The file beside the one description that it is for, which is read where the file has wheels."""
+    if LEFT not in file.text:
+        return file
+    release = file.context.distro
+    tree = builtin_tree((), release)
+    subject = subject_of(collect(description, tree), tree, Settings(distro=release))
+    robots = Robots(subject.inventory.declared, (subject,), True)
+    return file._replace(memo={**file.memo, Robots: robots})
+
+
+def _sizes_of(separation: str) -> str:
+    return (
+        "controller_manager:\n"
+        "  ros__parameters: {drive: {type: diff_drive_controller/DiffDriveController}}\n"
+        "drive:\n"
+        "  ros__parameters:\n"
+        "    left_wheel_names: [left_joint]\n"
+        "    right_wheel_names: [right_joint]\n"
+        f"    wheel_separation: {separation}\n"
+        "    wheel_radius: 0.1\n"
+    )
+
+
+@rule(
+    "MB856",
+    "controller-wheels",
+    WARNING,
+    what="The wheels of a diff_drive_controller are not as it is told: their separation or radius "
+    "is another in the package's description, left and right are swapped, or their axes point in "
+    "opposite directions.",
+    why="The robot turns or drives too far or the wrong way, and its odometry says otherwise.",
+    fix="Write the sizes of the description, or correct its joints.",
+    bad=_sizes_of("0.8"),
+    good=_sizes_of("0.4"),
+    line=7,
+    formats=(PARAMS,),
+    beside={
+        "package.xml": "<package><name>rover</name></package>",
+        "urdf/rover.urdf": f'<robot name="rover">{a_rover()}</robot>',
+    },
+)
+def controller_sizes_of(file: NamedFile) -> Iterator[Remark]:
     """What no description of the package with these wheels fits."""
     for section in sections(file):
         if section.node is None or section.node.name != CONTROLLER:
@@ -45,7 +95,7 @@ def faulty_wheels(file: NamedFile) -> Iterator[Remark]:
 def _faults(subject: Subject, section: Section) -> list[Remark] | None:
     """What one description does not fit; None if it has not all of the wheels."""
     values = {it.name: it for it in section.given}
-    left, right = (_wheels(subject, values.get(it)) for it in (_LEFT, _RIGHT))
+    left, right = (_wheels(subject, values.get(it)) for it in (LEFT, _RIGHT))
     if not left or not right:
         return None
     return [*_sizes(subject, values, left, right), *_ways(values[_RIGHT].node, left, right)]

@@ -7,7 +7,7 @@ import re
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import check_topic_name, expand
 from multibot_rewrite.spelling.ways import COMPONENT, HOST, PLUGIN, SPAWNER
-from multibot_rewrite.system.planned import Planned
+from multibot_rewrite.system.index import Index
 from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SERVES, SUBSCRIBES, End, Robot
 
 # What a node does with a name, by the role of its endpoint.
@@ -38,12 +38,12 @@ def caused(hint: str, place: str) -> Cause:
     return Cause(hint, found[1], int(found[2])) if found else Cause(hint)
 
 
-def plugin_of(plan: Planned, node: str) -> tuple[str, str]:
+def plugin_of(plan: Index, node: str) -> tuple[str, str]:
     """The plugin that starts a node, and its place in the description; both empty without one."""
     place = plugin_place(plan, node)
     if not place:
         return "", ""
-    plain = plan.names.without_robot(node, plan.robot_of.get(node, ""))
+    plain = plan.of_names.without_robot(node, plan.robot_of.get(node, ""))
     return f"plugin {plain.rpartition('/')[2]}", place
 
 
@@ -63,11 +63,11 @@ def name_without_rules(planned: End) -> str:
     return expand(planned.code_name, namespace or "/", node)
 
 
-def names_without_rules(plan: Planned, planned: End) -> tuple[str, ...]:
+def names_without_rules(plan: Index, planned: End) -> tuple[str, ...]:
     """The names an endpoint may have where no remap rule and no namespace is applied."""
     in_root = f"/{planned.code_name.strip('/').removeprefix('~/')}"
-    robot = plan.robot_of.get(planned.node) or plan.names.robot(planned.name)
-    plain = plan.names.without_robot(planned.name, robot)
+    robot = plan.robot_of.get(planned.node) or plan.robot(planned.name)
+    plain = plan.of_names.without_robot(planned.name, robot)
     names = (name_without_rules(planned), in_root, plain)
     return tuple(name for name in names if name not in ("", "/", planned.name))
 
@@ -77,7 +77,7 @@ def use_absolute(name: str) -> str:
     return f"the node resolves a relative name in its own namespace: write {name} in its parameters"
 
 
-def why_not_remapped(plan: Planned, planned: End) -> Cause:
+def why_not_remapped(plan: Index, planned: End) -> Cause:
     """Why a name is still the one in the code, although a rule should remap it."""
     rule = remap_rule(planned)
     plugin, place = plugin_of(plan, planned.node)
@@ -91,7 +91,7 @@ def why_not_remapped(plan: Planned, planned: End) -> Cause:
     return Cause(f"the remap rule {rule} is not applied")
 
 
-def how_to_remap(plan: Planned, planned: End) -> str:
+def how_to_remap(plan: Index, planned: End) -> str:
     """How to pass the rule to a node of the stack; empty for a plugin's node, which has a file."""
     rule = remap_rule(planned)
     if not rule or plugin_place(plan, planned.node):
@@ -100,7 +100,7 @@ def how_to_remap(plan: Planned, planned: End) -> str:
     return f"; pass {how_to_pass(plan, planned.node, rule, 'it')}{parts}"
 
 
-def how_to_pass(plan: Planned, node: str, rule: str, what: str = "") -> str:
+def how_to_pass(plan: Index, node: str, rule: str, what: str = "") -> str:
     """Where a rule for a node stands, and how it is written there; ``what`` is what to call it."""
     way, taker = _way(plan, node)
     what = what or rule
@@ -119,15 +119,15 @@ def how_to_pass(plan: Planned, node: str, rule: str, what: str = "") -> str:
     return f"{what} with {_as_written(way, rule)}"
 
 
-def plugin_place(plan: Planned, node: str) -> str:
+def plugin_place(plan: Index, node: str) -> str:
     """The ``file:line`` of the plugin that starts a planned node; empty for any other node."""
-    planned = plan.nodes.get(node)
+    planned = plan.node.get(node)
     return str(planned.plugin) if planned else ""
 
 
-def _way(plan: Planned, node: str) -> tuple[str, str]:
+def _way(plan: Index, node: str) -> tuple[str, str]:
     """How a planned node gets its rules, and which one takes them for it."""
-    planned = plan.nodes.get(node)
+    planned = plan.node.get(node)
     return (planned.way, planned.taker) if planned else ("", "")
 
 
@@ -141,18 +141,18 @@ def _as_written(way: str, rule: str) -> str:
     return f"--ros-args -r {rule}, or with {pair} in the launch file"
 
 
-def tf_rule(plan: Planned, robot: Robot, topic: str) -> str:
+def tf_rule(plan: Index, robot: Robot, topic: str) -> str:
     """The remap rule for a tf topic; its target is relative in the robot's own namespace."""
     namespaced = any(node.startswith(f"/{robot.name}/") for node in plan.own[robot.name])
     place = robot.tf_topic.removeprefix(f"/{robot.name}/") if namespaced else robot.tf_topic
     return f"/{topic}:={'/'.join(topic if it == 'tf' else it for it in place.split('/'))}"
 
 
-def why_other_name(plan: Planned, node: str, match: str) -> Cause:
+def why_other_name(plan: Index, node: str, match: str) -> Cause:
     """Why a planned node runs under another name, which is ``match``."""
     robot = plan.robot_of[node]
     plugin, place = plugin_of(plan, node)
-    plain = plan.names.without_robot(node, robot)
+    plain = plan.of_names.without_robot(node, robot)
     namespaced = node == f"/{robot}{plain}"
     if match not in (plain, f"/{plain.rpartition('/')[2]}"):
         return Cause(f"{match} is running; is it this node under another name?")

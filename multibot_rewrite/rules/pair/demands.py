@@ -13,7 +13,6 @@ from multibot_rewrite.rules.declaration import found_by_plan, pair_rule
 from multibot_rewrite.rules.pair.causes import DOES
 from multibot_rewrite.rules.system.matching import not_latched
 from multibot_rewrite.system.index import Index, ends_of
-from multibot_rewrite.system.planned import Planned
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, End, Topic, alternatives
 
 # How the nodes of ros_gz_bridge are called.
@@ -43,7 +42,7 @@ running: /teleop_twist_keyboard publishes /robot1/cmd_vel_teleop
 """,
     line=3,
 )
-def sender_not_planned(plan: Planned, seen: Index) -> Iterator[Finding]:
+def sender_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
     """Of topics with senders; one finding for each other node."""
     for topic in (it for it in plan.system.topics if it.senders):
         allowed = shorten(topic.senders, SEVERAL)
@@ -61,24 +60,24 @@ def _may_send(topic: Topic, node: str) -> bool:
 
 
 def _publishers(seen: Index, name: str) -> Sequence[End]:
-    ends = seen.names.get((TOPIC, name))
+    ends = seen.by_name.get((TOPIC, name))
     return ends.publishers if ends else ()
 
 
-def _about(plan: Planned, topic: Topic, node: str) -> dict[str, object]:
-    robot = plan.names.robot(topic.name) or plan.robot_of.get(node, "")
+def _about(plan: Index, topic: Topic, node: str) -> dict[str, object]:
+    robot = plan.robot(topic.name) or plan.robot_of.get(node, "")
     return {"robot": robot, "node": node, "names": (topic.name,)}
 
 
 @found_by_plan(sender_not_planned)
-def several_senders(plan: Planned, seen: Index) -> Iterator[Finding]:
+def several_senders(plan: Index, seen: Index) -> Iterator[Finding]:
     """One finding a topic, at the sender that is not planned if there is one."""
     for topic in (it for it in plan.system.topics if it.one_sender):
         nodes = dict.fromkeys(it.node for it in _publishers(seen, topic.name))
         if len(nodes) > 1:
             planned = (TOPIC, PUBLISHES, topic.name)
             others = [
-                it for it in nodes if (it, *planned) not in plan.ends and not _may_send(topic, it)
+                it for it in nodes if (it, *planned) not in plan.by_key and not _may_send(topic, it)
             ]
             node = next(iter((*others, *nodes)))
             listed = shorten(nodes, SEVERAL)
@@ -88,10 +87,10 @@ def several_senders(plan: Planned, seen: Index) -> Iterator[Finding]:
 
 
 @found_by_plan(sender_not_planned, nodes=False)
-def more_senders_than_planned(plan: Planned, seen: Index) -> Iterator[Finding]:
+def more_senders_than_planned(plan: Index, seen: Index) -> Iterator[Finding]:
     """Where it is not known which nodes run: more publishers of a robot's topic than the plan has."""
     nodes: dict[str, set[str]] = defaultdict(set)
-    for node, kind, role, name in plan.ends if not seen.nodes else ():
+    for node, kind, role, name in plan.by_key if not seen.nodes else ():
         if (kind, role) == (TOPIC, PUBLISHES):
             nodes[name].add(node)
     single = {it.name for it in plan.system.topics if it.one_sender}
@@ -104,7 +103,7 @@ def more_senders_than_planned(plan: Planned, seen: Index) -> Iterator[Finding]:
 
 
 @found_by_plan(not_latched, nodes=False)
-def other_qos_offered(plan: Planned, seen: Index) -> Iterator[Finding]:
+def other_qos_offered(plan: Index, seen: Index) -> Iterator[Finding]:
     """Where the snapshot knows what is offered."""
     for topic in (it for it in plan.system.topics if it.qos):
         for end in _publishers(seen, topic.name):
@@ -145,7 +144,7 @@ planned: /robot1/amcl
 as planned: /robot1/slam_toolbox
 """,
 )
-def no_alternative_runs(plan: Planned, seen: Index) -> Iterator[Finding]:
+def no_alternative_runs(plan: Index, seen: Index) -> Iterator[Finding]:
     """A robot of which nothing runs has a finding of its own."""
     for group in alternatives(plan.system):
         robot = _robot_of(plan, group)
@@ -175,7 +174,7 @@ as planned: /robot1/amcl
 planned: /robot1/slam_toolbox
 """,
 )
-def several_alternatives_run(plan: Planned, seen: Index) -> Iterator[Finding]:
+def several_alternatives_run(plan: Index, seen: Index) -> Iterator[Finding]:
     """One finding a group."""
     for group in alternatives(plan.system):
         running = [node for node in group if node in seen.nodes]
@@ -217,7 +216,7 @@ running: /robot1/ros_gz_bridge subscribes /robot1/cmd_vel geometry_msgs/msg/Twis
 """,
     line=2,
 )
-def bridged_topic_missing(plan: Planned, seen: Index) -> Iterator[Finding]:
+def bridged_topic_missing(plan: Index, seen: Index) -> Iterator[Finding]:
     """One finding for a robot; one for all where nothing is bridged."""
     rows = [(topic, role) for topic in plan.system.topics for role in topic.bridge]
     missing = [(topic, role) for topic, role in rows if not _is_carried(seen, topic, role)]
@@ -227,13 +226,13 @@ def bridged_topic_missing(plan: Planned, seen: Index) -> Iterator[Finding]:
         return
     by_robot: dict[str, list[tuple[Topic, str]]] = defaultdict(list)
     for topic, role in missing:
-        by_robot[plan.names.robot(topic.name)].append((topic, role))
+        by_robot[plan.robot(topic.name)].append((topic, role))
     for robot, own in by_robot.items():
         if not (robot and _absent(plan, seen, robot)):
             yield _not_carried(plan, seen, robot, own, ERROR)
 
 
-def _absent(plan: Planned, seen: Index, robot: str) -> bool:
+def _absent(plan: Index, seen: Index, robot: str) -> bool:
     """A robot of which nothing runs has a finding of its own."""
     return seen.nodes.keys().isdisjoint(plan.own[robot])
 
@@ -245,7 +244,7 @@ def _is_carried(seen: Index, topic: Topic, role: str) -> bool:
 
 
 def _not_carried(
-    plan: Planned, seen: Index, robot: str, rows: Sequence[tuple[Topic, str]], level: str
+    plan: Index, seen: Index, robot: str, rows: Sequence[tuple[Topic, str]], level: str
 ) -> Finding:
     topic, role = rows[0]
     more = f"; so it is with {len(rows) - 1} more of the bridge" if len(rows) > 1 else ""
@@ -258,13 +257,13 @@ def _not_carried(
     return bridged_topic_missing.finding(message, hint, level=level, robot=robot, names=names)
 
 
-def _bridges_there(plan: Planned, seen: Index, robot: str) -> str:
+def _bridges_there(plan: Index, seen: Index, robot: str) -> str:
     bridges = [it for it in seen.nodes if it.rpartition("/")[2].endswith(_BRIDGES)]
-    own = [it for it in bridges if plan.names.robot(it) == robot] or bridges
+    own = [it for it in bridges if plan.robot(it) == robot] or bridges
     if not own:
         return "no ros_gz_bridge is in the graph: start one with the robot's bridge.yaml"
     return f"add the row to the file of {shorten(own)}"
 
 
-def _robot_of(plan: Planned, nodes: Iterable[str]) -> str:
+def _robot_of(plan: Index, nodes: Iterable[str]) -> str:
     return next((plan.robot_of[node] for node in nodes if node in plan.robot_of), "")

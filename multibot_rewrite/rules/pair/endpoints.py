@@ -19,8 +19,7 @@ from multibot_rewrite.rules.pair.causes import (
 )
 from multibot_rewrite.rules.pair.meeting import missing
 from multibot_rewrite.rules.pair.similar_names import similar
-from multibot_rewrite.system.index import Index, by_node, in_namespaces_above
-from multibot_rewrite.system.planned import Planned
+from multibot_rewrite.system.index import Index, in_namespaces_above
 from multibot_rewrite.system.records import (
     CALLS,
     PUBLISHES,
@@ -55,7 +54,7 @@ running: /robot1/driver subscribes /cmd_vel
 """,
     good="as planned: /robot1/driver subscribes /robot1/cmd_vel\n",
 )
-def missing_endpoint(plan: Planned, seen: Index) -> Iterator[Finding]:
+def missing_endpoint(plan: Index, seen: Index) -> Iterator[Finding]:
     """Only where its node is in the graph."""
     for planned in missing(plan, seen).values():
         robot = plan.robot_of.get(planned.node, "")
@@ -71,11 +70,11 @@ def missing_endpoint(plan: Planned, seen: Index) -> Iterator[Finding]:
         )
 
 
-def _why_missing(plan: Planned, seen: Index, planned: End) -> Cause:
+def _why_missing(plan: Index, seen: Index, planned: End) -> Cause:
     """Answers the most common question: why do we never get the topic /robot1/cmd_vel?"""
     used = _used_instead(plan, seen, planned)
     if not used:
-        managed = (planned.node, SERVICE, SERVES, f"{planned.node}/get_state") in plan.ends
+        managed = (planned.node, SERVICE, SERVES, f"{planned.node}/get_state") in plan.by_key
         state = f"; is it configured? ros2 lifecycle get {planned.node}" if managed else ""
         return Cause(f"it has no similar name; is it switched off by a parameter?{state}")
     instead = f"it {DOES[planned.role]} {used} instead"
@@ -85,19 +84,19 @@ def _why_missing(plan: Planned, seen: Index, planned: End) -> Cause:
     return Cause(f"{instead}{_why_remapped(plan, seen, planned, used)}")
 
 
-def _why_remapped(plan: Planned, seen: Index, planned: End, used: str) -> str:
+def _why_remapped(plan: Index, seen: Index, planned: End, used: str) -> str:
     """Why an endpoint has a name that comes from a rule or parameter."""
-    if not plan.names.robot(planned.name):
+    if not plan.robot(planned.name):
         return f": a rule remaps it, but the plan has one {planned.name} for all robots"
     if used in _moved_down(plan, seen, planned):
         return f": {use_absolute(planned.name)}"
-    other = plan.names.robot(used)
+    other = plan.robot(used)
     if other and other != plan.robot_of.get(planned.node, other):
         return f", a name of {other}: a remap rule or parameter names the wrong robot"
     return ": is the name misspelled in a remap rule or parameter?"
 
 
-def _used_instead(plan: Planned, seen: Index, planned: End) -> str:
+def _used_instead(plan: Index, seen: Index, planned: End) -> str:
     """The name that the node probably uses in place of a planned one, or an empty string."""
     unplanned = _unplanned_names(plan, seen, planned)
     likely = [name for name in names_without_rules(plan, planned) if name in unplanned]
@@ -105,7 +104,7 @@ def _used_instead(plan: Planned, seen: Index, planned: End) -> str:
     if likely:
         return likely[0]
     # A node for all robots has names of several: which robot's is in the name itself.
-    ownership = plan.names
+    ownership = plan.of_names
     robot = plan.robot_of.get(planned.node) or ownership.robot(planned.name)
     plain = {
         ownership.without_robot(name, ownership.robot(name) or robot): name for name in unplanned
@@ -117,7 +116,7 @@ def _used_instead(plan: Planned, seen: Index, planned: End) -> str:
     return similar(planned.name, unplanned)
 
 
-def _moved_down(plan: Planned, seen: Index, planned: End) -> list[str]:
+def _moved_down(plan: Index, seen: Index, planned: End) -> list[str]:
     """The unplanned names that are a relative name resolved below the node's own namespace."""
     return [
         name
@@ -126,21 +125,21 @@ def _moved_down(plan: Planned, seen: Index, planned: End) -> list[str]:
     ]
 
 
-def _unplanned_names(plan: Planned, seen: Index, planned: End) -> list[str]:
+def _unplanned_names(plan: Index, seen: Index, planned: End) -> list[str]:
     """The names that the node uses in the role of a planned endpoint without being planned."""
     node, kind, role = planned.node, planned.kind, planned.role
     return [
         e.name
-        for e in by_node(seen).get(node, ())
-        if (e.kind, e.role) == (kind, role) and (node, kind, role, e.name) not in plan.ends
+        for e in seen.by_node.get(node, ())
+        if (e.kind, e.role) == (kind, role) and (node, kind, role, e.name) not in plan.by_key
     ]
 
 
 @found_by_plan(missing_endpoint, nodes=False)
-def topic_of_some_robots(plan: Planned, seen: Index) -> Iterator[Finding]:
+def topic_of_some_robots(plan: Index, seen: Index) -> Iterator[Finding]:
     """Where it is not known which nodes run: a topic that each robot sends by the plan, and that is
     there for some of them."""
-    there = {name for kind, name in seen.names if kind == TOPIC}
+    there = {name for kind, name in seen.by_name if kind == TOPIC}
     for names in _sent_by_each(plan).values() if not seen.nodes else ():
         others = [name for name in names.values() if name in there]
         for robot, name in names.items() if others else ():
@@ -150,14 +149,14 @@ def topic_of_some_robots(plan: Planned, seen: Index) -> Iterator[Finding]:
                 yield missing_endpoint.finding(message, cause, robot=robot, names=(name,))
 
 
-def _sent_by_each(plan: Planned) -> Mapping[str, Mapping[str, str]]:
+def _sent_by_each(plan: Index) -> Mapping[str, Mapping[str, str]]:
     """Name without the robot's -> robot -> topic that is published by the plan; tf is of each."""
     shared = {*plan.system.shared_topics, *EVERYBODYS}
-    sent = [name for _, kind, role, name in plan.ends if (kind, role) == (TOPIC, PUBLISHES)]
+    sent = [name for _, kind, role, name in plan.by_key if (kind, role) == (TOPIC, PUBLISHES)]
     trees = [it.tf_topic for it in plan.system.robots if it.frames]
     found: dict[str, dict[str, str]] = defaultdict(dict)
     for name in (*sent, *trees):
-        robot = plan.names.robot(name)
+        robot = plan.robot(name)
         if robot and name not in shared:
-            found[plan.names.without_robot(name, robot)][robot] = name
+            found[plan.of_names.without_robot(name, robot)][robot] = name
     return found

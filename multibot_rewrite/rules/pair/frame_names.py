@@ -16,7 +16,6 @@ from multibot_rewrite.rules.pair.tf_trees import TfTree, frames_in, tf_trees
 from multibot_rewrite.rules.system.transforms import robots_name_twice
 from multibot_rewrite.system.index import Index
 from multibot_rewrite.system.ownership import SEPARATORS, without_tag_once
-from multibot_rewrite.system.planned import Planned
 from multibot_rewrite.system.records import Edge, Robot
 
 
@@ -40,22 +39,22 @@ running: transform base_link/robot1 -> laser/robot1 on /tf_static by /robot1/dri
 """,
     line=2,
 )
-def frame_without_robot_name(plan: Planned, seen: Index) -> Iterator[Finding]:
+def frame_without_robot_name(plan: Index, seen: Index) -> Iterator[Finding]:
     """Of one robot only; else it is a frame of several robots."""
     for tree in tf_trees(plan, seen):
         own: dict[str, list[str]] = defaultdict(list)
         for frame, robots in _frames_without_robot(plan, tree).items():
-            if len(robots) == 1 and frame not in plan.robots[robots[0]].frames:
+            if len(robots) == 1 and frame not in plan.declared[robots[0]].frames:
                 own[robots[0]].append(frame)
         for robot, found in own.items():
             message = f"frames {shorten(found)} on {tree.topic} do not have the name of {robot}"
-            cause = _why_bare(plan, tree, plan.robots[robot], found)
+            cause = _why_bare(plan, tree, plan.declared[robot], found)
             yield frame_without_robot_name.finding(
                 message, **cause._asdict(), robot=robot, names=tuple(found)
             )
 
 
-def _why_bare(plan: Planned, tree: TfTree, robot: Robot, names: Sequence[str]) -> Cause:
+def _why_bare(plan: Index, tree: TfTree, robot: Robot, names: Sequence[str]) -> Cause:
     """The node that sends all of them by the plan, besides the description; else the description."""
     by_name = _by_plain_name(plan, robot)
     expected = {by_name[name] for name in names}
@@ -69,33 +68,33 @@ def _why_bare(plan: Planned, tree: TfTree, robot: Robot, names: Sequence[str]) -
     return Cause(f"{first}: load the rewritten description in {senders}")
 
 
-def _frames_without_robot(plan: Planned, tree: TfTree) -> dict[str, list[str]]:
+def _frames_without_robot(plan: Index, tree: TfTree) -> dict[str, list[str]]:
     """The frames of a tree that hold no robot's name, with the robots they may belong to.
 
     That is a robot that declares the frame so, or with its name while that frame is not there.
     """
     present = set(frames_in(tree))
-    unnamed = {name for name in present if not plan.frames.robot(name)}
+    unnamed = {name for name in present if not plan.frame_robot(name)}
     unnamed -= {*plan.system.shared_frames}
     found: dict[str, list[str]] = defaultdict(list)
-    for robot in (plan.robots[name] for name in tree.robots if unnamed):
+    for robot in (plan.declared[name] for name in tree.robots if unnamed):
         for plain, frame in _by_plain_name(plan, robot).items():
             if plain in unnamed and (plain == frame or frame not in present):
                 found[plain].append(robot.name)
     return found
 
 
-def _has_plain_frames(plan: Planned, robot: Robot) -> bool:
+def _has_plain_frames(plan: Index, robot: Robot) -> bool:
     """Whether the layout has the same frames for every robot; one of them may hold its name."""
-    ownership = plan.frames
+    ownership = plan.of_frames
     return any(ownership.without_robot(frame, robot.name) == frame for frame in robot.frames)
 
 
-def _by_plain_name(plan: Planned, robot: Robot) -> dict[str, str]:
+def _by_plain_name(plan: Index, robot: Robot) -> dict[str, str]:
     """The robot's frames by their name without the robot's."""
     if _has_plain_frames(plan, robot):
         return {frame: frame for frame in robot.frames}
-    return {plan.frames.without_robot(frame, robot.name): frame for frame in robot.frames}
+    return {plan.of_frames.without_robot(frame, robot.name): frame for frame in robot.frames}
 
 
 @pair_rule(
@@ -117,34 +116,34 @@ running: transform base_link/robot1 -> laser/robot1 on /tf_static
 """,
     line=2,
 )
-def undeclared_frame(plan: Planned, seen: Index) -> Iterator[Finding]:
+def undeclared_frame(plan: Index, seen: Index) -> Iterator[Finding]:
     """A frame that a driver adds below its sensor's link is none."""
     for tree in tf_trees(plan, seen):
         children = {edge.child: edge for edge in tree.edges}
         for robot, names in _not_in_a_description(plan, tree, children).items():
-            prefixed = added_prefixes(plan.robots[robot], names)
+            prefixed = added_prefixes(plan.declared[robot], names)
             found = [
                 name
                 for name in names
                 if name in children and not _of_a_sensor(plan, robot, name, children)
-                if name not in prefixed and not _has_name_twice(plan, plan.robots[robot], name)
+                if name not in prefixed and not _has_name_twice(plan, plan.declared[robot], name)
             ]
             if found:
-                yield _undeclared(plan, plan.robots[robot], found)
+                yield _undeclared(plan, plan.declared[robot], found)
 
 
-def _undeclared(plan: Planned, robot: Robot, names: Sequence[str]) -> Finding:
+def _undeclared(plan: Index, robot: Robot, names: Sequence[str]) -> Finding:
     verb = "is" if len(names) == 1 else "are"
     message = f"{_frames(names).rpartition(' ')[0]} {verb} not in the description of {robot.name}"
     declared = _by_plain_name(plan, robot)
-    plain = plan.frames.without_robot(names[0], robot.name)
+    plain = plan.of_frames.without_robot(names[0], robot.name)
     meant = declared.get(plain) or declared.get(similar(plain, declared), "")
     cause = f"did you mean {meant}? Otherwise" if meant else "a sensor's own frame? Then"
     cause += f" add {'it' if len(names) == 1 else 'them'} to other_frames of the plan"
     return undeclared_frame.finding(message, cause, robot=robot.name, names=tuple(names))
 
 
-def _of_a_sensor(plan: Planned, robot: str, name: str, children: Mapping[str, Edge]) -> bool:
+def _of_a_sensor(plan: Index, robot: str, name: str, children: Mapping[str, Edge]) -> bool:
     """Whether a frame is one that a driver adds below its sensor's link.
 
     Its name begins like the link's: camera_depth_frame is below camera_link.
@@ -158,15 +157,15 @@ def _of_a_sensor(plan: Planned, robot: str, name: str, children: Mapping[str, Ed
     return False
 
 
-def _first_word(plan: Planned, frame: str, robot: str) -> str:
-    plain = plan.frames.without_robot(frame, robot)
+def _first_word(plan: Index, frame: str, robot: str) -> str:
+    plain = plan.of_frames.without_robot(frame, robot)
     return plain[
         : next((at for at, letter in enumerate(plain) if letter in "/" + SEPARATORS), None)
     ]
 
 
 @found_by_plan(robots_name_twice, nodes=False)
-def robot_name_twice(plan: Planned, seen: Index) -> Iterator[Finding]:
+def robot_name_twice(plan: Index, seen: Index) -> Iterator[Finding]:
     """Parents and children."""
     for tree in tf_trees(plan, seen):
         children = {edge.child: edge for edge in tree.edges}
@@ -174,7 +173,7 @@ def robot_name_twice(plan: Planned, seen: Index) -> Iterator[Finding]:
         for frame, of in _behind_prefixes(plan, tree):
             found[of].append(frame)
         for name, names in found.items():
-            robot = plan.robots[name]
+            robot = plan.declared[name]
             twice = [it for it in names if _has_name_twice(plan, robot, it)]
             if twice:
                 yield _doubled(plan, robot, twice)
@@ -184,9 +183,9 @@ def robot_name_twice(plan: Planned, seen: Index) -> Iterator[Finding]:
                 yield _prefixed(plan, robot, others, prefixed[others[0]])
 
 
-def _behind_prefixes(plan: Planned, tree: TfTree) -> Iterator[tuple[str, str]]:
+def _behind_prefixes(plan: Index, tree: TfTree) -> Iterator[tuple[str, str]]:
     """Frames on a shared topic that say no robot and are of one but for a prefix, each with it."""
-    ownership = plan.frames
+    ownership = plan.of_frames
     for frame in frames_in(tree) if len(tree.home) != 1 else ():
         if frame not in plan.system.shared_frames and not ownership.robot(frame):
             robot = robot_behind_prefix(ownership, frame)
@@ -195,7 +194,7 @@ def _behind_prefixes(plan: Planned, tree: TfTree) -> Iterator[tuple[str, str]]:
 
 
 def _not_in_a_description(
-    plan: Planned, tree: TfTree, children: Mapping[str, Edge]
+    plan: Index, tree: TfTree, children: Mapping[str, Edge]
 ) -> dict[str, list[str]]:
     """By robot: the frames of a tree that are its own and not in its description."""
     found: dict[str, list[str]] = defaultdict(list)
@@ -206,7 +205,7 @@ def _not_in_a_description(
     return found
 
 
-def _prefixed(plan: Planned, robot: Robot, names: Sequence[str], prefix: str) -> Finding:
+def _prefixed(plan: Index, robot: Robot, names: Sequence[str], prefix: str) -> Finding:
     verb = "is" if len(names) == 1 else "are"
     what = f"{_frames(names).rpartition(' ')[0]} {verb}"
     message = f"{what} planned without {prefix!r} in front"
@@ -217,7 +216,7 @@ def _prefixed(plan: Planned, robot: Robot, names: Sequence[str], prefix: str) ->
     return robots_name_twice.finding(message, cause, robot=robot.name, names=tuple(names))
 
 
-def _doubled(plan: Planned, robot: Robot, names: Sequence[str]) -> Finding:
+def _doubled(plan: Index, robot: Robot, names: Sequence[str]) -> Finding:
     cause = (
         "frame_prefix of robot_state_publisher or tf_frame_prefix_enable of a controller (on by "
     )
@@ -234,8 +233,8 @@ def _frames(names: Sequence[str]) -> str:
     return f"frame {names[0]} has" if len(names) == 1 else f"frames {shorten(names)} have"
 
 
-def _has_name_twice(plan: Planned, robot: Robot, name: str) -> bool:
-    ownership = plan.frames
+def _has_name_twice(plan: Index, robot: Robot, name: str) -> bool:
+    ownership = plan.of_frames
     tag = ownership.tag(robot.name)
     if not plan.frames_of[robot.name].isdisjoint(without_tag_once(name, tag)):
         return True
@@ -245,17 +244,15 @@ def _has_name_twice(plan: Planned, robot: Robot, name: str) -> bool:
     return twice != once and not ambiguous and twice in _by_plain_name(plan, robot)
 
 
-def _robot_without_frame(
-    plan: Planned, tree: TfTree, name: str, children: Mapping[str, Edge]
-) -> str:
+def _robot_without_frame(plan: Index, tree: TfTree, name: str, children: Mapping[str, Edge]) -> str:
     """The robot of a frame by name or topic, if the frame is not in the robot's description."""
-    if name in plan.system.shared_frames or plan.frames.exact.get(name):
+    if name in plan.system.shared_frames or plan.of_frames.exact.get(name):
         return ""
-    robot = plan.frames.robot(name)
+    robot = plan.frame_robot(name)
     # A moving frame on a robot's own topic may be anything that it detects.
     if not robot and len(tree.home) == 1 and name in children and children[name].static:
         robot = tree.home[0]
-    if not robot or not plan.robots[robot].frames or name in plan.frames_of[robot]:
+    if not robot or not plan.declared[robot].frames or name in plan.frames_of[robot]:
         return ""
     # frame_without_robot_name reports a frame that only lacks the robot's name.
-    return "" if name in _by_plain_name(plan, plan.robots[robot]) else robot
+    return "" if name in _by_plain_name(plan, plan.declared[robot]) else robot

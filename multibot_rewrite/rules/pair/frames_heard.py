@@ -17,7 +17,6 @@ from multibot_rewrite.rules.pair.tf_senders import described_robots, sent_by_rob
 from multibot_rewrite.rules.pair.tf_trees import frames_in, tf_trees
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 from multibot_rewrite.system.index import Index
-from multibot_rewrite.system.planned import Planned
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, Robot
 
 
@@ -45,7 +44,7 @@ running: transform odom/robot1 -> base_link/robot1 on /tf
 running: transform base_link/robot1 -> wheel/robot1 on /tf
 """,
 )
-def frame_not_received(plan: Planned, seen: Index) -> Iterator[Finding]:
+def frame_not_received(plan: Index, seen: Index) -> Iterator[Finding]:
     """One finding for a robot whose senders all run. Where no transform was received at all, tf may
     not have been looked at."""
     senders = _senders(plan) if seen.system.edges else {}
@@ -61,11 +60,11 @@ def frame_not_received(plan: Planned, seen: Index) -> Iterator[Finding]:
             yield _not_received(plan, seen, robot, missing)
 
 
-def _senders(plan: Planned) -> Mapping[str, set[str]]:
+def _senders(plan: Index) -> Mapping[str, set[str]]:
     """By robot: its planned nodes that publish its tf."""
     topics = {robot.name: _tf_topics(robot) for robot in plan.system.robots}
     found: dict[str, set[str]] = defaultdict(set)
-    for node, kind, role, name in plan.ends:
+    for node, kind, role, name in plan.by_key:
         robot = plan.robot_of.get(node, "")
         if robot and (kind, role) == (TOPIC, PUBLISHES) and name in topics[robot]:
             found[robot].add(node)
@@ -78,7 +77,7 @@ def _tf_topics(robot: Robot) -> tuple[str, str]:
     )
 
 
-def _trees_of(plan: Planned, seen: Index) -> Mapping[str, list[Set[str]]]:
+def _trees_of(plan: Index, seen: Index) -> Mapping[str, list[Set[str]]]:
     """By robot: the frames on its tf topic, and on others where it sends: those have a finding of
     their own."""
     found: dict[str, list[Set[str]]] = defaultdict(list)
@@ -89,9 +88,9 @@ def _trees_of(plan: Planned, seen: Index) -> Mapping[str, list[Set[str]]]:
     return found
 
 
-def _strays(plan: Planned, seen: Index) -> Mapping[str, list[str]]:
+def _strays(plan: Index, seen: Index) -> Mapping[str, list[str]]:
     """By robot: frames that are not planned and are its own by name, or by the topic."""
-    ownership = plan.frames
+    ownership = plan.of_frames
     found: dict[str, list[str]] = defaultdict(list)
     for tree in tf_trees(plan, seen):
         home = tree.home[0] if len(tree.home) == 1 else ""
@@ -103,7 +102,7 @@ def _strays(plan: Planned, seen: Index) -> Mapping[str, list[str]]:
 
 
 def _is_heard(
-    plan: Planned,
+    plan: Index,
     robot: Robot,
     frame: str,
     heard: Sequence[Set[str]],
@@ -113,12 +112,12 @@ def _is_heard(
     if any(frame in frames for frames in heard):
         return True
     plain = _plain(plan, robot, frame)
-    variants = [*name_variants(plain, frame, plan.frames.tag(robot.name))]
+    variants = [*name_variants(plain, frame, plan.of_frames.tag(robot.name))]
     variants += [f"{prefix}{frame}" for prefix in prefixes]
     return any(not frames.isdisjoint(variants) for frames in heard)
 
 
-def _not_received(plan: Planned, seen: Index, robot: Robot, missing: Sequence[str]) -> Finding:
+def _not_received(plan: Index, seen: Index, robot: Robot, missing: Sequence[str]) -> Finding:
     several = f"{len(missing)} of the {len(robot.frames)} frames of {robot.name} are"
     what = several if len(missing) > 1 else f"frame {missing[0]} of {robot.name} is"
     message = f"{what} in no transform: {shorten(missing)}"
@@ -126,11 +125,11 @@ def _not_received(plan: Planned, seen: Index, robot: Robot, missing: Sequence[st
     return frame_not_received.finding(message, hint, robot=robot.name, names=tuple(missing))
 
 
-def _plain(plan: Planned, robot: Robot, frame: str) -> str:
-    return plan.frames.without_robot(frame, robot.name)
+def _plain(plan: Index, robot: Robot, frame: str) -> str:
+    return plan.of_frames.without_robot(frame, robot.name)
 
 
-def _why_not_received(plan: Planned, seen: Index, robot: Robot, missing: Sequence[str]) -> str:
+def _why_not_received(plan: Index, seen: Index, robot: Robot, missing: Sequence[str]) -> str:
     silent = min(silent_topics(plan, seen, robot, JOINT_STATES), default="")
     if silent:
         source = "joint_state_publisher, joint_state_broadcaster or the bridge"

@@ -9,7 +9,6 @@ from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import pair_rule
 from multibot_rewrite.spelling.enclaves import enclave_of
 from multibot_rewrite.system.index import Index
-from multibot_rewrite.system.planned import Planned
 from multibot_rewrite.system.records import Node
 
 
@@ -35,13 +34,13 @@ running: enclave /robot2 of /robot2/driver
 """,
     line=1,
 )
-def enclave_of_another_robot(plan: Planned, seen: Index) -> Iterator[Finding]:
+def enclave_of_another_robot(plan: Index, seen: Index) -> Iterator[Finding]:
     """By the robots' names in the path of the enclave."""
     for name, enclave in dict.fromkeys((it.name, it.enclave) for it in seen.system.nodes):
         robot = plan.robot_of.get(name, "")
         if not (robot and enclave) or _is_of(enclave, robot):
             continue
-        other = next((it for it in sorted(plan.robots) if _is_of(enclave, it)), "")
+        other = next((it for it in sorted(plan.declared) if _is_of(enclave, it)), "")
         if other:
             message = f"{name} is in the enclave {enclave}, which is of {other}"
             yield enclave_of_another_robot.finding(message, _start(robot), robot=robot, node=name)
@@ -67,12 +66,12 @@ running: enclave /robot2 of /robot2/driver
     good="as planned: /robot1/driver\nas planned: /robot2/driver\n",
     line=1,
 )
-def without_enclave(plan: Planned, seen: Index) -> Iterator[Finding]:
+def without_enclave(plan: Index, seen: Index) -> Iterator[Finding]:
     """One finding a robot."""
     planned = [it for it in seen.system.nodes if it.name in plan.robot_of]
     if not any(it.enclave for it in planned):
         return
-    bare: dict[str, list[Node]] = {robot: [] for robot in plan.robots}
+    bare: dict[str, list[Node]] = {robot: [] for robot in plan.declared}
     for it in planned:
         if not it.enclave:
             bare[plan.robot_of[it.name]].append(it)

@@ -26,8 +26,7 @@ from multibot_rewrite.rules.system.commands import (
 )
 from multibot_rewrite.rules.system.names import service_of_two_nodes
 from multibot_rewrite.rules.system.sharing import data_of_another_robot, topic_of_several_robots
-from multibot_rewrite.system.index import TF, Index, ends_of, types
-from multibot_rewrite.system.planned import Planned
+from multibot_rewrite.system.index import TF, Index, ends_of
 from multibot_rewrite.system.records import SUBSCRIBES, TOPIC, End
 from multibot_rewrite.system.tf_copies import copying_nodes
 from multibot_rewrite.system.words import is_order
@@ -36,21 +35,21 @@ from multibot_rewrite.system.words import is_order
 @found_by_plan(
     topic_of_several_robots, command_for_several_robots, service_of_two_nodes, nodes=False
 )
-def name_of_no_robot(plan: Planned, seen: Index) -> Iterator[Finding]:
+def name_of_no_robot(plan: Index, seen: Index) -> Iterator[Finding]:
     """A robot's node uses a name of no robot that is not shared: all robots meet at such a name."""
     yield from _unplanned_leaks(plan, seen)
     yield from _planned_leaks(plan, seen)
     yield from _unsent_leaks(plan, seen)
 
 
-def _unplanned_leaks(plan: Planned, seen: Index) -> Iterator[Finding]:
+def _unplanned_leaks(plan: Index, seen: Index) -> Iterator[Finding]:
     shared = {*plan.system.shared_topics, *EVERYBODYS}
     not_remapped = _missing_by_name_without_rules(plan, seen)
     for node, robot in plan.robot_of.items():
         for end in {it.name: it for it in unplanned_ends(plan, seen).get(node, ())}.values():
             name = end.name
             # Whose tf is where is a rule of its own.
-            if name in shared or plan.names.robot(name) or end.type == TF:
+            if name in shared or plan.robot(name) or end.type == TF:
                 continue
             cause = _why_leaked(plan, node, name, not_remapped.get((node, name)))
             message = f"uses {name}, which is not a name of {robot}{_how_many(seen, name)}"
@@ -73,7 +72,7 @@ def _how_many(seen: Index, name: str) -> str:
     return ", and is not in shared_topics: robots that do the same meet there"
 
 
-def _missing_by_name_without_rules(plan: Planned, seen: Index) -> dict[tuple[str, str], End]:
+def _missing_by_name_without_rules(plan: Index, seen: Index) -> dict[tuple[str, str], End]:
     """The planned endpoints that are missing, by node and the name they have without a rule."""
     return {
         (planned.node, name): planned
@@ -83,28 +82,28 @@ def _missing_by_name_without_rules(plan: Planned, seen: Index) -> dict[tuple[str
     }
 
 
-def _why_leaked(plan: Planned, node: str, name: str, planned: End | None) -> Cause:
+def _why_leaked(plan: Index, node: str, name: str, planned: End | None) -> Cause:
     if planned:
         return why_not_remapped(plan, planned)
     plugin, place = plugin_of(plan, node)
     if plugin:
         return caused(f"{plugin} has no namespace or remap rule for it, see {place}", place)
     robot = plan.robot_of[node]
-    target = f"{name}/{robot}" if plan.names.robot_is_last else f"/{robot}{name}"
+    target = f"{name}/{robot}" if plan.of_names.robot_is_last else f"/{robot}{name}"
     rule = how_to_pass(plan, node, f"{name}:={target}")
     return Cause(f"an absolute name in its code or parameters; pass {rule}")
 
 
-def _planned_leaks(plan: Planned, seen: Index) -> Iterator[Finding]:
+def _planned_leaks(plan: Index, seen: Index) -> Iterator[Finding]:
     """A name that the plan itself has for several robots, because no remap rule changes it."""
     shared = {*plan.system.shared_topics, *EVERYBODYS, *_shared_tf(plan)}
     nodes: dict[str, dict[str, None]] = defaultdict(dict)
     relays = copying_nodes(plan.system)
-    for key in plan.ends:
+    for key in plan.by_key:
         node, _, _, name = key
-        if name in plan.names.exact or name in shared or node not in plan.robot_of:
+        if name in plan.of_names.exact or name in shared or node not in plan.robot_of:
             continue
-        if not plan.names.robot(name) and key in types(seen) and node not in relays:
+        if not plan.robot(name) and key in seen.by_key and node not in relays:
             nodes[name][node] = None
     for name, users in nodes.items():
         robots = dict.fromkeys(plan.robot_of[node] for node in users)
@@ -118,12 +117,12 @@ def _planned_leaks(plan: Planned, seen: Index) -> Iterator[Finding]:
             )
 
 
-def _unsent_leaks(plan: Planned, seen: Index) -> Iterator[Finding]:
+def _unsent_leaks(plan: Index, seen: Index) -> Iterator[Finding]:
     """Where it is not known which nodes run: a name that each robot has with its own in it."""
-    shared = {*plan.system.shared_topics, *EVERYBODYS, *(name for *_, name in plan.ends)}
+    shared = {*plan.system.shared_topics, *EVERYBODYS, *(name for *_, name in plan.by_key)}
     names = _names_of_robots(plan) if not seen.nodes else {}
-    for ends in seen.names.values() if names else ():
-        if ends.name in shared or plan.names.robot(ends.name) or ends.type == TF:
+    for ends in seen.by_name.values() if names else ():
+        if ends.name in shared or plan.robot(ends.name) or ends.type == TF:
             continue
         segments = ends.name.strip("/").split("/")
         likely = {"/" + "/".join(it) for it in (segments, segments[1:], segments[:-1])}
@@ -135,28 +134,28 @@ def _unsent_leaks(plan: Planned, seen: Index) -> Iterator[Finding]:
             yield rule.finding(message, cause, names=(ends.name,))
 
 
-def _names_of_robots(plan: Planned) -> Mapping[str, Sequence[str]]:
+def _names_of_robots(plan: Index) -> Mapping[str, Sequence[str]]:
     """The planned topics of robots by the name without the robot's."""
     found: dict[str, list[str]] = defaultdict(list)
-    for name in dict.fromkeys(name for _, kind, _, name in plan.ends if kind == TOPIC):
-        robot = plan.names.robot(name)
+    for name in dict.fromkeys(name for _, kind, _, name in plan.by_key if kind == TOPIC):
+        robot = plan.robot(name)
         if robot:
-            found[plan.names.without_robot(name, robot)].append(name)
+            found[plan.of_names.without_robot(name, robot)].append(name)
     return found
 
 
-def _shared_tf(plan: Planned) -> set[str]:
+def _shared_tf(plan: Index) -> set[str]:
     """The tf topics that robots share in their layout."""
     times = Counter(robot.tf_topic for robot in plan.system.robots)
     return {f"{tf}{end}" for tf, count in times.items() if count > 1 for end in ("", "_static")}
 
 
 @found_by_plan(command_from_another_robot, data_of_another_robot)
-def name_of_another_robot(plan: Planned, seen: Index) -> Iterator[Finding]:
+def name_of_another_robot(plan: Index, seen: Index) -> Iterator[Finding]:
     """Of planned nodes; names that are in the plan are meant."""
     for node, robot in plan.robot_of.items():
         for end in unplanned_ends(plan, seen).get(node, ()):
-            other = plan.names.robot(end.name)
+            other = plan.robot(end.name)
             # Whose tf is where is a rule of its own.
             if other and other != robot and end.type != TF:
                 reads = end.role == SUBSCRIBES

@@ -6,23 +6,22 @@ from collections import defaultdict
 from collections.abc import Mapping, Sequence, Set
 
 from multibot_rewrite.rules.pair.similar_names import probable_matches
-from multibot_rewrite.system.index import EndKey, Index, once, types
-from multibot_rewrite.system.planned import Planned
+from multibot_rewrite.system.index import EndKey, Index, once
 from multibot_rewrite.system.records import End
 
 
 @once
-def missing(plan: Planned, seen: Index) -> Mapping[EndKey, End]:
+def missing(plan: Index, seen: Index) -> Mapping[EndKey, End]:
     """The planned ends that are not there."""
-    there = types(seen)
-    return {key: end for key, end in plan.ends.items() if key not in there}
+    there = seen.by_key
+    return {key: end for key, end in plan.by_key.items() if key not in there}
 
 
 @once
-def unplanned_ends(plan: Planned, seen: Index) -> Mapping[str, Sequence[End]]:
+def unplanned_ends(plan: Index, seen: Index) -> Mapping[str, Sequence[End]]:
     """By node: the ends that are not planned, each once, without hidden ones."""
     found: dict[str, list[End]] = defaultdict(list)
-    known = set(plan.ends)
+    known = set(plan.by_key)
     for end in seen.system.ends:
         key = (end.node, end.kind, end.role, end.name)
         # A node may subscribe to a topic more than once.
@@ -33,20 +32,20 @@ def unplanned_ends(plan: Planned, seen: Index) -> Mapping[str, Sequence[End]]:
 
 
 @once
-def unplanned_nodes(plan: Planned, seen: Index) -> Sequence[str]:
+def unplanned_nodes(plan: Index, seen: Index) -> Sequence[str]:
     """The nodes that are not planned, without those that come and go."""
     return [node for node in _others(plan, seen) if not seen.is_tool(node)]
 
 
 @once
-def _others(plan: Planned, seen: Index) -> Set[str]:
+def _others(plan: Index, seen: Index) -> Set[str]:
     return dict.fromkeys(
         node for node in seen.nodes if node not in plan.robot_of and node not in plan.own[""]
     ).keys()
 
 
 @once
-def matches(plan: Planned, seen: Index) -> Mapping[str, str]:
+def matches(plan: Index, seen: Index) -> Mapping[str, str]:
     """The running node that each missing node probably is."""
     gone = {node: robot for node, robot in plan.robot_of.items() if node not in seen.nodes}
-    return probable_matches(gone, _others(plan, seen), unplanned_nodes(plan, seen), plan.names)
+    return probable_matches(gone, _others(plan, seen), unplanned_nodes(plan, seen), plan.of_names)

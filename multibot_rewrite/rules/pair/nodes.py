@@ -10,8 +10,7 @@ from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import pair_rule
 from multibot_rewrite.rules.pair.causes import Cause, caused, plugin_of, why_other_name
 from multibot_rewrite.rules.pair.meeting import matches, unplanned_nodes
-from multibot_rewrite.system.index import Index, by_node
-from multibot_rewrite.system.planned import Planned
+from multibot_rewrite.system.index import Index
 from multibot_rewrite.system.reach import hidden_from_here, why_not_seen
 from multibot_rewrite.system.records import Robot
 
@@ -39,7 +38,7 @@ as planned: /robot1/driver
 as planned: /robot1/planner
 """,
 )
-def missing_node(plan: Planned, seen: Index) -> Iterator[Finding]:
+def missing_node(plan: Index, seen: Index) -> Iterator[Finding]:
     """Of the plan; a robot without any of its nodes is one finding of ``missing_robot``."""
     for robot in plan.system.robots:
         for node in () if _is_absent(plan, seen, robot) else _missing(plan, seen, robot):
@@ -53,7 +52,7 @@ def missing_node(plan: Planned, seen: Index) -> Iterator[Finding]:
             yield missing_node.finding(message, "is it started?", level=WARNING, node=node)
 
 
-def _missing(plan: Planned, seen: Index, robot: Robot) -> list[str]:
+def _missing(plan: Index, seen: Index, robot: Robot) -> list[str]:
     """An optional node is missing only where it runs under another name."""
     return [
         node
@@ -62,11 +61,11 @@ def _missing(plan: Planned, seen: Index, robot: Robot) -> list[str]:
     ]
 
 
-def _is_absent(plan: Planned, seen: Index, robot: Robot) -> bool:
+def _is_absent(plan: Index, seen: Index, robot: Robot) -> bool:
     return seen.nodes.keys().isdisjoint(plan.own[robot.name]) and bool(_missing(plan, seen, robot))
 
 
-def _not_started(plan: Planned, node: str) -> Cause:
+def _not_started(plan: Index, node: str) -> Cause:
     plugin, place = plugin_of(plan, node)
     if plugin:
         started = f"{plugin} of the description should start it, see {place}"
@@ -93,16 +92,16 @@ as planned: /robot1/gripper
 """,
     line=2,
 )
-def unplanned_node(plan: Planned, seen: Index) -> Iterator[Finding]:
+def unplanned_node(plan: Index, seen: Index) -> Iterator[Finding]:
     """Only where the plan has nodes of its robot."""
     if not unplanned_nodes(plan, seen):
         return
     meant = set(matches(plan, seen).values())
     planned = {robot.name for robot in plan.system.robots if plan.own[robot.name]}
-    without_robot = plan.names.without_robot
+    without_robot = plan.of_names.without_robot
     originals = {without_robot(node, robot): node for node, robot in plan.robot_of.items()}
     for node in unplanned_nodes(plan, seen) if planned else ():
-        robot = plan.names.robot(node)
+        robot = plan.robot(node)
         if node in meant or (robot and robot not in planned):
             continue
         if robot:
@@ -117,11 +116,11 @@ def unplanned_node(plan: Planned, seen: Index) -> Iterator[Finding]:
         yield unplanned_node.finding(message, cause, robot=robot, node=node)
 
 
-def _foreign_names(plan: Planned, seen: Index, node: str, robot: str) -> str:
+def _foreign_names(plan: Index, seen: Index, node: str, robot: str) -> str:
     """The names of a node that do not hold its robot's name: these may disturb other robots."""
     shared = {*plan.system.shared_topics, *EVERYBODYS}
-    names = dict.fromkeys(e.name for e in by_node(seen).get(node, ()) if "/_" not in e.name)
-    foreign = [n for n in names if n not in shared and plan.names.robot(n) != robot]
+    names = dict.fromkeys(e.name for e in seen.by_node.get(node, ()) if "/_" not in e.name)
+    foreign = [n for n in names if n not in shared and plan.robot(n) != robot]
     return f"; it uses {shorten(foreign)}, without the name of {robot}" if foreign else ""
 
 
@@ -146,7 +145,7 @@ as planned: /robot2/driver
 """,
     line=2,
 )
-def missing_robot(plan: Planned, seen: Index) -> Iterator[Finding]:
+def missing_robot(plan: Index, seen: Index) -> Iterator[Finding]:
     """One finding in place of one for each node."""
     for robot in plan.system.robots:
         if _is_absent(plan, seen, robot):
@@ -159,13 +158,13 @@ def missing_robot(plan: Planned, seen: Index) -> Iterator[Finding]:
             yield missing_robot.finding(message, **cause._asdict(), robot=robot.name, level=level)
 
 
-def _matches(plan: Planned, seen: Index, robot: Robot) -> list[tuple[str, str]]:
+def _matches(plan: Index, seen: Index, robot: Robot) -> list[tuple[str, str]]:
     """Its nodes, and those that probably run in their place."""
     found = matches(plan, seen)
     return [(node, found[node]) for node in plan.own[robot.name] if node in found]
 
 
-def _why_absent(plan: Planned, seen: Index, robot: Robot) -> Cause:
+def _why_absent(plan: Index, seen: Index, robot: Robot) -> Cause:
     matches = _matches(plan, seen, robot)
     if not matches:
         return Cause(why_not_seen(seen.system, robot.name))

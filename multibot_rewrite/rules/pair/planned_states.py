@@ -13,7 +13,6 @@ from multibot_rewrite.rules.system.clocks import clocks_mixed
 from multibot_rewrite.rules.system.states import not_active
 from multibot_rewrite.system.index import Index, ends_of
 from multibot_rewrite.system.parameters import parameter_text, parameter_value
-from multibot_rewrite.system.planned import Planned
 from multibot_rewrite.system.reach import machines
 from multibot_rewrite.system.records import SIM_TIME, SUBSCRIBES, Parameter, System, clocks
 
@@ -22,7 +21,7 @@ Difference = tuple[Parameter, str]
 
 
 @found_by_plan(not_active)
-def state_not_planned(plan: Planned, seen: Index) -> Iterator[Finding]:
+def state_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
     """A node that did not answer is not known."""
     states = {it.name: it.lifecycle for it in seen.system.nodes if it.lifecycle}
     for planned in plan.system.nodes:
@@ -59,7 +58,7 @@ running: /robot1/amcl has base_frame_id robot1/base_link
 """,
     line=3,
 )
-def parameter_not_planned(plan: Planned, seen: Index) -> Iterator[Finding]:
+def parameter_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
     """One finding a node; a parameter that it does not have is not known."""
     values = {(it.node, it.name): it.value for it in seen.system.parameters}
     for node, planned in _by_node(plan.system.parameters).items():
@@ -95,7 +94,7 @@ def _is_same(planned: str, value: str) -> bool:
     return bool(parameter_value(planned) == parameter_value(value))
 
 
-def _is_serious(plan: Planned, it: Parameter) -> bool:
+def _is_serious(plan: Index, it: Parameter) -> bool:
     """Whether the plan itself says it, or it is a frame of a robot."""
     frames = plan.frames_of.get(plan.robot_of.get(it.node, ""), frozenset())
     return not it.place.file or parameter_value(it.value) in [
@@ -104,7 +103,7 @@ def _is_serious(plan: Planned, it: Parameter) -> bool:
     ]
 
 
-def _differs(plan: Planned, node: str, found: Sequence[Difference]) -> Finding:
+def _differs(plan: Index, node: str, found: Sequence[Difference]) -> Finding:
     listed = [f"{it.name} is {value}, planned is {it.value}{_at(it)}" for it, value in found]
     robot, (first, _) = plan.robot_of.get(node, ""), found[0]
     file = first.place.file
@@ -124,9 +123,9 @@ def _at(it: Parameter) -> str:
     return f" ({it.place})" if it.place.file else ""
 
 
-def _whose(plan: Planned, node: str, found: Sequence[Difference]) -> str:
+def _whose(plan: Index, node: str, found: Sequence[Difference]) -> str:
     """The robot whose node of that name is planned to have these values."""
-    whose = plan.names
+    whose = plan.of_names
     robot = plan.robot_of.get(node, "")
     plain = whose.without_robot(node, robot)
     wanted = {(it.name, value) for it, value in found}
@@ -140,7 +139,7 @@ def _whose(plan: Planned, node: str, found: Sequence[Difference]) -> str:
 
 
 @found_by_plan(clocks_mixed)
-def clock_not_planned(plan: Planned, seen: Index) -> Iterator[Finding]:
+def clock_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
     """One finding for the nodes of a robot that differ alike."""
     timed = {it.node for it in ends_of(seen, CLOCK) if it.role == SUBSCRIBES}
     asked = clocks(seen.system)
@@ -191,7 +190,7 @@ running: /robot2/lidar on machine 2
 """,
     line=6,
 )
-def host_not_planned(plan: Planned, seen: Index) -> Iterator[Finding]:
+def host_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
     """A snapshot tells machines apart, and has no names: a host is where most of its nodes are."""
     machine_of = {node: it for it, nodes in machines(seen.system).items() for node in nodes}
     hosts = _hosts(plan, machine_of)
@@ -211,7 +210,7 @@ def host_not_planned(plan: Planned, seen: Index) -> Iterator[Finding]:
             yield _on_wrong_host(plan, message, nodes, "is this a simulation? Then leave out host")
 
 
-def _hosts(plan: Planned, machine_of: Mapping[str, str]) -> Mapping[str, dict[str, list[str]]]:
+def _hosts(plan: Index, machine_of: Mapping[str, str]) -> Mapping[str, dict[str, list[str]]]:
     """Host of the plan -> machine -> the nodes that run there."""
     found: dict[str, dict[str, list[str]]] = defaultdict(lambda: defaultdict(list))
     for it in plan.system.nodes:
@@ -220,6 +219,6 @@ def _hosts(plan: Planned, machine_of: Mapping[str, str]) -> Mapping[str, dict[st
     return found
 
 
-def _on_wrong_host(plan: Planned, message: str, nodes: Sequence[str], hint: str) -> Finding:
+def _on_wrong_host(plan: Index, message: str, nodes: Sequence[str], hint: str) -> Finding:
     robot = plan.robot_of.get(nodes[0], "")
     return host_not_planned.finding(message, hint, robot=robot, node=nodes[0], names=tuple(nodes))

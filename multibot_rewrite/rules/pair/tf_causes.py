@@ -15,14 +15,14 @@ from multibot_rewrite.rules.pair.tf_senders import (
     where_set,
 )
 from multibot_rewrite.rules.pair.tf_trees import TfTree, tf_trees
-from multibot_rewrite.system.index import Index, ends_of, tree_topic
-from multibot_rewrite.system.planned import Planned, Sent
+from multibot_rewrite.system.index import Index, Sent, ends_of
 from multibot_rewrite.system.records import PUBLISHES, Edge, Robot
+from multibot_rewrite.system.tf_copies import tree_topic
 
 JOINT_STATES, TF = "sensor_msgs/msg/JointState", "tf2_msgs/msg/TFMessage"
 
 
-def why_disconnected(plan: Planned, seen: Index, robot: Robot, roots: Sequence[str]) -> Cause:
+def why_disconnected(plan: Index, seen: Index, robot: Robot, roots: Sequence[str]) -> Cause:
     """The node that sends a frame under another name, or does not send what it should."""
     edges = [edge for tree in _trees(plan, seen, robot) for edge in tree.edges]
     unsent = [it for it in sent_by_robot(plan, robot) if not _is_sent(it, edges)]
@@ -36,7 +36,7 @@ def why_disconnected(plan: Planned, seen: Index, robot: Robot, roots: Sequence[s
     return next(filter(None, causes), Cause(f"{general} localization"))
 
 
-def _trees(plan: Planned, seen: Index, robot: Robot) -> Iterator[TfTree]:
+def _trees(plan: Index, seen: Index, robot: Robot) -> Iterator[TfTree]:
     return (tree for tree in tf_trees(plan, seen) if tree.topic == tree_topic(robot.tf_topic))
 
 
@@ -45,7 +45,7 @@ def _is_sent(planned: Sent, edges: Sequence[Edge]) -> bool:
 
 
 def _two_names(
-    plan: Planned,
+    plan: Index,
     robot: Robot,
     roots: Sequence[str],
     edges: Sequence[Edge],
@@ -53,8 +53,8 @@ def _two_names(
     """A root that is in the tree under another name, with the robot's or without."""
     children = {edge.child for edge in edges}
     for root in roots:
-        plain = plan.frames.without_robot(root, robot.name)
-        variants = name_variants(plain, root, plan.frames.tag(robot.name))
+        plain = plan.of_frames.without_robot(root, robot.name)
+        variants = name_variants(plain, root, plan.of_frames.tag(robot.name))
         other = next((name for name in variants if name in children), "")
         if other:
             right, wrong = (root, other) if root in robot.frames else (other, root)
@@ -62,7 +62,7 @@ def _two_names(
     return None
 
 
-def _wrongly_named(plan: Planned, robot: Robot, right: str, wrong: str) -> Cause:
+def _wrongly_named(plan: Index, robot: Robot, right: str, wrong: str) -> Cause:
     names = f"{wrong} and {right} are one frame with two names"
     node = sender_of(plan, robot, right)
     if not node:
@@ -72,7 +72,7 @@ def _wrongly_named(plan: Planned, robot: Robot, right: str, wrong: str) -> Cause
     return caused(f"{names}: by the plan {node} sends the second, {right}{see}", place)
 
 
-def _not_sent(plan: Planned, seen: Index, robot: Robot, planned: Sent) -> Cause:
+def _not_sent(plan: Index, seen: Index, robot: Robot, planned: Sent) -> Cause:
     place = where_set(plan, planned.node)
     see = f" (see {place})" if place else ""
     if planned.node not in seen.nodes:
@@ -85,7 +85,7 @@ def _not_sent(plan: Planned, seen: Index, robot: Robot, planned: Sent) -> Cause:
     )
 
 
-def _whose(plan: Planned, seen: Index, robot: Robot, planned: Sent) -> Iterator[str]:
+def _whose(plan: Index, seen: Index, robot: Robot, planned: Sent) -> Iterator[str]:
     """The robots of whom this transform is, and is sent for this one."""
     plain = _plain(plan, planned.parent, planned.child, robot.name)
     for other, edge in foreign(plan, seen, robot):
@@ -93,11 +93,11 @@ def _whose(plan: Planned, seen: Index, robot: Robot, planned: Sent) -> Iterator[
             yield other
 
 
-def _plain(plan: Planned, parent: str, child: str, robot: str) -> tuple[str, ...]:
-    return tuple(plan.frames.without_robot(it, robot) for it in (parent, child))
+def _plain(plan: Index, parent: str, child: str, robot: str) -> tuple[str, ...]:
+    return tuple(plan.of_frames.without_robot(it, robot) for it in (parent, child))
 
 
-def _bridged(plan: Planned, seen: Index, robot: Robot) -> Cause | None:
+def _bridged(plan: Index, seen: Index, robot: Robot) -> Cause | None:
     """The odometry of a simulated robot, which a bridge carries beside the transforms of others."""
     carried = [it for it in plan.system.topics if it.bridge and it.name == robot.tf_topic]
     ends = ends_of(seen, robot.tf_topic) if carried else ()
@@ -110,7 +110,7 @@ def _bridged(plan: Planned, seen: Index, robot: Robot) -> Cause | None:
     )
 
 
-def _silent(plan: Planned, seen: Index, robot: Robot, type_: str) -> Cause | None:
+def _silent(plan: Index, seen: Index, robot: Robot, type_: str) -> Cause | None:
     silent: Set[str] = silent_topics(plan, seen, robot, type_)
     if not silent:
         return None

@@ -6,45 +6,45 @@ from collections.abc import Iterator
 
 from multibot_rewrite.rules.pair.tf_trees import tf_trees
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
-from multibot_rewrite.system.index import Index, tree_topic
-from multibot_rewrite.system.planned import Planned, Sent
+from multibot_rewrite.system.index import Index, Sent
 from multibot_rewrite.system.records import Edge, Robot
+from multibot_rewrite.system.tf_copies import tree_topic
 
 
-def sent_by_robot(plan: Planned, robot: Robot) -> list[Sent]:
+def sent_by_robot(plan: Index, robot: Robot) -> list[Sent]:
     """Those of one robot's nodes."""
     return [it for it in plan.sent if plan.robot_of.get(it.node) == robot.name]
 
 
-def foreign(plan: Planned, seen: Index, robot: Robot) -> Iterator[tuple[str, Edge]]:
+def foreign(plan: Index, seen: Index, robot: Robot) -> Iterator[tuple[str, Edge]]:
     """Transforms of other robots, each with its robot, that a node of this one may send: all on a tf
     topic of its own, else what several nodes send."""
     for tree in tf_trees(plan, seen):
         if tree.topic != tree_topic(robot.tf_topic):
             continue
         for edge in tree.edges:
-            other = plan.frames.robot(edge.child)
+            other = plan.frame_robot(edge.child)
             if other not in ("", robot.name) and (len(tree.home) == 1 or edge.several):
                 yield other, edge
 
 
-def described_robots(plan: Planned, seen: Index, robot: Robot) -> Iterator[str]:
+def described_robots(plan: Index, seen: Index, robot: Robot) -> Iterator[str]:
     """The robots whose description a node of this one seems to have, by fixed transforms of theirs."""
     return (other for other, edge in foreign(plan, seen, robot) if edge.static)
 
 
-def sender_of(plan: Planned, robot: Robot, frame: str) -> str:
+def sender_of(plan: Index, robot: Robot, frame: str) -> str:
     """The node that sends a planned frame of the robot: a node of its own, else the description's."""
     found = (it.node for it in sent_by_robot(plan, robot) if frame in (it.parent, it.child))
     return next(found, "") or state_publisher(plan, robot)
 
 
-def state_publisher(plan: Planned, robot: Robot) -> str:
+def state_publisher(plan: Index, robot: Robot) -> str:
     """The robot's robot_state_publisher by the plan; empty where it has none."""
     return next((it for it in plan.own[robot.name] if STATE_PUBLISHER in it), "")
 
 
-def where_set(plan: Planned, node: str) -> str:
+def where_set(plan: Index, node: str) -> str:
     """The file that holds a node's frames: its plugin's line, or that of its parameters; or empty."""
-    planned = plan.nodes.get(node)
+    planned = plan.node.get(node)
     return str(planned.plugin) or str(planned.place) if planned else ""

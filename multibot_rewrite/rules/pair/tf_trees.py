@@ -6,9 +6,9 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.system.index import Index, Tree, once, tree_topic
-from multibot_rewrite.system.planned import Planned
+from multibot_rewrite.system.index import Index, Tree, once
 from multibot_rewrite.system.records import Edge
+from multibot_rewrite.system.tf_copies import tree_topic
 
 
 class TfTree(NamedTuple):
@@ -27,7 +27,7 @@ class TfTree(NamedTuple):
 
 
 @once
-def tf_trees(plan: Planned, seen: Index) -> Sequence[TfTree]:
+def tf_trees(plan: Index, seen: Index) -> Sequence[TfTree]:
     """Those with transforms."""
     home: dict[str, list[str]] = defaultdict(list)
     for robot in plan.system.robots:
@@ -36,10 +36,10 @@ def tf_trees(plan: Planned, seen: Index) -> Sequence[TfTree]:
     return [_tree(plan, it, tuple(home.get(it.topic, ()))) for it in there]
 
 
-def _tree(plan: Planned, tree: Tree, home: tuple[str, ...]) -> TfTree:
+def _tree(plan: Index, tree: Tree, home: tuple[str, ...]) -> TfTree:
     senders: dict[str, tuple[str, ...]] = defaultdict(tuple)
     for node in sorted(tree.senders):
-        senders[plan.names.robot(node)] += (node,)
+        senders[plan.robot(node)] += (node,)
     robots = tuple(filter(None, senders)) if senders else home
     return TfTree(tree.topic, tree.edges, senders, home, robots)
 

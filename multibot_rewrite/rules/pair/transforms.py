@@ -12,13 +12,13 @@ from multibot_rewrite.rules.pair.causes import Cause, caused, plugin_of, tf_rule
 from multibot_rewrite.rules.pair.tf_causes import why_disconnected
 from multibot_rewrite.rules.pair.tf_trees import TfTree, tf_trees
 from multibot_rewrite.rules.system.tf_topics import in_pieces, tf_on_two_topics, tf_tree_in_pieces
-from multibot_rewrite.system.index import Index, tree_topic
-from multibot_rewrite.system.planned import Planned
+from multibot_rewrite.system.index import Index
 from multibot_rewrite.system.records import PUBLISHES, Edge, Robot
+from multibot_rewrite.system.tf_copies import tree_topic
 
 
 @found_by_plan(tf_tree_in_pieces, nodes=False)
-def disconnected_tf_tree(plan: Planned, seen: Index) -> Iterator[Finding]:
+def disconnected_tf_tree(plan: Index, seen: Index) -> Iterator[Finding]:
     """On the robot's own tf topic."""
     for tree in tf_trees(plan, seen):
         # A chain may go through frames that are nobody's, as a relay names them.
@@ -31,7 +31,7 @@ def disconnected_tf_tree(plan: Planned, seen: Index) -> Iterator[Finding]:
         for robot, found in roots_of.items():
             roots = sorted(found - {""})
             if len(roots) > 1:
-                yield _disconnected(plan, seen, plan.robots[robot], roots)
+                yield _disconnected(plan, seen, plan.declared[robot], roots)
 
 
 def _root(above: Mapping[str, str], frame: str) -> str:
@@ -43,19 +43,19 @@ def _root(above: Mapping[str, str], frame: str) -> str:
     return "" if frame in above else frame
 
 
-def _robots_at_home(plan: Planned, tree: TfTree, edge: Edge) -> Set[str]:
+def _robots_at_home(plan: Index, tree: TfTree, edge: Edge) -> Set[str]:
     return {_robot_at_home(plan, tree, frame) for frame in (edge.child, edge.parent)} - {""}
 
 
-def _robot_at_home(plan: Planned, tree: TfTree, frame: str) -> str:
+def _robot_at_home(plan: Index, tree: TfTree, frame: str) -> str:
     """The robot whose layout puts this frame on this topic, or an empty string."""
     if len(tree.home) == 1:
         return tree.home[0] if frame in plan.frames_of[tree.home[0]] else ""
-    robot = plan.frames.exact.get(frame, "")
-    return robot if robot and tree_topic(plan.robots[robot].tf_topic) == tree.topic else ""
+    robot = plan.of_frames.exact.get(frame, "")
+    return robot if robot and tree_topic(plan.declared[robot].tf_topic) == tree.topic else ""
 
 
-def _disconnected(plan: Planned, seen: Index, robot: Robot, roots: Sequence[str]) -> Finding:
+def _disconnected(plan: Index, seen: Index, robot: Robot, roots: Sequence[str]) -> Finding:
     message = in_pieces(robot.name, tree_topic(robot.tf_topic), roots)
     cause = why_disconnected(plan, seen, robot, roots)
     return tf_tree_in_pieces.finding(
@@ -64,17 +64,17 @@ def _disconnected(plan: Planned, seen: Index, robot: Robot, roots: Sequence[str]
 
 
 @found_by_plan(tf_on_two_topics, nodes=False)
-def wrong_tf_topic(plan: Planned, seen: Index) -> Iterator[Finding]:
+def wrong_tf_topic(plan: Index, seen: Index) -> Iterator[Finding]:
     """One finding for a robot and topic."""
     children = {tree.topic: {edge.child for edge in tree.edges} for tree in tf_trees(plan, seen)}
     for tree in tf_trees(plan, seen):
         misplaced: dict[str, list[Edge]] = defaultdict(list)
         for edge in tree.edges:
             robot = _sending_robot(plan, tree, edge.child)
-            if robot and tree_topic(plan.robots[robot].tf_topic) != tree.topic:
+            if robot and tree_topic(plan.declared[robot].tf_topic) != tree.topic:
                 misplaced[robot].append(edge)
         for robot, edges in misplaced.items():
-            home = tree_topic(plan.robots[robot].tf_topic)
+            home = tree_topic(plan.declared[robot].tf_topic)
             # A copy that a relay or another node makes, for RViz for example: the robot is as planned.
             copied = all(edge.child in children.get(home, ()) for edge in edges)
             if not (
@@ -83,17 +83,19 @@ def wrong_tf_topic(plan: Planned, seen: Index) -> Iterator[Finding]:
                 and tree.senders
                 and _only_planned(plan, tree, robot, edges)
             ):
-                yield _wrong_topic(plan, tree, plan.robots[robot], edges)
+                yield _wrong_topic(plan, tree, plan.declared[robot], edges)
 
 
-def _only_planned(plan: Planned, tree: TfTree, robot: str, edges: Iterable[Edge]) -> bool:
+def _only_planned(plan: Index, tree: TfTree, robot: str, edges: Iterable[Edge]) -> bool:
     """Do only those nodes of the robot send on a topic that should by the plan?"""
     topics = {edge.topic for edge in edges}
-    planned = {node for node, kind, role, name in plan.ends if name in topics and role == PUBLISHES}
+    planned = {
+        node for node, kind, role, name in plan.by_key if name in topics and role == PUBLISHES
+    }
     return planned.issuperset(tree.senders.get(robot, ()))
 
 
-def _wrong_topic(plan: Planned, tree: TfTree, robot: Robot, edges: Sequence[Edge]) -> Finding:
+def _wrong_topic(plan: Index, tree: TfTree, robot: Robot, edges: Sequence[Edge]) -> Finding:
     frames = tuple(dict.fromkeys(edge.child for edge in edges))
     message = (
         f"frame {frames[0]} of {robot.name} is on {edges[0].topic}, expected on {robot.tf_topic}"
@@ -104,16 +106,16 @@ def _wrong_topic(plan: Planned, tree: TfTree, robot: Robot, edges: Sequence[Edge
     return tf_on_two_topics.finding(message, **cause._asdict(), robot=robot.name, names=frames)
 
 
-def _sending_robot(plan: Planned, tree: TfTree, frame: str) -> str:
+def _sending_robot(plan: Index, tree: TfTree, frame: str) -> str:
     """The robot that sends a frame of its own: by the frame's name, or as the only publisher."""
-    robot = plan.frames.exact.get(frame, "")
+    robot = plan.of_frames.exact.get(frame, "")
     if robot or len(tree.robots) != 1:
         return robot
     only = tree.robots[0]
-    return only if frame in plan.robots[only].frames else ""
+    return only if frame in plan.declared[only].frames else ""
 
 
-def _why_wrong_topic(plan: Planned, tree: TfTree, robot: Robot, edges: Iterable[Edge]) -> Cause:
+def _why_wrong_topic(plan: Index, tree: TfTree, robot: Robot, edges: Iterable[Edge]) -> Cause:
     every = [node for nodes in tree.senders.values() for node in nodes]
     senders = tree.senders.get(robot.name) or every
     who = shorten(senders) or "its publisher"

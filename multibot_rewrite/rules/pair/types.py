@@ -10,17 +10,16 @@ from multibot_rewrite.rules.declaration import found_by_plan
 from multibot_rewrite.rules.pair.causes import caused, plugin_of
 from multibot_rewrite.rules.system.matching import STAMPED, types_differ
 from multibot_rewrite.system.index import Index
-from multibot_rewrite.system.planned import Planned
 from multibot_rewrite.system.records import End
 
 
 @found_by_plan(types_differ, nodes=False)
-def type_not_planned(plan: Planned, seen: Index) -> Iterator[Finding]:
+def type_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
     """Each end of a planned name whose type is none that the plan has for it."""
     planned = _types(plan)
     said = set()
     for end in seen.system.ends:
-        known = plan.ends.get((end.node, end.kind, end.role, end.name))
+        known = plan.by_key.get((end.node, end.kind, end.role, end.name))
         by_name = planned.get((end.kind, end.name), frozenset())
         wanted = {known.type, *known.also} if known and known.type else by_name
         differs = end.type and wanted and end.type not in wanted
@@ -29,15 +28,15 @@ def type_not_planned(plan: Planned, seen: Index) -> Iterator[Finding]:
             yield _not_as_planned(plan, seen, end, wanted)
 
 
-def _types(plan: Planned) -> Mapping[tuple[str, str], Set[str]]:
+def _types(plan: Index) -> Mapping[tuple[str, str], Set[str]]:
     """Those of each planned name, where they are known."""
     found: dict[tuple[str, str], set[str]] = defaultdict(set)
-    for end in plan.ends.values():
+    for end in plan.by_key.values():
         found[end.kind, end.name] |= {end.type, *end.also} - {""}
     return found
 
 
-def _not_as_planned(plan: Planned, seen: Index, end: End, wanted: Set[str]) -> Finding:
+def _not_as_planned(plan: Index, seen: Index, end: End, wanted: Set[str]) -> Finding:
     listed = " or ".join(sorted(wanted))
     plugin, place = plugin_of(plan, end.node)
     which = f"another version or setting of {plugin or 'the node'}"

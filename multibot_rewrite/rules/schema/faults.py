@@ -8,6 +8,7 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 
 from lxml import etree
 
+from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.record import NamedTuple
@@ -25,7 +26,7 @@ from multibot_rewrite.rules.schema.sections import (
     typed_attributes,
 )
 from multibot_rewrite.rules.schema.values import COUNTS, is_fine, shortened, wrong_numbers
-from multibot_rewrite.rules.schema.versions import is_known, version_of
+from multibot_rewrite.rules.schema.versions import Version, is_known, version_of
 
 # What a child of <robot> can be a misspelling of: anything else there is an extension.
 _CORE = ("link", "joint", "material", "transmission", "ros2_control", "gazebo")
@@ -47,9 +48,9 @@ _AXIS_FREE = ("fixed", "floating")
 
 
 class Fault(NamedTuple):
-    """A fault of the document's structure; ``kind`` is the name of the rule that reports it.
+    """A fault of a document's structure; each ``kind`` has a rule that reports it.
 
-    ``attribute`` is as in ``Problem``.
+    ``attribute`` and ``level`` are as in ``Problem``.
     """
 
     kind: str
@@ -57,6 +58,7 @@ class Fault(NamedTuple):
     attribute: str | None
     message: str
     hint: str = ""
+    level: str = ""
 
 
 def read_faults(document: Document) -> tuple[Fault, ...]:
@@ -71,7 +73,7 @@ def read_faults(document: Document) -> tuple[Fault, ...]:
         below: dict[str, list[etree._Element]] = defaultdict(list)
         for name, elements in level.items():
             for element in _to_check(known, name, elements):
-                faults += _attributes(element, known.sections[name])
+                faults += _attributes(element, known.sections[name], known.version)
             faults += _sorted_children(known, name, elements, below)
         level = below
     return tuple(faults)
@@ -132,14 +134,14 @@ def _with_odd_values(
     return found
 
 
-def _attributes(element: etree._Element, section: Section) -> Iterator[Fault]:
+def _attributes(element: etree._Element, section: Section, version: Version) -> Iterator[Fault]:
     """All faults of an element's attributes."""
     keys = [str(key) for key in element.attrib]
     yield from _unknown_attributes(element, section, keys)
     for key in keys:
         kind = section.attributes.get(key)
         if kind is not None and kind.type:
-            yield from _value(element, kind, key, element.get(key, ""))
+            yield from _value(element, kind, key, version)
         if kind is not None and kind.instead_of in keys:
             message = f"<{element.tag}> has both {kind.instead_of} and {key}"
             yield Fault("rotation-twice", element, key, message)
@@ -169,11 +171,12 @@ def _unknown_attributes(
             missing.remove(meant)
             yield Fault("missing", element, key, f"<{element.tag}> has no {meant!r}", hint)
         elif meant:
-            yield Fault("misspelled-attribute", element, key, where, hint)
+            yield Fault("misspelt", element, key, where, hint)
         else:
-            yield Fault("ignored-attribute", element, key, where)
-    for key in missing:
-        yield Fault("missing", element, None, f"<{element.tag}> has no {key!r}")
+            yield Fault("not-read", element, key, where)
+    if missing:
+        names = " and no ".join(map(repr, missing))
+        yield Fault("missing", element, None, f"<{element.tag}> has no {names}")
 
 
 def _children(element: etree._Element, section: Section, schema: Schema) -> Iterator[Fault]:
@@ -212,18 +215,19 @@ def _unknown_child(
     message = f"no parser reads <{child.tag}> inside <{element.tag}>"
     hint = f"did you mean <{meant}>?" if meant else ""
     if section.name == "ros2_control":
-        yield Fault("unknown-component", child, None, f"<{child.tag}> in <ros2_control>", hint)
+        message = f"<{child.tag}> in <ros2_control> is no component"
+        yield Fault("not-read", child, None, message, hint, ERROR)
     elif section.name == "geometry":
         return  # MB615 reports it
     elif meant:
-        yield Fault("misspelled-element", child, None, message, hint)
+        yield Fault("misspelt", child, None, message, hint)
     elif child.tag in schema.tags:
         homes = [it.name for it in schema.sections.values() if child.tag in it.children]
         tags = sorted({home.rpartition("_")[2] for home in homes})
         hint = f"it belongs in {' or '.join(f'<{tag}>' for tag in tags)}"
-        yield Fault("misplaced-element", child, None, message, hint)
+        yield Fault("misplaced", child, None, message, hint)
     elif section.name != ROBOT:
-        yield Fault("ignored-element", child, None, message)
+        yield Fault("not-read", child, None, message)
 
 
 def _repeated(element: etree._Element, section: Section, count: Counter[str]) -> Iterator[Fault]:
@@ -236,7 +240,7 @@ def _repeated(element: etree._Element, section: Section, count: Counter[str]) ->
         other = next((it for it in others if _canonical(it) != _canonical(first)), None)
         if other is not None:
             message = f"<{element.tag}> has {times} <{tag}>: urdfdom reads only the first"
-            yield Fault("repeated-element", other, None, message)
+            yield Fault("repeated", other, None, message)
 
 
 def _canonical(element: etree._Element) -> bytes:
@@ -249,7 +253,7 @@ def _shapes(element: etree._Element, section: Section) -> Iterator[Fault]:
     shapes = list(element.iterchildren(*known)) if known else []
     if len(shapes) > 1:
         message = f"<{element.tag}> has {len(shapes)} shapes: urdfdom reads only the first"
-        yield Fault("repeated-element", shapes[1], None, message)
+        yield Fault("repeated", shapes[1], None, message)
 
 
 def _near(name: str, known: Collection[str]) -> str:
@@ -260,24 +264,39 @@ def _near(name: str, known: Collection[str]) -> str:
     return same or nearest(low, known, MISTYPED)
 
 
-def _value(element: etree._Element, kind: Kind, attribute: str, value: str) -> Iterator[Fault]:
+def _value(
+    element: etree._Element, kind: Kind, attribute: str, version: Version
+) -> Iterator[Fault]:
     """What is wrong with a value."""
+    value = element.get(attribute, "")
     where = f"{element.tag}@{attribute} is {shortened(value)!r}"
     if kind.type == "one":
         if value not in kind.choices:
             meant = _near(value.strip(), kind.choices)
             hint = f"did you mean {meant!r}?" if meant else ""
             message = f"{where}, not one of {', '.join(kind.choices)}"
-            yield Fault("bad-choice", element, attribute, message, hint)
+            yield Fault("word", element, attribute, message, hint)
     elif kind.type == "version":
         if not is_known(value):
             message = f"{where}, urdfdom reads 1.0, 1.1 and 1.2"
-            yield Fault("bad-choice", element, attribute, message, "leave it out for 1.0")
+            yield Fault("word", element, attribute, message, "leave it out for 1.0")
+    elif kind.type == "filled":
+        if not value:
+            yield Fault("missing", element, attribute, f"{attribute} of <{element.tag}> is empty")
     elif not _is_unread(element):
-        named, problem, hint = wrong_numbers(value, kind.type)
-        if named:
-            rule = "bad-colour" if kind.type == "rgba" else named
-            yield Fault(rule, element, attribute, f"{where}{problem}", hint)
+        yield from _numbers(element, kind, attribute, version)
+
+
+def _numbers(
+    element: etree._Element, kind: Kind, attribute: str, version: Version
+) -> Iterator[Fault]:
+    value = element.get(attribute, "")
+    named, problem, hint = wrong_numbers(value, kind.type)
+    if named:
+        # Readers go on without a colour, and take a number out of range before it is refused.
+        mild = kind.type == "rgba" or (named == "range" and kind.refused > version)
+        message = f"{element.tag}@{attribute} is {shortened(value)!r}{problem}"
+        yield Fault(named, element, attribute, message, hint, WARNING if mild else "")
 
 
 def _is_unread(element: etree._Element) -> bool:
@@ -296,7 +315,7 @@ def _stray_texts(root: etree._Element, known: Schema) -> Iterator[Fault]:
         found = next(" ".join(it.split()) for it in pieces if it and it.strip())
         inside = "" if element.text and element.text.strip() else None
         message = f"text {shortened(found)!r} in <{element.tag}>, which no parser reads"
-        yield Fault("stray-text", element, inside, message)
+        yield Fault("not-read", element, inside, message)
 
 
 def _elements_with_text(top: etree._Element) -> list[etree._Element]:
@@ -322,4 +341,4 @@ def _broken_numbers(document: Document, known: Schema) -> Iterator[Fault]:
         key = found[1].decode() if found else ""
         if section and key in section.attributes and section.attributes[key].type in COUNTS:
             message = f"{elements[number].tag}@{key} has a tab or a line break after a number"
-            yield Fault("space-after-number", elements[number], key, message, "write one space")
+            yield Fault("value", elements[number], key, message, "write one space")

@@ -14,10 +14,11 @@ from math import radians, tau
 
 from lxml.etree import _Element
 
+from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.base.nearest import MISTYPED, nearest, slip_of
 from multibot_rewrite.description.checks.links_and_joints import Robot
 from multibot_rewrite.description.rewriters.text import text_of
-from multibot_rewrite.rules.schema.described import SDF, Described, Row, chunks, described
+from multibot_rewrite.rules.schema.described import WORDS, Described, Row, chunks, described
 from multibot_rewrite.rules.schema.faults import Fault
 from multibot_rewrite.rules.schema.readers import SDFORMAT, reader_of
 from multibot_rewrite.rules.schema.sdf_values import TURN, misread, number_in
@@ -42,7 +43,6 @@ _MERGED = ("visual", "collision", "material")
 READ_BESIDES = frozenset({"gz_frame_id", "ignition_frame_id"})
 # Angles that SDF has no range for.
 ANGLES = frozenset({"min_angle", "max_angle"})
-_WORDS = "words"
 Version = tuple[int, ...]
 # What the last release with Gazebo Classic reads.
 CLASSIC = (1, 9)
@@ -58,7 +58,7 @@ def version_of_release(release: str) -> Version:
 
 def block_faults(blocks: Sequence[_Element], robot: Robot, release: str) -> tuple[Fault, ...]:
     """Every fault in these ``<gazebo>`` elements."""
-    version, taken = version_of_release(release), described(SDF, "urdf")
+    version, taken = version_of_release(release), described("urdf")
     assert taken
     filled = (it for it in blocks if len(it))
     return tuple(fault for block in filled for fault in _block(block, robot, version, taken))
@@ -74,14 +74,14 @@ def model_faults(root: _Element, release: str) -> tuple[Fault, ...]:
 def _block(block: _Element, robot: Robot, version: Version, taken: Described) -> Iterator[Fault]:
     name = block.get("reference", "")
     if name and name not in robot.link and name not in robot.joint:
-        return  # MB212 reports it
+        return  # MB202 reports it
     home = "model" if not name else "link" if name in robot.link else "joint"
     for child in block.iterchildren("*"):
         tag = str(child.tag)
         if tag in taken.rows:
             yield from _taken(child, taken.rows[tag][0], home)
         elif tag not in _MERGED:
-            known = described(SDF, home)
+            known = described(home)
             assert known
             yield from _child(child, home, known, version, taken.rows)
 
@@ -99,8 +99,9 @@ def _taken(child: _Element, row: Row, home: str) -> Iterator[Fault]:
         return
     wrong = misread(row.type, text)
     if wrong:
-        kind = "unreadable" if row.type == "double" and wrong.fails else "misread"
-        yield Fault(kind, child, "", f"{row.name} {shortened(text)!r} {wrong.problem}")
+        level = ERROR if row.type == "double" and wrong.fails else WARNING
+        message = f"{row.name} {shortened(text)!r} {wrong.problem}"
+        yield Fault("value", child, "", message, "", level)
 
 
 def _belongs(tag: str) -> tuple[str, ...]:
@@ -134,7 +135,7 @@ def _child(
 
 def _element(element: _Element, section: str, version: Version) -> Iterator[Fault]:
     """Attributes and children of an element that has a section."""
-    known = described(SDF, section)
+    known = described(section)
     if known is None:
         return
     for key, text in zip(map(str, element.keys()), map(str, element.values()), strict=True):
@@ -152,7 +153,7 @@ def _element(element: _Element, section: str, version: Version) -> Iterator[Faul
 
 
 def _missing(element: _Element, known: Described, version: Version) -> Iterator[Fault]:
-    """Attributes without which sdformat refuses the model; MB158 reports those of plugins."""
+    """Attributes without which sdformat refuses the model; those of plugins depend on the release."""
     for name in known.needed:
         if name[0] == "@" and not element.get(name[1:], "").strip():
             row = _of_version(known.rows[name], version)
@@ -176,12 +177,12 @@ def _value(
     if not text or "$" in text:
         return
     if row.type == "string":
-        yield from _word(element, at, f"{known.names[0]}/{row.name}", text, version)
+        yield from _word(element, at, f"{known.name}/{row.name}", text, version)
         return
     wrong = misread(row.type, text)
     if wrong:
-        kind = "unreadable" if wrong.fails else "misread"
-        yield Fault(kind, element, at, f"{_where(element, at, text)} {wrong.problem}")
+        level = ERROR if wrong.fails else WARNING
+        yield Fault("value", element, at, f"{_where(element, at, text)} {wrong.problem}", "", level)
     elif row.low is not None or row.high is not None:
         yield from _range(element, at, row, text)
     elif row.type == "pose" or row.name in ANGLES:
@@ -243,12 +244,12 @@ def _word(element: _Element, at: str, name: str, text: str, version: Version) ->
 @lru_cache
 def words(name: str) -> tuple[str, ...]:
     """The words that the library knows for a value, ``sensor/@type``; none where it takes any."""
-    found = described(SDF, f"{_WORDS} {name}")
+    found = described(f"{WORDS} {name}")
     return tuple(found.rows) if found else ()
 
 
 def _is_folded(name: str) -> bool:
-    found = described(SDF, f"{_WORDS} {name}")
+    found = described(f"{WORDS} {name}")
     return found is not None and "folded" in found.about
 
 
@@ -268,7 +269,7 @@ def _unknown(
     else:
         homes = _homes(tag)
         hint = f"it belongs in <{'> or <'.join(homes)}>" if homes else ""
-        yield Fault("misplaced" if homes else "unknown", child, None, message, hint)
+        yield Fault("misplaced" if homes else "not-read", child, None, message, hint)
 
 
 @lru_cache
@@ -276,8 +277,8 @@ def _homes(tag: str) -> tuple[str, ...]:
     """The elements of SDF that have such a child, where there are few."""
     found = {
         part.partition("]")[0].rpartition(".")[2].partition("_shape")[0]
-        for part in chunks(SDF).values()
-        if f"\n{tag} " in part and not part.startswith((_WORDS, "urdf"))
+        for part in chunks().values()
+        if f"\n{tag} " in part and not part.startswith((WORDS, "urdf"))
     }
     return tuple(sorted(found)) if 0 < len(found) <= 3 else ()
 

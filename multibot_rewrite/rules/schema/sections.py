@@ -28,15 +28,15 @@ _FEW = 40
 class Kind(NamedTuple):
     """What an attribute must hold: a type of ``urdf.schema``, or one of ``choices``.
 
-    It is read from version ``since`` on, and not beside the attribute ``instead_of``; from a version
-    of ``types`` on it must hold another type.
+    It is read from version ``since`` on, and not beside the attribute ``instead_of``. A number out of
+    range is refused from version ``refused`` on.
     """
 
     type: str
     required: bool
     choices: tuple[str, ...]
     since: Version = OLDEST
-    types: tuple[tuple[Version, str], ...] = ()
+    refused: Version = OLDEST
     instead_of: str = ""
 
 
@@ -101,10 +101,7 @@ def _of_version(section: Section, version: Version) -> Section:
 
 
 def _kind_of_version(kind: Kind, version: Version) -> Kind:
-    if kind.since > version:
-        return kind._replace(type="", instead_of="")
-    types = [type_ for since, type_ in kind.types if since <= version]
-    return kind._replace(type=(kind.type, *types)[-1])
+    return kind._replace(type="", instead_of="") if kind.since > version else kind
 
 
 def _needs_a_child(section: Section) -> bool:
@@ -133,19 +130,19 @@ def _sections(lines: Iterable[str]) -> Mapping[str, Section]:
 def _kind(words: Sequence[str]) -> Kind:
     choices = next((it[4:].split("|") for it in words if it.startswith("one:")), [])
     types = [it for it in words if it in FINE]
-    later = [it.split(":") for it in words if it.partition(":")[2] in FINE]
     return Kind(
         types[0] if types else "one" * bool(choices),
         "required" in words,
         tuple(choices),
-        _since(words),
-        tuple((_version(version), type_) for version, type_ in later),
+        _version_behind("since:", words),
+        _version_behind("refused:", words),
         next((it[11:] for it in words if it.startswith("instead-of:")), ""),
     )
 
 
-def _since(words: Sequence[str]) -> Version:
-    return next((_version(it[6:]) for it in words if it.startswith("since:")), OLDEST)
+def _version_behind(start: str, words: Sequence[str]) -> Version:
+    found = (it.removeprefix(start) for it in words if it.startswith(start))
+    return next(map(_version, found), OLDEST)
 
 
 def _version(word: str) -> Version:
@@ -157,7 +154,7 @@ def _version(word: str) -> Version:
 def _child(tag: str, words: Sequence[str]) -> Child:
     section = next((it[1:] for it in words if it.startswith("=")), tag)
     times = next(it for it in words if it in ("required", "once", "many", "either"))
-    return Child("" if "open" in words else section, times, _since(words))
+    return Child("" if "open" in words else section, times, _version_behind("since:", words))
 
 
 def is_own(name: object) -> bool:

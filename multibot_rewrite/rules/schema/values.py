@@ -22,6 +22,7 @@ FINE = {
     "positive": lazy_compile(rf" *{_ABOVE}", re.ASCII),
     "positives": lazy_compile(rf" *{_ABOVE}(?: +{_ABOVE}){{2}} *", re.ASCII),
     "version": lazy_compile(r"1\.[0-2]", re.ASCII),
+    "filled": lazy_compile(r"\S.*"),
 }
 _LONG = 200
 COUNTS = {
@@ -33,12 +34,8 @@ COUNTS = {
     "positive": 1,
     "positives": 3,
 }
-# What is asked of numbers of these types.
-_ASKED = {
-    "unsigned": "refuses numbers below 0",
-    "positive": "refuses 0 and less",
-    "positives": "refuses 0 and less",
-}
+# What numbers of these types may not be.
+_BEYOND = {"unsigned": "below 0", "positive": "not above 0", "positives": "not above 0"}
 _NUMBER = lazy_compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
 _INFINITE = lazy_compile(r"[-+]?(?:nan|inf|infinity)", re.IGNORECASE)
 _UNITS = lazy_compile(r"[-+.\deE]*\d\.?\s*[A-Za-z°%]+", re.ASCII)
@@ -59,15 +56,15 @@ def wrong_numbers(value: str, kind: str) -> tuple[str, str, str]:
     words = value.split()
     odd = next((word for word in words if not _NUMBER.fullmatch(word)), None)
     if not words:
-        return "not-a-number", ", which is not a number", ""
+        return "value", ", which is not a number", ""
     if odd is not None and not _INFINITE.fullmatch(odd):
         return (
-            "not-a-number",
+            "value",
             f": {shortened(odd)!r} is not a number" * (odd != value),
             _number_hint(value, odd),
         )
     if odd is not None or not all(isfinite(float(word)) for word in words):
-        return "not-finite", ", which is not finite", "write a large number, or leave it out"
+        return "value", ", which is not finite", "write a large number, or leave it out"
     return _miscounted(value, [float(word) for word in words], kind)
 
 
@@ -76,13 +73,13 @@ def _miscounted(value: str, numbers: Sequence[float], kind: str) -> tuple[str, s
     wanted = COUNTS[kind]
     if len(numbers) != wanted:
         count = f"{len(numbers)} numbers" if len(numbers) != 1 else "1 number"
-        return "wrong-count", f": {count} of {wanted}", ""
+        return "value", f": {count} of {wanted}", ""
     if kind == "rgba" and not all(0 <= it <= 1 for it in numbers):
-        return kind, ": outside of 0 to 1", "divide by 255" if max(numbers) > 1 else ""
+        return "value", ": outside of 0 to 1", "divide by 255" if max(numbers) > 1 else ""
     if wanted == 1 and value.endswith(" "):
-        return "space-after-number", ", with a space after it", "delete the space"
-    if kind in _ASKED and (min(numbers) < 0 or (kind != "unsigned" and 0 in numbers)):
-        return "out-of-range", f": URDF 1.2 {_ASKED[kind]}", ""
+        return "value", ", with a space after it", "delete the space"
+    if kind in _BEYOND and (min(numbers) < 0 or (kind != "unsigned" and 0 in numbers)):
+        return "range", f", which is {_BEYOND[kind]}", ""
     return "", "", ""
 
 

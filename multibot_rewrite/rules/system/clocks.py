@@ -54,13 +54,13 @@ def no_clock(seen: Index) -> Iterator[Finding]:
 
 
 def _clocks(seen: Index) -> tuple[str, ...]:
-    ends = seen.names.get((TOPIC, CLOCK))
+    ends = seen.by_name.get((TOPIC, CLOCK))
     return nodes_of(ends.publishers) if ends else ()
 
 
 def _on_simulated_time(seen: Index) -> dict[str, list[str]]:
     """The nodes that subscribe to the clock, by robot."""
-    ends = seen.names.get((TOPIC, CLOCK))
+    ends = seen.by_name.get((TOPIC, CLOCK))
     found: dict[str, list[str]] = defaultdict(list)
     for node in nodes_of(ends.subscribers) if ends else ():
         if not is_viewer(node) and not is_tool(node):
@@ -87,7 +87,7 @@ running: /rosbag2_player publishes /recorded/clock rosgraph_msgs/msg/Clock
 )
 def two_clocks(seen: Index) -> Iterator[Finding]:
     """Two nodes of one name count as well: a bridge that was started for each robot."""
-    ends = seen.names.get((TOPIC, CLOCK))
+    ends = seen.by_name.get((TOPIC, CLOCK))
     nodes = _clocks(seen)
     times = {node: seen.nodes.get(node, 0) for node in nodes}
     if ends and sum(max(1, count) for count in times.values()) > 1:

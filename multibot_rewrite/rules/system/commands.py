@@ -49,7 +49,7 @@ running: /robot2/driver subscribes /robot2/cmd_vel geometry_msgs/msg/Twist
 )
 def command_for_several_robots(seen: Index) -> Iterator[Finding]:
     """Whether or not anybody sends at the moment."""
-    for (kind, name), ends in seen.names.items():
+    for (kind, name), ends in seen.by_name.items():
         joystick = ends.type == words.JOYSTICK and not seen.robot(name)
         order = kind == TOPIC and (joystick or name in seen.orders)
         nodes = nodes_of(at_work(ends.subscribers)) if order else ()
@@ -92,7 +92,7 @@ def command_to_nobody(seen: Index) -> Iterator[Finding]:
     """Where the other name has no sender, its reader is the finding; what RViz offers is a note."""
     obeyed = defaultdict(list)
     unread = {name: it for name, it in seen.orders.items() if it.publishers and not _obeyed(it)}
-    for (kind, name), ends in seen.names.items() if unread else ():
+    for (kind, name), ends in seen.by_name.items() if unread else ():
         if kind == TOPIC and ends.publishers and _obeyed(ends):
             obeyed[ends.type].append(name)
     for name, ends in unread.items():
@@ -119,7 +119,7 @@ def _obeyed(ends: Ends) -> bool:
 
 def _unread(seen: Index, ends: Ends, meant: str, robots: int) -> Finding:
     node = nodes_of(ends.publishers)[0]
-    reader = nodes_of(at_work(seen.names[TOPIC, meant].subscribers))[0]
+    reader = nodes_of(at_work(seen.by_name[TOPIC, meant].subscribers))[0]
     message = f"publishes {ends.name}, which nobody reads; {reader} reads {meant}"
     several = f" (or that of another of the {robots} robots)" if robots > 1 else ""
     cause = f"start it in the robot's namespace, or pass the rule {ends.name}:={meant}{several}"
@@ -151,7 +151,7 @@ running: /robot2/teleop publishes /robot2/cmd_vel geometry_msgs/msg/Twist
 )
 def command_from_another_robot(seen: Index) -> Iterator[Finding]:
     """Tools as well: a joystick of one robot is not for another."""
-    for (kind, name), ends in seen.names.items():
+    for (kind, name), ends in seen.by_name.items():
         owner = seen.robot(name)
         crossing = _of_others(seen, owner, (*ends.publishers, *ends.clients)) if owner else ()
         if not crossing:
@@ -265,7 +265,7 @@ def bag_beside_a_robot(seen: Index) -> Iterator[Finding]:
     """A bag that is played to nodes which only read is what bags are for."""
     mixed: dict[str, list[str]] = {}
     played = {end.name for end in seen.system.ends if words.PLAYER in end.node}
-    for ends in seen.names.values() if played else ():
+    for ends in seen.by_name.values() if played else ():
         if ends.kind != TOPIC or ends.name not in played:
             continue
         players = [it for it in nodes_of(ends.publishers) if last_word(it).startswith(words.PLAYER)]

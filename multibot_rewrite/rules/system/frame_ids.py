@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cache
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
@@ -20,7 +20,7 @@ from multibot_rewrite.system.index import (
     only,
     robots_of,
 )
-from multibot_rewrite.system.records import TOPIC
+from multibot_rewrite.system.records import TOPIC, Edge
 
 # What a robot measures is in its own frames. A pose, a path or a marker may be in another robot's.
 _MEASURED = ("sensor_msgs/", "nav_msgs/msg/Odometry", "stereo_msgs/", "radar_msgs/")
@@ -105,9 +105,9 @@ running: frame_id robot1/lidar_link on /robot1/scan
 )
 def frame_id_unknown(seen: Index) -> Iterator[Finding]:
     """Where no transform was received at all nothing is known; others say that."""
-    frames = {tree.topic: frames_in(tree) for tree in seen.trees}
+    frames = {tree.topic: frames_in(tree.edges) for tree in seen.trees}
     heard_by = cache(
-        lambda robot: {it for tree in _trees(seen, robot) for it in frames[tree.topic]}
+        lambda robot: {it for tree in trees_of(seen, robot) for it in frames[tree.topic]}
     )
     for (frame, robot, senders), messages in _by_sender(seen).items():
         heard = heard_by(robot)
@@ -159,7 +159,7 @@ def _by_sender(seen: Index) -> dict[tuple[str, str, tuple[str, ...]], list[_Mess
 def _messages(seen: Index) -> Iterator[_Message]:
     """What nodes other than viewers send; tf2 takes a frame with a slash in front as one without."""
     for topic, written in seen.system.heard:
-        ends = seen.names.get((TOPIC, topic))
+        ends = seen.by_name.get((TOPIC, topic))
         senders = nodes_of(at_work(ends.publishers)) if ends else ()
         frame = written.removeprefix("/")
         if ends and senders and frame:
@@ -167,7 +167,7 @@ def _messages(seen: Index) -> Iterator[_Message]:
             yield _Message(topic, ends.type, frame, robot, senders)
 
 
-def _trees(seen: Index, robot: str) -> list[Tree]:
+def trees_of(seen: Index, robot: str) -> list[Tree]:
     """The trees that a robot gets: on its own topic, on one of all robots, where its nodes are."""
     if not robot:
         return list(seen.trees)
@@ -179,9 +179,9 @@ def _trees(seen: Index, robot: str) -> list[Tree]:
     ]
 
 
-def frames_in(tree: Tree) -> set[str]:
-    """The frames of a tree, without a slash in front."""
-    return {it.removeprefix("/") for edge in tree.edges for it in (edge.parent, edge.child)}
+def frames_in(edges: Iterable[Edge]) -> set[str]:
+    """The frames of some transforms, without a slash in front."""
+    return {it.removeprefix("/") for edge in edges for it in (edge.parent, edge.child)}
 
 
 def _who(senders: Sequence[str]) -> str:

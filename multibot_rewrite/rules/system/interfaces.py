@@ -1,4 +1,4 @@
-"""Dangers of ros2_control: an interface that is claimed and not exported, or claimed twice.
+"""Dangers of ros2_control and MoveIt: an interface that is claimed and not exported, or claimed twice.
 
 Source: ros2_control controller_manager.cpp (a controller whose interfaces do not exist is not
 activated; a command interface has one owner) and its chaining: a controller's own interfaces are called
@@ -11,13 +11,17 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 
 from multibot_rewrite.base.conventions import PLACEHOLDER
-from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.nearest import Guesses
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.rules.declaration import system_rule
+from multibot_rewrite.rules import of_both
 from multibot_rewrite.rules.places import see, where
 from multibot_rewrite.system.index import Index, last_word
-from multibot_rewrite.system.records import CLAIMS, COMMAND, EXPORTS, Interface, Place
+from multibot_rewrite.system.records import CLAIMS, COMMAND, EXPORTS, JOINT, Interface, Place
+
+# What is done with it, what it is called besides its kind, and who does not give it.
+_OF_HARDWARE = ("claims", " interface", "no ros2_control exports")
+_WORDS = {JOINT: ("plans for", "", "no controller of MoveIt moves")}
 
 
 class Missing(NamedTuple):
@@ -29,40 +33,25 @@ class Missing(NamedTuple):
     meant: str
 
 
-@system_rule(
-    "MG515",
-    "interface-not-exported",
-    WARNING,
-    absence=True,
-    what="A controller claims an interface that the hardware of its robot does not export. Where the"
-    " files before a rewrite agreed, `build` says it as an error.",
-    why="The controller manager does not activate a controller whose interfaces do not exist.",
-    fix="Name an interface that the description has, or add it to its `<ros2_control>`.",
-    bad="""\
-running: /robot1/controller_manager exports command elbow/position
-running: /robot1/arm claims command elbo/position
-""",
-    good="""\
-running: /robot1/controller_manager exports command elbow/position
-running: /robot1/arm claims command elbow/position
-""",
-    line=2,
-)
-def interface_not_exported(seen: Index) -> Iterator[Finding]:
+def _not_exported(seen: Index) -> Iterator[Finding]:
     """Nothing is said where no hardware is known: another description may have it."""
     for robot, known in _by_robot(seen).items():
         for it in missing(known):
             first, *more = it.claims
-            names = f"{first.kind} interface {first.name}"
-            names = f"{names} and {len(more)} more" if more else names
+            does, needed, gives = _WORDS.get(first.kind, _OF_HARDWARE)
+            also = f" and {len(more)} more" if more else ""
             near = [it.near] if it.near else []
             cause = f"name one that is there{see((*near, first))}"
             if it.meant:
                 cause = f"did you mean {it.meant}{see((*near, first))}"
             yield interface_not_exported.finding(
-                f"claims {names}, which no ros2_control exports",
-                cause, robot=robot, node=first.node, names=(first.name,), **where([first]),
+                f"{does} {first.kind}{needed} {first.name}{also}, which {gives}", cause,
+                level=NOTE if first.kind == JOINT else WARNING,
+                robot=robot, node=first.node, names=(first.name,), **where([first]),
             )  # fmt: skip
+
+
+interface_not_exported = of_both.NOT_EXPORTED._replace(check=_not_exported)
 
 
 def _by_robot(seen: Index) -> dict[str, list[Interface]]:
@@ -89,12 +78,14 @@ def open_claims(known: Sequence[Interface]) -> list[Interface]:
     """The claims that nothing exports; a controller chains to another one, whose name may be that of a
     sensor."""
     exports = {(it.kind, it.name) for it in known if it.role == EXPORTS}
+    given = {kind == JOINT for kind, _ in exports}
     claims = [it for it in known if it.role == CLAIMS]
     chained = {last_word(it.node) for it in claims}
     return [
         it
-        for it in (claims if exports else ())
-        if (it.kind, it.name) not in exports
+        for it in claims
+        if (it.kind == JOINT) in given
+        and (it.kind, it.name) not in exports
         # Launch files fill in placeholders such as <namespace>.
         and not PLACEHOLDER.search(it.name)
         and it.name.partition("/")[0] not in chained - {last_word(it.node)}
@@ -114,29 +105,16 @@ def _beside(name: str, exports: Iterable[Interface]) -> Interface | None:
     return next((it for it in exports if it.name.rpartition("/")[0] == owner), None)
 
 
-@system_rule(
-    "MG516",
-    "interface-claimed-twice",
-    WARNING,
-    what="Two parameters of a controller name the same joint, so it claims a command interface twice.",
-    why="An interface is claimed once: the controller is not activated, or one wheel is driven twice.",
-    fix="Name another joint in one of them.",
-    bad="""\
-running: /robot1/drive claims command wheel/velocity
-running: /robot1/drive claims command wheel/velocity
-""",
-    good="""\
-running: /robot1/drive claims command left_wheel/velocity
-running: /robot1/drive claims command right_wheel/velocity
-""",
-)
-def interface_claimed_twice(seen: Index) -> Iterator[Finding]:
+def _claimed_twice(seen: Index) -> Iterator[Finding]:
     """Of one controller; what two of them command is a rule about those that are active."""
     for other, it in claimed_twice(seen.system.interfaces):
         yield interface_claimed_twice.finding(
             f"claims {it.name} by two parameters", f"name another joint{see((other, it))}",
             robot=seen.robot(it.node), node=it.node, names=(it.name,), **where([it]),
         )  # fmt: skip
+
+
+interface_claimed_twice = of_both.CLAIMED_TWICE._replace(check=_claimed_twice)
 
 
 def claimed_twice(known: Iterable[Interface]) -> Iterator[tuple[Interface, Interface]]:

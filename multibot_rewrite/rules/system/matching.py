@@ -48,7 +48,7 @@ running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
 )
 def types_differ(seen: Index) -> Iterator[Finding]:
     """Where one of a node's ends has the type of the other side, it connects."""
-    for ends in seen.names.values():
+    for ends in seen.by_name.values():
         givers, takers = (ends.publishers, ends.subscribers)
         if ends.kind != TOPIC:
             givers, takers = ends.servers, ends.clients
@@ -139,7 +139,7 @@ running: /robot1/amcl subscribes /robot1/scan sensor_msgs/msg/LaserScan best_eff
 )
 def qos_never_meets(seen: Index) -> Iterator[Finding]:
     """One for each subscription and what it lacks. Zenoh connects any two (rmw_zenoh design.md)."""
-    for (kind, name), ends in seen.names.items() if seen.system.environment.rmw != ZENOH else ():
+    for (kind, name), ends in seen.by_name.items() if seen.system.environment.rmw != ZENOH else ():
         if kind != TOPIC or name in EVERYBODYS or not ends.publishers:
             continue
         for end in {(it.node, it.qos): it for it in ends.subscribers}.values():
@@ -191,7 +191,7 @@ running: /robot1/map_server publishes /robot1/map nav_msgs/msg/OccupancyGrid rel
 )
 def not_latched(seen: Index) -> Iterator[Finding]:
     """Where a subscriber asks for it, that is the finding."""
-    for ends in seen.names.values() if seen.system.environment.rmw != ZENOH else ():
+    for ends in seen.by_name.values() if seen.system.environment.rmw != ZENOH else ():
         asked = any(it.qos and it.qos.durability == DURABILITY[1] for it in ends.subscribers)
         if ends.kind != TOPIC or asked or not _is_latched(ends):
             continue

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import islice, zip_longest
 
 from multibot_rewrite.base.conventions import EVERYBODYS, chooses
@@ -24,6 +24,7 @@ from multibot_rewrite.system.index import (
     is_viewer,
     last_word,
     nodes_of,
+    once,
     robots_of,
 )
 from multibot_rewrite.system.records import ACTION, SERVES, SERVICE, TOPIC, End
@@ -62,10 +63,10 @@ running: /joystick publishes /robot1/cmd_vel geometry_msgs/msg/Twist
 def topic_names_miss(seen: Index) -> Iterator[Finding]:
     """What a person may click in RViz, and what only tools read, is a note."""
     published = {
-        name: it for (kind, name), it in seen.names.items() if kind == TOPIC and it.publishers
+        name: it for (kind, name), it in seen.by_name.items() if kind == TOPIC and it.publishers
     }
     unheard = {name: it for name, it in published.items() if not at_work(it.subscribers)}
-    for (kind, name), ends in seen.names.items():
+    for (kind, name), ends in seen.by_name.items():
         if kind != TOPIC or ends.publishers or name in EVERYBODYS or ends.type == TF:
             continue
         for end in _each_node(ends.subscribers):
@@ -97,9 +98,9 @@ def _published_instead(
         own = [it for it in published if seen.robot(it) == robot and seen.plain(it) == end.name]
         return next((it for it in own if published[it].type == end.type), "")
     same = [
-        name
-        for name, it in published.items()
-        if it.type == end.type and nodes_of(it.publishers) != (end.node,)
+        it.name
+        for it in _published(seen).get(end.type, ())
+        if it.name in published and nodes_of(it.publishers) != (end.node,)
     ]
     below = _without_own_name(end)
     hidden = (it for it in same if it == below or _hides(published[it], end.name))
@@ -109,6 +110,16 @@ def _published_instead(
     bare = (it for it in same if owner and not seen.robot(it) and it == seen.plain(end.name))
     unread = (it for it in bare if it in unheard)
     return next(unread, "") or alike(end.name, same, end.type)
+
+
+@once
+def _published(seen: Index) -> Mapping[str, Sequence[Ends]]:
+    """The topics with a publisher, by their type."""
+    found: dict[str, list[Ends]] = defaultdict(list)
+    for (kind, _), it in seen.by_name.items():
+        if kind == TOPIC and it.publishers:
+            found[it.type].append(it)
+    return found
 
 
 def _written_out(node: str, name: str) -> Iterator[str]:
@@ -228,10 +239,10 @@ running: /robot2/bt_navigator serves /robot2/navigate_to_pose nav2_msgs/action/N
 def server_names_miss(seen: Index) -> Iterator[Finding]:
     """A service that is nowhere to be found may be optional: it is no finding."""
     served: dict[tuple[str, str], list[str]] = defaultdict(list)
-    for (kind, name), ends in seen.names.items():
+    for (kind, name), ends in seen.by_name.items():
         if ends.servers:
             served[kind, ends.type].append(name)
-    for (kind, name), ends in seen.names.items():
+    for (kind, name), ends in seen.by_name.items():
         if kind == TOPIC or ends.servers:
             continue
         for end in _each_node(ends.clients):
@@ -251,13 +262,13 @@ def server_names_miss(seen: Index) -> Iterator[Finding]:
                 )  # fmt: skip
             if not other:
                 continue
-            server = nodes_of(seen.names[kind, other].servers)[0]
+            server = nodes_of(seen.by_name[kind, other].servers)[0]
             message = f"{does} {name}, which nobody serves; {server} serves {other}"
             cause = f"pass the rule {name}:={other}, or start it in the namespace of the robot"
             robot = seen.robot(end.node) or seen.robot(other)
             level = NOTE if is_viewer(end.node) and not is_spawner(end.node) else ERROR
             yield server_names_miss.finding(
-                message, cause + see((seen.names[kind, other].servers[0], end)),
+                message, cause + see((seen.by_name[kind, other].servers[0], end)),
                 level=level, robot=robot, node=end.node, names=(name, other), **where([end]),
             )  # fmt: skip
 
@@ -306,7 +317,7 @@ running: /robot2/bt_navigator serves /robot2/navigate_to_pose nav2_msgs/action/N
 def service_of_two_nodes(seen: Index) -> Iterator[Finding]:
     """Of two nodes with one name the nodes are the finding; two filters of robot_localization in one
     robot both serve `set_pose`, which is how they are made."""
-    for (kind, name), ends in seen.names.items():
+    for (kind, name), ends in seen.by_name.items():
         nodes = nodes_of(ends.servers) if ends.servers else ()
         if len(nodes) > 1 and (kind == ACTION or len(robots_of(seen, nodes)) > 1):
             what = "action" if kind == ACTION else SERVICE

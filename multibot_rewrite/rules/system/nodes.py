@@ -95,7 +95,7 @@ running: /robot1/amcl serves /robot1/amcl/change_state lifecycle_msgs/srv/Change
 def managed_twice(seen: Index) -> Iterator[Finding]:
     """One finding for all nodes that the same managers have; an operator's tool is none."""
     managed: dict[tuple[str, ...], list[str]] = defaultdict(list)
-    for (kind, name), ends in seen.names.items():
+    for (kind, name), ends in seen.by_name.items():
         if kind == SERVICE and name.endswith(_CHANGE_STATE):
             clients = nodes_of(end for end in ends.clients if not _asks_for_a_person(end.node))
             managed[clients].append(name.removesuffix(_CHANGE_STATE))

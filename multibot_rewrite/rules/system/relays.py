@@ -64,7 +64,7 @@ def relayed_to_another_robot(seen: Index) -> Iterator[Finding]:
 
 def _of_bodies(seen: Index) -> Iterator[Ends]:
     """The robots' topics with commands, and with what a body measures."""
-    for (kind, name), ends in seen.names.items():
+    for (kind, name), ends in seen.by_name.items():
         own = kind == TOPIC and seen.robot(name)
         if own and (words.is_of_a_body(ends.type) or words.moves(seen.plain(name), ends.type)):
             yield ends

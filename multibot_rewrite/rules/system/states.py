@@ -67,7 +67,7 @@ def not_active(seen: Index) -> Iterator[Finding]:
 
 def _manager(seen: Index, node: str) -> str:
     """The node that changes the state of another one; empty for none."""
-    ends = seen.names.get((SERVICE, f"{node}/change_state"))
+    ends = seen.by_name.get((SERVICE, f"{node}/change_state"))
     clients = (end.node for end in ends.clients) if ends else ()
     return min((it for it in clients if not is_viewer(it) and not is_tool(it)), default="")
 

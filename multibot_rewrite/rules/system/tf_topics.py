@@ -11,16 +11,7 @@ from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import see, where
 from multibot_rewrite.rules.system.transforms import collide
-from multibot_rewrite.system.index import (
-    Index,
-    Tree,
-    is_viewer,
-    last_word,
-    only,
-    robots_of,
-    tree_topic,
-    unique,
-)
+from multibot_rewrite.system.index import Index, Tree, is_viewer, last_word, only, robots_of, unique
 from multibot_rewrite.system.records import (
     NOWHERE,
     OFF,
@@ -29,6 +20,7 @@ from multibot_rewrite.system.records import (
     UNKNOWN_NODES,
     Edge,
 )
+from multibot_rewrite.system.tf_copies import tree_topic
 
 TF = "tf"
 _REMAP = "/tf:=tf and /tf_static:=tf_static"
@@ -212,7 +204,7 @@ def told_not_to(seen: Index) -> Iterator[Finding]:
     off: dict[tuple[str, str], list[Edge]] = defaultdict(list)
     for it in (it for it in seen.system.edges if it.sure == OFF):
         off[tree_topic(it.topic), it.child].append(it)
-    others = [it for tree in seen.trees for it in tree.edges if not _is_of_description(seen, it)]
+    others = [it for tree in seen.trees for it in tree.edges if not is_of_description(seen, it)]
     beside = next((it for it in others if it.place != NOWHERE), None)
     for (topic, child), (first, *more) in off.items():
         if (topic, child) in sent:
@@ -236,12 +228,12 @@ def _senders_apart(seen: Index, tree: Tree) -> Iterator[Finding]:
     """
     for robot in unique(seen.robot(node) for it in tree.edges for node in it.publishers[:1]):
         edges = [it for it in tree.edges if {*map(seen.robot, it.publishers)} == {robot}]
-        moving = {it.publishers: it for it in edges[::-1] if not _is_of_description(seen, it)}
+        moving = {it.publishers: it for it in edges[::-1] if not is_of_description(seen, it)}
         if not moving:
             continue
         first, *others = [*moving.values()][::-1]
         children = {it.child for it in edges}
-        roots = {it.parent for it in edges if _is_of_description(seen, it)} - children
+        roots = {it.parent for it in edges if is_of_description(seen, it)} - children
         joined = _joined(
             [*((it.parent, it.child) for it in edges), *((first.parent, it) for it in roots)]
         )
@@ -257,8 +249,14 @@ def _senders_apart(seen: Index, tree: Tree) -> Iterator[Finding]:
                 )  # fmt: skip
 
 
-def _is_of_description(seen: Index, edge: Edge) -> bool:
-    return any(last_word(seen.plain(it)).startswith(_STATE_PUBLISHER) for it in edge.publishers)
+def is_of_description(seen: Index, edge: Edge) -> bool:
+    """Does robot_state_publisher send it?"""
+    return any(publishes_description(seen, it) for it in edge.publishers)
+
+
+def publishes_description(seen: Index, node: str) -> bool:
+    """Is it robot_state_publisher? Raises nothing."""
+    return last_word(seen.plain(node)).startswith(_STATE_PUBLISHER)
 
 
 def _joined(pairs: Iterable[tuple[str, str]]) -> Callable[[str], str]:

@@ -59,7 +59,7 @@ def open_ends(seen: Index) -> list[End]:
     """What nodes surely need by their code, and nothing gives."""
     return [
         end
-        for (kind, name), ends in seen.names.items()
+        for (kind, name), ends in seen.by_name.items()
         if not (ends.publishers or ends.servers) and not _is_status(seen, kind, name)
         for end in (*ends.subscribers, *ends.clients)
         if is_needed(end)
@@ -74,7 +74,7 @@ def is_needed(end: End) -> bool:
 
 
 def _is_status(seen: Index, kind: str, name: str) -> bool:
-    served = seen.names.get((ACTION, name.removesuffix(_STATUS)))
+    served = seen.by_name.get((ACTION, name.removesuffix(_STATUS)))
     return kind == TOPIC and name.endswith(_STATUS) and served is not None and bool(served.servers)
 
 
@@ -83,7 +83,7 @@ def meant(seen: Index, end: End) -> Ends | None:
     name; nothing for one of which it is not known what the code calls it."""
     if not is_needed(end) or not end.type:
         return None
-    same = (it for it in seen.names.values() if (it.kind, it.type) == (end.kind, end.type))
+    same = (it for it in seen.by_name.values() if (it.kind, it.type) == (end.kind, end.type))
     alike = {it.name: it for it in same if _may_be(seen, it, end)}
     if end.type.startswith(_PLAIN_TYPES):
         # What their names in the code have in common counts, not the robot's namespace.

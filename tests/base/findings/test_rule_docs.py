@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from multibot_rewrite.base.findings.rule_docs import listed
+from multibot_rewrite.base.findings.codes import listed
 from multibot_rewrite.description.checks.robots import strip_other_robot
 
 

@@ -23,6 +23,7 @@ WITHOUT_EXAMPLES = {
 EXAMPLES = [code for code in RULES if code not in WITHOUT_EXAMPLES]
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("code", EXAMPLES)
 def test_the_examples_of_a_rule(code: str, tmp_path: Path) -> None:
     """The bad one is found once, in its line, with edits where a fix is shown; the good one never."""
@@ -85,6 +86,7 @@ def test_what_has_no_example_is_raised_in_another_test(code: str) -> None:
     assert code in path.read_text()
 
 
+@pytest.mark.slow
 def test_every_code_of_the_package_is_declared() -> None:
     sources = (path.read_text() for path in (ROOT / "multibot_rewrite").rglob("*.py"))
     codes = {code for text in sources for code in re.findall(r"\bM[BFGR]\d{3}\b", text)}

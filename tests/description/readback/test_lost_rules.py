@@ -6,7 +6,7 @@ import pytest
 
 from multibot_rewrite import rewrite
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.description.readback.lost_rules import LostRule, lost_rules
+from multibot_rewrite.description.readback.meeting import LostRule, lost_rules
 from multibot_rewrite.description.readback.reading import read
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 

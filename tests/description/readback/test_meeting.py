@@ -5,14 +5,14 @@ from __future__ import annotations
 import pytest
 
 from multibot_rewrite.base.naming import make_naming
-from multibot_rewrite.description.readback.meeting import meetings, same_for_all
-from multibot_rewrite.description.readback.reading import Reading, RuntimeName
+from multibot_rewrite.description.readback.meeting import advice, meetings, said, same_for_all
+from multibot_rewrite.description.readback.reading import RuntimeName
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
 
 
-def having(*names: tuple[str, str]) -> Reading:
-    return Reading((), tuple(RuntimeName(*it, "plugin", 0, "x") for it in names), ())
+def having(*names: tuple[str, str]) -> list[RuntimeName]:
+    return [RuntimeName(*it, "plugin", 0, "x") for it in names]
 
 
 # Does the name meet, in the order of LAYOUTS?
@@ -66,3 +66,14 @@ def test_what_the_user_allows_is_shared() -> None:
     naming = make_naming("both", shared_topics=("/scan",), shared_frames=("site",))
     one = having(("topic", "/scan"), ("frame", "site"), ("frame", "/site"))
     assert not list(same_for_all(one, "robot1", naming))
+
+
+# What is looked up in the whole world is found by its bare name, whoever has it; the rest is shared.
+@pytest.mark.parametrize(
+    ("kind", "looked_up"),
+    [("sensor", True), ("link", True), ("topic", False), ("node", False), ("frame", False)],
+)
+def test_only_a_lookup_is_said_to_be_one(kind: str, looked_up: bool) -> None:
+    (it,) = having((kind, "imu"))
+    assert ("in the whole world" in said("all robots would", it)) == looked_up
+    assert ("--layout both" in advice(it)) == looked_up

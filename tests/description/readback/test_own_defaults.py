@@ -106,4 +106,4 @@ def test_the_second_reading_sees_a_camera_that_all_robots_share(
     monkeypatch.setattr(insert, "filled", lambda *_: "")
     monkeypatch.setattr(insert, "default_of", lambda *_: "")
     found = rewrite(CAMERA, "robot1", layout="L1", topics="postfix").findings
-    assert "MB430" in {it.code for it in found if "eye" in it.message}
+    assert "MG320" in {it.code for it in found if "eye" in it.message}

@@ -201,6 +201,7 @@ PID = {f"pid/{a}_{b}_motor" for a in ("front", "rear") for b in ("left", "right"
 UNTYPED = {*PID, "pid/articulation_joint", "collisions", "cmd_drive"}
 
 
+@pytest.mark.slow
 def test_every_topic_of_a_plugin_that_is_a_node_has_a_type() -> None:
     sections = check_vocabulary(load_vocabulary((), NEWEST_LTS, packages=False))
     nodes = [it for it in sections if any(site.path == "ros/namespace" for site in it.sites)]

@@ -29,8 +29,8 @@ def of(*codes: str) -> tuple[str, ...]:
         ((), ()),
         (("MB405", "MB301"), ()),
         (("MB901",), ("1 name not understood",)),
-        (("MB430", "MB901", "MB430"), ("1 name not understood", "2 topics shared by all robots")),
-        (("MB431", "MB432"), ("1 node shared by all robots", "1 frame shared by all robots")),
+        (("MG320", "MB901", "MG320"), ("1 name not understood", "2 topics shared by all robots")),
+        (("MG301", "MG402"), ("1 node shared by all robots", "1 frame shared by all robots")),
         (("MB902", "MB903"), ("1 plugin not known", "1 hardware class not known")),
     ],
 )
@@ -39,10 +39,11 @@ def test_reasons_with_counts(codes: tuple[str, ...], why: tuple[str, ...]) -> No
 
 
 def test_every_reason_is_a_warning_of_a_rewrite() -> None:
-    """--strict stops at warnings: a reason below would pass."""
+    """--fail-on warning stops at warnings: a reason below would pass."""
     from multibot_rewrite.lint.catalogue import rules
+    from multibot_rewrite.lint.registry import RULES
 
-    known = rules()
+    known = {**rules(), **RULES}
     assert {code for code in REASONS if known[code].level not in ("warning", "note")} == set()
 
 
@@ -56,7 +57,7 @@ def test_every_reason_is_a_warning_of_a_rewrite() -> None:
         (DRIVE.format("<!-- c -->demo"), ()),
         (
             DRIVE.format("{name}"),
-            ("1 topic shared by all robots", "1 node shared by all robots"),
+            ("1 command shared by all robots", "1 node shared by all robots"),
         ),
     ],
 )
@@ -64,6 +65,7 @@ def test_a_rewrite_says_why_it_is_not_proved(text: str, why: tuple[str, ...]) ->
     assert rewrite(text, "robot1", layout="tf-per-robot").not_proved == why
 
 
+@pytest.mark.slow
 def test_the_summary_and_strict(tmp_path: Path) -> None:
     file, out = tmp_path / "r.urdf", tmp_path / "out.urdf"
     file.write_text(LIDAR.format("{name}/scan"))
@@ -72,20 +74,23 @@ def test_the_summary_and_strict(tmp_path: Path) -> None:
     end = "; rewritten, not proved: 1 topic shared by all robots (facts of lyrical)\n"
     assert done.err.endswith(end)
     out.unlink()
-    stopped = run(tmp_path, "r.urdf", "robot1", "-o", str(out), "--strict")
+    stopped = run(tmp_path, "r.urdf", "robot1", "-o", str(out), "--fail-on", "warning")
     assert stopped.code == 1
     assert not out.exists()
     assert "proved" not in stopped.err
-    healthy = run(tmp_path, str(ROBOTS / "rover.urdf"), "robot1", "-o", str(out), "--strict")
+    healthy = run(
+        tmp_path, str(ROBOTS / "rover.urdf"), "robot1", "-o", str(out), "--fail-on", "warning"
+    )
     assert healthy.code == 0
     assert healthy.err.endswith("; proved (facts of lyrical)\n")
 
 
+@pytest.mark.slow
 def test_what_is_not_shown_is_a_reason_all_the_same(tmp_path: Path) -> None:
     file = tmp_path / "r.urdf"
     file.write_text(LIDAR.format("{name}/scan"))
-    quiet = run(tmp_path, "r.urdf", "robot1", "-o", str(tmp_path / "o"), "--ignore", "MB430")
-    assert "MB430" not in quiet.err
+    quiet = run(tmp_path, "r.urdf", "robot1", "-o", str(tmp_path / "o"), "--ignore", "MG320")
+    assert "MG320" not in quiet.err
     assert "not proved: 1 topic" in quiet.err
 
 
@@ -101,7 +106,7 @@ def test_two_robots_that_meet_in_what_was_inserted_are_refused() -> None:
     with pytest.raises(RewriteRefused) as refused:
         list(rewrite_all(OVERLAP, ["left_b", "b"], separators={"topic": "_"}))
     (finding,) = refused.value.findings
-    assert finding.code == "MB421"
+    assert finding.code == "MG320"
     assert "left_b and b would both have the topic '/odom_left_b'" in finding.message
     assert len(list(rewrite_all(OVERLAP, ["left_b", "c"], separators={"topic": "_"}))) == 2
     assert len(list(rewrite_all(OVERLAP, ["left_b", "b"]))) == 2

@@ -41,19 +41,19 @@ def named(kind: str, name: str) -> str:
 def shared(text: bytes, layout: str) -> set[str]:
     """What all robots would have of one robot's text."""
     reading = read(text, "rover", load_vocabulary((), NEWEST_LTS))
-    found = same_for_all(reading, "robot1", make_naming(layout))
+    found = same_for_all(reading.names, "robot1", make_naming(layout))
     return {named(it.kind, it.name) for it in found}
 
 
 def met(texts: dict[str, bytes], layout: str) -> set[str]:
     """Where robots meet, by their texts."""
-    readings = {
-        robot: read(text, robot, load_vocabulary((), NEWEST_LTS)) for robot, text in texts.items()
-    }
-    found = meetings(readings, make_naming(layout))
+    vocabulary = load_vocabulary((), NEWEST_LTS)
+    names = {robot: read(text, robot, vocabulary).names for robot, text in texts.items()}
+    found = meetings(names, make_naming(layout))
     return {named(it.name.kind, it.name.name) for it in found}
 
 
+@pytest.mark.sample(8)
 @pytest.mark.parametrize("fault", FAULTS, ids=lambda fault: fault.about)
 def test_what_is_shared_is_named(fault: Fault) -> None:
     text = rewrite(RUNNING, "robot1", layout=fault.layout).data

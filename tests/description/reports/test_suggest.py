@@ -215,6 +215,7 @@ NASTY = (
 )
 
 
+@pytest.mark.sample(7)
 @pytest.mark.parametrize(
     "body",
     [

@@ -20,8 +20,8 @@ from multibot_rewrite.base.naming import POSTFIX, make_naming
 from multibot_rewrite.base.policy import Policy
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description import pipeline
-from multibot_rewrite.description.checks.meeting import SHARED_CODES, SHARED_LOOKUP
 from multibot_rewrite.description.library import rewrite_all
+from multibot_rewrite.description.readback.meeting import LOOKUP, SHARED_CODES
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.vocabulary import VocabularySection, load_vocabulary
@@ -109,7 +109,7 @@ def the_output_is_byte_exact(case: Case) -> None:
     assert result.data == case.output
     # What stays the same, or holds a placeholder, is shared by all robots: see description/readback.
     stays = case.expect == "same" or b"{robot}" in case.source
-    skipped = SHARED_CODES - {SHARED_LOOKUP} if stays else frozenset()
+    skipped = SHARED_CODES - {LOOKUP} if stays else frozenset()
     found = tuple(it for it in result.findings if it.code not in skipped)
     assert places(found) == sorted(case.finds)
 
@@ -223,6 +223,7 @@ LAWS = (
 every = pytest.mark.parametrize("case", REWRITTEN, ids=lambda case: case.name)
 
 
+@pytest.mark.sample(13)
 @every
 def test_case(case: Case) -> None:
     assert faults(FIRST, case) == []
@@ -251,6 +252,7 @@ def fault(check: Callable[[Case], None], case: Case) -> str:
 # ---------------------------------------------------------------- what the cases cover
 
 
+@pytest.mark.slow
 def test_every_rewriter_has_a_changed_and_a_same_case() -> None:
     lacking = {rewriter.name: wanted(rewriter) - outcomes(rewriter) for rewriter in REWRITERS}
     assert {name: left for name, left in lacking.items() if left} == {}
@@ -265,6 +267,7 @@ def outcomes(rewriter: VocabularySection) -> set[str]:
     return {case.expect for case in CASES if case.rewriter == rewriter.name}
 
 
+@pytest.mark.slow
 def test_every_default_and_hard_wired_topic_is_inserted() -> None:
     inserting = [rewriter for rewriter in REWRITERS if rewriter.inserts]
     lacking = {
@@ -292,6 +295,7 @@ def literals(rewriter: VocabularySection) -> set[str]:
     return defaults - {"", "/"} | {topic for topic in rewriter.topics if topic[0] != "~"}
 
 
+@pytest.mark.slow
 def test_every_row_of_the_vocabulary_renames_something() -> None:
     touched = {row for case in CHANGED for row in touched_rows(case)}
     wanted = {place(site): site for rewriter in REWRITERS + BLOCKS for site in rows(rewriter)}

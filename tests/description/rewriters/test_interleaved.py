@@ -23,7 +23,7 @@ from multibot_rewrite.description.rewriters import tree as trees
 from multibot_rewrite.description.rewriters import vocabulary as vocabularies
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.rewriters.vocabulary import Vocabulary
-from multibot_rewrite.description.steps.template import Template
+from multibot_rewrite.description.steps.apply import Template
 
 FILES = (trees.__file__, vocabularies.__file__)
 # What a rover needs of the vocabulary: a section in a section, a block, a chosen plugin, a keep.
@@ -158,6 +158,7 @@ def test_many_lines_are_looked_at() -> None:
     assert min(files[file] for file in FILES) > 20
 
 
+@pytest.mark.slow
 def test_another_thread_comes_when_a_line_first_runs() -> None:
     assert missed(lambda _: range(1, 2)) == []
 

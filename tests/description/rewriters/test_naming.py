@@ -68,6 +68,7 @@ def assert_inverse(naming: Naming, kind: str, text: str, robot: str, namespaced:
     assert new[: span[0]] + new[span[1] :] == text
 
 
+@pytest.mark.sample(8)
 @pytest.mark.parametrize(("layout", "side", "topics"), POLICIES)
 def test_removal_undoes_affix_for_every_kind(layout: str, side: str, topics: str | None) -> None:
     naming = make_naming(layout, side, topics)
@@ -75,6 +76,7 @@ def test_removal_undoes_affix_for_every_kind(layout: str, side: str, topics: str
         assert_inverse(naming, kind, text, ROBOT, namespaced)
 
 
+@pytest.mark.slow
 @given(
     st.sampled_from(LAYOUTS),
     st.sampled_from((POSTFIX, PREFIX)),
@@ -96,6 +98,7 @@ def test_removal_undoes_affix_for_any_text(
     assert_inverse(naming, kind, text, robot, namespaced)
 
 
+@pytest.mark.sample(16)
 @pytest.mark.parametrize("text", TEXTS)
 @pytest.mark.parametrize("kind", KINDS)
 def test_nothing_is_removed_that_was_not_put_there(kind: str, text: str) -> None:
@@ -336,6 +339,7 @@ def test_robots_that_can_meet(
     assert overlap(make_naming(affix=side), robots) == pairs
 
 
+@pytest.mark.slow
 @given(
     st.sampled_from((POSTFIX, PREFIX)),
     st.sets(st.text("b_", min_size=1, max_size=6), max_size=4),

@@ -226,6 +226,7 @@ def test_every_file_has_its_expectation() -> None:
     assert len(SAID) >= 30
 
 
+@pytest.mark.sample(8)
 @pytest.mark.parametrize("name", SAID)
 def test_a_hostile_file_gets_nothing(
     scene: Scene, name: str, capfd: pytest.CaptureFixture[str]

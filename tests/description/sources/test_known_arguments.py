@@ -108,6 +108,7 @@ def linted(arm: Path, names: list[str], **arguments: str) -> list[str]:
     return [f"{Path(it.file).name}:{it.line} {it.message.split()[1]}" for it in found]
 
 
+@pytest.mark.slow
 def test_of_several_files_one_that_knows_it_is_enough(arm: Path) -> None:
     (arm.parent / "cart.urdf.xacro").write_text(
         f'{HEAD}<xacro:arg name="prefix" default=""/><link name="$(arg prefix)a"/></robot>'

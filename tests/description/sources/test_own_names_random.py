@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
+import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
@@ -82,6 +83,7 @@ MET = Tree(("arm_left", "left_arm"), ("x",), (0,), frozenset({("link", "arm_left
 POSTFIX = {"layout": "postfix", "affix": "postfix", "separators": {"link": "_"}}
 
 
+@pytest.mark.slow
 @settings(max_examples=300, deadline=None)
 @given(trees(), policies, ROBOTS, VALUES)
 @example(MET, POSTFIX, "left", "{robot}_")

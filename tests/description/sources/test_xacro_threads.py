@@ -61,6 +61,7 @@ def check_cold_starts(file: Path, times: int) -> None:
         assert (done.stdout, done.stderr) == ("[]\n", "")
 
 
+@pytest.mark.slow
 def test_threads_of_a_fresh_process(file: Path) -> None:
     check_cold_starts(file, FEW)
 
@@ -94,6 +95,7 @@ def test_a_fork_does_not_talk_to_the_server_of_its_parent(file: Path) -> None:
     assert sorted(side for text in texts for side in SIDES if f'"{side}_1/' in text) == SIDES[:3]
 
 
+@pytest.mark.slow
 def test_an_idle_server_that_ended_is_started_again(file: Path) -> None:
     text = rewrite(file, "robot1").text
     server = processes._server(os.getpid())
@@ -101,6 +103,7 @@ def test_an_idle_server_that_ended_is_started_again(file: Path) -> None:
     assert rewrite(file, "robot1").text == text
 
 
+@pytest.mark.slow
 def test_no_process_is_left(file: Path) -> None:
     code = f"from multibot_rewrite import rewrite; rewrite({str(file)!r}, 'robot1')"
     with subprocess.Popen([sys.executable, "-c", code], start_new_session=True) as run:

@@ -11,7 +11,7 @@ from counted_steps import growth
 
 from multibot_rewrite import InputError, RewriteRefused, rewrite
 from multibot_rewrite.base.bounded import MAX_BYTES
-from multibot_rewrite.base.findings.place import locate
+from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.description.steps.document import attribute_slot, read_document, text_slot
 
 ROBOT = b'<robot name="r"/>'

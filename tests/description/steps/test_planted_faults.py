@@ -24,9 +24,8 @@ from multibot_rewrite.base.policy import Policy
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
-from multibot_rewrite.description.steps.apply import cut, fill
+from multibot_rewrite.description.steps.apply import Template, cut, fill
 from multibot_rewrite.description.steps.collect import declarations
-from multibot_rewrite.description.steps.template import Template
 
 # Words of a case that are not of its naming.
 NO_POLICY = ("again", "file", "urdf", "distro")
@@ -71,6 +70,7 @@ def proved_plans(right: Template) -> list[str]:
     return [about for about, wrong in wrong_plans(right) if passes(wrong)]
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("case", SOME, ids=lambda case: case.name)
 def test_a_wrong_text_of_a_case_is_refused(case: Case) -> None:
     assert proved_texts(template(case), case.name, 3) == []
@@ -132,6 +132,7 @@ def sources() -> Iterator[bytes]:
     yield SOURCES["touch"]
 
 
+@pytest.mark.sample(8)
 @pytest.mark.parametrize("source", list(sources()))
 @pytest.mark.parametrize("layout", ["tf-per-robot", "frames-per-robot", "both", "postfix"])
 def test_each_robot_gets_the_text_that_is_proved_for_it_alone(source: bytes, layout: str) -> None:

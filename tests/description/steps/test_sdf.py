@@ -396,6 +396,7 @@ def trials(models: Mapping[str, Path], *options: Options) -> list[Trial]:
     return [Trial(name, models[name].read_bytes(), each) for name in names for each in options]
 
 
+@pytest.mark.slow
 def test_libsdformat_sees_the_same(sdf_tool: Tool, models: dict[str, Path], tmp_path: Path) -> None:
     taken = {name: path for name, path in models.items() if name not in on_record()}
     few = trials(spread(taken, FEW), *OPTIONS)
@@ -426,6 +427,7 @@ def test_libsdformat_sees_the_same_in_the_cases(sdf_tool: Tool, tmp_path: Path) 
     judge(sdf_tool, valid_cases(), tmp_path)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("old", "new"), [WRONG[0], WRONG[1], DECLARED[0]])
 def test_libsdformat_notices_a_wrong_name(
     sdf_tool: Tool, old: bytes, new: bytes, tmp_path: Path
@@ -451,6 +453,7 @@ def test_a_model_is_rewritten_and_stripped(tmp_path: Path) -> None:
         assert (back.code, back.out) == (0, NESTED)
 
 
+@pytest.mark.slow
 def test_a_world_is_refused_with_a_way_out(tmp_path: Path) -> None:
     world = NESTED.replace(b'1.9">', b'1.9"><world name="w">').replace(b"</sdf>", b"</world></sdf>")
     (tmp_path / "w.sdf").write_bytes(world)

@@ -336,6 +336,7 @@ def test_an_srdf_is_rewritten_and_stripped(folder: Path) -> None:
     assert (back.code, back.out) == (0, SRDF)
 
 
+@pytest.mark.slow
 def test_several_robots_get_a_file_each(folder: Path) -> None:
     words = ("arm.srdf", "r1", "r2", "--urdf", "arm.urdf", "--groups", "rename")
     assert run(folder, *words, "-o", "{robot}.srdf").code == 0
@@ -345,6 +346,7 @@ def test_several_robots_get_a_file_each(folder: Path) -> None:
     assert run(folder, *words).code == UNUSABLE
 
 
+@pytest.mark.slow
 def test_the_urdf_may_be_xacro(folder: Path) -> None:
     (folder / "arm.urdf.xacro").write_text(xacro(MACRO))
     words = ("arm.srdf", ROBOT, "--urdf", "arm.urdf.xacro")
@@ -355,6 +357,7 @@ def test_the_urdf_may_be_xacro(folder: Path) -> None:
     assert b'link2="nothing/robot1"' in other.out
 
 
+@pytest.mark.slow
 def test_an_srdf_may_be_xacro_beside_a_plain_urdf(folder: Path) -> None:
     group = (
         '<xacro:arg name="end" default="wrist"/><group name="a"><link name="$(arg end)"/></group>'
@@ -391,6 +394,7 @@ BAD = {
 }
 
 
+@pytest.mark.sample(7)
 @pytest.mark.parametrize("name", BAD)
 def test_what_cannot_work_is_one_line(folder: Path, name: str) -> None:
     words, code, wanted = BAD[name]

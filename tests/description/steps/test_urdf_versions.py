@@ -56,6 +56,7 @@ def test_urdfdom_has_nothing_to_say_of_them(version: str, tmp_path: Path) -> Non
     assert check_urdf(text, tmp_path) == (True, False)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(
     importlib.util.find_spec("pinocchio") is None, reason="pinocchio is missing: pip install pin"
 )

@@ -14,8 +14,8 @@ from paths import ROBOTS, ROOT
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.proposal import trying
-from multibot_rewrite.fleet.proposal.choosing import names_of, unlike
-from multibot_rewrite.fleet.proposal.needed_values import NeededValues
+from multibot_rewrite.fleet.proposal.looking import NeededValues
+from multibot_rewrite.fleet.proposal.propose import names_of, unlike
 
 ARM = """\
 <robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
@@ -59,6 +59,7 @@ def made(folder: Path, *words: object, code: int = 0) -> Mapping[str, Any]:
     return found
 
 
+@pytest.mark.slow
 def test_two_robots_of_a_description(tmp_path: Path) -> None:
     shutil.copy(ROBOTS / "rover.urdf", tmp_path)
     fleet = made(tmp_path, tmp_path / "rover.urdf")
@@ -68,6 +69,7 @@ def test_two_robots_of_a_description(tmp_path: Path) -> None:
     assert (tmp_path / "out" / "robot2" / "rover.urdf").exists()
 
 
+@pytest.mark.slow
 def test_so_many_robots_apart_from_each_other(tmp_path: Path) -> None:
     shutil.copy(ROBOTS / "rover.urdf", tmp_path)
     fleet = made(tmp_path, tmp_path, "-n", 4, "--layout", "L4", "--distro", "jazzy")
@@ -85,6 +87,7 @@ def test_wide_robots_are_further_apart(tmp_path: Path) -> None:
     assert [it["pose"]["y"] for it in fleet["robots"]] == [0, 3.5, 7]
 
 
+@pytest.mark.slow
 def test_what_another_file_includes_is_no_description(tmp_path: Path) -> None:
     """The part would be taken for the robot: it has more links and a shorter path."""
     part = TOOL.replace("/>", '><link name="x"/><link name="y"/><link name="z"/></robot>')
@@ -97,6 +100,7 @@ def test_what_another_file_includes_is_no_description(tmp_path: Path) -> None:
     assert fleet["description"] == "robot.urdf.xacro"
 
 
+@pytest.mark.slow
 def test_one_rviz_config_is_taken(tmp_path: Path) -> None:
     shutil.copy(ROBOTS / "rover.urdf", tmp_path)
     for name in ("rover.rviz", "zoo.rviz"):
@@ -110,6 +114,7 @@ def test_one_rviz_config_is_taken(tmp_path: Path) -> None:
     )
 
 
+@pytest.mark.slow
 def test_a_prefix_argument_of_a_xacro_is_used_and_no_other(tmp_path: Path) -> None:
     """``title`` is empty and goes in front of a name, too; it is not called as a prefix is."""
     (tmp_path / "arm.urdf.xacro").write_text(ARM)
@@ -120,6 +125,7 @@ def test_a_prefix_argument_of_a_xacro_is_used_and_no_other(tmp_path: Path) -> No
     assert 'name="robot1_base_link"' in (tmp_path / "out/robot1/arm.urdf").read_text()
 
 
+@pytest.mark.slow
 def test_companions_and_stacks_of_a_folder(tmp_path: Path) -> None:
     shutil.copytree(ROOT / "examples" / "namespace_and_prefix", tmp_path / "source")
     for name in ("fleet", "joint_states", "nav2"):
@@ -138,6 +144,7 @@ def test_companions_and_stacks_of_a_folder(tmp_path: Path) -> None:
     assert "#   source/nav2_params_other.yaml: nav2_params.yaml has parameters of" in text
 
 
+@pytest.mark.slow
 def test_files_of_another_robot_of_the_package_are_its_own(tmp_path: Path) -> None:
     """A package with examples: each has a robot and files beside it; what is above them is for all."""
     (tmp_path / "package.xml").write_text("<package><name>many</name></package>")
@@ -152,6 +159,7 @@ def test_files_of_another_robot_of_the_package_are_its_own(tmp_path: Path) -> No
     assert set(fleet["companions"]["params"]) == {"config/all.yaml", "left/config/left.yaml"}
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(
     "name", ["launch_tutorial/rover.urdf", "two_robots_postfix/scout.urdf.xacro"]
 )
@@ -183,13 +191,13 @@ def test_a_layout_that_does_not_work_is_replaced(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def errors(data: Mapping[str, Any], *_: object) -> list[tuple[str, str]]:
-        return [] if data["layout"] == "both" else [("", "MR102 they would meet")]
+        return [] if data["layout"] == "both" else [("", "MG320 they would meet")]
 
     monkeypatch.setattr(trying, "errors_of", errors)
     shutil.copy(ROBOTS / "rover.urdf", tmp_path)
     fleet = made(tmp_path, tmp_path / "rover.urdf")
     assert fleet["layout"] == "both"
-    why = "# Layout frames-per-robot does not work for these files: MR102 they would meet"
+    why = "# Layout frames-per-robot does not work for these files: MG320 they would meet"
     assert why in (tmp_path / "fleet.yaml").read_text()
 
 
@@ -211,6 +219,7 @@ def test_what_does_not_build_is_written_with_the_reason(tmp_path: Path, capsys: 
     assert "# It does not build yet" in (tmp_path / "fleet.yaml").read_text()
 
 
+@pytest.mark.slow
 def test_a_file_that_does_not_go_with_the_robot_is_left_out(tmp_path: Path) -> None:
     """A config of ROS 1 would stop the build."""
     shutil.copy(ROBOTS / "rover.urdf", tmp_path)
@@ -232,6 +241,7 @@ def test_another_description_is_taken_where_the_first_does_not_build(tmp_path: P
     assert fleet["description"] == "other.urdf"
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize(
     "launch",
     [
@@ -274,6 +284,7 @@ def test_only_what_every_launch_has_to_choose_is_chosen(
     assert NeededValues([str(launch)]).of_mandatory(str(xacro)) == chosen
 
 
+@pytest.mark.slow
 def test_classic_is_of_humble_and_its_plugin_has_the_manager(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -293,6 +304,26 @@ def test_classic_is_of_humble_and_its_plugin_has_the_manager(
     assert "gz_ros_control" not in (tmp_path / "out" / "plan.yaml").read_text()
 
 
+def test_the_hardware_of_the_real_robot_needs_no_manager_in_a_simulator(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As Andino: Classic's own plugin drives it, so controllers would wait for a manager for ever."""
+    monkeypatch.delenv("ROS_DISTRO", raising=False)
+    text = (ROBOTS / "rover_gz.urdf").read_text()
+    at, end = text.index("<gazebo>"), text.rindex("</gazebo>") + len("</gazebo>")
+    drive = '<gazebo><plugin name="drive" filename="libgazebo_ros_diff_drive.so"/></gazebo>'
+    (tmp_path / "rover.urdf").write_text(text[:at] + drive + text[end:])
+    assert "<ros2_control" in text
+    (tmp_path / "control.yaml").write_text(
+        "controller_manager:\n  ros__parameters:\n    update_rate: 50\n"
+        "    joint_state_broadcaster: {type: joint_state_broadcaster/JointStateBroadcaster}\n"
+    )
+    fleet = made(tmp_path, tmp_path)
+    assert "gazebo_ros2_control" not in fleet.get("stack", [])
+    assert "ros2_control_node" not in (tmp_path / "out" / "fleet.launch.py").read_text()
+
+
+@pytest.mark.slow
 def test_names_of_the_robots_are_given(tmp_path: Path, capsys: Any) -> None:
     shutil.copy(ROBOTS / "rover.urdf", tmp_path)
     fleet = made(tmp_path, tmp_path, "--robots", "scout,carrier")
@@ -312,7 +343,7 @@ def test_names_of_the_robots_are_given(tmp_path: Path, capsys: Any) -> None:
         (["{folder}/part.xacro", "-o", "-"], "it has no link; give the file that has the robot"),
         (["{folder}/need.xacro", "-o", "-"], "give it as size:=VALUE"),
         (["-n", "0"], "a fleet has at least one robot"),
-        (["--robots", "a,a"], "a is there twice"),
+        (["--robots", "a,a"], "'a' is given twice"),
         (["--robots", "1bad"], "1bad"),
         (["--robots", "a,b", "-n", "3"], "give one of them"),
         (["--layout", "L9"], "--layout"),
@@ -370,6 +401,11 @@ def yard(tmp_path: Path) -> Path:
     return tmp_path
 
 
+def test_a_part_of_another_robot_is_known_as_a_key_too(yard: Path) -> None:
+    """``crane_hook`` is nothing but a part; ``hook`` and ``mast`` may be words of any node."""
+    assert params_of(yard, some={"crane_hook": 1, "lift_joint": 2, "mast_top": 3}) == []
+
+
 def params_of(yard: Path, **values: object) -> list[str]:
     """Which of these files, a section with these values each, go with the rover."""
     for name, value in values.items():
@@ -386,6 +422,7 @@ def test_files_that_name_joints_of_another_robot_are_its_own(yard: Path) -> None
     assert "#   config/hook.yaml: it is for crane.urdf, which has crane_hook, lift_joint" in text
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "named",
     [
@@ -399,6 +436,7 @@ def test_files_that_are_not_surely_of_another_robot_stay(yard: Path, named: obje
     assert params_of(yard, some=named) == ["some"]
 
 
+@pytest.mark.slow
 def test_files_in_the_folder_of_the_robot_are_its_own(yard: Path) -> None:
     """Those are nearer to it than to the crane, whatever they name."""
     (yard / "crane").mkdir()

@@ -64,6 +64,7 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
+@pytest.mark.slow
 def test_enter_takes_all_defaults(folder: Path) -> None:
     shown, fleet = talked(folder, [""] * 6)
     asked = ("Robots", "ROS release", "Files to leave out", "Metres", "Layout", "Simulator")
@@ -76,6 +77,7 @@ def test_enter_takes_all_defaults(folder: Path) -> None:
     assert yaml.safe_load(without.stdout) == fleet
 
 
+@pytest.mark.slow
 def test_answers_are_taken_and_wrong_ones_asked_for_again(folder: Path) -> None:
     answers = ["1robot", "scout, carrier", "jazzy", "7", "1", "wide", "3.5", "both", "none"]
     shown, fleet = talked(folder, answers, "rover.urdf")
@@ -86,6 +88,7 @@ def test_answers_are_taken_and_wrong_ones_asked_for_again(folder: Path) -> None:
     assert "companions" not in fleet
 
 
+@pytest.mark.slow
 def test_what_options_say_is_not_asked(folder: Path) -> None:
     words = ("--robots", "a,b", "--distro", "jazzy", "--layout", "both", "--simulator", "gazebo")
     shown, fleet = talked(folder, ["", ""], *words)
@@ -93,6 +96,7 @@ def test_what_options_say_is_not_asked(folder: Path) -> None:
     assert [it["name"] for it in fleet["robots"]] == ["a", "b"]
 
 
+@pytest.mark.slow
 def test_an_argument_that_names_the_robot(tmp_path: Path) -> None:
     (tmp_path / "arm.urdf.xacro").write_text(ARM)
     shown, fleet = talked(tmp_path, ["", "", "{robot}/", "", "", ""])

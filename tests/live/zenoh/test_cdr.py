@@ -60,6 +60,7 @@ def test_another_encapsulation_is_none() -> None:
     assert read_tf(b"\x00\x07" + ONE[2:]) is None
 
 
+@pytest.mark.slow
 @given(st.binary(max_size=200))
 def test_no_bytes_break_the_reader(data: bytes) -> None:
     read_tf(data)

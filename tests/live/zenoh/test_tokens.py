@@ -138,6 +138,7 @@ def test_what_is_no_token_is_left_out(key: str) -> None:
     assert read_token(key) is None
 
 
+@pytest.mark.slow
 @given(st.text("@ros2_lv/%NMPSC0123456789:,ab²\n", max_size=80))
 def test_no_text_breaks_the_reader(text: str) -> None:
     for key in (text, f"{LISTENER}{text}", f"{SUBSCRIPTION}{text}", f"@ros2_lv/0/{text}"):

@@ -76,6 +76,7 @@ def test_how_far_a_frame_is_off(heard: tuple[float, ...], metres: float, angle: 
     assert apart(joint, heard) == pytest.approx((metres, angle), abs=1e-6)
 
 
+@pytest.mark.slow
 def test_fixed_joints_that_are_heard_elsewhere_are_said(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

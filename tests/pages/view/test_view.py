@@ -67,6 +67,17 @@ def test_a_mesh_is_in_the_page_once(file: Path) -> None:
     assert {it["name"]: it["pose"][1] for it in made["robots"]} == {"robot1": 0, "robot2": 1.5}
 
 
+def test_triangles_of_a_mesh_keep_corners_of_their_own(file: Path) -> None:
+    """As the file has them: two triangles at one edge are not drawn as a bent surface."""
+    other = ((1, 0, 0), (1, 1, 0), (0, 1, 0))
+    packed = (struct.pack("<12f", 0, 0, 1, *sum(it, ())) for it in (CORNERS, other))
+    whole = b"\0" * 80 + struct.pack("<I", 2) + b"".join(it + b"\0\0" for it in packed)
+    (file.parent / "part.stl").write_bytes(whole)
+    (mesh,) = page(file.parent, file)["meshes"]
+    assert struct.unpack("<18f", base64.b64decode(mesh["v"])) == sum((*CORNERS, *other), ())
+    assert struct.unpack("<6I", base64.b64decode(mesh["f"])) == tuple(range(6))
+
+
 def test_an_sdf_with_a_model_inside(tmp_path: Path) -> None:
     (robot,) = page(tmp_path, ROBOTS / "rover.sdf", "a")["robots"]
     assert robot["names"]["head_a::base_link/a"] == ["head::base_link", 39]

@@ -9,12 +9,15 @@ from lxml import etree
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.checks.closing_semantics import semantic_findings
+from multibot_rewrite.fleet.checks.judged import controlled
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleet.outputs.output_file import OutputFile
 from multibot_rewrite.fleet.robots.robot_nodes import node_sources
-from multibot_rewrite.fleet.robots.systems import system_before
+from multibot_rewrite.fleet.robots.systems import system_after, system_before
+from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.producers.evidence.semantics import semantics
+from multibot_rewrite.system.records import System
 
 
 def joint(name: str, parent: str, child: str, more: str = "", type_: str = "continuous") -> str:
@@ -59,7 +62,7 @@ def planned(
     )
     plan = plan_fleet(read_fleet(str(folder / "fleet.yaml"), "", {}))
     found = make_outputs(plan).findings
-    return plan, [it for it in found if it.code in ("MF826", "MF827")]
+    return plan, [it for it in found if it.code in ("MB229", "MG413")]
 
 
 def test_groups_have_the_joints_that_a_plan_moves() -> None:
@@ -74,6 +77,7 @@ def test_groups_have_the_joints_that_a_plan_moves() -> None:
     assert (virtual.parent, virtual.child, virtual.place.line) == ("odom", "base", 2)
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize(
     ("joints", "passive", "found"),
     [
@@ -82,7 +86,7 @@ def test_groups_have_the_joints_that_a_plan_moves() -> None:
         (
             "shoulder",
             "none",
-            [("note", 3, "elbow of group arm"), ("note", 5, "elbow of group all")],
+            [("note", 3, "joint elbow,"), ("note", 5, "joint elbow,")],
         ),
         ("wrist", "none", [("note", 3, "shoulder and 1 more"), ("note", 5, "shoulder and 1 more")]),
     ],
@@ -97,7 +101,7 @@ def test_joints_that_no_controller_moves(
 
 def test_a_virtual_joint_that_moves_needs_a_sender(tmp_path: Path) -> None:
     _, made = planned(tmp_path, "shoulder, elbow", type_="planar")
-    assert [(it.code, it.line) for it in made] == [("MF827", 2)]
+    assert [(it.code, it.line) for it in made] == [("MG413", 2)]
     assert "odom -> base" in made[0].message
 
 
@@ -114,8 +118,12 @@ def test_an_srdf_is_read_by_a_move_group_that_may_run(tmp_path: Path) -> None:
 def test_a_joint_that_the_rewrite_takes_from_its_controller_is_an_error(tmp_path: Path) -> None:
     plan, _ = planned(tmp_path, "shoulder, elbow")
     robot = plan.robots[0]
-    before = system_before(robot, plan.evidence[node_sources(robot.spec)])
+    evidence = plan.evidence[node_sources(robot.spec)]
+    before = system_before(robot, evidence, plan.jobs[robot.spec.sources].srdf)
     # As if MoveIt's file had stayed as it is.
-    found = list(semantic_findings(plan, robot, before, before))
+    same = OutputFile("robot1/m.yaml", (tmp_path / "m.yaml").read_bytes())
+    known = load_known_nodes("", plan.file.distro)
+    after = system_after(robot, evidence, [same], known, System())
+    found = list(controlled(robot, before.control, after.control, []))
     assert [(it.level, it.line) for it in found] == [("error", 3), ("error", 5)]
     assert "shoulder_robot1" in found[0].message

@@ -22,6 +22,7 @@ FORMATS = {
     "gitlab": "gitlab",
     "junit": "junit",
     "markdown": "markdown",
+    "statistics": "statistics",
 }
 
 

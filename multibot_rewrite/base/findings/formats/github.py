@@ -30,10 +30,7 @@ def _command(finding: Finding, report: Report) -> str:
     it = finding
     file = one_line(path_below(file_of(it, report)))
     place = {"file": file, "line": str(it.line or 1), "col": str(it.column or 1)} if file else {}
-    properties = {
-        **place,
-        "title": title(it, report),
-    }
+    properties = {**place, "title": title(it, report)}
     pairs = ",".join(f"{key}={value.translate(_PROPERTY)}" for key, value in properties.items())
     message = [f"{said_of(it)}{circumstances(it)}", *via(it, path_below)]
     return f"::{_COMMANDS[it.level]} {pairs}::{chr(10).join(message).translate(_DATA)}"

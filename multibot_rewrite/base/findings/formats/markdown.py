@@ -11,6 +11,7 @@ from multibot_rewrite.base.findings.formats.shared import (
     by_file,
     circumstances,
     counts,
+    in_words,
     path_below,
     said_of,
     title,
@@ -26,7 +27,9 @@ _MARKUP = re.compile(r"([\\`*_{}\[\]<>|~#&!$])")
 
 def render(findings: Sequence[Finding], report: Report) -> str:
     """Counts, then a table for each file with findings, as many as a comment holds."""
-    text = _sum(findings, report)
+    found = in_words(counts(findings)) or "no findings"
+    files = plural(len(report.files), "file")
+    text = f"**{report.tool}**: {found} in {files}\n"
     shown = 0
     for is_row, part in _parts(findings, report):
         if len(text) + len(part) > ROOM:
@@ -34,12 +37,6 @@ def render(findings: Sequence[Finding], report: Report) -> str:
         text += part
         shown += is_row
     return text
-
-
-def _sum(findings: Sequence[Finding], report: Report) -> str:
-    found = [plural(number, level) for level, number in counts(findings).items() if number]
-    files = plural(len(report.files), "file")
-    return f"**{report.tool}**: {', '.join(found) or 'no findings'} in {files}\n"
 
 
 def _parts(findings: Sequence[Finding], report: Report) -> Iterator[tuple[bool, str]]:

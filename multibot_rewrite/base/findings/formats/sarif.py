@@ -9,7 +9,7 @@ from typing import Any
 from urllib.parse import quote
 
 from multibot_rewrite.base.bounded import read_bytes
-from multibot_rewrite.base.findings.finding import INCONCLUSIVE, WARNING, Finding
+from multibot_rewrite.base.findings.finding import INCONCLUSIVE, WARNING, Finding, locate
 from multibot_rewrite.base.findings.formats import Report
 from multibot_rewrite.base.findings.formats.shared import (
     calls,
@@ -20,7 +20,6 @@ from multibot_rewrite.base.findings.formats.shared import (
     json_text,
     said_of,
 )
-from multibot_rewrite.base.findings.place import locate
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.base.printable import one_line

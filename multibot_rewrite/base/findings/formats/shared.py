@@ -5,11 +5,12 @@ from __future__ import annotations
 import os
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.base.findings.finding import LEVELS, Finding, same_for
+from multibot_rewrite.base.findings.finding import INCONCLUSIVE, LEVELS, Finding, same_for
 from multibot_rewrite.base.findings.formats import Report
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.printable import in_json, one_line
 from multibot_rewrite.base.record import NamedTuple
 
@@ -96,6 +97,16 @@ def counts(findings: Iterable[Finding]) -> dict[str, int]:
     """How many there are of each level, from the worst on."""
     found = Counter(it.level for it in findings)
     return {level: found[level] for level in (*LEVELS, *(found.keys() - set(LEVELS)))}
+
+
+def in_words(levels: Mapping[str, int]) -> str:
+    """``2 errors, 1 warning``; empty without findings."""
+    words = (
+        f"{number} {level}" if level == INCONCLUSIVE else plural(number, level)
+        for level, number in levels.items()
+        if number
+    )
+    return ", ".join(words)
 
 
 def by_file(findings: Iterable[Finding], report: Report) -> dict[str, list[Finding]]:

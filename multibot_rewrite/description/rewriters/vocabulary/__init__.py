@@ -8,6 +8,7 @@ A file is a list of sections. The whole grammar:
     @name        declares sensor         the value at this path declares a name of this kind
     plugin/frame uses frame              the value refers to one (kinds are tried in order)
     @type        keep an enumeration     the value is never renamed, and why
+    radius       value number above=0    the value is a number; nothing is said of names in it
 
 A section is one of
 
@@ -17,6 +18,8 @@ A section is one of
     [hardware NAME]    a ros2_control hardware class, as in ``<plugin>``
     [sensor TYPE]      a ``<sensor>`` by its type
     [block NAME]       lines that several sections share by ``with: NAME``
+    [values NAME]      what one of the plugins or hardware classes of another section reads, in
+                       ``value`` lines alone: whether names are in it nobody has looked
 
 A path is child steps, then ``@attribute`` for an attribute; a step may ask for an attribute:
 ``param[@name=mimic]``. After the kinds may stand, in this order or another, then ``# a note``:
@@ -34,6 +37,20 @@ A path is child steps, then ``@attribute`` for an attribute; a step may ask for 
     publishes=TYPE     what is done with a topic of that name; the same ``subscribes=``, ``serves=``
     releases=WORDS     the only releases that read it, without blanks: ``kilted+``, ``<=jazzy``,
                        ``humble,jazzy``; a path may have a line for one release and another one
+
+Any line of a plugin or hardware may say what its value is; a ``value`` line has the type as its first
+word, and may be beside a line for the same path that says whose name it is:
+
+    type=TYPE          ``text`` (where none is given), ``number``, ``integer``, ``boolean``, ``vector``,
+                       ``pose``, ``color`` or ``any``
+    read=FILE:LINE     where the code reads it, below the folder of ``read:``; ``@TAG`` behind it where
+                       that is another tag
+    required=yes       without it the plugin is not loaded
+    one=A|B            the only words it may be
+    unit=UNIT          ``m``, ``Hz``, ``rad``: of ``rad`` more than a turn is a mistake
+    range=A..B         the least and the most that make sense, either may be left out; ``above=A``:
+                       more than that
+    checked=FILE:LINE  where the source says so, if not where it is read
 
 Kinds are those of ``naming.SEPARATORS`` and ``collision`` (the name of a collision that the
 URDF -> SDF conversion made from a link's). A link, joint, model or group is renamed only where this
@@ -76,8 +93,11 @@ A line ``SETTING: TEXT`` is a setting; given twice, the texts are joined.
     hardwired: KIND:NAME... names it looks for whatever the file says: a rename hides them
     model_namespace: RELEASES  its relative topics stand below the <model namespace> in these (kilted+)
     process_wide: yes | no its remap rules hold for every node of the process (default: no)
+    read: REPOSITORY TAG FOLDER  all that its code reads is here, as it is there: what else is written
+                           in it is a mistake
+    open: yes | no         with ``read:``: whether it takes anything else, too (default: no)
     about: TEXT            what it is
-    source: TEXT           where in which source that can be read
+    source: TEXT           where in which source that can be read, if not in the folder of ``read:``
     releases: WORDS        the only releases that have it: ``kilted+``, ``<=jazzy``, ``humble, jazzy``
 
 A section may be given again, in another file too: it adds lines and topics to the first one; with
@@ -95,36 +115,50 @@ from multibot_rewrite.base.bounded import read_text
 from multibot_rewrite.base.model import Site, VocabularyError
 from multibot_rewrite.base.releases import RELEASES, has_release, is_release_words
 from multibot_rewrite.description.rewriters.vocabulary.grammar import (
-    FORMS,
-    KINDS,
-    TYPES,
-    VocabularySection,
+    FORMS as FORMS,
+)
+from multibot_rewrite.description.rewriters.vocabulary.grammar import (
+    KINDS as KINDS,
+)
+from multibot_rewrite.description.rewriters.vocabulary.grammar import (
+    OF_VALUES,
     assemble,
-    is_step,
     merge,
     read_header,
     read_section,
-    split_path,
-    split_step,
 )
-from multibot_rewrite.description.rewriters.vocabulary.installed import advice, installed
+from multibot_rewrite.description.rewriters.vocabulary.grammar import (
+    TYPES as TYPES,
+)
+from multibot_rewrite.description.rewriters.vocabulary.grammar import (
+    VocabularySection as VocabularySection,
+)
+from multibot_rewrite.description.rewriters.vocabulary.grammar import (
+    is_step as is_step,
+)
+from multibot_rewrite.description.rewriters.vocabulary.grammar import (
+    split_path as split_path,
+)
+from multibot_rewrite.description.rewriters.vocabulary.grammar import (
+    split_step as split_step,
+)
+from multibot_rewrite.description.rewriters.vocabulary.installed import advice as advice
+from multibot_rewrite.description.rewriters.vocabulary.installed import installed
+from multibot_rewrite.description.rewriters.vocabulary.values import (
+    Value as Value,
+)
+from multibot_rewrite.description.rewriters.vocabulary.values import (
+    Values as Values,
+)
+from multibot_rewrite.description.rewriters.vocabulary.values import (
+    has_values,
+    read_values,
+    values_of,
+)
 
 HERE = os.path.dirname(__file__)
 Raw = tuple[str, int, str]
-
-__all__ = [
-    "FORMS",
-    "KINDS",
-    "TYPES",
-    "Vocabulary",
-    "VocabularySection",
-    "advice",
-    "check_vocabulary",
-    "is_step",
-    "load_vocabulary",
-    "split_path",
-    "split_step",
-]
+VALUED = ("plugin", "hardware", OF_VALUES)
 
 
 class Vocabulary:
@@ -139,6 +173,7 @@ class Vocabulary:
         self.release = release
         self._raw: dict[tuple[str, str], list[Raw]] = {}
         self._found: dict[tuple[str, str], tuple[VocabularySection, ...]] = {}
+        self._values: dict[tuple[str, bool], Values | None] = {}
         for file, text in texts.items():
             self._index(file, text)
 
@@ -213,6 +248,35 @@ class Vocabulary:
         words = [_released(chunk) for *_, chunk in self._raw.get((type_, name), ())]
         return tuple(it for it in RELEASES if any(has_release(word, it) for word in words))
 
+    def values(self, name: str, of_ros_1: bool = False) -> Values | None:
+        """What the plugin or hardware of that name reads, in any release; None where nobody looked."""
+        key = (name, of_ros_1)
+        if key not in self._values:
+            raws = [it for type_ in VALUED for it in self._raw.get((type_, name), ())]
+            own = [it for it in raws if has_values(it[2]) and _is_of_ros_1(it[2]) == of_ros_1]
+            self._values.setdefault(key, self._read_values(own, of_ros_1) if own else None)
+        return self._values[key]
+
+    def _read_values(self, raws: Sequence[Raw], of_ros_1: bool) -> Values:
+        whole = [it for it in raws if _set(it[2], "read")]
+        file, line, chunk = (*whole, *raws)[0]
+        names = read_header(f"{file}:{line}", chunk.partition("\n")[0])[1:]
+        is_open = not whole or any("yes" in word for it in whole for word in _set(it[2], "open"))
+        return values_of(names, of_ros_1, is_open, self._value_rows(raws))
+
+    def _value_rows(self, raws: Iterable[Raw]) -> Iterator[Value]:
+        for file, line, chunk in raws:
+            yield from read_values(file, line + 1, chunk.split("\n")[1:])
+            for block in " ".join(_set(chunk, "with")).split():
+                yield from self._value_rows(self._raw.get(("block", block), ()))
+
+    def valued(self) -> Iterator[tuple[str, bool]]:
+        """The names that have values; with true for those of ROS 1."""
+        named = ((name, raws) for (type_, name), raws in self._raw.items() if type_ in VALUED)
+        for name, raws in named:
+            found = {_is_of_ros_1(it[2]) for it in raws if has_values(it[2])}
+            yield from ((name, of_ros_1) for of_ros_1 in found)
+
     def places(self) -> dict[str, list[str]]:
         """Each element with a section and the elements it may be in, without reading more."""
         found: dict[str, list[str]] = {}
@@ -229,9 +293,12 @@ class Vocabulary:
         return self._parsed(key for key in self._raw if key[0] in types)
 
     def sections_in(self, files: Container[str]) -> list[VocabularySection]:
-        """All rewriters that these files have a part in, parsed and checked."""
+        """All rewriters that these files have a part in, parsed and checked, and their values."""
         raws = self._raw.items()
-        return self._parsed(key for key, raw in raws if any(part[0] in files for part in raw))
+        found = self._parsed(key for key, raw in raws if any(part[0] in files for part in raw))
+        own = (part for _, parts in raws for part in parts if part[0] in files)
+        tuple(self._value_rows(own))
+        return found
 
     def _parsed(self, keys: Iterable[tuple[str, str]]) -> list[VocabularySection]:
         found = [section for key in keys for section in self.find(*key)]
@@ -264,6 +331,10 @@ def _released(chunk: str) -> str:
     """The release words of a section that is not read yet; wrong ones are found when it is."""
     words = next((row.strip() for row in _set(chunk, "releases")), "")
     return words if words and is_release_words(words) else ""
+
+
+def _is_of_ros_1(chunk: str) -> bool:
+    return " 1" in _set(chunk, "ros")
 
 
 def _set(chunk: str, name: str) -> list[str]:

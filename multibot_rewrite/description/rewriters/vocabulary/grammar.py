@@ -14,6 +14,7 @@ from multibot_rewrite.base.naming import SEPARATORS
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import RELEASES as KNOWN
 from multibot_rewrite.base.releases import is_release_words, share_release
+from multibot_rewrite.description.rewriters.vocabulary.values import VALUE, is_typed
 from multibot_rewrite.description.rewriters.vocabulary.wired import ROLES as WIRES
 from multibot_rewrite.description.rewriters.vocabulary.wired import (
     WiredTopic,
@@ -22,10 +23,14 @@ from multibot_rewrite.description.rewriters.vocabulary.wired import (
 )
 
 TYPES = ("element", "plugin", "hardware", "sensor", "block")
+# A section that names nothing: what some of the plugins of another section read, each for itself.
+OF_VALUES = "values"
 SETTINGS = (
     "at",
     "about",
     "source",
+    "read",
+    "open",
     "with",
     "select",
     "ros",
@@ -38,10 +43,12 @@ SETTINGS = (
     "releases",
     "model_namespace",
 )
+_HEADERS = (*TYPES, OF_VALUES)
 # Settings that are one word out of few.
 VALUES = {
     "ros": ("1", "2"),
     "insert": ("yes", "no"),
+    "open": ("yes", "no"),
     "unique": tuple(SEPARATORS),
     "process_wide": ("yes", "no"),
 }
@@ -51,19 +58,8 @@ OPTIONS = ("form", "default", "when", "empty", "fill", *WIRES)
 RELEASES = "releases="
 EMPTY = ("default", "model", "itself")
 FORMS = (
-    "whole",
-    "list",
-    "scoped",
-    "words",
-    "suffixed",
-    "member",
-    "transport",
-    "regex",
-    "prefix",
-    "lettered",
-    "remap",
-    "argument",
-    "collision",
+    *("whole", "list", "scoped", "words", "suffixed", "member", "transport"),
+    *("regex", "prefix", "lettered", "remap", "argument", "collision"),
 )
 # A vocabulary has hundreds of paths, which are asked for again with every plugin.
 PATHS = 4096
@@ -129,9 +125,9 @@ def read_header(place: str, row: str) -> tuple[str, ...]:
     """Type and names of a section from its first row (its ``[`` taken off)."""
     head, bracket, rest = row.partition("]")
     words = head.split()
-    if not bracket or rest.strip() or len(words) < 2 or words[0] not in TYPES:
+    if not bracket or rest.strip() or len(words) < 2 or words[0] not in _HEADERS:
         raise VocabularyError(
-            f"{place}: section [{row.strip()} must be [TYPE NAME...], TYPE one of {', '.join(TYPES)}"
+            f"{place}: section [{row.strip()} must be [TYPE NAME...], TYPE one of {', '.join(_HEADERS)}"
         )
     if len(set(words)) < len(words):
         raise VocabularyError(f"{place}: section [{head}] has a name twice")
@@ -149,7 +145,7 @@ def read_section(file: str, line: int, rows: list[str]) -> tuple[dict[str, str],
     at_path: dict[str, list[Site]] = {}
     for number, row in enumerate(rows[1:], line + 1):
         words = row.split()
-        if not words or row.startswith("#"):
+        if not words or row.startswith("#") or words[1:2] == [VALUE]:
             continue
         if words[0].endswith(":"):
             _setting(settings, f"{file}:{number}", words)
@@ -167,11 +163,7 @@ def read_section(file: str, line: int, rows: list[str]) -> tuple[dict[str, str],
 
 
 def assemble(
-    file: str,
-    line: int,
-    header: tuple[str, ...],
-    settings: dict[str, str],
-    sites: Sequence[Site],
+    file: str, line: int, header: tuple[str, ...], settings: dict[str, str], sites: Sequence[Site]
 ) -> VocabularySection:
     """A section from its parts; ``sites`` include those of its blocks."""
     if header[0] == "element" and "at" not in settings:
@@ -200,12 +192,18 @@ def assemble(
         words("hardwired"),
         below,
         settings.get("about", ""),
-        settings.get("source", ""),
+        settings.get("source") or _read_in(settings.get("read", "")),
         file,
         line,
         settings.get("releases", ""),
         _tags(sites),
     )
+
+
+def _read_in(words: str) -> str:
+    """The source where only the checkout is named that its values were read in."""
+    repository, _, rest = words.partition(" ")
+    return f"{repository} {rest.partition(' ')[2]}".strip()
 
 
 def _tags(sites: Iterable[Site]) -> frozenset[str]:
@@ -284,12 +282,12 @@ def _site(place: str, section: str, line: int, row: str) -> Site:
     if not _PATH.fullmatch(path):
         raise VocabularyError(f"{place}: bad path {path!r}: write a/b, a@x, @x or a[@x=y]/b")
     if not words or words[0] not in ROLES:
-        raise VocabularyError(f"{place}: {path} needs one of {', '.join(ROLES)} after it")
+        raise VocabularyError(f"{place}: {path} needs one of {', '.join((*ROLES, VALUE))} after it")
     role, *rest = words
     releases = next((it[len(RELEASES) :] for it in rest if it.startswith(RELEASES)), "")
     if releases and not is_release_words(releases):
         raise VocabularyError(f"{place}: {path} releases={_no_releases(releases)}")
-    rest = [word for word in rest if not word.startswith(RELEASES)]
+    rest = [word for word in rest if not (word.startswith(RELEASES) or is_typed(word))]
     if role == "keep":
         if not rest:
             raise VocabularyError(f"{place}: {path} keep: say why it must stay")

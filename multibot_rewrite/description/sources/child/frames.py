@@ -29,6 +29,9 @@ LONGEST: Mapping[bytes, int] = {
 }
 # The signed integers of ORIGINS and CALLS.
 NUMBER = "i"
+# A letter and the number of a process; the answer is such a number, or that of a signal.
+COMMAND, REPLY = struct.Struct(">ci"), struct.Struct(">i")
+START, END, ENDED = b"s", b"e", b"d"
 
 
 class GarbageError(Exception):

@@ -19,13 +19,16 @@ from typing import Any, BinaryIO
 
 from multibot_rewrite.description.sources.child import fences, run_xacro
 from multibot_rewrite.description.sources.child.asking import Ask, asking
-from multibot_rewrite.description.sources.child.commands import COMMAND, ENDED, REPLY, START
 from multibot_rewrite.description.sources.child.frames import (
     CALLS,
+    COMMAND,
+    ENDED,
     MOST_TEXT,
     ORIGINS,
+    REPLY,
     REPORT,
     REQUEST,
+    START,
     TEXT,
     framed,
     received,

@@ -6,75 +6,56 @@
 from __future__ import annotations
 
 import logging
+import re
 import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from functools import cache
 from types import ModuleType
 from typing import Any
 
-from multibot_rewrite.producers.launch.stand_in import actions, ros, values
+from multibot_rewrite.producers.launch.stand_in import actions, packages, parse, ros, values
+from multibot_rewrite.producers.launch.stand_in.actions import not_read
+from multibot_rewrite.producers.launch.stand_in.names import INSIDE, NOT_READ, READ
 
-_OF_LAUNCH: Mapping[str, tuple[str, ...]] = {
-    "launch": ("Action", "LaunchContext", "LaunchDescription", "Substitution"),
-    "launch.actions": (
-        *("DeclareLaunchArgument", "EmitEvent", "ExecuteProcess", "GroupAction"),
-        *("IncludeLaunchDescription", "LogInfo", "OpaqueFunction", "RegisterEventHandler"),
-        *("SetEnvironmentVariable", "SetLaunchConfiguration", "Shutdown", "TimerAction"),
-    ),
-    "launch.conditions": ("IfCondition", "UnlessCondition"),
-    "launch.event_handlers": ("OnProcessExit", "OnProcessIO", "OnProcessStart", "OnShutdown"),
-    "launch.events": ("matches_action",),
-    "launch.frontend": (),
-    "launch.frontend.parse_substitution": ("parse_substitution",),
-    "launch.launch_description_sources": ("AnyLaunchDescriptionSource",),
-    "launch.substitution": ("Substitution",),
-    "launch.substitutions": (
-        *("Command", "EnvironmentVariable", "EqualsSubstitution", "FindExecutable"),
-        *("LaunchConfiguration", "NotSubstitution", "PathJoinSubstitution", "PythonExpression"),
-        *("TextSubstitution", "ThisLaunchFile", "ThisLaunchFileDir"),
-    ),
-    "launch.utilities": ("normalize_to_list_of_substitutions", "perform_substitutions"),
-}
-_OF_ROS: Mapping[str, tuple[str, ...]] = {
-    "launch_ros": (),
-    "launch_ros.actions": (
-        *("ComposableNodeContainer", "LifecycleNode", "LoadComposableNodes", "Node"),
-        *("PushROSNamespace", "PushRosNamespace", "SetParameter", "SetRemap"),
-    ),
-    "launch_ros.descriptions": ("ComposableNode", "ParameterFile", "ParameterValue"),
-    "launch_ros.event_handlers": ("OnStateTransition",),
-    "launch_ros.events": (),
-    "launch_ros.events.lifecycle": ("ChangeState",),
-    "launch_ros.parameter_descriptions": ("ParameterFile", "ParameterValue"),
-    "launch_ros.substitutions": ("FindPackageShare",),
-    "launch_ros.utilities": ("evaluate_parameters", "make_namespace_absolute", "prefix_namespace"),
-    "lifecycle_msgs": (),
-    "lifecycle_msgs.msg": ("Transition",),
-    "ament_index_python": (
-        "PackageNotFoundError",
-        "get_package_prefix",
-        "get_package_share_directory",
-    ),
-    "ament_index_python.packages": (
-        *("PackageNotFoundError", "get_package_prefix", "get_package_share_directory"),
-    ),
-}
+_ROOMS = (values, packages, parse, actions, ros)
+# A name that two modules have for two things.
+_OTHERWISE = {("launch_ros.substitutions", "Parameter"): packages.ParameterSubstitution}
+_CAMEL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 
 
 def contents() -> dict[str, dict[str, Any]]:
     """The modules, each with what it has."""
-    known = {**vars(values), **vars(actions)}
-    found = {name: {it: known[it] for it in own} for name, own in _OF_LAUNCH.items()}
-    sources = found["launch.launch_description_sources"]
-    sources["PythonLaunchDescriptionSource"] = sources["AnyLaunchDescriptionSource"]
-    found["launch.logging"] = {"get_logger": logging.getLogger}
-    return found | {name: {it: vars(ros)[it] for it in own} for name, own in _OF_ROS.items()}
+    known = {key: it for room in _ROOMS for key, it in vars(room).items()}
+    known["get_logger"] = logging.getLogger
+    found = {
+        module: {it: _OTHERWISE.get((module, it)) or known[it] for it in names.split()}
+        for module, names in READ.items()
+    }
+    for module, names in NOT_READ.items():
+        found.setdefault(module, {}).update({it: not_read(it) for it in names.split()})
+    return found
+
+
+@cache
+def inside() -> dict[str, str]:
+    """The modules inside of packages, as ``launch.actions.timer_action``, each with its package."""
+    found = {}
+    for package, content in contents().items():
+        own = INSIDE.get(package, "").split()
+        for it in (*(_CAMEL.sub("_", name).lower() for name in content), *own):
+            found[f"{package}.{it}"] = package
+    return found
 
 
 @contextmanager
 def standing_in(**more: Mapping[str, Any]) -> Iterator[None]:
     """``import launch`` finds the stand-in inside, and all else what it found before."""
-    made = {name: _module(name, it) for name, it in {**contents(), **more}.items()}
+    made = {name: _module(name, it) for name, it in _all(more).items()}
+    for name, module in made.items():
+        package, _, last = name.rpartition(".")
+        if package and not hasattr(made[package], last):
+            setattr(made[package], last, module)
     roots = {name.partition(".")[0] for name in made}
     before = {name: it for name, it in sys.modules.items() if name.partition(".")[0] in roots}
     for name in before:
@@ -86,6 +67,11 @@ def standing_in(**more: Mapping[str, Any]) -> Iterator[None]:
         for name in [it for it in sys.modules if it.partition(".")[0] in roots]:
             del sys.modules[name]
         sys.modules.update(before)
+
+
+def _all(more: Mapping[str, Mapping[str, Any]]) -> dict[str, Mapping[str, Any]]:
+    found: dict[str, Mapping[str, Any]] = {**contents(), **more}
+    return {name: found[package] for name, package in inside().items()} | found
 
 
 def _module(name: str, content: Mapping[str, Any]) -> ModuleType:

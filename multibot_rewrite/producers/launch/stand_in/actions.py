@@ -7,10 +7,19 @@ jazzy, actions/, event_handlers/, launch_description_sources/.
 from __future__ import annotations
 
 import importlib.util
+import os
 from collections.abc import Iterable
+from functools import cache
 from typing import Any
 
-from multibot_rewrite.producers.launch.stand_in.values import Kept, LaunchContext, Text, text_of
+from multibot_rewrite.producers.launch.stand_in.values import (
+    Kept,
+    LaunchContext,
+    Text,
+    str_of,
+    text_of,
+    typed_truth,
+)
 
 
 class Action(Kept):
@@ -25,6 +34,30 @@ class Action(Kept):
 
     def execute(self, context: LaunchContext) -> Any:
         return None
+
+
+def expose_action(name: str) -> Any:
+    """For files in XML and YAML, which are not read here."""
+    return lambda exposed: exposed
+
+
+expose_substitution = expose_action
+SomeEntitiesType_types_tuple = (Action, Iterable)
+
+
+@cache
+def not_read(name: str) -> Any:
+    """What can be imported and says nothing here: where it is needed, an error has its name."""
+    reason = f"{name} is not read: it needs launch itself"
+
+    def refuse(*words: Any, **options: Any) -> Any:
+        raise NotImplementedError(reason)
+
+    def take(self: Any, *words: Any, **options: Any) -> None: ...
+
+    if name[0].islower():
+        return refuse
+    return type(name, (Action,), {"__init__": take, "execute": refuse, "perform": refuse})
 
 
 class OpaqueFunction(Action):
@@ -45,16 +78,28 @@ class DeclareLaunchArgument(Action):
     names = ("name", "default_value", "description", "choices")
     name: str
     default_value: Text
+    description: str | None
     choices: Any
+
+    @property
+    def told(self) -> str:
+        """Its description as an error has it."""
+        text = self.description
+        if self.choices is None:
+            return "no description given" if text is None else text
+        if text is None:
+            return f"One of: {self.choices}"
+        return f"{text.removesuffix('.')}. Valid choices are: {self.choices}"
 
     def execute(self, context: LaunchContext) -> None:
         given = context.launch_configurations
         if self.name not in given:
             if self.default_value is None:
-                raise RuntimeError(f"Required launch argument '{self.name}' was not provided.")
+                raise RuntimeError(f'Required launch argument "{self.name}" was not provided.')
             given[self.name] = text_of(context, self.default_value)
-        if self.choices and given[self.name] not in self.choices:
-            raise RuntimeError(f"Argument '{self.name}' is none of {', '.join(self.choices)}")
+        if self.choices is not None and given[self.name] not in self.choices:
+            told = f'Argument "{self.name}" provided value "{given[self.name]}" is not valid'
+            raise RuntimeError(f"{told}. Valid options are: {self.choices}")
 
 
 class SetLaunchConfiguration(Action):
@@ -67,6 +112,28 @@ class SetLaunchConfiguration(Action):
     def execute(self, context: LaunchContext) -> None:
         name = text_of(context, self.name)
         context.launch_configurations[name] = text_of(context, self.value)
+
+
+class UnsetLaunchConfiguration(Action):
+    """A launch configuration is no longer set."""
+
+    names = ("name",)
+    name: Text
+
+    def execute(self, context: LaunchContext) -> None:
+        context.launch_configurations.pop(text_of(context, self.name), None)
+
+
+class ResetLaunchConfigurations(Action):
+    """No launch configuration is set but these."""
+
+    names = ("launch_configurations",)
+    launch_configurations: Any
+
+    def execute(self, context: LaunchContext) -> None:
+        given = self.launch_configurations or {}
+        kept = {text_of(context, name): text_of(context, it) for name, it in given.items()}
+        context.launch_configurations = kept
 
 
 class PushLaunchConfigurations(Action):
@@ -83,8 +150,29 @@ class PopLaunchConfigurations(Action):
         context._pop_launch_configurations()
 
 
+class PushEnvironment(Action):
+    """Begins a scope of variables."""
+
+    def execute(self, context: LaunchContext) -> None:
+        context._push_environment()
+
+
+class PopEnvironment(Action):
+    """Ends a scope of variables."""
+
+    def execute(self, context: LaunchContext) -> None:
+        context._pop_environment()
+
+
+class ResetEnvironment(Action):
+    """The variables that there were at first."""
+
+    def execute(self, context: LaunchContext) -> None:
+        context._reset_environment()
+
+
 class GroupAction(Action):
-    """Actions with launch configurations of their own."""
+    """Actions with launch configurations and variables of their own."""
 
     names = ("actions", "scoped", "forwarding", "launch_configurations")
     actions: Iterable[Any]
@@ -92,20 +180,18 @@ class GroupAction(Action):
     forwarding: Any
     launch_configurations: Any
 
-    def execute(self, context: LaunchContext) -> list[Any]:
+    def get_sub_entities(self) -> list[Any]:
         given = self.launch_configurations or {}
         own: list[Any] = [SetLaunchConfiguration(name, value) for name, value in given.items()]
-        if self.forwarding is False:
-            kept = {name: text_of(context, value) for name, value in given.items()}
-            own = [OpaqueFunction(function=lambda it: _only(it, kept))]
-        inner = [*own, *self.actions]
         if self.scoped is False:
-            return inner
-        return [PushLaunchConfigurations(), *inner, PopLaunchConfigurations()]
+            return [*own, *self.actions]
+        if self.forwarding is False:
+            own = [ResetEnvironment(), ResetLaunchConfigurations(given)]
+        begin = [PushLaunchConfigurations(), PushEnvironment()]
+        return [*begin, *own, *self.actions, PopEnvironment(), PopLaunchConfigurations()]
 
-
-def _only(context: LaunchContext, kept: dict[str, str]) -> None:
-    context.launch_configurations = dict(kept)
+    def execute(self, context: LaunchContext) -> list[Any]:
+        return self.get_sub_entities()
 
 
 class LaunchDescription:
@@ -117,8 +203,13 @@ class LaunchDescription:
     def visit(self, context: LaunchContext) -> list[Any]:
         return self.entities
 
+    def get_sub_entities(self) -> list[Any]:
+        return self.entities
+
     def add_action(self, action: Any) -> None:
         self.entities.append(action)
+
+    add_entity = add_action
 
 
 class IncludeLaunchDescription(Action):
@@ -128,42 +219,130 @@ class IncludeLaunchDescription(Action):
     launch_description_source: Any
     launch_arguments: Any
 
+    def __init__(self, *words: Any, **options: Any) -> None:
+        super().__init__(*words, **options)
+        if not hasattr(self.launch_description_source, "get_launch_description"):
+            found = AnyLaunchDescriptionSource(self.launch_description_source)
+            self.launch_description_source = found
+        self.launch_arguments = tuple(self.launch_arguments or ())
+
     def execute(self, context: LaunchContext) -> list[Any]:
         source = self.launch_description_source
-        if not hasattr(source, "get_launch_description"):
-            source = AnyLaunchDescriptionSource(source)
         description = source.get_launch_description(context)
-        context.extend_locals({"current_launch_file_path": source.location})
-        told = [SetLaunchConfiguration(*it) for it in self.launch_arguments or ()]
+        path = os.path.abspath(source.location)
+        folder = {"current_launch_file_directory": os.path.dirname(path)}
+        context.extend_locals({"current_launch_file_path": path, **folder})
+        given = [text_of(context, name) for name, _ in self.launch_arguments]
+        for it, above in declared(description.entities):
+            _ask_for(it, [*given, *(name for one in above for name in one.names_without_context())])
+        told = [SetLaunchConfiguration(*it) for it in self.launch_arguments]
         return [*told, description]
 
+    def get_sub_entities(self) -> list[Any]:
+        try:
+            return [self.launch_description_source.get_launch_description(LaunchContext())]
+        except Exception:
+            # Its path is known only when the launch runs.
+            return []
 
-class AnyLaunchDescriptionSource:
-    """A launch file in Python; one in another form needs launch."""
+    def names_without_context(self) -> list[str]:
+        """The arguments that it gives, where their names are known before the launch runs."""
+        try:
+            return [text_of(LaunchContext(), name) for name, _ in self.launch_arguments]
+        except Exception:
+            return []
 
-    def __init__(self, launch_file_path: Text) -> None:
-        self.location = launch_file_path
+
+Declared = tuple[DeclareLaunchArgument, tuple[IncludeLaunchDescription, ...]]
+
+
+def declared(entities: Iterable[Any]) -> list[Declared]:
+    """The arguments that are declared whatever happens, each with the includes that lead to it."""
+    found: dict[str, Declared] = {}
+    _declare(entities, (), found)
+    return [it for it in found.values() if it[0].condition is None]
+
+
+def _declare(
+    entities: Iterable[Any],
+    above: tuple[IncludeLaunchDescription, ...],
+    found: dict[str, Declared],
+) -> None:
+    for it in entities:
+        if isinstance(it, ResetLaunchConfigurations):
+            return
+        if isinstance(it, DeclareLaunchArgument):
+            found.setdefault(it.name, (it, above))
+        if hasattr(it, "get_sub_entities") and getattr(it, "condition", None) is None:
+            own = (it,) if isinstance(it, IncludeLaunchDescription) else ()
+            _declare(it.get_sub_entities(), (*above, *own), found)
+
+
+def _ask_for(argument: DeclareLaunchArgument, given: list[str]) -> None:
+    if argument.default_value is not None or argument.name in given:
+        return
+    what = f"missing required argument '{argument.name}' (description: '{argument.told}')"
+    raise RuntimeError(f"Included launch description {what}, given: [{', '.join(given)}]")
+
+
+class LaunchDescriptionSource:
+    """What gives a description: this one, where no file does."""
+
+    def __init__(
+        self, launch_description: Any = None, location: Text = "", method: str = ""
+    ) -> None:
+        self.location = location
+        self.description = launch_description
 
     def get_launch_description(self, context: LaunchContext) -> Any:
         self.location = text_of(context, self.location)
-        if not self.location.endswith(".py"):
-            raise ValueError("a launch file in XML or YAML needs launch itself; source ROS 2")
-        spec = importlib.util.spec_from_file_location("launch_file", self.location)
-        assert spec is not None and spec.loader is not None
-        module = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(module)
-        return module.generate_launch_description()
+        self.description = self.description or self.read(self.location)
+        return self.description
+
+    def read(self, location: str) -> Any:
+        raise RuntimeError("called without launch description being set")
+
+
+class AnyLaunchDescriptionSource(LaunchDescriptionSource):
+    """A launch file in Python; one in another form needs launch."""
+
+    def __init__(self, launch_file_path: Text) -> None:
+        super().__init__(None, launch_file_path)
+
+    def read(self, location: str) -> Any:
+        return get_launch_description_from_python_launch_file(location)
+
+
+PythonLaunchDescriptionSource = AnyLaunchDescriptionSource
+XMLLaunchDescriptionSource = AnyLaunchDescriptionSource
+YAMLLaunchDescriptionSource = AnyLaunchDescriptionSource
+
+
+def get_launch_description_from_python_launch_file(path: str) -> Any:
+    return load_python_launch_file_as_module(path).generate_launch_description()
+
+
+def load_python_launch_file_as_module(path: str) -> Any:
+    if not path.endswith(".py"):
+        raise ValueError("a launch file in XML or YAML needs launch itself")
+    spec = importlib.util.spec_from_file_location("launch_file", path)
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
 
 
 class EventHandler(Kept):
     """What happens at an event: actions, or a function that makes some; its last argument."""
 
     target_action: Any = None
+    names: tuple[str, ...] = ("matcher", "entities")
     others: tuple[str, ...] = ("handle_once",)
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
-        if not (self.target_action is None or hasattr(self.target_action, "execute")):
+        target = self.target_action
+        if not (target is None or callable(target) or hasattr(target, "execute")):
             raise TypeError("action_matcher must be an 'ExecuteLocal' instance or a callable")
         self.actions: Any = vars(self)[self.names[-1]] or []
 
@@ -194,6 +373,18 @@ class OnProcessIO(EventHandler):
     names = ("target_action", "on_stdin", "on_stderr", "on_stdout")
 
 
+class OnExecutionComplete(EventHandler):
+    """The end of an action."""
+
+    names = ("target_action", "on_completion")
+
+
+class OnIncludeLaunchDescription(EventHandler):
+    """An include."""
+
+    names = ("entities",)
+
+
 class OnShutdown(EventHandler):
     """The end of the launch."""
 
@@ -217,14 +408,36 @@ class TimerAction(Action):
     others = ("cancel_on_shutdown", "condition")
 
 
-class ExecuteProcess(Action):
+class Executable(Kept):
+    """What a process runs."""
+
+    names = ("cmd", "prefix", "name", "cwd", "env", "additional_env", "arguments")
+
+
+class ExecuteLocal(Action):
+    """A process."""
+
+    names: tuple[str, ...] = ("process_description", "on_exit")
+    others: tuple[str, ...] = (
+        *("condition", "output", "output_format", "shell", "respawn", "respawn_delay"),
+        *("respawn_max_retries", "emulate_tty", "log_cmd", "sigterm_timeout", "sigkill_timeout"),
+        "cached_output",
+    )
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options)
+        self.__on_exit = vars(self)["on_exit"]
+        if "process_description" in vars(self):
+            self.cmd = vars(vars(self)["process_description"])["cmd"]
+
+
+class ExecuteProcess(ExecuteLocal):
     """A command line. What a process is given besides its own."""
 
-    names = ("cmd", "on_exit")
+    names: tuple[str, ...] = ("cmd", "on_exit")
     others: tuple[str, ...] = (
-        *("condition", "prefix", "name", "cwd", "env", "additional_env", "output", "output_format"),
-        *("shell", "respawn", "respawn_delay", "respawn_max_retries", "emulate_tty", "log_cmd"),
-        *("sigterm_timeout", "sigkill_timeout", "cached_output"),
+        *ExecuteLocal.others,
+        *("prefix", "name", "cwd", "env", "additional_env"),
     )
 
 
@@ -248,9 +461,47 @@ class Shutdown(Action):
 
 
 class SetEnvironmentVariable(Action):
-    """A variable of the environment, which no node's name depends on."""
+    """A variable of the environment."""
 
     names = ("name", "value")
+    name: Text
+    value: Text
+
+    def execute(self, context: LaunchContext) -> None:
+        context.environment[text_of(context, self.name)] = text_of(context, self.value)
+
+
+class AppendEnvironmentVariable(Action):
+    """More of a variable."""
+
+    names = ("name", "value", "prepend", "separator")
+    name: Text
+    value: Text
+    prepend: Any
+    separator: Text
+
+    def execute(self, context: LaunchContext) -> None:
+        name, value = text_of(context, self.name), text_of(context, self.value)
+        between = os.pathsep if self.separator is None else text_of(context, self.separator)
+        known = [context.environment[name]] if name in context.environment else []
+        first = typed_truth(text_of(context, str_of(self.prepend or False)))
+        context.environment[name] = between.join([value, *known] if first else [*known, value])
+
+
+class UnsetEnvironmentVariable(Action):
+    """A variable is no longer set."""
+
+    names = ("name",)
+    name: Text
+
+    def execute(self, context: LaunchContext) -> None:
+        context.environment.pop(text_of(context, self.name), None)
+
+
+class UnregisterEventHandler(Action):
+    """An event is no longer waited for."""
+
+    names = ("event_handler",)
 
 
 def matches_action(target_action: Any) -> Any:

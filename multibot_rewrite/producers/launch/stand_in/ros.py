@@ -10,6 +10,7 @@ import os
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
+from types import NoneType
 from typing import Any
 
 import yaml
@@ -19,18 +20,30 @@ from multibot_rewrite.producers.launch.stand_in.actions import (
     Action,
     EventHandler,
     ExecuteProcess,
+    TimerAction,
 )
+from multibot_rewrite.producers.launch.stand_in.parse import parse_substitution
 from multibot_rewrite.producers.launch.stand_in.values import (
     Kept,
     LaunchContext,
-    Substitution,
     Text,
-    parse_substitution,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+    str_of,
     text_of,
-    truth_of,
+    typed_truth,
 )
 
-_PLAIN = (bool, int, float, str, bytes)
+_ITEMS = (bool, int, float, str)
+_PLAIN = (*_ITEMS, bytes)
+_UNIFORM = (
+    "Expected a non-empty sequence, with items of uniform type. "
+    "Allowed sequence item types are bool, int, float, str."
+)
+_KINDS = (
+    "Allowed value types are bytes, bool, int, float, str, Sequence[bool], Sequence[int], "
+    "Sequence[float], Sequence[str]."
+)
 _OF_NODE = ("executable", "name", "namespace")
 _LISTED = ("parameters", "remappings", "ros_arguments", "arguments")
 
@@ -42,46 +55,72 @@ class ParameterValue:
         self.value, self.value_type = value, value_type
 
     def evaluate(self, context: LaunchContext) -> Any:
-        if not _is_text(self.value):
+        if isinstance(self.value, list | tuple) and not _is_substituted(self.value):
+            return [text_of(context, it) if _is_substituted(it) else it for it in self.value]
+        if not _is_substituted(self.value):
             return self.value
         text = text_of(context, self.value)
-        found = text if self.value_type is str else _read(text, "a value")
-        if self.value_type in _PLAIN and not isinstance(found, self.value_type):
-            return self.value_type(found)
-        return found
+        if self.value_type in (str, int, float):
+            return self.value_type(text)
+        if self.value_type is bool:
+            return typed_truth(text)
+        return load_yaml(text) if text else text
+
+
+class Parameter:
+    """A parameter with its value."""
+
+    def __init__(self, name: Text, value: Any, *, value_type: Any = None) -> None:
+        self.name, self.value = name, ParameterValue(value, value_type=value_type)
+
+    def evaluate(self, context: LaunchContext) -> tuple[str, Any]:
+        return text_of(context, self.name), self.value.evaluate(context)
 
 
 class ParameterFile:
     """A parameter file."""
 
-    def __init__(self, param_file: Text, *, allow_substs: Any = False) -> None:
-        self.__param_file, self.allow_substs = param_file, allow_substs
+    def __init__(self, param_file: Any, *, allow_substs: Any = False) -> None:
+        is_path = isinstance(param_file, os.PathLike)
+        text = [os.fspath(param_file)] if is_path else param_file
+        self.__param_file = normalize_to_list_of_substitutions(text)
+        self.allow_substs = allow_substs
 
     def evaluate(self, context: LaunchContext) -> Path:
-        path = Path(text_of(context, self.__param_file))
-        if not truth_of(context, str(self.allow_substs)):
+        path = Path(perform_substitutions(context, self.__param_file))
+        if not typed_truth(text_of(context, str_of(self.allow_substs))):
             return path
         with tempfile.NamedTemporaryFile("w", prefix="launch_params_", delete=False) as out:
             out.write(text_of(context, parse_substitution(path.read_text(encoding="utf-8"))))
         return Path(out.name)
 
 
-class Node(Action):
+class Node(ExecuteProcess):
     """A node with its process."""
 
     names: tuple[str, ...] = (
         *("executable", "package", "name", "namespace", "exec_name", "parameters", "remappings"),
         *("ros_arguments", "arguments", "on_exit"),
     )
-    others: tuple[str, ...] = ExecuteProcess.others
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
+        if not isinstance(vars(self)["parameters"], list | NoneType):
+            raise TypeError("Expected 'parameters' given to 'Node' to be a list")
         # By the names that launch_ros keeps them under.
         listed = {it: vars(self)[it] or () for it in _LISTED}
+        listed["parameters"] = [flat(it) for it in listed["parameters"]]
         own = {f"node_{it}": vars(self)[it] for it in _OF_NODE}
         own |= {"package": vars(self)["package"], **listed}
         vars(self).update({f"_Node__{key}": it for key, it in own.items()})
+
+    @property
+    def node_package(self) -> Any:
+        return vars(self)["package"]
+
+    @property
+    def node_executable(self) -> Any:
+        return vars(self)["executable"]
 
 
 class LifecycleNode(Node):
@@ -128,7 +167,7 @@ class ComposableNode:
     ) -> None:
         self.package, self.node_plugin = package, plugin
         self.node_name, self.node_namespace = name, namespace
-        self.parameters, self.remappings = parameters, remappings
+        self.parameters, self.remappings = [flat(it) for it in parameters or ()], remappings
         self._condition = condition
 
     def condition(self) -> Any:
@@ -159,8 +198,18 @@ class SetParameter(Action):
     value: Any
 
     def execute(self, context: LaunchContext) -> None:
-        own = (text_of(context, self.name), _value(context, self.value, "a value"))
-        _add(context, "global_params", own)
+        name = text_of(context, self.name)
+        _add(context, "global_params", [(name, _value(context, self.value, name))])
+
+
+class SetParametersFromFile(Action):
+    """A parameter file for all nodes that come next."""
+
+    names = ("filename",)
+    filename: Text
+
+    def execute(self, context: LaunchContext) -> None:
+        _add(context, "global_params", [text_of(context, self.filename)])
 
 
 class SetRemap(Action):
@@ -171,18 +220,45 @@ class SetRemap(Action):
     dst: Text
 
     def execute(self, context: LaunchContext) -> None:
-        _add(context, "ros_remaps", (text_of(context, self.src), text_of(context, self.dst)))
+        rule = (text_of(context, self.src), text_of(context, self.dst))
+        _add(context, "ros_remaps", [rule])
 
 
-def _add(context: LaunchContext, key: str, it: Any) -> None:
-    context.launch_configurations[key] = [*context.launch_configurations.get(key, ()), it]
+def _add(context: LaunchContext, key: str, more: Iterable[Any]) -> None:
+    """To the list itself, as launch_ros does: a scope around this one has it, too."""
+    context.launch_configurations.setdefault(key, []).extend(more)
+
+
+class SetUseSimTime(Action):
+    """The clock of the node of launch itself."""
+
+    names = ("value",)
+
+
+class SetROSLogDir(Action):
+    """A folder for logs."""
+
+    names = ("new_log_dir",)
+
+
+class LifecycleTransition(Action):
+    """Changes of life cycles."""
+
+    names = ("lifecycle_node_names", "transition_ids")
+
+
+class ROSTimer(TimerAction):
+    """Actions after a time by the clock of ROS."""
+
+
+RosTimer = ROSTimer
 
 
 class OnStateTransition(EventHandler):
     """A change of a life cycle."""
 
     names = ("target_lifecycle_node", "entities")
-    others = ("start_state", "goal_state", "transition", "handle_once")
+    others = ("start_state", "goal_state", "transition", "matcher", "handle_once")
 
 
 class ChangeState(Kept):
@@ -191,39 +267,17 @@ class ChangeState(Kept):
     names = ("lifecycle_node_matcher", "transition_id")
 
 
+class StateTransition(Kept):
+    """A transition that has happened."""
+
+    names = ("action", "msg")
+
+
 class Transition:
     """Those of lifecycle_msgs."""
 
     TRANSITION_CONFIGURE, TRANSITION_CLEANUP = 1, 2
     TRANSITION_ACTIVATE, TRANSITION_DEACTIVATE = 3, 4
-
-
-class PackageNotFoundError(KeyError):
-    """A package is not installed."""
-
-
-class FindPackageShare(Kept, Substitution):
-    """The share folder of a package."""
-
-    names = ("package",)
-    package: Text
-
-    def perform(self, context: LaunchContext) -> str:
-        return get_package_share_directory(text_of(context, self.package))
-
-
-def get_package_prefix(package_name: str) -> str:
-    """The folder that a package is installed in; raises PackageNotFoundError."""
-    index = os.path.join("share", "ament_index", "resource_index", "packages", package_name)
-    for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep):
-        if prefix and os.path.isfile(os.path.join(prefix, index)):
-            return prefix
-    raise PackageNotFoundError(f"package '{package_name}' not found")
-
-
-def get_package_share_directory(package_name: str) -> str:
-    """The share folder of a package; raises PackageNotFoundError."""
-    return os.path.join(get_package_prefix(package_name), "share", package_name)
 
 
 def make_namespace_absolute(ns: str | None) -> str | None:
@@ -247,46 +301,79 @@ def evaluate_parameters(context: LaunchContext, parameters: Iterable[Any]) -> tu
 
 def _evaluated(context: LaunchContext, given: Any) -> Any:
     if isinstance(given, Mapping):
-        return dict(_values(context, given, ""))
-    if isinstance(given, ParameterFile):
-        return given.evaluate(context)
-    return Path(text_of(context, given))
+        named = flat(given).items()
+        return {text_of(context, key): _value(context, it, key) for key, it in named}
+    if isinstance(given, Parameter):
+        return given
+    return (given if isinstance(given, ParameterFile) else ParameterFile(given)).evaluate(context)
 
 
-def _values(
-    context: LaunchContext, given: Mapping[Any, Any], above: str
-) -> Iterator[tuple[str, Any]]:
-    """The values by dotted name."""
+def flat(given: Any) -> Any:
+    """Parameters with dotted names; files stay as they are."""
+    return dict(_flat(given, ())) if isinstance(given, Mapping) else given
+
+
+def _flat(
+    given: Mapping[Any, Any], above: tuple[Any, ...]
+) -> Iterator[tuple[tuple[Any, ...], Any]]:
     for key, value in given.items():
-        name = f"{above}{text_of(context, key)}"
+        name = (*above, *([key] if isinstance(key, str) or hasattr(key, "perform") else key))
         if isinstance(value, Mapping):
-            yield from _values(context, value, f"{name}.")
+            yield from _flat(value, (*name, "."))
         else:
-            yield name, _value(context, value, name)
+            yield name, value
 
 
-def _value(context: LaunchContext, value: Any, name: str) -> Any:
+def _value(context: LaunchContext, value: Any, name: Text) -> Any:
     if hasattr(value, "evaluate"):
         return value.evaluate(context)
-    if isinstance(value, list | tuple) and not any(hasattr(it, "perform") for it in value):
-        return [_value(context, it, name) if _is_text(it) else it for it in value]
-    return _read(text_of(context, value), name) if _is_text(value) else value
+    if _is_substituted(value):
+        return _read(text_of(context, value), text_of(context, name))
+    if isinstance(value, list | tuple):
+        return _listed(context, value, name)
+    if not isinstance(value, _PLAIN):
+        raise TypeError(f"Unexpected type for parameter value {value!r}")
+    return value
 
 
-def _is_text(value: Any) -> bool:
-    several = isinstance(value, list | tuple) and any(hasattr(it, "perform") for it in value)
-    return several or isinstance(value, str) or hasattr(value, "perform")
+def _listed(context: LaunchContext, values: list[Any] | tuple[Any, ...], name: Text) -> list[Any]:
+    """Values of one type; those that have none in common are texts."""
+    kinds = {type(it) for it in values}
+    if kinds == {int, float}:
+        return [float(it) for it in values]
+    texts = [it if isinstance(it, _PLAIN) else load_yaml(text_of(context, it)) for it in values]
+    if not _are_alike(texts):
+        raise TypeError(f'{_UNIFORM} Got inconsistent input for "{text_of(context, name)}"')
+    return texts
+
+
+def _are_alike(values: list[Any]) -> bool:
+    return bool(values) and len({type(it) for it in values}) == 1 and isinstance(values[0], _ITEMS)
+
+
+def _is_substituted(value: Any) -> bool:
+    """Is it a substitution, or texts with one?"""
+    several = value if isinstance(value, list | tuple) else ()
+    texts = all(isinstance(it, str) or hasattr(it, "perform") for it in several)
+    return hasattr(value, "perform") or (texts and any(hasattr(it, "perform") for it in several))
 
 
 def _read(text: str, name: str) -> Any:
-    """A text as YAML has it."""
-    wrapped = (
-        "if it is meant to be a string, try wrapping it in ParameterValue(value, value_type=str)"
-    )
+    """The text of a substitution as YAML has it."""
+    wrapped = "try wrapping it in launch_ros.parameter_descriptions.ParameterValue"
     try:
         found = load_yaml(text) if text else ""
     except yaml.YAMLError:
-        raise TypeError(f"Unable to parse {name} as yaml; {wrapped}") from None
-    if not isinstance(found, (*_PLAIN, list)):
-        raise TypeError(f"{name} has a value of no type of parameters; {wrapped}")
+        what = f"Unable to parse the value of parameter {name} as yaml."
+        raise TypeError(
+            f"{what} If the parameter is meant to be a string, {wrapped}(value, value_type=str)"
+        ) from None
+    if isinstance(found, list):
+        if not _are_alike(found):
+            raise TypeError(f'{_UNIFORM} Got inconsistent input for "{name}"')
+    elif not isinstance(found, _PLAIN):
+        what = f'{_KINDS} Got {type(found)} for "{name}".'
+        raise TypeError(
+            f"{what} If the parameter is meant to be a string, {wrapped}(value, value_type=str)"
+        )
     return found

@@ -6,12 +6,16 @@ Source: launch jazzy, substitutions/, conditions/, launch_context.py, utilities/
 from __future__ import annotations
 
 import importlib
+import math
 import os
-import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from types import SimpleNamespace
 from typing import Any
 
+from multibot_rewrite.base.bounded import load_yaml
+
 Text = Any
+SomeEntitiesType = SomeSubstitutionsType = Any
 _TRUTHS: Mapping[str, bool] = {"true": True, "1": True, "false": False, "0": False}
 
 
@@ -37,8 +41,15 @@ class Substitution:
         raise NotImplementedError
 
 
+SomeSubstitutionsType_types_tuple = (str, Substitution, Iterable)
+
+
 class SubstitutionFailure(Exception):
     """A substitution has no value."""
+
+
+class InvalidConditionExpressionError(Exception):
+    """The text of a condition is neither true nor false."""
 
 
 class LaunchContext:
@@ -46,10 +57,15 @@ class LaunchContext:
 
     def __init__(self, *, argv: Any = None, noninteractive: bool = False) -> None:
         self.launch_configurations: dict[str, Any] = {}
+        # A copy: what a launch file sets is not for the program that reads it.
+        self.environment: dict[str, str] = dict(os.environ)
+        self.argv = [*(argv or ())]
+        self.noninteractive = noninteractive
         self.handlers: list[Any] = []
         self._globals: dict[str, Any] = {}
         self._locals: list[dict[str, Any]] = [{}]
         self._kept: list[dict[str, Any]] = []
+        self._environments: list[dict[str, str]] = []
 
     def extend_globals(self, extensions: dict[str, Any]) -> None:
         self._globals.update(extensions)
@@ -59,6 +75,10 @@ class LaunchContext:
 
     def get_locals_as_dict(self) -> dict[str, Any]:
         return {key: it for kept in (self._globals, *self._locals) for key, it in kept.items()}
+
+    @property
+    def locals(self) -> Any:
+        return SimpleNamespace(**self.get_locals_as_dict())
 
     def register_event_handler(self, event_handler: Any, append: bool = False) -> None:
         self.handlers.append(event_handler)
@@ -78,13 +98,31 @@ class LaunchContext:
     def _pop_launch_configurations(self) -> None:
         self.launch_configurations = self._kept.pop()
 
+    def _push_environment(self) -> None:
+        self._environments.append(dict(self.environment))
+
+    def _pop_environment(self) -> None:
+        self.environment = self._environments.pop()
+
+    def _reset_environment(self) -> None:
+        self.environment = dict(os.environ)
+
 
 def normalize_to_list_of_substitutions(subs: Any) -> list[Any]:
-    if isinstance(subs, str | os.PathLike):
-        return [TextSubstitution(text=str(subs))]
+    if isinstance(subs, str):
+        return [TextSubstitution(text=subs)]
     if hasattr(subs, "perform"):
         return [subs]
-    return [it if hasattr(it, "perform") else TextSubstitution(text=str(it)) for it in subs]
+    return [_normal(it) for it in subs]
+
+
+def _normal(it: Any) -> Any:
+    if isinstance(it, str):
+        return TextSubstitution(text=it)
+    if hasattr(it, "perform"):
+        return it
+    only = "when only 'str' or 'launch.Substitution' were expected"
+    raise TypeError(f"Failed to normalize given item of type '{type(it)}', {only}.")
 
 
 def perform_substitutions(context: LaunchContext, subs: list[Any]) -> str:
@@ -94,6 +132,13 @@ def perform_substitutions(context: LaunchContext, subs: list[Any]) -> str:
 def text_of(context: LaunchContext, value: Text) -> str:
     """The value of a text, a substitution, or several of both."""
     return perform_substitutions(context, normalize_to_list_of_substitutions(value))
+
+
+def str_of(value: Any) -> Text:
+    """Any value as a text, or several of them."""
+    if isinstance(value, list | tuple):
+        return [str_of(it) for it in value]
+    return value if hasattr(value, "perform") else str(value)
 
 
 def _substitution(
@@ -111,7 +156,7 @@ def _configuration(it: Any, context: LaunchContext) -> str:
 
 def _variable(it: Any, context: LaunchContext) -> str:
     name = text_of(context, it.name)
-    return _found(context, os.environ, name, it.default_value, "environment variable")
+    return _found(context, context.environment, name, it.default_value, "environment variable")
 
 
 def _found(
@@ -119,7 +164,7 @@ def _found(
 ) -> str:
     if name not in known and usual is None:
         raise SubstitutionFailure(f"{what} '{name}' does not exist")
-    return known[name] if name in known else text_of(context, usual)
+    return known[name] if name in known else text_of(context, str_of(usual))
 
 
 def _expression(it: Any, context: LaunchContext) -> str:
@@ -143,6 +188,74 @@ def _is(value: bool) -> str:
     return str(value).lower()
 
 
+def _compared(value: Any) -> Any:
+    """A side of EqualsSubstitution: it may be any value."""
+    texts = value if isinstance(value, list | tuple) else [value]
+    if any(hasattr(it, "perform") for it in texts):
+        return value
+    return "" if value is None else _is(value) if isinstance(value, bool) else str(value)
+
+
+def _equal(it: Any, context: LaunchContext) -> bool:
+    left, right = (text_of(context, _compared(side)) for side in (it.left, it.right))
+    if {left.lower(), right.lower()} <= _TRUTHS.keys():
+        return _TRUTHS[left.lower()] == _TRUTHS[right.lower()]
+    try:
+        return math.isclose(float(left), float(right))
+    except ValueError:
+        return left == right
+
+
+def _truths(it: Any, context: LaunchContext) -> list[bool]:
+    return [_performed_truth(context, side) for side in (it.left, it.right)]
+
+
+def _performed_truth(context: LaunchContext, value: Text) -> bool:
+    try:
+        return typed_truth(text_of(context, value))
+    except ValueError as error:
+        raise SubstitutionFailure(error) from None
+
+
+def _chosen(it: Any, context: LaunchContext) -> str:
+    chosen = it.if_value if _performed_truth(context, it.condition) else it.else_value
+    return text_of(context, "" if chosen is None else chosen)
+
+
+def _anonymous(it: Any, context: LaunchContext) -> str:
+    """launch takes a random name; it is one for the same text."""
+    name = text_of(context, it.name)
+    return str(context.launch_configurations.setdefault(f"anon{name}", f"{name}_anonymous"))
+
+
+def _content(it: Any, context: LaunchContext) -> str:
+    path = text_of(context, it.path)
+    if not os.path.isfile(path):
+        raise SubstitutionFailure(f"File not found: {path}")
+    with open(path, encoding="utf-8") as file:
+        return file.read()
+
+
+class AllSubstitution(Substitution):
+    """Are all of them true?"""
+
+    def __init__(self, *args: Text) -> None:
+        self.args = args
+
+    def truths(self, context: LaunchContext) -> list[bool]:
+        return [_performed_truth(context, it) for it in self.args]
+
+    def perform(self, context: LaunchContext) -> str:
+        return _is(all(self.truths(context)))
+
+
+class AnySubstitution(AllSubstitution):
+    """Is one of them true?"""
+
+    def perform(self, context: LaunchContext) -> str:
+        return _is(any(self.truths(context)))
+
+
 TextSubstitution = _substitution(lambda it, context: str(it.text), "text")
 LaunchConfiguration = _substitution(_configuration, "variable_name", "default")
 EnvironmentVariable = _substitution(_variable, "name", "default_value")
@@ -150,17 +263,39 @@ PathJoinSubstitution = _substitution(_path, "substitutions")
 PythonExpression = _substitution(_expression, "expression", "python_modules")
 ThisLaunchFile = _substitution(lambda it, context: _file(context))
 ThisLaunchFileDir = _substitution(lambda it, context: os.path.dirname(_file(context)))
-EqualsSubstitution = _substitution(
-    lambda it, context: _is(text_of(context, it.left) == text_of(context, it.right)),
-    *("left", "right"),
+_SIDES = ("left", "right")
+EqualsSubstitution = _substitution(lambda it, context: _is(_equal(it, context)), *_SIDES)
+NotEqualsSubstitution = _substitution(lambda it, context: _is(not _equal(it, context)), *_SIDES)
+AndSubstitution = _substitution(lambda it, context: _is(all(_truths(it, context))), *_SIDES)
+OrSubstitution = _substitution(lambda it, context: _is(any(_truths(it, context))), *_SIDES)
+NotSubstitution = _substitution(
+    lambda it, context: _is(not _performed_truth(context, it.value)), "value"
 )
-NotSubstitution = _substitution(lambda it, context: _is(not truth_of(context, it.value)), "value")
+IfElseSubstitution = _substitution(_chosen, "condition", "if_value", "else_value")
+AnonName = _substitution(_anonymous, "name")
+FileContent = _substitution(_content, "path")
+LocalSubstitution = _substitution(
+    # The file is a program in Python, too.
+    lambda it, context: eval(f"context.locals.{it.expression}", {}, {"context": context}),
+    *("expression", "description"),
+)
+LaunchLogDir = _substitution(lambda it, context: os.environ.get("ROS_LOG_DIR", ""))
 # What they print is known to ``commands``.
 Command = _substitution(Substitution.perform, "command", others=("on_stderr",))
 FindExecutable = _substitution(Substitution.perform, "name")
 
 
-class IfCondition(Kept):
+class Condition:
+    """Decides whether an action is executed; ``predicate`` is a function of the context."""
+
+    def __init__(self, *, predicate: Callable[[LaunchContext], bool] | None = None) -> None:
+        self.predicate = predicate
+
+    def evaluate(self, context: LaunchContext) -> bool:
+        return self.predicate is None or self.predicate(context)
+
+
+class IfCondition(Kept, Condition):
     """A condition that is true for ``true`` and ``1``."""
 
     names = ("predicate_expression",)
@@ -176,29 +311,39 @@ class UnlessCondition(IfCondition):
     wanted = False
 
 
+class LaunchConfigurationEquals(Kept, Condition):
+    """A condition that is true for one value of a launch configuration; None is one that is not set."""
+
+    names = ("launch_configuration_name", "expected_value")
+
+    def evaluate(self, context: LaunchContext) -> bool:
+        name, value = (vars(self)[it] for it in self.names)
+        wanted = None if value is None else text_of(context, value)
+        return bool(context.launch_configurations.get(name) == wanted)
+
+
+class LaunchConfigurationNotEquals(LaunchConfigurationEquals):
+    """The opposite."""
+
+    def evaluate(self, context: LaunchContext) -> bool:
+        return not super().evaluate(context)
+
+
+def evaluate_condition_expression(context: LaunchContext, expression: Text) -> bool:
+    return truth_of(context, expression)
+
+
 def truth_of(context: LaunchContext, value: Text) -> bool:
-    """The truth of a text; raises ValueError for one that is none."""
+    """The truth of a text; raises InvalidConditionExpressionError for one that is none."""
     word = text_of(context, value).strip().lower()
     if word not in _TRUTHS:
-        raise ValueError(f"{word!r} is no condition; write true or false")
+        raise InvalidConditionExpressionError(f"{word!r} is no condition; write true or false")
     return _TRUTHS[word]
 
 
-_PLACED = re.compile(r"\$\(([\w-]+) ?([^()]*)\)")
-_WORDS = {"var": LaunchConfiguration, "env": EnvironmentVariable}
-
-
-def parse_substitution(value: str) -> list[Any]:
-    """The parts of a text with ``$(var NAME)`` and ``$(env NAME)``; raises ValueError for others."""
-    return list(_parsed(value))
-
-
-def _parsed(text: str) -> Iterator[Any]:
-    at = 0
-    for found in _PLACED.finditer(text):
-        if found[1] not in _WORDS:
-            raise ValueError(f"{found[0]} needs launch itself; source ROS 2")
-        yield TextSubstitution(text=text[at : found.start()])
-        yield _WORDS[found[1]](found[2])
-        at = found.end()
-    yield TextSubstitution(text=text[at:])
+def typed_truth(text: str) -> bool:
+    """The truth of a text as YAML has it, or 1 and 0; raises ValueError for one that is none."""
+    found = load_yaml({"1": "true", "0": "false"}.get(text, text)) if text else text
+    if not isinstance(found, bool):
+        raise ValueError(f"Cannot convert value '{text}' to '{bool}'")
+    return found

@@ -1,7 +1,6 @@
 """MB8: files beside a description: SRDF, parameters, RViz, MoveIt's YAML, bridges."""
 
-from multibot_rewrite.rules.description import srdf
-from multibot_rewrite.rules.description.beside import packages
+from multibot_rewrite.rules.description.srdf import THEMES as _OF_SRDF
 from multibot_rewrite.rules.files import judge
 
-THEMES = (*srdf.THEMES, packages, *judge.THEMES)
+THEMES = (*(f"..srdf{it}" for it in _OF_SRDF), *judge.THEMES)

@@ -1,14 +1,13 @@
 """MB1: what a file is, how it is encoded, the shape of its XML, and the values in it."""
 
-from multibot_rewrite.rules.description import gazebo
-from multibot_rewrite.rules.description.files import (
-    given_arguments,
-    materials,
-    reading,
-    shape,
-    text,
-    values,
-    versions,
+# The files of its rules, loaded where they are asked.
+THEMES = (
+    ".reading",
+    ".shape",
+    ".values",
+    ".versions",
+    ".materials",
+    ".text",
+    ".libraries",
+    ".given_arguments",
 )
-
-THEMES = (reading, shape, values, versions, materials, text, given_arguments, *gazebo.THEMES)

@@ -12,6 +12,7 @@ from multibot_rewrite.base.nearest import Guesses
 from multibot_rewrite.description.checks.numbers import numbers
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.facts.elements import Elements
+from multibot_rewrite.rules.facts.faults import urdf_faults
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.subject import Subject
 
@@ -74,7 +75,7 @@ def _looks(subject: Subject) -> list[etree._Element]:
 
 def _misspelled(subject: Subject) -> set[etree._Element | None]:
     """Elements that another rule reports, for themselves or for a child."""
-    elements = [it.element for it in subject.faults]
+    elements = [it.element for it in urdf_faults(subject)]
     return {*elements, *(it.getparent() for it in elements)}
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import islice
-from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import URDF, declare, rule
@@ -13,10 +12,6 @@ from multibot_rewrite.description.checks.audit import leftover_xacro, worlds
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.twice import already_rewritten
 from multibot_rewrite.rules.subject import Subject
-
-if TYPE_CHECKING:
-    from multibot_rewrite.companions.named_file import NamedFile
-    from multibot_rewrite.rules.files.records import Remark
 
 # These five are reported where a file is read or expanded: see ``failures``.
 not_xml = declare(
@@ -119,15 +114,9 @@ package_not_found = declare(
     good='<link name="a"/><link name="b"/>',
     formats=(URDF, *EVERY),
 )
-def leftover(asked: Subject | NamedFile) -> Iterator[Problem | Remark]:
-    """One finding for a description, at the first of them; the first of each name of a file."""
-    if isinstance(asked, Subject):
-        return leftover_xacro(asked.inventory)
-    from multibot_rewrite.rules.files.ros_names import (
-        placeholders,  # a description needs none of it
-    )
-
-    return placeholders(asked)
+def leftover(subject: Subject) -> Iterator[Problem]:
+    """One finding for a description, at the first of them."""
+    return leftover_xacro(subject.inventory)
 
 
 @rule(

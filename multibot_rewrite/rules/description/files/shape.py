@@ -1,45 +1,71 @@
-"""Elements and attributes that URDF parsers do not expect, or miss."""
+"""Elements, attributes and parameters that their readers do not expect, or miss."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import partial
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
-from multibot_rewrite.base.findings.rule import rule
-from multibot_rewrite.rules.description.files.shared import faults
+from multibot_rewrite.base.findings.rule import SRDF, URDF, rule
+from multibot_rewrite.companions.kinds import PARAMS
+from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.rules.description.files.libraries import (
+    misspelt_hardware,
+    misspelt_libraries,
+    plugins_without_library,
+)
+from multibot_rewrite.rules.description.references.interfaces import misspelt_interfaces
+from multibot_rewrite.rules.facts.faults import faults
+from multibot_rewrite.rules.subject import Subject
 
-misspelled_element = rule(
+
+@rule(
     "MB110",
-    "misspelled-element",
+    "misspelt",
     WARNING,
-    what="An unknown element whose name is almost that of a URDF element which is allowed here.",
-    why="Every parser skips elements that it does not know: the link has no mass or the joint no "
-    "limit, without an error.",
-    fix="Correct the name.",
+    what="A name is not known where it is, and is almost one that is: of an element or attribute "
+    "of a URDF or SRDF or below <gazebo>, of a parameter of a plugin, of ros2_control hardware or "
+    "of a node, of a library, a hardware class or an interface of ros2_control.",
+    why="Readers skip what they do not know, without a word: the link has no mass, the joint no limit, "
+    "the plugin or node its default. A library or class is not found, an interface is claimed by none.",
+    fix="Correct the name. Parameters of a node come from the generate_parameter_library files of the "
+    "package where its sources are there, else from installed NoDL documents and the sources of the "
+    "release.",
     bad='<link name="a"><inertail/></link>',
     good='<link name="a"><visual><geometry><sphere radius="1"/></geometry></visual></link>',
-)(partial(faults, "misspelled-element"))
+    formats=(URDF, SRDF, PARAMS),
+)
+def misspelt(subject: Subject) -> Iterator[Problem]:
+    """Elements, attributes, parameters; what a plugin or <hardware> loads; interfaces."""
+    yield from faults("misspelt", subject)
+    yield from misspelt_libraries(subject)
+    yield from misspelt_hardware(subject)
+    yield from misspelt_interfaces(subject)
 
-ignored_element = rule(
+
+not_read = rule(
     "MB111",
-    "ignored-element",
+    "not-read",
     NOTE,
-    what="An element inside a link or joint that no URDF parser reads.",
-    why="It has no effect: <gravity>, <kinematic> and <pose> work in a <gazebo reference> block, "
-    "where sdformat looks for them, and not here.",
-    fix="Move it into <gazebo reference>, or delete it.",
+    what="An element, attribute, parameter or text that nothing reads: of a URDF, below <gazebo>, "
+    "or of a known plugin. Below <ros2_control> it is an error where it is no component.",
+    why="It has no effect: <gravity> works in a <gazebo reference> block and not in a link, <alwaysOn> "
+    "in a sensor and not in its plugin. ros2_control's parser throws 'invalid tag name', and the "
+    "controller manager has no hardware.",
+    fix="Delete it, or move it to where it is read; make a remark a comment.",
     bad='<link name="a"><gravity>1</gravity></link>',
     good='<link name="a"/><gazebo reference="a"><gravity>1</gravity></gazebo>',
-)(partial(faults, "ignored-element"))
+)(partial(faults, "not-read"))
 
-misplaced_element = rule(
+misplaced = rule(
     "MB112",
-    "misplaced-element",
+    "misplaced",
     WARNING,
-    what="A URDF element in a place where no parser looks for it.",
-    why="Parsers look for children by name in one place only: an <origin> of a link or an "
-    "<inertial> of the robot is silently ignored.",
-    fix="Move it to where it belongs; the hint names the places.",
+    what="An element of URDF or SDF, or a parameter of a plugin, in a place where nobody looks for "
+    "it: an <origin> of a link, friction in a <gazebo> without reference, a <remapping> beside "
+    "<ros>.",
+    why="Readers look for children by name in one place only. It has no effect.",
+    fix="Move it to where it belongs; the hint names the place.",
     bad='<link name="a"><mass value="1"/></link>',
     good='<link name="a">\n'
     "  <inertial>\n"
@@ -47,55 +73,30 @@ misplaced_element = rule(
     '    <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>\n'
     "  </inertial>\n"
     "</link>\n",
-)(partial(faults, "misplaced-element"))
+)(partial(faults, "misplaced"))
 
-misspelled_attribute = rule(
-    "MB113",
-    "misspelled-attribute",
-    WARNING,
-    what="An unknown attribute whose name is almost that of an attribute which is missing.",
-    why="Parsers ask for attributes by name and use the default for missing ones: xzy='0 0 1' is "
-    "an origin of 0 0 0.",
-    fix="Correct the name.",
-    bad='<link name="a">\n'
-    '  <visual><origin xzy="0 0 1"/><geometry><sphere radius="1"/></geometry></visual>\n'
-    "</link>\n",
-    good='<link name="a">\n'
-    '  <visual><origin xyz="0 0 1"/><geometry><sphere radius="1"/></geometry></visual>\n'
-    "</link>\n",
-    line=2,
-)(partial(faults, "misspelled-attribute"))
 
-ignored_attribute = rule(
-    "MB114",
-    "ignored-attribute",
-    NOTE,
-    what="An attribute that no URDF parser reads.",
-    why="It has no effect: parsers read the attributes they know and no others.",
-    fix="Delete it, or move it to where your own program reads it.",
-    bad='<link name="a">\n'
-    '  <visual colour="red"><geometry><sphere radius="1"/></geometry></visual>\n'
-    "</link>\n",
-    good='<link name="a">\n'
-    '  <visual name="ball"><geometry><sphere radius="1"/></geometry></visual>\n'
-    "</link>\n",
-    line=2,
-)(partial(faults, "ignored-attribute"))
-
-missing = rule(
+@rule(
     "MB115",
     "missing",
     ERROR,
-    what="A required attribute or child element is missing.",
-    why="urdfdom rejects the whole file if the robot or a joint has no name; in a link it drops "
-    "every visual and collision from the fault on; ros2_control's parser throws, and the "
-    "controller manager has no hardware.",
-    fix="Add what is missing.",
+    what="A required attribute, child element or parameter is missing or empty: of a URDF or SRDF, "
+    "below <gazebo>, of a plugin or of ros2_control hardware.",
+    why="urdfdom rejects the whole file for a part of a joint; in a link it drops every visual and "
+    "collision from the fault on. libsdformat does not load the model, srdfdom skips the element, and "
+    "a plugin or hardware is not loaded.",
+    fix="Add what is missing, or delete the element that needs it.",
     bad='<link name="a"><visual><geometry><cylinder radius="1"/></geometry></visual></link>',
     good='<link name="a">\n'
     '  <visual><geometry><cylinder radius="1" length="1"/></geometry></visual>\n'
     "</link>\n",
-)(partial(faults, "missing"))
+    formats=(URDF, SRDF),
+)
+def missing(subject: Subject) -> Iterator[Problem]:
+    """By what each reader requires."""
+    yield from faults("missing", subject)
+    yield from plugins_without_library(subject)
+
 
 repeated_element = rule(
     "MB116",
@@ -120,35 +121,47 @@ repeated_element = rule(
     '  <origin xyz="0 0 1"/>\n'
     "</joint>\n",
     line=7,
-)(partial(faults, "repeated-element"))
+)(partial(faults, "repeated"))
 
-unknown_component = rule(
-    "MB117",
-    "unknown-component",
-    ERROR,
-    what="A child of <ros2_control> is not a component: hardware, joint, sensor, gpio or "
-    "transmission.",
-    why='ros2_control\'s component parser throws "invalid tag name" for it, and the controller '
-    "manager has no hardware.",
-    fix="Use one of the components, or move a <param> into <hardware>.",
-    bad='<ros2_control name="c" type="system">\n'
-    "  <hardware><plugin>p/P</plugin></hardware>\n"
-    '  <param name="port">1</param>\n'
-    "</ros2_control>\n",
-    good='<ros2_control name="c" type="system">\n'
-    '  <hardware><plugin>p/P</plugin><param name="port">1</param></hardware>\n'
-    "</ros2_control>\n",
-    line=3,
-)(partial(faults, "unknown-component"))
-
-stray_text = rule(
-    "MB118",
-    "stray-text",
+of_another_release = rule(
+    "MB157",
+    "of-another-release",
     NOTE,
-    what="There is text in a place where URDF parsers expect none.",
-    why="It has no effect. Usually it is left over from an edit: the end of a comment, a doubled "
-    "'>', a remark without comment marks.",
-    fix="Delete it, or make it a comment.",
-    bad='<link name="a"/>>',
-    good='<link name="a"/><!-- a remark -->',
-)(partial(faults, "stray-text"))
+    what="An element below <gazebo> came with a later version of SDF than Gazebo of this release "
+    "reads, or a plugin reads a parameter in another release than this one.",
+    why="It has no effect in this release, as if the line were not there: a sensor with <frame_id> "
+    "publishes in the frame that it has without.",
+    fix="Leave it out, or name the release that the description is for: --distro.",
+    bad='<link name="a"/>\n'
+    '<gazebo reference="a">\n'
+    '  <sensor name="s" type="imu"><frame_id>a</frame_id></sensor>\n'
+    "</gazebo>\n",
+    good='<link name="a"/>\n'
+    '<gazebo reference="a">\n'
+    '  <sensor name="s" type="imu"><topic>imu</topic></sensor>\n'
+    "</gazebo>\n",
+    line=3,
+    options={"distro": "humble"},
+)(partial(faults, "later"))
+
+of_another_simulator = rule(
+    "MB163",
+    "parameter-of-other-simulator",
+    WARNING,
+    what="A plugin of Gazebo has a parameter that only the plugin of Gazebo Classic with the same task "
+    "reads, or the reverse; or one of ROS 2 has a parameter of ROS 1's, or the reverse.",
+    why="It has no effect: what a file was migrated for is at its default. Classic's wheel_diameter "
+    "is no wheel_radius; commandTopic of ROS 1 leaves the robot of ROS 2 at cmd_vel.",
+    fix="Use the parameter of this simulator and ROS, if it has one.",
+    bad="<gazebo>\n"
+    '  <plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive">\n'
+    "    <wheel_diameter>0.2</wheel_diameter>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    good="<gazebo>\n"
+    '  <plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive">\n'
+    "    <wheel_radius>0.1</wheel_radius>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    line=3,
+)(partial(faults, "simulator"))

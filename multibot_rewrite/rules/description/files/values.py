@@ -1,98 +1,103 @@
-"""Values of attributes that URDF parsers reject."""
+"""Values that their readers reject, misread, or take for something else."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import partial
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
-from multibot_rewrite.base.findings.rule import rule
-from multibot_rewrite.rules.description.files.shared import faults
+from multibot_rewrite.base.findings.rule import SRDF, URDF, rule
+from multibot_rewrite.companions.kinds import PARAMS
+from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.rules.description.examples import a_link, block
+from multibot_rewrite.rules.description.structure.limits import limits_in_degrees
+from multibot_rewrite.rules.facts.faults import faults
+from multibot_rewrite.rules.subject import Subject
 
-not_a_number = rule(
+
+def _imu(inside: str) -> str:
+    sensor = block('<sensor name="s" type="imu">', inside)
+    return a_link("a") + block('<gazebo reference="a">', sensor)
+
+
+@rule(
     "MB120",
-    "not-a-number",
+    "unreadable-value",
     ERROR,
-    what="A value that must be a number is not one: empty, with a unit, with a decimal comma.",
+    what="A value is not what its place asks for: no number, too many or too few of them, a unit "
+    "or a decimal comma, nan, a space or line break after a number, a word that is neither true "
+    "nor false, a parameter of another type than its node declares. It is a warning where a part "
+    "is read, in a colour of a URDF and in parameters.",
     why="urdfdom rejects the file if it is in a joint, and drops the remaining visuals and "
-    "collisions of the link if it is in a link.",
+    "collisions if it is in a link. Below <gazebo> the model is not loaded; a plugin reads 0,5 as "
+    "0, and anything but true, false, 1 and 0 as false. ros2_control hardware and rclcpp throw: "
+    "the node does not come up, or its controller is not loaded. MoveIt ignores a joint in a "
+    "state.",
     fix="Write plain numbers with a decimal point, separated by spaces, in metres, radians and "
-    "kilograms.",
+    "kilograms, as many as the place has; true or false; colours from 0 to 1. A double of a node "
+    "needs a point.",
     bad='<link name="a"><visual><geometry><sphere radius="0,5"/></geometry></visual></link>',
     good='<link name="a"><visual><geometry><sphere radius="5e-1"/></geometry></visual></link>',
-)(partial(faults, "not-a-number", substitutions=False))
+    formats=(URDF, SRDF, PARAMS),
+)
+def unreadable_value(subject: Subject) -> Iterator[Problem]:
+    """All but those with a substitution: MB105 reports them."""
+    return (it for it in faults("value", subject) if "$" not in it.message)
 
-wrong_count = rule(
-    "MB121",
-    "wrong-count",
-    ERROR,
-    what="A value has too many or too few numbers: a scale of one number, an xyz of two.",
-    why="urdfdom rejects the file if it is in a joint, and drops the remaining visuals and "
-    "collisions of the link if it is in a link.",
-    fix="Write all the numbers: three for xyz, rpy, size and scale, four for quat_xyzw, one for the "
-    "rest.",
-    bad='<link name="a">\n'
-    "  <visual>\n"
-    '    <geometry><mesh filename="file:///a.stl" scale="0.001"/></geometry>\n'
-    "  </visual>\n"
-    "</link>\n",
-    good='<link name="a">\n'
-    "  <visual>\n"
-    '    <geometry><mesh filename="file:///a.stl" scale="1 1 1"/></geometry>\n'
-    "  </visual>\n"
-    "</link>\n",
-    line=3,
-)(partial(faults, "wrong-count"))
 
-not_finite = rule(
-    "MB122",
-    "not-finite",
-    ERROR,
-    what="A number is nan, inf, or too large for a double.",
-    why="urdfdom's number parser accepts neither nan nor inf: it rejects the file if it is in a "
-    "joint, and drops the remaining visuals and collisions of a link. Programs that accept it "
-    "compute with nan from then on.",
-    fix="Write a large finite number; for a joint without limits use type='continuous'.",
-    bad='<link name="a"><visual><geometry><sphere radius="inf"/></geometry></visual></link>',
-    good='<link name="a"><visual><geometry><sphere radius="1e9"/></geometry></visual></link>',
-)(partial(faults, "not-finite"))
-
-space_after_number = rule(
-    "MB123",
-    "space-after-number",
-    ERROR,
-    what="A single number has a space after it, or a number is followed by a tab or a line break.",
-    why="urdfdom splits values at single spaces and expects every part to be a number: it rejects "
-    "'1 ' and a tab between numbers.",
-    fix="Delete the space; separate numbers by spaces.",
-    bad='<link name="a"><visual><geometry><sphere radius="1 "/></geometry></visual></link>',
-    good='<link name="a"><visual><geometry><box size="1  1 1 "/></geometry></visual></link>',
-)(partial(faults, "space-after-number"))
-
-bad_choice = rule(
+unknown_word = rule(
     "MB124",
-    "bad-choice",
+    "unknown-word",
     ERROR,
-    what="A value is not one of those that the parser knows: the type of a ros2_control, or the "
-    "version of the URDF.",
-    why="Hardware of an unknown type is not loaded, and ros2_control's resource manager does not "
-    "report it; urdfdom rejects every version but 1.0, 1.1 and 1.2.",
-    fix="Use one of the values in the message, in lower case.",
+    what="A value is not one of the words that its reader knows: the type of a joint, of a sensor, "
+    "of a ros2_control or a virtual joint, a version of URDF, the name of a joint property. It is "
+    "a warning for a parameter of a plugin, where it is nearly such a word.",
+    why="urdfdom rejects the file ('has no known type'), the sensor or the hardware does not exist, "
+    "srdfdom takes a virtual joint for fixed, and a plugin takes its default.",
+    fix="Use one of the words in the message or hint; case counts.",
     bad='<ros2_control name="c" type="System">\n'
     "  <hardware><plugin>p/P</plugin></hardware>\n"
     "</ros2_control>\n",
     good='<ros2_control name="c" type="system">\n'
     "  <hardware><plugin>p/P</plugin></hardware>\n"
     "</ros2_control>\n",
-)(partial(faults, "bad-choice"))
+    formats=(URDF, SRDF),
+)(partial(faults, "word"))
 
-bad_colour = rule(
-    "MB130",
-    "bad-colour",
+out_of_range = rule(
+    "MB125",
+    "out-of-range",
+    ERROR,
+    what="A number is outside of what its reader takes: a negative mass or limit, a shape with a "
+    "size of 0 or less, a value below <gazebo> outside of the range of SDF, a parameter of a "
+    "plugin or node outside of what its code checks. It is a warning for parameters, and in shapes "
+    "and limits before URDF 1.2.",
+    why="From URDF 1.2 on urdfdom rejects the file for a limit and drops the shapes of the link; "
+    "sdformat and MuJoCo reject a negative mass, pinocchio a negative effort. Gazebo does not load "
+    "the model ('greater than the maximum allowed value'), a plugin divides by it, and "
+    "generate_parameter_library rejects it: the controller is not loaded.",
+    fix="Write a number inside of the range: the greatest absolute value of a limit, metres, "
+    "kilograms and radians.",
+    bad='<link name="a"><visual><geometry><box size="0 0 0"/></geometry></visual></link>',
+    good='<link name="a"><visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual></link>',
+    formats=(URDF, PARAMS),
+)(partial(faults, "range"))
+
+
+@rule(
+    "MB170",
+    "angle-in-degrees",
     WARNING,
-    what="A colour is not four numbers from 0 to 1.",
-    why="urdfdom cannot read it: three numbers become black, and for a number above 1 it reports "
-    "'malformed color' and the shape has no colour.",
-    fix="Write red, green, blue and alpha from 0 to 1.",
-    bad='<material name="m"><color rgba="255 0 0 1"/></material><link name="a"/>',
-    good='<material name="m"><color rgba="1 0 0 1"/></material><link name="a"/>',
-)(partial(faults, "bad-colour", substitutions=False))
+    what="An angle is more than a turn: of a lidar's scan or a <pose> below <gazebo>, of a plugin; "
+    "or a limit of a revolute joint looks like degrees.",
+    why="URDF, SDF and plugins have radians: a scan from -180 to 180 goes round 57 times, a joint "
+    "turns many times before it reaches such a limit, and a steering limit of 30 limits nothing.",
+    fix='Multiply by pi/180; xacro has radians(). A pose may have degrees="true" from SDF 1.9 on.',
+    bad=_imu("<pose>0 0 0 0 0 90</pose>"),
+    good=_imu("<pose>0 0 0 0 0 1.5708</pose>"),
+    line=4,
+)
+def angle_in_degrees(subject: Subject) -> Iterator[Problem]:
+    """Values below <gazebo> and of plugins, and limits."""
+    yield from faults("degrees", subject)
+    yield from limits_in_degrees(subject)

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import partial
 
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.model import Edit
-from multibot_rewrite.description.checks.pose import quaternion
+from multibot_rewrite.description.checks.poses import quaternion
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.rotation import length_of
 from multibot_rewrite.rules.convert.capsules import capsule_edits, capsules
@@ -23,7 +22,7 @@ from multibot_rewrite.rules.convert.versions import (
     rotated_origins,
 )
 from multibot_rewrite.rules.description.examples import a_joint, a_link, block
-from multibot_rewrite.rules.description.files.shared import faults
+from multibot_rewrite.rules.facts.faults import faults, urdf_faults
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.schema.readers import (
     CAPSULE,
@@ -37,18 +36,7 @@ from multibot_rewrite.rules.subject import Subject
 
 QUATERNIONS = KNOWN[1]
 # What makes another version another file than the one that is read now.
-_REFUSED = frozenset(
-    [
-        "bad-choice",
-        "missing",
-        "not-a-number",
-        "not-finite",
-        "out-of-range",
-        "rotation-twice",
-        "space-after-number",
-        "wrong-count",
-    ]
-)
+_REFUSED = ("word", "missing", "value", "range", "rotation-twice")
 _TURNED = '<origin quat_xyzw="0 0 1 0"/>'
 _LINKS = a_link("a") + a_link("b")
 
@@ -64,20 +52,6 @@ def _joint(origin: str) -> str:
 
 def _visual(shape: str, *more: str) -> str:
     return block('<link name="a">', f"<visual><geometry>{shape}</geometry></visual>", *more)
-
-
-out_of_range = rule(
-    "MB125",
-    "out-of-range",
-    ERROR,
-    what="In a file of URDF 1.2, a limit is negative, or a shape has a size of 0 or less.",
-    why="urdfdom 6 rejects the file for a limit ('jerk value (-5) is negative'), and for a shape it "
-    "drops the remaining visuals and collisions of the link.",
-    fix="Write the greatest absolute value of a limit, the size of a shape in metres.",
-    bad=_robot("1.2", _visual('<sphere radius="0"/>')),
-    good=_robot("1.2", _visual('<sphere radius="0.1"/>')),
-    line=3,
-)(partial(faults, "out-of-range"))
 
 
 @rule(
@@ -316,5 +290,5 @@ def _raised(subject: Subject) -> tuple[Edit, ...]:
 
 @memoized
 def _lowered(subject: Subject) -> tuple[Edit, ...]:
-    refused = any(it.kind in _REFUSED for it in subject.faults)
+    refused = any(it.kind in _REFUSED and it.level != WARNING for it in urdf_faults(subject))
     return () if refused else lowered(_text(subject))

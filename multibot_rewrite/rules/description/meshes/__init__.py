@@ -1,5 +1,4 @@
 """MB7: mesh and texture files, and the packages they are in."""
 
-from multibot_rewrite.rules.description.meshes import boxes, formats, lookup, paths
-
-THEMES = (lookup, paths, formats, boxes)
+# The files of its rules, loaded where they are asked.
+THEMES = (".lookup", ".paths", ".formats", ".boxes")

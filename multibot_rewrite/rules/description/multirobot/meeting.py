@@ -7,12 +7,14 @@ from functools import partial
 
 from multibot_rewrite.base.conventions import SHARED_TOPICS
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
-from multibot_rewrite.base.findings.rule import rule
-from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.base.findings.rule import URDF, Rule, rule
+from multibot_rewrite.base.naming import Naming, make_naming
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.description.multirobot.shared import APART, AS_WRITTEN, TWO
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.subject import Subject
+from multibot_rewrite.rules.system import commands, names, nodes, sharing, transforms
+from multibot_rewrite.spelling import way_checks
 
 ODOMETRY_APART = make_naming("tf-per-robot", shared_topics=[*SHARED_TOPICS, "tf_static"])
 
@@ -41,6 +43,59 @@ def _of_code(code: str, subject: Subject) -> Iterator[Problem]:
     return (it for it in _shared(subject) if it.code == code)
 
 
+def _left(known: Rule, bad: str, good: str, line: int = 2, naming: Naming = APART) -> Rule:
+    """A rule of running systems, for what a rewrite would leave so; the examples are descriptions."""
+    options = {"robots": TWO, "naming": naming}
+    own = known._replace(bad=bad, good=good, line=line, formats=(URDF,), options=options)
+    return own._replace(level=WARNING, check=partial(_of_code, known.code))
+
+
+_LIDAR = """\
+<link name="a"/>
+<gazebo reference="a">
+  <sensor name="lidar" type="gpu_lidar"><topic>{}</topic></sensor>
+</gazebo>
+"""
+_DRIVE = """\
+<gazebo>
+  <plugin name="drive" filename="{}">{}</plugin>
+</gazebo>
+"""
+_CLASSIC, _GZ = "libgazebo_ros_diff_drive.so", "gz-sim-diff-drive-system"
+_JOINTS = "<left_joint>l</left_joint><right_joint>r</right_joint>"
+shared_topic = _left(
+    sharing.topic_of_several_robots, _LIDAR.format("{name}/scan"), _LIDAR.format("scan"), 3
+)
+shared_node = _left(
+    nodes.nodes_of_one_name,
+    _DRIVE.format(_CLASSIC, "<ros><namespace>{name}</namespace></ros>"),
+    _DRIVE.format(_CLASSIC, "<ros><namespace>demo</namespace></ros>"),
+)
+shared_frame = _left(
+    transforms.robots_frames_collide,
+    _DRIVE.format(_CLASSIC, "<odometry_frame>__odom__</odometry_frame>"),
+    _DRIVE.format(_CLASSIC, "<odometry_frame>odom</odometry_frame>"),
+)
+shared_command = _left(
+    commands.command_for_several_robots,
+    _DRIVE.format(_GZ, f"{_JOINTS}<topic>{{name}}/cmd_vel</topic>"),
+    _DRIVE.format(_GZ, f"{_JOINTS}<topic>cmd_vel</topic>"),
+)
+shared_service = _left(
+    names.service_of_two_nodes,
+    _DRIVE.format("gz-sim-camera-video-recorder-system", "<service>{name}/record</service>"),
+    _DRIVE.format("gz-sim-camera-video-recorder-system", "<service>record</service>"),
+)
+controllers_apart = _left(
+    way_checks.NOT_TAKEN,
+    _DRIVE.format(
+        "gz_ros2_control-system",
+        "<parameters>controllers.yaml</parameters><ros><remapping>/tf:=tf</remapping></ros>",
+    ),
+    _DRIVE.format(_GZ, _JOINTS),
+    naming=ODOMETRY_APART,
+)
+
 sensor_names_collide = rule(
     "MB425",
     "lookup-in-the-world",
@@ -60,62 +115,6 @@ sensor_names_collide = rule(
     line=3,
     options={"robots": TWO, "naming": AS_WRITTEN},
 )(partial(_of_code, "MB425"))
-
-shared_topic = rule(
-    "MB430",
-    "shared-topic",
-    WARNING,
-    what="After a rewrite all robots would still have the same topic or service.",
-    why="The nodes of all robots use it: one command moves all robots, or their data is mixed. "
-    "A rewrite leaves a topic as it is where it holds a placeholder, or where the plugin takes no "
-    "parameter or remap rule for it.",
-    fix="Write a topic that can be renamed for each robot, give the plugin a namespace, or allow it "
-    "with --shared-topics.",
-    bad='<link name="a"/>\n'
-    '<gazebo reference="a">\n'
-    '  <sensor name="lidar" type="gpu_lidar">\n'
-    "    <topic>{name}/scan</topic>\n"
-    "  </sensor>\n"
-    "</gazebo>\n",
-    good='<link name="a"/>\n'
-    '<gazebo reference="a">\n'
-    '  <sensor name="lidar" type="gpu_lidar">\n'
-    "    <topic>scan</topic>\n"
-    "  </sensor>\n"
-    "</gazebo>\n",
-    line=3,
-    options={"robots": TWO, "naming": APART},
-)(partial(_of_code, "MB430"))
-
-controllers_apart = rule(
-    "MB435",
-    "controllers-without-rules",
-    WARNING,
-    what="All robots would have a topic of their controllers. From ros2_control 6.5 on (Lyrical) "
-    "controllers take no remap rules of the plugin that loads them.",
-    why="The controllers keep the name in their code: the odometry of all robots is on one /tf, and "
-    "the tree of each robot jumps between them. The rule in the plugin is applied to the controller "
-    "manager alone.",
-    fix="Start each controller with its spawner and its option --controller-ros-args "
-    '"-r /tf:=tf"; multibot plan and build print the lines if a stack names the controllers '
-    "(--stack gz_ros2_control).",
-    bad='<link name="a"/>\n'
-    "<gazebo>\n"
-    '  <plugin name="c" filename="gz_ros2_control-system">\n'
-    "    <parameters>controllers.yaml</parameters>\n"
-    "    <ros><remapping>/tf:=tf</remapping></ros>\n"
-    "  </plugin>\n"
-    "</gazebo>\n",
-    good='<link name="a"/>\n'
-    "<gazebo>\n"
-    '  <plugin name="d" filename="gz-sim-diff-drive-system">\n'
-    "    <left_joint>l</left_joint>\n"
-    "    <right_joint>r</right_joint>\n"
-    "  </plugin>\n"
-    "</gazebo>\n",
-    line=3,
-    options={"robots": TWO, "naming": ODOMETRY_APART},
-)(partial(_of_code, "MB435"))
 
 lost_rule = rule(
     "MB436",
@@ -140,50 +139,3 @@ lost_rule = rule(
     line=2,
     options={"robots": TWO, "naming": IN_FRONT},
 )(partial(_of_code, "MB436"))
-
-shared_node = rule(
-    "MB431",
-    "shared-node",
-    WARNING,
-    what="After a rewrite the node of a plugin would have the same full name for all robots.",
-    why="Nodes of one name cannot be told apart: parameters and services of the wrong one are "
-    "called, and a launch file's parameters reach both.",
-    fix="Give the plugin a namespace without a placeholder, or another name.",
-    bad="<gazebo>\n"
-    '  <plugin name="drive" filename="libgazebo_ros_diff_drive.so">\n'
-    "    <ros><namespace>{name}</namespace></ros>\n"
-    "  </plugin>\n"
-    "</gazebo>\n",
-    good="<gazebo>\n"
-    '  <plugin name="drive" filename="libgazebo_ros_diff_drive.so">\n'
-    "    <ros><namespace>demo</namespace></ros>\n"
-    "  </plugin>\n"
-    "</gazebo>\n",
-    line=2,
-    options={"robots": TWO, "naming": APART},
-)(partial(_of_code, "MB431"))
-
-shared_frame = rule(
-    "MB432",
-    "shared-frame",
-    WARNING,
-    what="After a rewrite all robots would still have the same frame, in a layout that gives each "
-    "robot its own frames.",
-    why="The transforms of all robots meet in one frame: it has two parents, or it jumps between "
-    "the robots.",
-    fix="Write the frame without a placeholder, or allow it with --shared-frames.",
-    bad='<link name="a"/>\n'
-    "<gazebo>\n"
-    '  <plugin name="drive" filename="libgazebo_ros_diff_drive.so">\n'
-    "    <odometry_frame>__odom__</odometry_frame>\n"
-    "  </plugin>\n"
-    "</gazebo>\n",
-    good='<link name="a"/>\n'
-    "<gazebo>\n"
-    '  <plugin name="drive" filename="libgazebo_ros_diff_drive.so">\n'
-    "    <odometry_frame>odom</odometry_frame>\n"
-    "  </plugin>\n"
-    "</gazebo>\n",
-    line=3,
-    options={"robots": TWO, "naming": APART},
-)(partial(_of_code, "MB432"))

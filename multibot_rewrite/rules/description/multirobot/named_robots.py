@@ -7,8 +7,9 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
-from multibot_rewrite.base.findings.rule import SRDF, rule
+from multibot_rewrite.base.findings.rule import SRDF, URDF, rule
 from multibot_rewrite.base.naming import Naming, make_naming, overlap
+from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
 from multibot_rewrite.description.checks import hazards
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.rewriters.spelling import ROBOT_SLOT
@@ -108,10 +109,10 @@ prefix_only = rule(
     "MB422",
     "prefix-only",
     WARNING,
-    what="The driver's code puts a parameter in front of names, but the robot's name goes at the "
-    "end of names.",
-    why="The driver makes its joint, sensor and gpio names from that prefix. A postfix cannot be "
-    "added to them, so the second robot's interfaces have the same names as the first one's.",
+    what="A parameter of hardware or of a node, or the link_prefix of an IKFast solver, is put in "
+    "front of names, but the robot's name goes at the end of names.",
+    why="The driver or node makes names of joints, sensors, gpios or frames from that prefix. A "
+    "postfix cannot be added to them, so the second robot's are the same as the first one's.",
     fix="Put the robot's name in front: affix prefix.",
     bad='<ros2_control name="h" type="system">\n'
     "  <hardware>\n"
@@ -123,6 +124,7 @@ prefix_only = rule(
     "  <hardware><plugin>mock_components/GenericSystem</plugin></hardware>\n"
     "</ros2_control>\n",
     line=4,
+    formats=(URDF, PARAMS, MOVEIT),
     options={"robots": TWO},
 )(partial(_if_robots, _by_naming(hazards.prefix_only)))
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING
-from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.findings.rule import URDF, rule
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.description.checks import hazards
 from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.rules import of_both
 from multibot_rewrite.rules.description.multirobot.shared import AS_WRITTEN, process_wide_plugins
 from multibot_rewrite.rules.facts.source_values import claim_is_fixed, is_fixed, starts_of
 from multibot_rewrite.rules.subject import Subject
@@ -50,23 +51,7 @@ def one_controller_file(subject: Subject) -> Iterator[Problem]:
             yield Problem(element, message, "", "give each robot its own file")
 
 
-@rule(
-    "MB412",
-    "one-device",
-    NOTE,
-    what="A ros2_control hardware component has a fixed serial port, CAN interface or IP address.",
-    why="Two robots would open one device: the second driver fails to connect, or both command the "
-    "same motors.",
-    fix="Make it a xacro argument that each robot's launch sets.",
-    bad='<ros2_control name="h" type="system">\n'
-    '  <hardware><plugin>a/B</plugin><param name="device">/dev/ttyUSB0</param></hardware>\n'
-    "</ros2_control>\n",
-    good='<ros2_control name="h" type="system">\n'
-    '  <hardware><plugin>a/B</plugin><param name="rate">100</param></hardware>\n'
-    "</ros2_control>\n",
-    line=2,
-)
-def one_device(subject: Subject) -> Iterator[Problem]:
+def _one_device(subject: Subject) -> Iterator[Problem]:
     """Literal parameters that name a device or an address of another machine."""
     params = subject.document.root.iterfind("ros2_control/hardware/param")
     found = [it for it in params if DEVICE.fullmatch((it.text or "").strip())]
@@ -76,6 +61,20 @@ def one_device(subject: Subject) -> Iterator[Problem]:
             text = (element.text or "").strip()
             message = f"parameter {element.get('name', '')!r} is {text!r} for every robot"
             yield Problem(element, message, "", "make it a xacro argument")
+
+
+one_device = of_both.ONE_DEVICE._replace(
+    level=NOTE,
+    check=_one_device,
+    formats=(URDF,),
+    bad='<ros2_control name="h" type="system">\n'
+    '  <hardware><plugin>a/B</plugin><param name="device">/dev/ttyUSB0</param></hardware>\n'
+    "</ros2_control>\n",
+    good='<ros2_control name="h" type="system">\n'
+    '  <hardware><plugin>a/B</plugin><param name="rate">100</param></hardware>\n'
+    "</ros2_control>\n",
+    options={},
+)
 
 
 @rule(

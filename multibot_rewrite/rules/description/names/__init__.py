@@ -1,5 +1,4 @@
 """MB3: how names are written."""
 
-from multibot_rewrite.rules.description.names import links_and_joints, ros_names, targets
-
-THEMES = (links_and_joints, ros_names, targets)
+# The files of its rules, loaded where they are asked.
+THEMES = (".links_and_joints", ".ros_names", ".targets")

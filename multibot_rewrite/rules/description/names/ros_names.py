@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterator
-from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING
 from multibot_rewrite.base.findings.rule import SRDF, URDF, rule
@@ -17,10 +16,6 @@ from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.steps.document import value_slot
 from multibot_rewrite.rules.description.names.shared import SUBSTITUTION, TOKEN, name_of_robot
 from multibot_rewrite.rules.subject import Subject
-
-if TYPE_CHECKING:
-    from multibot_rewrite.companions.named_file import NamedFile
-    from multibot_rewrite.rules.files.records import Remark
 
 # Interfaces that ros2_control has names for (hardware_interface_type_values.hpp).
 STANDARD = frozenset(("position", "velocity", "effort", "acceleration"))
@@ -60,16 +55,7 @@ _ALLOWED_EVERYWHERE = lazy_compile(r"[\w/~]*", re.ASCII)
     "</gazebo>\n",
     formats=(URDF, SRDF, *EVERY),
 )
-def leading_slash(asked: Subject | NamedFile) -> Iterator[Problem | Remark]:
-    """In both."""
-    if isinstance(asked, Subject):
-        return _slashes(asked)
-    from multibot_rewrite.rules.files.frames import slashes  # a description needs none of it
-
-    return slashes(asked)
-
-
-def _slashes(subject: Subject) -> Iterator[Problem]:
+def leading_slash(subject: Subject) -> Iterator[Problem]:
     """With a fix where the frame without the slash is a link. Plugins know /world."""
     shared = subject.settings.naming.shared_frames
     for claim in subject.inventory.claims:
@@ -167,16 +153,7 @@ def robot_name(subject: Subject) -> Iterator[Problem]:
     line=3,
     formats=(URDF, *EVERY),
 )
-def invalid_ros_name(asked: Subject | NamedFile) -> Iterator[Problem | Remark]:
-    """In both."""
-    if isinstance(asked, Subject):
-        return _invalid_names(asked)
-    from multibot_rewrite.rules.files.ros_names import invalid_names  # a description needs none
-
-    return invalid_names(asked)
-
-
-def _invalid_names(subject: Subject) -> Iterator[Problem]:
+def invalid_ros_name(subject: Subject) -> Iterator[Problem]:
     """Values that are relative to a ROS namespace; those with a substitution are skipped."""
     for claim in subject.inventory.claims:
         site = claim.site

@@ -1,13 +1,4 @@
 """MB6: mass, inertia, shapes, and geometry against the robot."""
 
-from multibot_rewrite.rules.description.physics import (
-    drives,
-    inertia,
-    loads,
-    mass,
-    placement,
-    sensors,
-    shapes,
-)
-
-THEMES = (mass, inertia, shapes, drives, sensors, placement, loads)
+# The files of its rules, loaded where they are asked.
+THEMES = (".mass", ".inertia", ".shapes", ".drives", ".sensors", ".placement", ".loads")

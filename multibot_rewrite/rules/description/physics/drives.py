@@ -29,46 +29,31 @@ ENDLESS = 20 * pi
 
 @rule(
     "MB620",
-    "wheel-separation",
+    "wheel-size",
     WARNING,
-    what="The wheel separation of a drive is not the distance of its wheels. Where several wheels "
-    "of a side skid in a turn it may be up to twice the distance.",
-    why="The plugin computes the speed of each wheel from it: the robot turns too fast or too "
-    "slowly, and its odometry has a wrong angle after each turn, so maps bend.",
-    fix="Write the distance of the wheels, in metres.",
+    what="The wheel separation of a drive is not the distance of its wheels, or its wheel radius "
+    "or diameter is not that of its wheels. Where several wheels of a side skid in a turn the "
+    "separation may be up to twice the distance.",
+    why="The plugin computes the speed of each wheel from them: the robot drives or turns faster "
+    "or slower than it is told, and its odometry is wrong by the same factor, so maps bend.",
+    fix="Write the distance of the wheels, and the size of the wheel's collision shape, in metres.",
     bad=a_rover(LEFT, RIGHT, separation="0.8"),
     good=a_rover(),
     line=28,
 )
-def wheel_separation(subject: Subject) -> Iterator[Problem]:
-    """The distance along the axis of the first pair, of joints or of shapes."""
+def wheel_size(subject: Subject) -> Iterator[Problem]:
+    """The distance along the axis of the first pair, of joints or of shapes, and the radii of round
+    shapes of all wheels; of other wheels they are unknown."""
     for drive in drives(subject):
-        value = size_of(drive, drive.tags.separation, drive.tags.defaults[0])
-        found = separation(subject.robot, *drive.pairs[0], bool(drive.left[1:]))
+        tags, robot = drive.tags, subject.robot
+        value = size_of(drive, tags.separation, tags.defaults[0])
+        found = separation(robot, *drive.pairs[0], bool(drive.left[1:]))
         if value is not None and value > 0 and found and not found.holds(value):
-            yield _size(drive, drive.tags.separation, value, "the wheels are", found.best)
-
-
-@rule(
-    "MB621",
-    "wheel-radius",
-    WARNING,
-    what="The wheel radius or diameter of a drive is not that of its wheels.",
-    why="The plugin computes the speed of the wheels from it: the robot drives faster or slower "
-    "than it is told, and its odometry is wrong by the same factor.",
-    fix="Write the size of the wheel's collision shape, in metres.",
-    bad=a_rover(LEFT, RIGHT, radius="0.05"),
-    good=a_rover(),
-    line=29,
-)
-def wheel_radius(subject: Subject) -> Iterator[Problem]:
-    """The radii of round shapes of all wheels of a drive; of other wheels it is unknown."""
-    for drive in drives(subject):
-        value = size_of(drive, drive.tags.radius, drive.tags.defaults[1])
-        found = radius(subject.robot, (*drive.left, *drive.right))
-        unit = drive.tags.radius_of
+            yield _size(drive, tags.separation, value, "the wheels are", found.best)
+        value, unit = size_of(drive, tags.radius, tags.defaults[1]), tags.radius_of
+        found = radius(robot, (*drive.left, *drive.right))
         if value is not None and value > 0 and found and not found.holds(value * unit):
-            yield _size(drive, drive.tags.radius, value, "the wheels have", found.best / unit)
+            yield _size(drive, tags.radius, value, "the wheels have", found.best / unit)
 
 
 def _size(drive: Drive, name: str, value: float, words: str, measured: float) -> Problem:
@@ -83,20 +68,21 @@ def _size(drive: Drive, name: str, value: float, words: str, measured: float) ->
 
 @rule(
     "MB622",
-    "wheels-swapped",
+    "wheels-turn-wrong",
     WARNING,
     what="The left wheel of a drive is on the right, seen in the direction in which a positive "
-    "speed turns the wheels: the joints are swapped, or the axes of both point the wrong way.",
-    why="A command to turn left turns the robot right, and its odometry says left: it drives away from "
-    "its path, and localization is lost at the first turn.",
-    fix="Swap the joints, or turn the axes around, so that they point from the right wheel to the "
-    "left one.",
+    "speed turns the wheels: the joints are swapped, or the axes of both point the wrong way. Or "
+    "the axes of the left and the right wheel point in opposite directions.",
+    why="A command to turn left turns the robot right, and its odometry says left; with opposite "
+    "axes it turns on the spot when it is to drive straight on. Localization is lost at once.",
+    fix="Swap the joints, or turn axes around: with x forward both are 0 1 0 in the frame of the base.",
     bad=a_rover(a_wheel("left", "-0.2"), a_wheel("right", "0.2")),
     good=a_rover(),
     line=26,
 )
-def wheels_swapped(subject: Subject) -> Iterator[Problem]:
-    """The first pair of each drive whose plugin turns left with slower left wheels."""
+def wheels_turn_wrong(subject: Subject) -> Iterator[Problem]:
+    """The first pair of each drive whose plugin turns left with slower left wheels, and pairs whose
+    axes are against each other in the robot's frame."""
     for drive in drives(subject):
         left, right = drive.pairs[0]
         way = are_swapped(left, right) if drive.tags.turns_left else 0.0
@@ -104,23 +90,6 @@ def wheels_swapped(subject: Subject) -> Iterator[Problem]:
             names = f"{left.joint.name!r} is {way:.3g} m right of {right.joint.name!r}"
             hint = "swap left and right, or turn the axes of both joints around"
             yield Problem(left.named, f"left wheel {names}", "", hint)
-
-
-@rule(
-    "MB623",
-    "wheel-axes-opposite",
-    WARNING,
-    what="The axes of the left and the right wheel of a drive point in opposite directions.",
-    why="The plugin gives both the same speed to drive straight on: the robot turns on the spot "
-    "instead, and its odometry says that it drives.",
-    fix="Turn one of the axes around: with x forward both are 0 1 0 in the frame of the base.",
-    bad=a_rover(LEFT, a_wheel("right", "-0.2", axis="0 -1 0")),
-    good=a_rover(),
-    line=27,
-)
-def wheel_axes_opposite(subject: Subject) -> Iterator[Problem]:
-    """Pairs whose axes are against each other in the robot's frame."""
-    for drive in drives(subject):
         for left, right in drive.pairs:
             if are_opposite(left, right):
                 names = f"{left.joint.name!r} and {right.joint.name!r}"

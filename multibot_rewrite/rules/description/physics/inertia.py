@@ -9,10 +9,9 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.base.findings.rule import rule
-from multibot_rewrite.description.checks.links_and_joints import MOMENTS
 from multibot_rewrite.description.checks.numbers import vector
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.rules.description.physics.moments import fault_of, impossible, is_negative
+from multibot_rewrite.rules.description.physics.moments import fault_of, impossible
 from multibot_rewrite.rules.description.physics.shared import (
     NOTHING,
     SHAPES,
@@ -32,31 +31,6 @@ from multibot_rewrite.rules.subject import Subject
 # is it LARGER or SMALLER times the size of the shapes. A mass below LIGHT is a placeholder.
 LONG, SHORT, HEAVY, LIGHT = 5.0, 1e-4, 500.0, 0.01
 LARGER, SMALLER, SMALL_SHAPE = 50.0, 0.01, 0.01
-
-
-@rule(
-    "MB604",
-    "inertia-missing",
-    ERROR,
-    what="An <inertial> has no inertia, or not all six values of it.",
-    why="urdfdom reports 'Inertial element must have inertia element' and stops reading the link: "
-    "it has no visual and no collision; MuJoCo rejects the file.",
-    fix="Write ixx, ixy, ixz, iyy, iyz and izz, or delete the <inertial>.",
-    bad=one_link(an_inertial(inertia="")),
-    good=one_link(an_inertial()),
-    line=2,
-)
-def inertia_missing(subject: Subject) -> Iterator[Problem]:
-    """Inertials without <inertia>, or with a part of it."""
-    for link, inertial in inertials(subject.robot):
-        if inertial.moments is not None:
-            continue
-        inertia = inertial.element.find("inertia")
-        missing = [] if inertia is None else [it for it in MOMENTS if inertia.get(it) is None]
-        if inertia is None:
-            yield Problem(inertial.element, f"<inertial> of link {link.name!r} has no <inertia>")
-        elif missing:
-            yield Problem(inertia, f"<inertia> of link {link.name!r} has no {', '.join(missing)}")
 
 
 @rule(
@@ -88,43 +62,25 @@ def inertia_zero(subject: Subject) -> Iterator[Problem]:
 
 @rule(
     "MB606",
-    "inertia-not-positive",
+    "impossible-inertia",
     ERROR,
-    what="The inertia of a link is not positive definite: about some axis it is negative.",
-    why="This is physically impossible: sdformat rejects the file ('has invalid inertia'), and so "
-    "does MuJoCo ('inertia must have positive eigenvalues').",
-    fix="Look for a wrong sign, or for off-diagonal values in another unit; CAD programs differ in "
-    "the sign of ixy, ixz and iyz.",
+    what="The inertia of a link is physically impossible: about some axis it is negative, or one "
+    "principal moment is larger than the sum of the two others. It is a warning where simulators "
+    "merge the link with others.",
+    why="sdformat rejects the file ('has invalid inertia'), of merged links for their sum; and so does "
+    "MuJoCo ('inertia must have positive eigenvalues', 'inertia must satisfy A + B >= C').",
+    fix="Export the values from the CAD program again: in kg m2, about the centre of mass. Look "
+    "for a wrong sign, or for off-diagonal values in another unit.",
     bad=one_link(an_inertial(inertia=diagonal("0.1", "0.1", "0.1", ixy="0.2"))),
     good=one_link(an_inertial(inertia=diagonal("0.1", "0.1", "0.1", ixy="0.02"))),
     line=4,
 )
-def inertia_not_positive(subject: Subject) -> Iterator[Problem]:
-    """Inertias of bodies with a negative principal moment."""
-    for link, inertial, moments in impossible(subject.robot, merged=False):
-        if is_negative(moments):
-            message = f"inertia of link {link.name!r} {fault_of(moments)}"
-            yield Problem(part_of(inertial, "inertia"), message)
-
-
-@rule(
-    "MB607",
-    "inertia-triangle",
-    ERROR,
-    what="One principal moment of a link's inertia is larger than the sum of the two others.",
-    why="This is physically impossible: sdformat rejects the file ('has invalid inertia'), and so "
-    "does MuJoCo ('inertia must satisfy A + B >= C').",
-    fix="Export the values from the CAD program again: in kg m2, about the centre of mass.",
-    bad=one_link(an_inertial(inertia=diagonal("0.1", "0.1", "0.3"))),
-    good=one_link(an_inertial(inertia=diagonal("0.1", "0.1", "0.2"))),
-    line=4,
-)
-def inertia_triangle(subject: Subject) -> Iterator[Problem]:
+def impossible_inertia(subject: Subject) -> Iterator[Problem]:
     """Inertias that no distribution of mass has, by more than rounding."""
-    for link, inertial, moments in impossible(subject.robot, merged=False):
-        if not is_negative(moments):
-            message = f"inertia of link {link.name!r} {fault_of(moments)}"
-            yield Problem(part_of(inertial, "inertia"), message)
+    for link, inertial, moments, merged in impossible(subject.robot):
+        message = f"inertia of link {link.name!r} {fault_of(moments)}"
+        place = part_of(inertial, "inertia")
+        yield Problem(place, message, level=WARNING if merged else "")
 
 
 @rule(
@@ -160,28 +116,6 @@ def inertia_scale(subject: Subject) -> Iterator[Problem]:
         if size > SMALL_SHAPE and not SMALLER <= radius / size <= LARGER:
             message += f", its shapes reach {size:.3g} m from the origin"
             yield Problem(part_of(inertial, "inertia"), message, None, "is the unit right?")
-
-
-@rule(
-    "MB619",
-    "merged-inertia",
-    WARNING,
-    what="A link with a fixed joint, or with links fixed to it, has a physically impossible "
-    "inertia: a principal moment is negative or larger than the sum of the two others.",
-    why="MuJoCo rejects the file. Gazebo merges the links first and rejects the sum if that is "
-    "impossible as well.",
-    fix="Export the values from the CAD program again: in kg m2, about the centre of mass.",
-    bad=moving_link(an_inertial(inertia=diagonal("0.1", "0.1", "0.3"))).replace(
-        "continuous", "fixed"
-    ),
-    good=moving_link(an_inertial()).replace("continuous", "fixed"),
-    line=10,
-)
-def merged_inertia(subject: Subject) -> Iterator[Problem]:
-    """Impossible inertias of links that simulators merge with others."""
-    for link, inertial, moments in impossible(subject.robot, merged=True):
-        message = f"inertia of link {link.name!r} {fault_of(moments)}"
-        yield Problem(part_of(inertial, "inertia"), message)
 
 
 def _size(link: _Element) -> float:

@@ -4,65 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.base.findings.finding import NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.description.checks.links_and_joints import WORLD, Link, Robot, reached
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.rules.description.examples import a_joint, a_link, block
+from multibot_rewrite.rules.description.examples import a_joint, a_link
 from multibot_rewrite.rules.description.physics.shared import (
-    INERTIA,
     an_inertial,
     inertials,
     moves,
     moving_link,
     one_link,
-    part_of,
 )
 from multibot_rewrite.rules.subject import Subject
 
 TINY_MASS = 1e-6
-
-
-@rule(
-    "MB601",
-    "mass-missing",
-    ERROR,
-    what="An <inertial> has no mass.",
-    why="urdfdom reports 'Inertial element must have a mass element' and stops reading the link: "
-    "it has no visual and no collision; MuJoCo rejects the file.",
-    fix='Add <mass value="..."/>, or delete the <inertial>.',
-    bad=one_link(block("<inertial>", INERTIA)),
-    good=one_link(an_inertial()),
-    line=2,
-)
-def mass_missing(subject: Subject) -> Iterator[Problem]:
-    """Inertials without <mass value>."""
-    for link, inertial in inertials(subject.robot):
-        if inertial.mass is None:
-            mass = inertial.element.find("mass")
-            if mass is None:
-                yield Problem(inertial.element, f"<inertial> of link {link.name!r} has no <mass>")
-            elif mass.get("value") is None:
-                yield Problem(mass, f"<mass> of link {link.name!r} has no value", "value")
-
-
-@rule(
-    "MB602",
-    "mass-negative",
-    ERROR,
-    what="A mass is negative.",
-    why="sdformat rejects the file ('has invalid inertia'); MuJoCo rejects a moving body.",
-    fix="Write the mass in kg.",
-    bad=one_link(an_inertial("-1")),
-    good=one_link(an_inertial("1")),
-    line=3,
-)
-def mass_negative(subject: Subject) -> Iterator[Problem]:
-    """Masses below 0."""
-    for link, inertial in inertials(subject.robot):
-        if inertial.mass is not None and inertial.mass < 0:
-            message = f"the mass of link {link.name!r} is {inertial.mass:g} kg"
-            yield Problem(part_of(inertial, "mass"), message, "value")
 
 
 @rule(

@@ -13,12 +13,9 @@ from multibot_rewrite.rules.description.physics.shared import NOTHING, inertials
 ROUNDING = 0.01
 
 
-def impossible(robot: Robot, merged: bool) -> Iterator[tuple[Link, Inertial, Vector]]:
-    """The inertias that no body has and their principal moments, the smallest first.
-
-    With ``merged`` those of links that simulators merge with others that have a mass, or with
-    ``world``; without it all others.
-    """
+def impossible(robot: Robot) -> Iterator[tuple[Link, Inertial, Vector, bool]]:
+    """The inertias that no body has, their principal moments, the smallest first, and whether
+    simulators merge the link with others that have a mass, or with ``world``."""
     parts: dict[str, int] | None = None
     for link, inertial in inertials(robot):
         if inertial.moments is None or _is_possible(inertial.moments):
@@ -27,9 +24,8 @@ def impossible(robot: Robot, merged: bool) -> Iterator[tuple[Link, Inertial, Vec
         if high < NOTHING or (not is_negative(moments) and high <= (low + middle) * (1 + ROUNDING)):
             continue
         parts = parts_with_mass(robot) if parts is None else parts
-        own = link.name != WORLD and parts.get(link.name) == 1
-        if own != merged:
-            yield link, inertial, moments
+        merged = link.name == WORLD or parts.get(link.name) != 1
+        yield link, inertial, moments, merged
 
 
 def _is_possible(moments: tuple[float, ...]) -> bool:

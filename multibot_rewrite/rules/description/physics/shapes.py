@@ -23,7 +23,7 @@ from multibot_rewrite.rules.description.physics.shared import (
 from multibot_rewrite.rules.facts.elements import Elements
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.facts.parts import parts
-from multibot_rewrite.rules.schema.versions import KNOWN, version_of
+from multibot_rewrite.rules.schema.versions import KNOWN
 from multibot_rewrite.rules.subject import Subject
 
 REFUSING = KNOWN[2]
@@ -62,29 +62,6 @@ def _bodies_with(subject: Subject, tag: str) -> dict[str, None]:
     parents = {it.getparent(): None for it in subject.elements.every(tag)}
     names = [it.get("name", "") for it in parents if it is not None and it.tag == "link"]
     return {subject.robot.body.get(name, name): None for name in names}
-
-
-@rule(
-    "MB613",
-    "shape-size",
-    WARNING,
-    what="A box, cylinder or sphere has a size of 0 or less.",
-    why="sdformat warns and uses its default of half a metre or a metre; MuJoCo rejects the file "
-    "('size must be positive').",
-    fix="Write the size in metres, or delete the shape.",
-    bad=visual('<box size="0 0 0"/>'),
-    good=visual('<box size="0.1 0.1 0.1"/>'),
-    line=3,
-)
-def shape_size(subject: Subject) -> Iterator[Problem]:
-    """Shapes with a size of 0 or less; from URDF 1.2 on they are refused, which MB125 reports."""
-    if version_of(subject.document.root) >= REFUSING:
-        return
-    for shape, sizes in _shapes(subject):
-        if min(sizes) <= 0:
-            words = " x ".join(f"{it:g}" for it in sizes)
-            message = f"{shape.tag} of link {_owner(shape)!r} has the size {words}"
-            yield Problem(shape, message)
 
 
 @rule(
@@ -138,62 +115,29 @@ def shape_missing(subject: Subject) -> Iterator[Problem]:
 
 @rule(
     "MB616",
-    "mesh-flat",
+    "mesh-scale",
     WARNING,
-    what="A mesh is scaled by 0.",
-    why="It becomes flat or a point: it cannot be seen, and as a collision it has no volume.",
-    fix="Use three scales that are not 0.",
+    what="A mesh is scaled by 0, by a negative number, or by one that does not fit any unit; the "
+    "last two are notes.",
+    why="Scaled by 0 it becomes flat or a point. A mirror image turns the faces inside out, unless "
+    "the program corrects their normals. Meshes are in millimetres (0.001), centimetres, inches "
+    "(0.0254) or metres: with another scale the part is much too large, too small or stretched.",
+    fix="Use the same scale three times: 0.001 for a mesh in millimetres; export a mirrored mesh.",
     bad=visual('<mesh filename="a.stl" scale="1 1 0"/>'),
     good=visual('<mesh filename="a.stl" scale="1 1 1"/>'),
     line=3,
 )
-def mesh_flat(subject: Subject) -> Iterator[Problem]:
-    """Scales with a 0."""
-    for mesh, scale in _scales(subject):
-        if 0 in scale:
-            words = mesh.get("scale")
-            yield Problem(mesh, f"mesh of link {_owner(mesh)!r} is scaled by {words}", "scale")
-
-
-@rule(
-    "MB617",
-    "mesh-mirrored",
-    NOTE,
-    what="A mesh is scaled by a negative number.",
-    why="A mirror image turns the faces inside out: their normals point inwards, unless the "
-    "program corrects them.",
-    fix="Export the mirrored mesh if that matters.",
-    bad=visual('<mesh filename="a.stl" scale="1 -1 1"/>'),
-    good=visual('<mesh filename="a.stl" scale="1 1 1"/>'),
-    line=3,
-)
-def mesh_mirrored(subject: Subject) -> Iterator[Problem]:
-    """An odd number of negative scales: two of them are a rotation."""
-    for mesh, scale in _scales(subject):
-        if scale[0] * scale[1] * scale[2] < 0:
-            words = mesh.get("scale")
-            yield Problem(mesh, f"mesh of link {_owner(mesh)!r} is mirrored: {words}", "scale")
-
-
-@rule(
-    "MB618",
-    "mesh-scale-units",
-    NOTE,
-    what="The scale of a mesh does not fit any unit.",
-    why="Meshes are in millimetres (0.001), centimetres, inches (0.0254) or metres: the part will "
-    "be much too large, too small or stretched.",
-    fix="Use the same scale three times: 0.001 for a mesh in millimetres.",
-    bad=visual('<mesh filename="a.stl" scale="1000 1000 1000"/>'),
-    good=visual('<mesh filename="a.stl" scale="0.001 0.001 0.001"/>'),
-    line=3,
-)
-def mesh_scale_units(subject: Subject) -> Iterator[Problem]:
-    """Very large, very small, or very different scales."""
+def mesh_scale(subject: Subject) -> Iterator[Problem]:
+    """An odd number of negative scales mirrors: two of them are a rotation."""
     for mesh, scale in _scales(subject):
         low, high = min(map(abs, scale)), max(map(abs, scale))
-        if low > 0 and (high >= LARGE_SCALE or low < SMALL_SCALE or high >= UNEVEN * low):
-            words = mesh.get("scale")
-            yield Problem(mesh, f"mesh of link {_owner(mesh)!r} is scaled by {words}", "scale")
+        of, words = f"mesh of link {_owner(mesh)!r}", mesh.get("scale")
+        if scale[0] * scale[1] * scale[2] < 0:
+            yield Problem(mesh, f"{of} is mirrored: {words}", "scale", level=NOTE)
+        if low == 0:
+            yield Problem(mesh, f"{of} is scaled by {words}", "scale")
+        elif high >= LARGE_SCALE or low < SMALL_SCALE or high >= UNEVEN * low:
+            yield Problem(mesh, f"{of} is scaled by {words}", "scale", level=NOTE)
 
 
 @memoized

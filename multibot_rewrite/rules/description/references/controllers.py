@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.finding import WARNING
-from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.findings.rule import URDF
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.outside import is_file
@@ -17,6 +16,7 @@ from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.sources.packages import entries, find_in, package_folder
 from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.rules import of_both
 from multibot_rewrite.rules.description.examples import block
 from multibot_rewrite.rules.description.references.shared import (
     ARM,
@@ -26,12 +26,13 @@ from multibot_rewrite.rules.description.references.shared import (
     name_of,
     owners,
 )
+from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.facts.source_values import is_fixed, starts_of
 from multibot_rewrite.rules.subject import Subject
+from multibot_rewrite.system.records import EXPORTS, Interface
 
 if TYPE_CHECKING:
     from multibot_rewrite.rules.system.interfaces import Missing
-    from multibot_rewrite.system.records import Interface
 
 _IN_PACKAGE = lazy_compile(r"(?:\$\(find(?:-pkg-share)?\s+([^)\s]+)\)|package://([^/]+))/(.+)")
 _YAML = (".yaml", ".yml")
@@ -48,34 +49,69 @@ _VELOCITY = block('<joint name="j">', '<command_interface name="velocity"/>')
 _POSITION = block('<joint name="j">', '<command_interface name="position"/>')
 
 
-@rule(
-    "MB229",
-    "claimed-interface",
-    WARNING,
-    what="A controller claims an interface that no <ros2_control> exports, or the same one twice. Its "
-    "parameters are in the file that the description loads, or, if it loads none, in the one file "
-    "called *controllers*.yaml in its folder. Of a joint whose interface an argument of xacro chooses "
-    "nothing is said.",
-    why="The controller manager does not activate a controller whose interfaces do not exist.",
-    fix="Name an interface that the description has, or add it to the <ros2_control>.",
+def _not_exported(subject: Subject) -> Iterator[Problem]:
+    for element, known in _claimed(subject):
+        from multibot_rewrite.rules.system.interfaces import missing  # few descriptions need it
+
+        chosen = _chosen(subject) if any(missing(known)) else ()
+        rest = [it for it in known if it.role == EXPORTS or not _said(it).startswith(chosen)]
+        for it in missing(rest):
+            yield _missing(element, it, bool(subject.origins))
+
+
+def _claimed_twice(subject: Subject) -> Iterator[Problem]:
+    for element, known in _claimed(subject):
+        from multibot_rewrite.rules.system.interfaces import claimed_twice
+
+        for _, twice in claimed_twice(known):
+            message = f"{_at(twice)}: {twice.node} claims {twice.name} by two parameters"
+            yield Problem(element, message, _place(element), "name another joint in one of them")
+
+
+def _place(element: _Element) -> str | None:
+    return "" if element.tag == "parameters" else None
+
+
+def _own(type_: str, parameters: str) -> dict[str, str]:
+    """A file with one controller."""
+    manager = f"controller_manager:\n  ros__parameters:\n    own: {{type: {type_}}}\n"
+    return {"controllers.yaml": f"{manager}own:\n  ros__parameters: {{{parameters}}}\n"}
+
+
+interface_not_exported = of_both.NOT_EXPORTED._replace(
+    check=_not_exported,
+    formats=(URDF,),
     bad=ARM + a_system(_VELOCITY) + _LOADS,
     good=ARM + a_system(_POSITION) + _LOADS,
     line=13,
-    beside={
-        "controllers.yaml": "controller_manager:\n  ros__parameters:\n    forward: "
-        "{type: forward_command_controller/ForwardCommandController}\nforward:\n  ros__parameters: "
-        "{joints: [j], interface_name: position}\n"
-    },
+    beside=_own(
+        "forward_command_controller/ForwardCommandController",
+        "joints: [j], interface_name: position",
+    ),
+    options={},
 )
-def claimed_interface(subject: Subject) -> Iterator[Problem]:
-    """Controllers of each file that belongs to a description with a ``<ros2_control>``."""
+interface_claimed_twice = of_both.CLAIMED_TWICE._replace(
+    check=_claimed_twice,
+    formats=(URDF,),
+    bad=ARM + a_system(_VELOCITY) + _LOADS,
+    good=ARM + _LOADS,
+    line=13,
+    beside=_own(
+        "diff_drive_controller/DiffDriveController",
+        "left_wheel_names: [j],\n    right_wheel_names: [j]",
+    ),
+    options={},
+)
+
+
+@memoized
+def _claimed(subject: Subject) -> list[tuple[_Element, tuple[Interface, ...]]]:
+    """The interfaces of a description, with those that a file of its controllers claims, where it is
+    named."""
     systems = subject.elements.tops("ros2_control")
-    if not systems:
-        return
-    for element, path, is_sure in _files(subject, systems[0]):
-        at = "" if element.tag == "parameters" else None
-        for message, hint in _found_in(subject, path, is_sure):
-            yield Problem(element, message, at, hint)
+    files = _files(subject, systems[0]) if systems else ()
+    found = ((element, _interfaces(subject, path, is_sure)) for element, path, is_sure in files)
+    return [it for it in found if it[1]]
 
 
 def _chosen(subject: Subject) -> tuple[str, ...]:
@@ -101,14 +137,15 @@ def _at(it: Interface) -> str:
     return f"{os.path.basename(it.place.file)}:{it.place.line}"
 
 
-def _missing(found: Missing, expanded: bool) -> tuple[str, str]:
+def _missing(element: _Element, found: Missing, expanded: bool) -> Problem:
     first, *more = found.claims
     names = f"{_said(first)} and {len(more)} more" if more else _said(first)
     # Lines of an expanded xacro are in no file.
     line = f" (line {found.near.place.line})" if found.near and not expanded else ""
     near = f"did you mean {found.meant}{line}?" if found.meant else ""
     message = f"{_at(first)}: {first.node} claims {names}, which no <ros2_control> exports"
-    return message, near or f"name an interface that is there{line}, or add it"
+    hint = near or f"name an interface that is there{line}, or add it"
+    return Problem(element, message, _place(element), hint)
 
 
 def _files(subject: Subject, system: _Element) -> Iterator[tuple[_Element, str, bool]]:
@@ -144,8 +181,8 @@ def _found(subject: Subject, text: str) -> str:
     return os.path.join(folder, below) if below else ""
 
 
-def _found_in(subject: Subject, path: str, is_sure: bool) -> Iterator[tuple[str, str]]:
-    """Message and hint for what controllers claim and the description lacks."""
+def _interfaces(subject: Subject, path: str, is_sure: bool) -> tuple[Interface, ...]:
+    """What a description exports and the controllers of a file claim; none of what is for another."""
     # Most descriptions have no such file, and a lint of them loads nothing of this.
     from multibot_rewrite.companions.yaml_text import read_yaml
     from multibot_rewrite.knowledge.parameters import load_known_nodes
@@ -153,23 +190,14 @@ def _found_in(subject: Subject, path: str, is_sure: bool) -> Iterator[tuple[str,
     from multibot_rewrite.producers.evidence.hardware import exported
     from multibot_rewrite.producers.evidence.parameter_files import given_nodes
     from multibot_rewrite.producers.interfaces import control_system
-    from multibot_rewrite.rules.system.interfaces import claimed_twice, claims_any, missing
-    from multibot_rewrite.system.records import EXPORTS
+    from multibot_rewrite.rules.system.interfaces import claims_any
 
     release, document = subject.settings.distro, subject.document
     try:
         given = given_nodes([read_yaml(read_file(path), path)], load_known_nodes("", release))
     except InputError:
         # It is said where the file itself is read.
-        return
+        return ()
     exports = exported(document.root, document.file)
-    interfaces = control_system(given, load_nodes(release), exports).interfaces
-    if not is_sure and not claims_any(interfaces):
-        return
-    chosen = _chosen(subject) if any(missing(interfaces)) else ()
-    rest = [it for it in interfaces if it.role == EXPORTS or not _said(it).startswith(chosen)]
-    for it in missing(rest):
-        yield _missing(it, bool(subject.origins))
-    for _, twice in claimed_twice(interfaces):
-        message = f"{_at(twice)}: {twice.node} claims {twice.name} twice"
-        yield message, "name another joint in one of them"
+    known = control_system(given, load_nodes(release), exports).interfaces
+    return known if is_sure or claims_any(known) else ()

@@ -9,19 +9,13 @@ from typing import TYPE_CHECKING
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING
-from multibot_rewrite.base.findings.place import locate
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, locate
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.model import Claim
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.references import repeated
 from multibot_rewrite.description.rewriters.text import text_at
-from multibot_rewrite.rules.description.examples import a_link
 from multibot_rewrite.rules.description.references.shared import (
-    ARM,
-    IMU,
-    a_plugin,
-    a_system,
     name_of,
 )
 from multibot_rewrite.rules.subject import Subject
@@ -34,15 +28,28 @@ if TYPE_CHECKING:
     "MB201",
     "duplicate-name",
     ERROR,
-    what="Two links or two joints of one model have the same name.",
-    why="urdfdom rejects the file ('link ... is not unique'), and with it robot_state_publisher, "
-    "MoveIt and Gazebo; libsdformat rejects an SDF model.",
-    fix="Rename one of the two and what refers to it, or delete the copy.",
+    what="Two things of one kind have the same name: links, joints and materials of a robot, "
+    "sensors of a link, <ros2_control> elements, nodes of plugins. Of transmissions, and of the "
+    "joints, sensors and gpios of one <ros2_control>, it is a warning.",
+    why="urdfdom rejects the file ('link ... is not unique'), libsdformat an SDF model or a link "
+    "with such sensors, ros2_control's resource manager the hardware. gazebo_ros gives the second "
+    "plugin a null pointer, and gzserver crashes. Interfaces of the second joint are mixed up with "
+    "the first.",
+    fix="Rename one of the two and what refers to it, or delete the copy; define each material once.",
     bad='<link name="a"/><link name="a"/>',
     good='<link name="a"/>',
 )
 def duplicate_name(subject: Subject) -> Iterator[Problem]:
-    """Every declaration except the first; one finding for all that one macro call repeats."""
+    """Every one except the first."""
+    yield from declared_twice(subject)
+    for mild in (repeated_joint, duplicate_transmission):
+        yield from (it._replace(level=WARNING) for it in mild(subject))
+    for fatal in (duplicate_hardware, duplicate_sensor, duplicate_material, one_node_twice):
+        yield from fatal(subject)
+
+
+def declared_twice(subject: Subject) -> Iterator[Problem]:
+    """Links and joints; one finding for all that one macro call repeats."""
     calls: dict[object, list[tuple[Claim, Claim]]] = {}
     for claim, first in repeated(subject.inventory):
         cause = _cause(subject, claim, first) or claim
@@ -78,19 +85,6 @@ def _origin(subject: Subject, start: int) -> Origin | None:
     return subject.origins.of(bisect_left(subject.document.starts, start))
 
 
-@rule(
-    "MB204",
-    "repeated-joint",
-    WARNING,
-    what="One <ros2_control> has two joints, sensors or gpios with the same name.",
-    why="The hardware exports one set of interfaces per name: those of the second are mixed up "
-    "with the first, or loading fails with 'Tried to insert StateInterface with already existing "
-    "key'.",
-    fix="Put all interfaces of the joint in one element.",
-    bad=ARM + a_system('<joint name="j"/>', '<joint name="j"/>'),
-    good=ARM + a_system('<joint name="j"/>'),
-    line=8,
-)
 def repeated_joint(subject: Subject) -> Iterator[Problem]:
     """Components of one kind and name in one system."""
     for system in subject.elements.every("ros2_control"):
@@ -101,18 +95,6 @@ def repeated_joint(subject: Subject) -> Iterator[Problem]:
             yield Problem(it, message, "name", "put its interfaces in one element")
 
 
-@rule(
-    "MB205",
-    "duplicate-hardware",
-    ERROR,
-    what="Two <ros2_control> elements have the same name.",
-    why="ros2_control's resource manager rejects the second ('Hardware name ... is duplicated'): "
-    "the controller manager does not start.",
-    fix="Give each system, sensor and actuator its own name.",
-    bad=ARM + a_system('<joint name="j"/>') + a_system(),
-    good=ARM + a_system('<joint name="j"/>'),
-    line=9,
-)
 def duplicate_hardware(subject: Subject) -> Iterator[Problem]:
     """Every name that another element has."""
     systems = subject.elements.tops("ros2_control")
@@ -120,18 +102,6 @@ def duplicate_hardware(subject: Subject) -> Iterator[Problem]:
         yield Problem(it, f"there is another <ros2_control> {name_of(it)!r}", "name", "rename one")
 
 
-@rule(
-    "MB206",
-    "duplicate-sensor",
-    ERROR,
-    what="Two simulated sensors of one link have the same name.",
-    why="libsdformat rejects the model ('sensor with name[...] already exists'), so gz-sim does "
-    "not load the robot.",
-    fix="Give each sensor of a link its own name.",
-    bad=a_link("a") + IMU.format("imu") * 2,
-    good=a_link("a") + IMU.format("imu") + IMU.format("imu2"),
-    line=6,
-)
 def duplicate_sensor(subject: Subject) -> Iterator[Problem]:
     """Sensors in blocks for one link."""
     root = subject.document.root
@@ -148,17 +118,6 @@ def duplicate_sensor(subject: Subject) -> Iterator[Problem]:
         yield Problem(it, message, "name", "rename one")
 
 
-@rule(
-    "MB207",
-    "duplicate-material",
-    ERROR,
-    what="Two <material> elements of the robot have the same name.",
-    why="urdfdom rejects the file ('material ... is not unique'), even if the colour is the same.",
-    fix="Define each material once; links refer to it by name.",
-    bad=a_link("a") + '<material name="m"><color rgba="1 0 0 1"/></material>\n' * 2,
-    good='<link name="a"/><material name="m"><color rgba="1 0 0 1"/></material>',
-    line=3,
-)
 def duplicate_material(subject: Subject) -> Iterator[Problem]:
     """Materials right below the root; a link may repeat one."""
     materials = subject.elements.tops("material")
@@ -169,21 +128,6 @@ def duplicate_material(subject: Subject) -> Iterator[Problem]:
         )
 
 
-@rule(
-    "MB208",
-    "one-node-twice",
-    ERROR,
-    what="Two plugins of Gazebo Classic have the same name and namespace, and both are ROS nodes.",
-    why="gazebo_ros creates no node for the second ('Found multiple nodes with same name') and "
-    "gives it a null pointer; plugins such as gazebo_ros_imu_sensor use it at once, and gzserver "
-    "crashes.",
-    fix="Give each plugin its own name.",
-    bad=a_link("a") + a_plugin("gazebo_ros_imu_sensor", "imu", "<ros/>") * 2,
-    good=a_link("a")
-    + a_plugin("gazebo_ros_imu_sensor", "imu", "<ros/>")
-    + a_plugin("gazebo_ros_imu_sensor", "imu2", "<ros/>"),
-    line=8,
-)
 def one_node_twice(subject: Subject) -> Iterator[Problem]:
     """Plugins whose name is that of a node."""
     nodes = [it for it in subject.inventory.claims if it.site.kinds == ("node",)]
@@ -197,18 +141,6 @@ def one_node_twice(subject: Subject) -> Iterator[Problem]:
         yield Problem(it, message, "name", "rename one, or give them namespaces")
 
 
-@rule(
-    "MB209",
-    "duplicate-transmission",
-    WARNING,
-    what="Two transmissions have the same name.",
-    why="Tools and messages cannot distinguish them. Usually one was copied and not renamed, and "
-    "its joint may be wrong as well.",
-    fix="Rename one, and check whether its joint is the right one.",
-    bad=ARM + '<transmission name="t"><joint name="j"/></transmission>\n' * 2,
-    good=ARM + '<transmission name="t"><joint name="j"/></transmission>',
-    line=7,
-)
 def duplicate_transmission(subject: Subject) -> Iterator[Problem]:
     """Transmissions of the robot, not those of a <ros2_control>."""
     found = subject.elements.tops("transmission")

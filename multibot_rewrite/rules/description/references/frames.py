@@ -21,50 +21,28 @@ from multibot_rewrite.rules.subject import Subject
 
 @rule(
     "MB217",
-    "misspelled-frame",
+    "frame-not-a-link",
     WARNING,
-    what="A frame is not declared, and a link has almost the same name.",
-    why="The messages have a frame_id that tf does not have: every subscriber drops them ('frame "
-    "does not exist').",
-    fix="Correct the name; if another node publishes that frame, suppress the finding.",
+    what="The frame of a sensor or plugin is not a link of the robot. It is a note where no link "
+    "has almost the same name.",
+    why="Unless another node publishes that frame, tf does not have it and every subscriber drops the "
+    "messages ('frame does not exist').",
+    fix="Use the name of a link; if another node publishes the frame, suppress the finding.",
     bad=a_link("base_link")
     + a_plugin("gazebo_ros_p3d", "p", "<ros/>", "<frame_name>base_lnik</frame_name>"),
     good=a_link("base_link")
     + a_plugin("gazebo_ros_p3d", "p", "<ros/>", "<frame_name>base_link</frame_name>"),
     line=5,
 )
-def misspelled_frame(subject: Subject) -> Iterator[Problem]:
-    """Frames that differ from a link by one typing mistake."""
-    for claim, name, near in _frames(subject):
-        if near:
-            message = f"{where(claim)} names the frame {name!r}, which is not a link"
-            yield Problem(claim.element, message, claim.attribute, f"did you mean {near!r}?")
-
-
-@rule(
-    "MB218",
-    "frame-not-a-link",
-    NOTE,
-    what="The frame of a sensor or plugin is not a link of the robot.",
-    why="Unless another node publishes that frame, tf does not have it and every subscriber drops "
-    "the messages.",
-    fix="Use the name of a link, or make sure that another node publishes the frame.",
-    bad='<link name="a"/>\n'
-    '<gazebo reference="a">\n'
-    '  <sensor name="s" type="imu"><frame_id>imu_frame</frame_id></sensor>\n'
-    "</gazebo>\n",
-    good='<link name="a"/>\n'
-    '<gazebo reference="a">\n'
-    '  <sensor name="s" type="imu"><frame_id>a</frame_id></sensor>\n'
-    "</gazebo>\n",
-    line=3,
-)
 def frame_not_a_link(subject: Subject) -> Iterator[Problem]:
-    """Frames that the robot does not have, and that no localisation publishes."""
+    """Frames that the robot does not have; others than misspelt ones may be a localisation's."""
     for claim, name, near in _frames(subject):
-        if not near and not claim.site.default and not name.endswith(SENT_FRAMES):
-            message = f"{where(claim)} names the frame {name!r}, which is not a link"
-            yield Problem(claim.element, message, claim.attribute, "another node must publish it")
+        message = f"{where(claim)} names the frame {name!r}, which is not a link"
+        place = (claim.element, message, claim.attribute)
+        if near:
+            yield Problem(*place, f"did you mean {near!r}?")
+        elif not claim.site.default and not name.endswith(SENT_FRAMES):
+            yield Problem(*place, "another node must publish it", level=NOTE)
 
 
 def _frames(subject: Subject) -> Iterator[tuple[Claim, str, str]]:

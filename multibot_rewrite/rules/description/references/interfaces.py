@@ -7,7 +7,7 @@ from functools import lru_cache
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.base.findings.finding import ERROR, NOTE
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.nearest import slip_of
 from multibot_rewrite.description.checks.problem import Problem
@@ -80,22 +80,7 @@ def interface_of_two_systems(subject: Subject) -> Iterator[Problem]:
         yield Problem(owner, message, "name", "leave it to one system")
 
 
-@rule(
-    "MB237",
-    "misspelt-interface",
-    WARNING,
-    what="An interface of a joint has almost the name of one of ros2_control: position, velocity, "
-    "effort, acceleration.",
-    why="Controllers ask for the name as it is: 'positon' is claimed by none, and the controller is "
-    "not activated.",
-    fix="Correct the name.",
-    bad=ARM
-    + hardware_system("p/P", block('<joint name="j">', '<command_interface name="velocty"/>')),
-    good=ARM
-    + hardware_system("p/P", block('<joint name="j">', '<command_interface name="torque"/>')),
-    line=9,
-)
-def misspelt_interface(subject: Subject) -> Iterator[Problem]:
+def misspelt_interfaces(subject: Subject) -> Iterator[Problem]:
     """Interfaces of joints."""
     for owner in owners(subject):
         for it in owner.iterchildren(COMMAND, STATE) if owner.tag == "joint" else ():

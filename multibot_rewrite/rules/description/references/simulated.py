@@ -187,7 +187,7 @@ def joint_with_two_drivers(subject: Subject) -> Iterator[Problem]:
     beside={"controllers.yaml": "controller_manager: {ros__parameters: {update_rate: 100}}\n"},
 )
 def interface_not_simulated(subject: Subject) -> Iterator[Problem]:
-    """Command interfaces of joints in systems of simulators; misspelt ones are MB237's."""
+    """Command interfaces of joints in systems of simulators; misspelt ones are MB110's."""
     for system, plugin, simulator in simulated(subject):
         for joint in system.iterchildren("joint"):
             for it in joint.iterchildren(COMMAND):

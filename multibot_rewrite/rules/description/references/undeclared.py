@@ -9,14 +9,11 @@ from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.references import where
-from multibot_rewrite.rules.description.examples import a_joint, a_link
+from multibot_rewrite.rules.description.examples import a_joint
 from multibot_rewrite.rules.description.references.lookup import references, undeclared
 from multibot_rewrite.rules.description.references.shared import (
-    ARM,
     LINKS,
     a_pair,
-    a_plugin,
-    a_system,
 )
 from multibot_rewrite.rules.subject import Subject
 
@@ -24,90 +21,34 @@ undeclared_link = rule(
     "MB202",
     "undeclared-link",
     ERROR,
-    what="A joint's parent or child link is not declared.",
-    why="urdfdom rejects the file ('parent link ... not found'): no robot_state_publisher, no tf.",
-    fix="Correct the name, or declare the link.",
+    what="A name that has to be a link is not declared: of a joint's parent or child, of a <gazebo "
+    "reference>, of a parameter of a plugin or hardware class, of a sensor or gripper, or a model. "
+    "It is an error in a joint.",
+    why="urdfdom rejects the file ('parent link ... not found'): no robot_state_publisher, no tf. "
+    "Gazebo silently drops the block, with its friction, sensors and plugins; a plugin looks the "
+    "link up and does not run: gazebo_ros_p3d reports 'body_name: ... does not exist'.",
+    fix="Correct the name, declare the link, or delete the block.",
     bad='<link name="b"/><joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>',
     good='<link name="a"/>\n'
     '<link name="b"/>\n'
     '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>\n',
 )(partial(undeclared, "MB202"))
 
-undeclared_mimic = rule(
+undeclared_joint = rule(
     "MB211",
-    "undeclared-mimic",
+    "undeclared-joint",
     ERROR,
-    what="A joint mimics one that is not declared.",
-    why="robot_state_publisher never sends the transform of the joint, so the links below it have "
-    "no frame in tf; joint_state_publisher stops with a KeyError, MoveIt ignores the mimic.",
-    fix="Correct the name.",
+    what="A name that has to be a joint is not declared: of a <mimic>, in <ros2_control>, in a "
+    "<transmission>, of a parameter of a plugin or hardware class. It is an error in the first two.",
+    why="robot_state_publisher never sends the transform of a joint that mimics it, and "
+    "joint_state_publisher stops with a KeyError. From Jazzy on the controller manager rejects the "
+    "description ('Joint ... not found in URDF'). A plugin leaves the joint out or does not run, and "
+    "gazebo_ros_control of ROS 1 loads no hardware at all.",
+    fix="Correct the name; a value in <ros2_control> that is not of a joint belongs in a <gpio>.",
     bad=LINKS + a_joint("j", "continuous", "a", "b", '<mimic joint="k"/>'),
     good=a_pair('<mimic joint="j"/>'),
     line=5,
 )(partial(undeclared, "MB211"))
-
-undeclared_reference = rule(
-    "MB212",
-    "undeclared-reference",
-    WARNING,
-    what="A <gazebo reference> names neither a link nor a joint.",
-    why="Gazebo silently drops the block: no friction, no sensor, no plugin from it.",
-    fix="Correct the name, or delete the block.",
-    bad='<link name="wheel"/><gazebo reference="weel"><mu1>1</mu1></gazebo>',
-    good='<link name="wheel"/><gazebo reference="wheel"><mu1>1</mu1></gazebo>',
-)(partial(undeclared, "MB212"))
-
-undeclared_transmission_joint = rule(
-    "MB213",
-    "undeclared-transmission-joint",
-    WARNING,
-    what="A <transmission> names a joint that is not declared.",
-    why="gazebo_ros_control of ROS 1 loads no hardware at all ('which is not in the gazebo "
-    "model'); ROS 2 does not read these transmissions.",
-    fix="Correct the name, or delete the transmission.",
-    bad=f'{ARM}<transmission name="t"><joint name="jj"/></transmission>',
-    good=f'{ARM}<transmission name="t"><joint name="j"/></transmission>',
-    line=6,
-)(partial(undeclared, "MB213"))
-
-undeclared_ros2_control_joint = rule(
-    "MB214",
-    "undeclared-ros2-control-joint",
-    ERROR,
-    what="A <ros2_control> names a joint that is not declared.",
-    why="From Jazzy on the controller manager rejects the description ('Joint ... not found in "
-    "URDF'); before Jazzy, gz_ros2_control left the joint out and its controllers could not start.",
-    fix="Correct the name; a value that is not of a joint belongs in a <gpio>.",
-    bad=ARM + a_system('<joint name="jj"/>'),
-    good=ARM + a_system('<joint name="j"/>'),
-    line=7,
-)(partial(undeclared, "MB214"))
-
-undeclared_joint_parameter = rule(
-    "MB215",
-    "undeclared-joint-parameter",
-    WARNING,
-    what="A parameter of a plugin or hardware class names a joint that is not declared.",
-    why="The plugin looks the joint up, does not find it and does not run, or leaves the joint "
-    "out: gazebo_ros_diff_drive reports 'Joint ... not found, plugin will not work'.",
-    fix="Correct the name.",
-    bad=ARM + a_plugin("gazebo_ros_diff_drive", "d", "<left_joint>k</left_joint>"),
-    good=ARM + a_plugin("gazebo_ros_diff_drive", "d", "<left_joint>j</left_joint>"),
-    line=8,
-)(partial(undeclared, "MB215"))
-
-undeclared_link_parameter = rule(
-    "MB216",
-    "undeclared-link-parameter",
-    WARNING,
-    what="A parameter of a plugin or hardware class names a link that is not declared.",
-    why="The plugin looks the link up, does not find it and does not run: gazebo_ros_p3d reports "
-    "'body_name: ... does not exist' and publishes nothing.",
-    fix="Correct the name.",
-    bad=a_link("a") + a_plugin("gazebo_ros_p3d", "p", "<ros/>", "<body_name>b</body_name>"),
-    good=a_link("a") + a_plugin("gazebo_ros_p3d", "p", "<ros/>", "<body_name>a</body_name>"),
-    line=5,
-)(partial(undeclared, "MB216"))
 
 undeclared_sdf_name = rule(
     "MB219",
@@ -121,19 +62,6 @@ undeclared_sdf_name = rule(
     bad='<link name="a"/><gazebo><frame name="f" attached_to="b"/></gazebo>',
     good='<link name="a"/><gazebo><frame name="f" attached_to="a"/></gazebo>',
 )(partial(undeclared, "MB219"))
-
-undeclared_name = rule(
-    "MB220",
-    "undeclared-name",
-    WARNING,
-    what="Another element names a link or joint that is not declared: a sensor, gripper, loop "
-    "joint, drake or webots element.",
-    why="The program that reads the element looks the name up and does not find it: it rejects the "
-    "element or leaves it out.",
-    fix="Correct the name.",
-    bad='<link name="a"/><gazebo><gripper name="g"><palm_link>b</palm_link></gripper></gazebo>',
-    good='<link name="a"/><gazebo><gripper name="g"><palm_link>a</palm_link></gripper></gazebo>',
-)(partial(undeclared, "MB220"))
 
 
 @rule(

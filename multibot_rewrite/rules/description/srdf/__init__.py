@@ -1,5 +1,4 @@
 """MB8: an SRDF against its URDF."""
 
-from multibot_rewrite.rules.description.srdf import elements, joints, names, pairs, planning, states
-
-THEMES = (names, pairs, planning, states, joints, elements)
+# The files of its rules, loaded where they are asked.
+THEMES = (".names", ".pairs", ".planning", ".states", ".joints")

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.description.checks.planning_groups import chain, groups_of, links_of, text_of
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.rules.description.srdf.shared import ARM, ELEMENTS, srdf_rule
+from multibot_rewrite.rules.description.srdf.shared import ARM, srdf_rule
+from multibot_rewrite.rules.schema.srdf import ELEMENTS
 from multibot_rewrite.rules.subject import Subject
 
 

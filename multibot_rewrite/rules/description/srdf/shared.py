@@ -2,33 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import partial
 
 from multibot_rewrite.base.findings.rule import SRDF, rule
 
-# What srdfdom (model.cpp) reads: element -> required attributes, other attributes, children.
-_PAIR = (("link1", "link2"), ("reason",), ())
-ELEMENTS: Mapping[str, tuple[tuple[str, ...], tuple[str, ...], tuple[str, ...]]] = {
-    "group": (("name",), (), ("link", "joint", "passive_joint", "chain", "group")),
-    "group/link": (("name",), (), ()),
-    "group/joint": (("name",), (), ()),
-    "group/passive_joint": (("name",), (), ()),
-    "group/chain": (("base_link", "tip_link"), (), ()),
-    "group/group": (("name",), (), ()),
-    "group_state": (("name", "group"), (), ("joint",)),
-    "group_state/joint": (("name", "value"), (), ()),
-    "end_effector": (("name", "group", "parent_link"), ("parent_group",), ()),
-    "virtual_joint": (("name", "child_link", "parent_frame", "type"), (), ()),
-    "passive_joint": (("name",), (), ()),
-    "disable_collisions": _PAIR,
-    "enable_collisions": _PAIR,
-    "disable_default_collisions": (("link",), (), ()),
-    "link_sphere_approximation": (("link",), (), ("sphere",)),
-    "link_sphere_approximation/sphere": (("center", "radius"), (), ()),
-    "joint_property": (("joint_name", "property_name", "value"), (), ()),
-}
-TOP = tuple(it for it in ELEMENTS if "/" not in it)
 SHOWN = 5
 # The robot of the examples.
 URDF = """<robot name="r"><link name="a"><collision/></link><link name="b"><collision/></link>

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import isfinite
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING
+from multibot_rewrite.base.findings.finding import WARNING
 from multibot_rewrite.description.checks.links_and_joints import Joint
 from multibot_rewrite.description.checks.planning_groups import (
     groups_of,
@@ -17,10 +16,9 @@ from multibot_rewrite.description.checks.planning_groups import (
 )
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.description.srdf.shared import STATE, srdf_rule
+from multibot_rewrite.rules.schema.srdf import numbers_in
 from multibot_rewrite.rules.subject import Subject
 
-# How many numbers a joint's state has; other types have one.
-SIZES = {"fixed": 0, "planar": 3, "floating": 7}
 LIMITED = ("revolute", "prismatic")
 # State values are written with a few digits.
 ROUNDING = 1e-4
@@ -92,7 +90,7 @@ def state_beyond_limits(subject: Subject) -> Iterator[Problem]:
     robot = subject.beside
     for it, _, name in _states(subject.document.root) if robot else ():
         assert robot is not None
-        joint, values = robot.joint.get(name), _numbers(it.get("value", ""))
+        joint, values = robot.joint.get(name), numbers_in(it.get("value", ""))
         limits = _limits(joint) if joint and joint.type in LIMITED else None
         if limits is None or not values or len(values) > 1:
             continue
@@ -102,37 +100,6 @@ def state_beyond_limits(subject: Subject) -> Iterator[Problem]:
             yield Problem(it, message, "value", "correct the value")
 
 
-@srdf_rule(
-    "MB814",
-    "state-value",
-    ERROR,
-    what="The value of a state is not a number, or it has more or fewer numbers than the joint.",
-    why="srdfdom reads a value that is not a number as 0, and MoveIt ignores a joint with the "
-    "wrong count ('requires ... variable values').",
-    fix="Write one number; three for a planar joint (x y theta), seven for a floating one.",
-    bad=STATE.format('<joint name="j" value="half"/>'),
-    good=STATE.format('<joint name="j" value="0.5"/>'),
-    line=2,
-)
-def state_value(subject: Subject) -> Iterator[Problem]:
-    """Values of joints in states."""
-    root = subject.document.root
-    types = {text_of(it): text_of(it, "type").lower() for it in root.iterchildren("virtual_joint")}
-    if subject.beside is not None:
-        types |= {name: joint.type for name, joint in subject.beside.joint.items()}
-    for it, _, name in _states(root):
-        text = it.get("value")
-        numbers = None if text is None else _numbers(text)
-        size = SIZES.get(types.get(name, ""), 1)
-        if text is not None and numbers is None:
-            yield Problem(
-                it, f"the value of {name!r} is {text!r}, not a number", "value", "write a number"
-            )
-        elif numbers is not None and name in types and size and len(numbers) != size:
-            message = f"{name!r} has {len(numbers)} values, a {types[name]} joint has {size}"
-            yield Problem(it, message, "value", "write one number for each degree of freedom")
-
-
 def _states(root: _Element) -> Iterator[tuple[_Element, str, str]]:
     """The joints of states, their groups and names."""
     for state in root.iterchildren("group_state"):
@@ -140,21 +107,12 @@ def _states(root: _Element) -> Iterator[tuple[_Element, str, str]]:
             yield it, text_of(state, "group"), text_of(it)
 
 
-def _numbers(text: str) -> list[float] | None:
-    """The numbers of a value; None where one of them is not a number."""
-    try:
-        numbers = [float(word) for word in text.split()]
-    except ValueError:
-        return None
-    return numbers if numbers and all(map(isfinite, numbers)) else None
-
-
 def _limits(joint: Joint) -> tuple[float, float] | None:
     """The limits of a joint; None where they are not two numbers in order."""
     limit = joint.element.find("limit")
     if limit is None:
         return None
-    found = [_numbers(limit.get(side, "0")) for side in ("lower", "upper")]
+    found = [numbers_in(limit.get(side, "0")) for side in ("lower", "upper")]
     lower, upper = (it[0] if it and len(it) == 1 else None for it in found)
     if lower is None or upper is None or lower > upper:
         return None

@@ -1,5 +1,4 @@
 """MB5: the kinematic tree and its joints."""
 
-from multibot_rewrite.rules.description.structure import joints, limits, mimic, safety, starts, tree
-
-THEMES = (tree, limits, joints, mimic, safety, starts)
+# The files of its rules, loaded where they are asked.
+THEMES = (".tree", ".limits", ".joints", ".mimic", ".safety", ".starts")

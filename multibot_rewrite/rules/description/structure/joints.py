@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import partial
 from math import hypot
 
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
-from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.description.checks.links_and_joints import Joint
 from multibot_rewrite.description.checks.numbers import vector
 from multibot_rewrite.description.checks.problem import Problem
@@ -18,7 +16,6 @@ from multibot_rewrite.rules.description.structure.shared import (
     LIMIT,
     ONE_AXIS,
     TOLERANCE,
-    TYPES,
     joints_with,
     one_joint,
 )
@@ -26,33 +23,6 @@ from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.subject import Subject
 
 FAR = 50.0
-
-
-@rule(
-    "MB508",
-    "joint-type",
-    ERROR,
-    what="A joint has no type, or one that URDF does not have.",
-    why="urdfdom rejects the file ('has no known type'); it knows fixed, revolute, continuous, "
-    "prismatic, floating and planar, in lower case.",
-    fix="Use one of the six types.",
-    bad=one_joint("Fixed"),
-    good=one_joint("fixed"),
-    line=3,
-)
-def joint_type(subject: Subject) -> Iterator[Problem]:
-    """Types that are not exactly one of the six."""
-    for joint in subject.robot.joints:
-        if joint.type in TYPES:
-            continue
-        if not joint.type:
-            yield Problem(joint.element, f"joint {joint.name!r} has no type", "type")
-            continue
-        near = nearest(joint.type.strip().lower(), TYPES)
-        hint = f"did you mean {near!r}?" if near else f"the types are {', '.join(TYPES)}"
-        yield Problem(
-            joint.element, f"joint {joint.name!r}: unknown type {joint.type!r}", "type", hint
-        )
 
 
 @rule(
@@ -75,39 +45,26 @@ def zero_axis(subject: Subject) -> Iterator[Problem]:
             yield Problem(axis, f"<axis> of {joint.type} joint {joint.name!r} {fault}", "xyz")
 
 
-def _not_unit(subject: Subject, *, types: tuple[str, ...]) -> Iterator[Problem]:
-    """Axes of joints of these types whose length is not 1."""
-    for joint, axis, length in _axes(subject):
-        if length and abs(length - 1) > TOLERANCE and joint.type in types:
-            message = f"axis of joint {joint.name!r} has the length {length:.4g}"
-            yield Problem(axis, message, "xyz")
-
-
-prismatic_axis_length = rule(
+@rule(
     "MB520",
-    "prismatic-axis-length",
+    "axis-length",
     WARNING,
-    what="The axis of a prismatic joint does not have length 1.",
-    why="KDL (robot_state_publisher), sdformat and pinocchio normalize it, MoveIt and yourdfpy "
-    "move the joint further by that factor: the planner's robot is not the one in tf.",
+    what="The axis of a joint does not have length 1. It is a note for a joint that turns.",
+    why="KDL (robot_state_publisher), sdformat and pinocchio normalize it; MoveIt and yourdfpy "
+    "move a prismatic joint further by that factor: the planner's robot is not the one in tf. A "
+    "program that does not normalize it turns a joint by another angle.",
     fix="Divide the axis by its length.",
     bad=one_joint("prismatic", '<axis xyz="0 0 2"/>', LIMIT),
     good=one_joint("prismatic", '<axis xyz="0 0 1"/>', LIMIT),
     line=5,
-)(partial(_not_unit, types=("prismatic",)))
-
-axis_length = rule(
-    "MB521",
-    "axis-length",
-    NOTE,
-    what="The axis of a revolute or continuous joint does not have length 1.",
-    why="KDL, sdformat, MoveIt and pinocchio normalize it; a program that does not turns the joint "
-    "by another angle.",
-    fix="Divide the axis by its length.",
-    bad=one_joint("revolute", '<axis xyz="0 1 1"/>', LIMIT),
-    good=one_joint("revolute", '<axis xyz="0 0.7071 0.7071"/>', LIMIT),
-    line=5,
-)(partial(_not_unit, types=("revolute", "continuous")))
+)
+def axis_length(subject: Subject) -> Iterator[Problem]:
+    """Axes whose length is neither 0 nor 1."""
+    for joint, axis, length in _axes(subject):
+        if length and abs(length - 1) > TOLERANCE:
+            message = f"axis of joint {joint.name!r} has the length {length:.4g}"
+            level = "" if joint.type == "prismatic" else NOTE
+            yield Problem(axis, message, "xyz", level=level)
 
 
 @memoized

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import pi
 
 from lxml.etree import _Element
@@ -12,7 +12,6 @@ from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.description.checks.links_and_joints import Joint, Robot
 from multibot_rewrite.description.checks.numbers import number, value_of
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.rules.description.examples import block
 from multibot_rewrite.rules.description.structure.shared import (
     BOUNDED,
     LIMIT,
@@ -35,51 +34,39 @@ LONG_WAY = 25.0
 STRICT = KNOWN[2]
 
 
-def _newest(limit: str) -> str:
-    """An example: a joint of a robot of URDF 1.2, with its limit in line 6."""
-    return block(f'<robot name="r" version="{STRICT}">', one_joint("revolute", limit))
-
-
 @rule(
     "MB509",
     "limit-missing",
     ERROR,
-    what="A revolute or prismatic joint has no <limit>.",
-    why="urdfdom rejects the file ('is of type REVOLUTE but it does not specify limits').",
-    fix="Add <limit> with lower, upper, effort and velocity; a wheel's joint is continuous.",
+    what="A revolute or prismatic joint has no <limit>, or one without lower or upper; or, before "
+    "URDF 1.2, a <limit> has no effort or no velocity. Without lower or upper it is a warning "
+    "before URDF 1.2.",
+    why="urdfdom rejects the file ('is of type REVOLUTE but it does not specify limits', 'joint "
+    "limit: no effort'). Before URDF 1.2 it reads a missing bound as 0, and joint_state_publisher "
+    "publishes no joint at all.",
+    fix="Write lower, upper, effort and velocity; a wheel's joint is continuous and needs no <limit>.",
     bad=one_joint("revolute"),
     good=one_joint("revolute", LIMIT),
     line=3,
 )
 def limit_missing(subject: Subject) -> Iterator[Problem]:
-    """Joints that need a <limit>."""
+    """Joints without a limit that they need, and limits without a part that they need."""
+    strict = version_of(subject.document.root) >= STRICT
     for joint in subject.robot.joints:
-        if joint.type in BOUNDED and "limit" not in joint.parts:
+        limit = joint.parts.get("limit")
+        if limit is None and joint.type in BOUNDED:
             yield Problem(joint.element, f"{joint.type} joint {joint.name!r} has no <limit>")
+        if limit is not None:
+            bounds = ("lower", "upper") if joint.type in BOUNDED else ()
+            yield from _lacking(joint, limit, () if strict else ("effort", "velocity"), "")
+            yield from _lacking(joint, limit, bounds, "" if strict else WARNING)
 
 
-@rule(
-    "MB510",
-    "limit-incomplete",
-    ERROR,
-    what="A <limit> has no effort or no velocity, in a file of URDF 1.0 or 1.1.",
-    why="urdfdom rejects the whole file ('joint limit: no effort'), whatever the joint's type.",
-    fix="Add the attribute, or delete a <limit> that the type does not need. In URDF 1.2 both may be "
-    "left out: without them there is no limit.",
-    bad=one_joint("revolute", '<limit lower="-1" upper="1" velocity="1"/>'),
-    good=one_joint("revolute", LIMIT),
-    line=5,
-)
-def limit_incomplete(subject: Subject) -> Iterator[Problem]:
-    """Limits without the attributes that urdfdom requires."""
-    if _is_strict(subject):
-        return
-    for joint, limit in joints_with(subject.robot, "limit"):
-        missing = [it for it in ("effort", "velocity") if limit.get(it) is None]
-        if missing:
-            yield Problem(
-                limit, f"<limit> of joint {joint.name!r} has no {' and no '.join(missing)}"
-            )
+def _lacking(joint: Joint, limit: _Element, needed: Sequence[str], level: str) -> Iterator[Problem]:
+    missing = [it for it in needed if limit.get(it) is None]
+    if missing:
+        message = f"<limit> of joint {joint.name!r} has no {' and no '.join(missing)}"
+        yield Problem(limit, message, level=level)
 
 
 @rule(
@@ -126,40 +113,6 @@ def limits_zero_range(subject: Subject) -> Iterator[Problem]:
             yield Problem(limit, message)
 
 
-@rule(
-    "MB513",
-    "limit-without-bounds",
-    WARNING,
-    what="A revolute or prismatic joint's <limit> has no lower or no upper.",
-    why="urdfdom reads 0; joint_state_publisher rejects the description and publishes no joint at "
-    "all ('\"lower\" limit must be specified').",
-    fix="Write both.",
-    bad=one_joint("revolute", '<limit upper="1" effort="1" velocity="1"/>'),
-    good=one_joint("revolute", LIMIT),
-    line=5,
-)
-def limit_without_bounds(subject: Subject) -> Iterator[Problem]:
-    """Missing bounds, which are read as 0."""
-    return iter(()) if _is_strict(subject) else _unbounded(subject.robot)
-
-
-@rule(
-    "MB535",
-    "bounds-required",
-    ERROR,
-    what="A revolute or prismatic joint's <limit> has no lower or no upper, in a file of URDF 1.2.",
-    why="urdfdom rejects the file ('revolute and prismatic joints must have both lower and upper "
-    "position limits').",
-    fix="Write both.",
-    bad=_newest('<limit upper="1"/>'),
-    good=_newest('<limit lower="0" upper="1"/>'),
-    line=6,
-)
-def bounds_required(subject: Subject) -> Iterator[Problem]:
-    """Missing bounds, where urdfdom takes none for granted."""
-    return _unbounded(subject.robot) if _is_strict(subject) else iter(())
-
-
 def _unbounded(robot: Robot) -> Iterator[Problem]:
     for joint, limit in joints_with(robot, "limit"):
         if joint.type not in BOUNDED:
@@ -168,30 +121,6 @@ def _unbounded(robot: Robot) -> Iterator[Problem]:
         if missing:
             words = " and no ".join(missing)
             yield Problem(limit, f"<limit> of {joint.type} joint {joint.name!r} has no {words}")
-
-
-@rule(
-    "MB514",
-    "negative-limit",
-    WARNING,
-    what="The greatest effort or velocity of a joint is negative.",
-    why="pinocchio rejects the file ('Some components of min_effort are greater than max_effort'), "
-    "sdformat documents a negative effort as not enforced, ros2_control and MoveIt drop the sign "
-    "of a velocity.",
-    fix="Write the greatest absolute value.",
-    bad=one_joint("revolute", '<limit lower="-1" upper="1" effort="-5" velocity="1"/>'),
-    good=one_joint("revolute", LIMIT),
-    line=5,
-)
-def negative_limit(subject: Subject) -> Iterator[Problem]:
-    """Each such attribute; from URDF 1.2 on they are refused, which MB125 reports."""
-    if _is_strict(subject):
-        return
-    for joint, limit in joints_with(subject.robot, "limit"):
-        for name in ("effort", "velocity"):
-            if limit.get(name, "").lstrip().startswith("-") and (value_of(limit, name) or 0) < 0:
-                message = f"joint {joint.name!r}: {name} {limit.get(name)} is negative"
-                yield Problem(limit, message, name)
 
 
 @rule(
@@ -263,18 +192,7 @@ def prismatic_units(subject: Subject) -> Iterator[Problem]:
             yield Problem(limit, message, name, "are these millimetres?")
 
 
-@rule(
-    "MB518",
-    "revolute-degrees",
-    WARNING,
-    what="A limit of a revolute joint looks like degrees.",
-    why="URDF uses radians: the joint turns many times before it reaches the limit.",
-    fix="Multiply by pi/180; xacro has radians().",
-    bad=one_joint("revolute", '<limit lower="-90" upper="90" effort="1" velocity="1"/>'),
-    good=one_joint("revolute", '<limit lower="-1.5708" upper="1.5708" effort="1" velocity="1"/>'),
-    line=5,
-)
-def revolute_degrees(subject: Subject) -> Iterator[Problem]:
+def limits_in_degrees(subject: Subject) -> Iterator[Problem]:
     """Round numbers that are many turns in radians, and an angle in degrees."""
     for joint, limit, lower, upper in _bounds(subject):
         if joint.type == "revolute" and (_is_degrees(lower) or _is_degrees(upper)):

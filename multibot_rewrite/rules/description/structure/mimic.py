@@ -22,56 +22,23 @@ from multibot_rewrite.rules.subject import Subject
 
 
 @rule(
-    "MB525",
-    "mimic-without-joint",
-    ERROR,
-    what="A <mimic> does not name the joint that it follows.",
-    why="urdfdom rejects the file ('joint mimic: no mimic joint specified').",
-    fix='Add joint="...".',
-    bad=two_joints("<mimic/>"),
-    good=two_joints('<mimic joint="j"/>'),
-    line=11,
-)
-def mimic_without_joint(subject: Subject) -> Iterator[Problem]:
-    """Mimics that name no joint."""
-    for joint, mimic in joints_with(subject.robot, "mimic"):
-        if not mimic.get("joint"):
-            yield Problem(mimic, f"<mimic> of joint {joint.name!r} names no joint", "joint")
-
-
-@rule(
     "MB526",
-    "mimic-of-itself",
-    ERROR,
-    what="A joint mimics itself.",
-    why="Current sdformat rejects the joint ('cannot mimic itself'), MoveIt ignores every mimic of "
-    "the robot, joint_state_publisher stops ('Found an infinite recursive mimic chain').",
-    fix="Use the joint that it follows.",
-    bad=two_joints('<mimic joint="k"/>'),
-    good=two_joints('<mimic joint="j"/>'),
-    line=11,
-)
-def mimic_of_itself(subject: Subject) -> Iterator[Problem]:
-    """Mimics of the joint they are in."""
-    for joint, mimic in joints_with(subject.robot, "mimic"):
-        if mimic.get("joint") == joint.name and joint.name:
-            yield Problem(mimic, f"joint {joint.name!r} mimics itself", "joint")
-
-
-@rule(
-    "MB527",
     "mimic-loop",
     ERROR,
-    what="Joints mimic each other in a loop.",
+    what="Joints mimic each other in a loop, or a joint mimics itself.",
     why="MoveIt ignores every mimic of the robot ('Cycle found in joint that mimic each other') "
-    "and joint_state_publisher stops ('Found an infinite recursive mimic chain').",
+    "and joint_state_publisher stops ('Found an infinite recursive mimic chain'); current sdformat "
+    "rejects a joint that mimics itself.",
     fix="Delete the <mimic> of the joint that is driven.",
     bad=two_joints('<mimic joint="j"/>', '<mimic joint="k"/>'),
     good=two_joints('<mimic joint="j"/>'),
     line=6,
 )
 def mimic_loop(subject: Subject) -> Iterator[Problem]:
-    """Each loop, at its first mimic."""
+    """Each loop, at its first mimic, and each mimic of the joint it is in."""
+    for joint, mimic in joints_with(subject.robot, "mimic"):
+        if mimic.get("joint") == joint.name and joint.name:
+            yield Problem(mimic, f"joint {joint.name!r} mimics itself", "joint")
     for loop in _loops(_leaders(subject.robot)):
         if len(loop) > 1:
             mimic = subject.robot.joint[loop[0]].parts["mimic"]
@@ -94,7 +61,7 @@ def mimic_loop(subject: Subject) -> Iterator[Problem]:
     line=17,
 )
 def mimic_chain(subject: Subject) -> Iterator[Problem]:
-    """Mimics of mimics; a loop is MB527."""
+    """Mimics of mimics; a loop is MB526."""
     leader = _leaders(subject.robot)
     chained = {name: follows for name, follows in leader.items() if follows in leader}
     round_ = {name for loop in _loops(chained) for name in loop}

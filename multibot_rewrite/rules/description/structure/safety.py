@@ -24,38 +24,15 @@ Range = tuple[float, float]
 
 
 @rule(
-    "MB531",
-    "safety-without-k-velocity",
-    ERROR,
-    what="A <safety_controller> has no k_velocity.",
-    why="urdfdom rejects the file ('joint safety: no k_velocity').",
-    fix="Add it, or delete the element.",
-    bad=one_joint(
-        "revolute", LIMIT, '<safety_controller soft_lower_limit="-1" soft_upper_limit="1"/>'
-    ),
-    good=one_joint(
-        "revolute",
-        LIMIT,
-        '<safety_controller soft_lower_limit="-1" soft_upper_limit="1" k_velocity="10"/>',
-    ),
-    line=6,
-)
-def safety_without_k_velocity(subject: Subject) -> Iterator[Problem]:
-    """Safety controllers without the attribute that urdfdom requires."""
-    for joint, safety in joints_with(subject.robot, "safety_controller"):
-        if safety.get("k_velocity") is None:
-            message = f"<safety_controller> of joint {joint.name!r} has no k_velocity"
-            yield Problem(safety, message)
-
-
-@rule(
     "MB532",
-    "soft-limits-empty",
+    "soft-limits",
     WARNING,
-    what="The soft limits of a <safety_controller> leave the joint no range.",
-    why="A missing soft limit is 0. MoveIt uses the range that is inside both kinds of limits: it "
-    "cannot plan for a joint that can only be at 0.",
-    fix="Write soft_lower_limit and soft_upper_limit, or delete the element.",
+    what="The soft limits of a <safety_controller> leave the joint no range; or one of them is "
+    "outside of the joint's limits, which is a note.",
+    why="A missing soft limit is 0. MoveIt, ros2_control and joint_state_publisher use the range "
+    "that is inside both kinds of limits: MoveIt cannot plan for a joint that can only be at 0, "
+    "and a soft limit outside has no effect.",
+    fix="Write soft_lower_limit and soft_upper_limit inside of lower and upper, or delete the element.",
     bad=one_joint("revolute", LIMIT, '<safety_controller k_velocity="10"/>'),
     good=one_joint(
         "revolute",
@@ -64,45 +41,17 @@ def safety_without_k_velocity(subject: Subject) -> Iterator[Problem]:
     ),
     line=6,
 )
-def soft_limits_empty(subject: Subject) -> Iterator[Problem]:
-    """Soft limits that leave no range where the hard ones do."""
+def soft_limits(subject: Subject) -> Iterator[Problem]:
+    """Against hard limits that leave a range themselves."""
     for joint, safety, soft, hard in _soft_and_hard(subject.robot):
-        low, high = max(soft[0], hard[0]), min(soft[1], hard[1])
-        if low >= high and hard[0] < hard[1]:
-            message = (
-                f"joint {joint.name!r}: the soft limits {soft[0]:g} to {soft[1]:g} leave no range"
-            )
-            yield Problem(safety, message)
-
-
-@rule(
-    "MB533",
-    "soft-limits-outside",
-    NOTE,
-    what="A soft limit of a <safety_controller> is outside of the joint's limits.",
-    why="It has no effect: MoveIt, ros2_control and joint_state_publisher use the narrower one.",
-    fix="Put the soft limits inside of lower and upper.",
-    bad=one_joint(
-        "revolute",
-        LIMIT,
-        '<safety_controller soft_lower_limit="-2" soft_upper_limit="1" k_velocity="10"/>',
-    ),
-    good=one_joint(
-        "revolute",
-        LIMIT,
-        '<safety_controller soft_lower_limit="-1" soft_upper_limit="1" k_velocity="10"/>',
-    ),
-    line=6,
-)
-def soft_limits_outside(subject: Subject) -> Iterator[Problem]:
-    """One finding per joint."""
-    for joint, safety, soft, hard in _soft_and_hard(subject.robot):
-        if hard[0] < hard[1] and (soft[0] < hard[0] - TOLERANCE or soft[1] > hard[1] + TOLERANCE):
-            message = (
-                f"joint {joint.name!r}: the soft limits {soft[0]:g} to {soft[1]:g} are outside of "
-                f"{hard[0]:g} to {hard[1]:g}"
-            )
-            yield Problem(safety, message)
+        if hard[0] >= hard[1]:
+            continue
+        said = f"joint {joint.name!r}: the soft limits {soft[0]:g} to {soft[1]:g}"
+        if max(soft[0], hard[0]) >= min(soft[1], hard[1]):
+            yield Problem(safety, f"{said} leave no range")
+        if soft[0] < hard[0] - TOLERANCE or soft[1] > hard[1] + TOLERANCE:
+            message = f"{said} are outside of {hard[0]:g} to {hard[1]:g}"
+            yield Problem(safety, message, level=NOTE)
 
 
 @rule(

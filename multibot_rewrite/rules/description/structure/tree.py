@@ -196,26 +196,3 @@ def joint_to_itself(subject: Subject) -> Iterator[Problem]:
         if joint.parent == joint.child and joint.parent:
             message = f"joint {joint.name!r} has {joint.child!r} as its parent and as its child"
             yield Problem(joint.parts["child"], message, "link")
-
-
-@rule(
-    "MB507",
-    "joint-without-ends",
-    ERROR,
-    what="A joint has no parent link or no child link.",
-    why="urdfdom rejects the file ('missing a parent and/or child link specification').",
-    fix='Add <parent link="..."/> and <child link="..."/>.',
-    bad='<link name="a"/><joint name="j" type="fixed"><parent link="a"/></joint>',
-    good=one_joint("fixed"),
-)
-def joint_without_ends(subject: Subject) -> Iterator[Problem]:
-    """Joints without an end, each at the element that lacks it."""
-    for joint in subject.robot.joints:
-        if joint.parent and joint.child:
-            continue
-        for tag, name in (("parent", joint.parent), ("child", joint.child)):
-            part = joint.parts.get(tag)
-            if not name and part is None:
-                yield Problem(joint.element, f"joint {joint.name!r} has no <{tag}>")
-            elif not name and part is not None:
-                yield Problem(part, f"<{tag}> of joint {joint.name!r} names no link", "link")

@@ -1,0 +1,132 @@
+"""What the code of a plugin or of hardware reads: the type, words and range of each value."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.model import VocabularyError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.releases import is_release_words
+
+VALUE = "value"
+TYPES = ("any", "boolean", "color", "integer", "number", "pose", "text", "vector")
+# What any row may say of its value; the rest of a row says whose name it is.
+OPTIONS = ("type", "read", "required", "one", "unit", "range", "above", "checked")
+_ROW = lazy_compile(rf"\n\S+ +{VALUE} ")
+_NAMED, _RELEASES = "param[@name=", "releases="
+
+
+class Value(NamedTuple):
+    """A value that code reads: ``place`` is where, ``words`` are the only ones it may be.
+
+    A number is ``low`` to ``high``, above ``low`` where that ``is_open``; ``checked`` is where the
+    source says so. ``releases`` as in ``Site``.
+    """
+
+    name: str
+    type: str
+    place: str
+    releases: str = ""
+    required: bool = False
+    words: tuple[str, ...] = ()
+    unit: str = ""
+    low: float | None = None
+    high: float | None = None
+    is_open: bool = False
+    checked: str = ""
+
+
+class Values(NamedTuple):
+    """All that a plugin reads, by name; ``is_open``: it takes anything else, too.
+
+    ``a/b`` is what is read of what is in ``a``: ``blocks`` has the names that are read in each such
+    ``a``, at "" those of the plugin itself, and ``blocks_of`` where each name is read.
+    """
+
+    names: tuple[str, ...]
+    of_ros_1: bool
+    is_open: bool
+    rows: Mapping[str, Value]
+    blocks: Mapping[str, tuple[str, ...]]
+    blocks_of: Mapping[str, tuple[str, ...]]
+
+
+def is_typed(word: str) -> bool:
+    """Does this word of a row say something of the value, and not whose name it is?"""
+    option, given, _ = word.partition("=")
+    return bool(given) and option in OPTIONS
+
+
+def has_values(chunk: str) -> bool:
+    """May there be such rows in a section that is not read yet?"""
+    return "\nread: " in chunk or " read=" in chunk or _ROW.search(chunk) is not None
+
+
+def read_values(file: str, line: int, rows: Iterable[str]) -> Iterator[Value]:
+    """The values of a section whose first row is at ``line``; raises VocabularyError."""
+    for number, row in enumerate(rows, line):
+        path, *words = row.partition(" # ")[0].split() or [""]
+        if words and row[:1] != "#" and not path.endswith(":"):
+            yield from _value(f"{file}:{number}", path, words)
+
+
+def values_of(
+    names: tuple[str, ...], of_ros_1: bool, is_open: bool, found: Iterable[Value]
+) -> Values:
+    """The values of a plugin, the first one of each name."""
+    rows: dict[str, Value] = {}
+    for it in found:
+        rows.setdefault(it.name, it)
+    blocks: dict[str, tuple[str, ...]] = {"": ()}
+    blocks_of: dict[str, tuple[str, ...]] = {}
+    for path in rows:
+        above, _, name = path.rpartition("/")
+        blocks_of[name] = (*blocks_of.get(name, ()), above)
+        blocks[above] = (*blocks.get(above, ()), name)
+    return Values(names, of_ros_1, is_open, rows, blocks, blocks_of)
+
+
+def _value(place: str, path: str, words: list[str]) -> Iterator[Value]:
+    role, *rest = words
+    options = dict(it.split("=", 1) for it in rest if is_typed(it) or it.startswith(_RELEASES))
+    if role == VALUE:
+        _check(place, path, [it for it in rest[1:] if it.partition("=")[0] not in options])
+        options["type"] = rest[0] if rest else ""
+    elif options.keys() <= {"releases"}:
+        return
+    type_, releases = options.get("type", "text"), options.get("releases", "")
+    if type_ not in TYPES:
+        raise VocabularyError(f"{place}: {path} {type_} is no type, use one of {', '.join(TYPES)}")
+    if releases and not is_release_words(releases):
+        raise VocabularyError(f"{place}: {path} releases={releases} names no releases")
+    name, is_attribute = _name(path)
+    read = options.get("read", "").partition("@")[0]
+    choices = options["one"].split("|") if "one" in options else ()
+    limits = _range(place, options)
+    checked = options.get("checked", read)
+    own = (name, "any" if is_attribute else type_, read, releases, "required" in options)
+    yield Value(*own, tuple(choices), options.get("unit", ""), *limits, checked)
+
+
+def _check(place: str, path: str, strange: list[str]) -> None:
+    if strange:
+        known = ", ".join((*OPTIONS, "releases"))
+        raise VocabularyError(f"{place}: {path}: unknown option {strange[0]!r}, use one of {known}")
+
+
+def _name(path: str) -> tuple[str, bool]:
+    """What a path is called where values are looked up, and whether it ends in an attribute."""
+    if path.startswith(_NAMED):
+        return path[len(_NAMED) : -1], False
+    name, at, _ = path.partition("@")
+    return name, bool(at)
+
+
+def _range(place: str, options: Mapping[str, str]) -> tuple[float | None, float | None, bool]:
+    above, (low, _, high) = options.get("above", ""), options.get("range", "").partition("..")
+    try:
+        found = float(above or low) if above or low else None
+        return found, float(high) if high else None, bool(above)
+    except ValueError:
+        raise VocabularyError(f"{place}: write range=0..1, range=0.. or above=0") from None

@@ -1,0 +1,113 @@
+"""A plan and what would run of the folder that was built for it -> where they differ.
+
+What the plan leaves to others is none of it: a simulator, the bringup of a robot, a node that is
+started by hand or on a condition.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Set
+
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.knowledge.records import MANAGER
+from multibot_rewrite.producers.launch.snapshot import NOT_WHOLE
+from multibot_rewrite.rules.check import ABSENCE, absences, check, doubts
+from multibot_rewrite.rules.pair import demands, endpoints, frame_names, nodes
+from multibot_rewrite.rules.system import (
+    clocks,
+    matching,
+    names,
+    relays,
+    sharing,
+    tf_topics,
+    transforms,
+)
+from multibot_rewrite.spelling.ways import SPAWNER
+from multibot_rewrite.system.index import index
+from multibot_rewrite.system.ownership import whose_by_plan
+from multibot_rewrite.system.records import Environment, Node, Place, System
+
+# Parameters and descriptions may have them whatever the build does: types, trees of tf, and frames that
+# no parameter file names.
+_OF_SOURCES = frozenset(
+    it.code
+    for it in (
+        *(matching.types_differ, relays.limits_left_out, sharing.topic_of_several_robots),
+        *(transforms.frame_with_two_parents, transforms.robots_frames_collide),
+        *(transforms.tf_cycle, transforms.static_and_moving, transforms.transform_of_two_senders),
+        frame_names.frame_without_robot_name,
+    )
+)
+# What a simulator may give that the launch file does not start.
+_OF_OTHERS = frozenset((clocks.no_clock.code, tf_topics.tf_tree_in_pieces.code))
+# What a node of the launch file has is known, whatever else runs.
+_OF_NODES = frozenset(
+    it.code for it in (nodes.missing_node, nodes.missing_robot, endpoints.missing_endpoint)
+)
+
+
+def not_as_planned(
+    planned: System, seen: System, started: Set[str], told: Iterable[Finding]
+) -> Iterator[Finding]:
+    """What ``multibot check`` would say of the running fleet, as errors; ``started`` are the planned
+    nodes that the launch file is to start, ``told`` is what the build has found already."""
+    running = {it.name: it for it in seen.nodes}
+    found = check(planned, seen._replace(environment=Environment()))
+    open_ = _open(planned, told) if found else frozenset()
+    for it in found:
+        level = _level(it, planned, seen, started)
+        if level and not any((it.code, name) in open_ for name in it.names):
+            place = _place(it, running)
+            yield it._replace(level=level, file=place.file, line=place.line, column=place.column)
+
+
+def _open(planned: System, told: Iterable[Finding]) -> frozenset[tuple[str, str]]:
+    """What has no sender or server by the plan, or by what was told, is no fault of the folder, nor is
+    a client that has no server."""
+    lacking = (*told, *absences(index(planned, whose_by_plan(planned))))
+    found = {(it.code, name) for it in lacking if it.code in ABSENCE for name in it.names}
+    unserved = {name for code, name in found if code == names.server_names_miss.code}
+    return frozenset(found | {(endpoints.missing_endpoint.code, name) for name in unserved})
+
+
+def _level(it: Finding, planned: System, seen: System, started: Set[str]) -> str:
+    """Empty for what is no fault of the folder."""
+    if it.code in _OF_NODES:
+        return ERROR if _is_of_launch(it, planned, seen, started) else ""
+    if it.level != ERROR or it.code in _OF_OTHERS:
+        return ""
+    if it.code in _OF_SOURCES:
+        return WARNING
+    if it.code == demands.bridged_topic_missing.code:
+        return ERROR if _is_read(seen) else ""
+    return "" if it.code in ABSENCE and doubts(seen) else ERROR
+
+
+def _is_read(seen: System) -> bool:
+    """Is all that the launch file starts known, with its parameters?"""
+    return all(it.code != NOT_WHOLE for it in doubts(seen))
+
+
+def _is_of_launch(it: Finding, planned: System, seen: System, started: Set[str]) -> bool:
+    """Is the node, or one of the robot, to be started by the launch file? What a node has rests on its
+    parameters, a controller on its manager; of a program that is not known nothing is."""
+    if it.code == nodes.missing_robot.code:
+        return any(one.robot == it.robot and one.name in started for one in planned.nodes)
+    own = next((one for one in planned.nodes if one.name == it.node), None)
+    if own is None or it.node not in started:
+        return False
+    if it.code == nodes.missing_node.code:
+        return own.way != SPAWNER or _has_manager(own, seen)
+    known = any(one.known for one in seen.nodes if one.name == it.node)
+    return _is_read(seen) and (known or own.way == SPAWNER)
+
+
+def _has_manager(controller: Node, seen: System) -> bool:
+    home = controller.name.rpartition("/")[0]
+    return any(it.known == MANAGER and it.name.rpartition("/")[0] == home for it in seen.nodes)
+
+
+def _place(it: Finding, running: dict[str, Node]) -> Place:
+    if it.file or it.node not in running:
+        return Place(it.file, it.line, it.column)
+    return running[it.node].place

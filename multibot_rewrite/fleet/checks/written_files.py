@@ -1,0 +1,93 @@
+"""What the rules of files find in those that a build writes: MoveIt's, and the bridge of each robot."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+
+from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.companions.context import Context
+from multibot_rewrite.companions.kinds import BRIDGE, MOVEIT, PARAMS
+from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.params.sections import PARAMETERS
+from multibot_rewrite.description.rewriters.text import text_at
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.outputs.bridge_outputs import as_spawned
+from multibot_rewrite.fleet.outputs.output_file import OutputFile, line_in_source
+from multibot_rewrite.fleet.robots.member import line_of
+from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleet.robots.robot_groups import RobotGroup
+from multibot_rewrite.knowledge.parameters import load_known_nodes
+from multibot_rewrite.producers.ends import BRIDGE_FILE
+from multibot_rewrite.producers.evidence.moveit import MANAGER
+from multibot_rewrite.producers.evidence.parameter_files import given_nodes
+from multibot_rewrite.rules.files.bridges import GzTopic, GzTopics, no_gz_topic
+from multibot_rewrite.rules.files.controllers import undeclared_controller
+from multibot_rewrite.rules.files.given import Beside
+from multibot_rewrite.rules.files.judge import judged
+from multibot_rewrite.spelling.bridged_topics import bridged_topics
+from multibot_rewrite.system.records import NOWHERE, Place
+
+
+def written_findings(
+    plan: FleetPlan, group: RobotGroup, texts: Sequence[OutputFile], known: Collection[Finding]
+) -> Iterator[Finding]:
+    """What is wrong with the files of a robot as they are written, at the lines of their sources; what
+    only the rewrite has opened is an error. ``known`` is what was found in the sources."""
+    robot, context = group.robots[0], group.context
+    own = [it for it in texts if it.path.startswith(f"{robot.spec.name}/") and it.sources]
+    bridges = [it for it in own if it.path == f"{robot.spec.name}/{BRIDGE_FILE}"]
+    memo: dict[object, object] = {GzTopics: GzTopics(_gz_topics(plan, robot) if bridges else {})}
+    for text in bridges:
+        yield from _asked(no_gz_topic, BRIDGE, text, context, memo)
+    opened = {it.file for it in known if it.code == undeclared_controller.code}
+    moveit = [it for it in own if MANAGER in it.text and opened.isdisjoint(it.sources)]
+    memo = {Beside: _beside(plan, robot, own) if moveit else None}
+    for text in moveit:
+        kind = PARAMS if PARAMETERS in text.text else MOVEIT
+        for it in _asked(undeclared_controller, kind, text, context, memo):
+            yield it._replace(level=ERROR)
+
+
+def _asked(
+    rule: Rule, kind: str, text: OutputFile, context: Context, memo: dict[object, object]
+) -> Iterator[Finding]:
+    document = text.yaml
+    for it in judged(
+        NamedFile(kind, text.path, text.text, context, memo, document=document), [rule]
+    ):
+        file, line = line_in_source(text, it.line)
+        yield it._replace(file=file, line=line, column=1)
+
+
+def _beside(plan: FleetPlan, robot: RewrittenRobot, own: Sequence[OutputFile]) -> Beside:
+    """What the parameter files of the robot set as they are written."""
+    read = (it.yaml for it in own if PARAMETERS in it.text)
+    given = given_nodes(read, load_known_nodes(plan.file.nodes, plan.file.distro))
+    return Beside(tuple(given), plan.evidence_of(robot).known)
+
+
+def _gz_topics(plan: FleetPlan, robot: RewrittenRobot) -> dict[str, GzTopic]:
+    own = {robot.spec.namespace: robot.member.inventory}
+    topics, _ = bridged_topics(own, plan.fleet.naming)
+    lines = _sensor_lines(robot)
+    return {
+        (name := f"/{it.gz.lstrip('/')}"): GzTopic(it.gz_type, it.direction, _place(name, lines))
+        for it in as_spawned(topics, [robot])
+    }
+
+
+def _sensor_lines(robot: RewrittenRobot) -> dict[str, Place]:
+    """The topic of each sensor -> its line in the source: inserted text moves those of the result."""
+    sensors = robot.member.inventory.document.root.iter("sensor")
+    source = robot.member.source
+    return {
+        f"/{topic.lstrip('/')}": Place(source.file, line_of(source, "sensor", number))
+        for number, it in enumerate(sensors)
+        if (topic := text_at(it, "topic"))
+    }
+
+
+def _place(topic: str, lines: Mapping[str, Place]) -> Place:
+    bases = [it for it in lines if topic == it or topic.startswith(f"{it}/")]
+    return lines[max(bases, key=len)] if bases else NOWHERE

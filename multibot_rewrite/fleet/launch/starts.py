@@ -1,0 +1,108 @@
+"""What a fleet starts: its launch file does, and lines for a shell do some of it."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.spelling.ways import ros_arguments
+
+# The simulators that it can start.
+CLASSIC, GZ = "classic", "gz"
+
+
+class File(NamedTuple):
+    """The path of a file of the build."""
+
+    path: str
+
+
+class Text(NamedTuple):
+    """What a file of the build holds."""
+
+    path: str
+
+
+Value = str | int | float | bool | File | Text | list[str]
+
+
+class Component(NamedTuple):
+    """A node that is loaded into the process of another."""
+
+    package: str
+    plugin: str
+    namespace: str
+    name: str
+    parameters: tuple[File | Mapping[str, Any], ...]
+    remappings: tuple[tuple[str, str], ...]
+
+
+class Start(NamedTuple):
+    """A process: its program, its node's name and namespace (empty for those of its code), and what it
+    is given. ``components`` are loaded into it; ``brought_up`` is one with a life cycle that nobody
+    else configures and activates."""
+
+    package: str
+    executable: str
+    namespace: str = ""
+    name: str = ""
+    parameters: tuple[File | Mapping[str, Any], ...] = ()
+    remappings: tuple[tuple[str, str], ...] = ()
+    arguments: tuple[str | File, ...] = ()
+    components: tuple[Component, ...] = ()
+    brought_up: bool = False
+
+
+def shell_line(it: Start) -> str:
+    """The line that starts a process without components or parameter files."""
+    given = [word.path if isinstance(word, File) else word for word in it.arguments]
+    rules = ros_arguments(it.namespace or "/", it.name, it.remappings)
+    pairs = (pair for one in it.parameters if isinstance(one, Mapping) for pair in one.items())
+    told = [word for pair in pairs for word in ("-p", ":=".join(pair))]
+    return shlex.join(["ros2", "run", it.package, it.executable, *given, *rules, *told])
+
+
+class RobotStarts(NamedTuple):
+    """What one robot runs; ``files`` are its parameter files, ``spawned`` is what brings it into the
+    simulator, ``left`` are nodes that are not started, each with the reason. ``bridged_tf`` brings its
+    tf to ``/tf`` where tf_namespace_bridge is installed, ``windows`` show this robot alone. ``nodes``
+    are the full names of those that are started."""
+
+    name: str
+    about: str
+    files: tuple[str, ...]
+    starts: tuple[Start, ...]
+    spawned: tuple[Start, ...]
+    left: tuple[tuple[str, str], ...]
+    bridged_tf: tuple[Start, ...] = ()
+    windows: tuple[Start, ...] = ()
+    nodes: tuple[str, ...] = ()
+
+
+class FleetStarts(NamedTuple):
+    """All that the launch file of a fleet starts: the simulators, what is for all robots, the robots,
+    the windows for all. ``head`` is its title, ``use_sim_time`` the default, ``driving`` are lines to
+    type; ``world`` is the simulator's by default."""
+
+    head: str
+    simulators: Sequence[str]
+    shared: Sequence[Start]
+    robots: Sequence[RobotStarts]
+    windows: Sequence[Start]
+    use_sim_time: bool
+    driving: Sequence[str]
+    world: File | str = ""
+
+
+def launch_arguments(it: FleetStarts) -> Iterator[tuple[str, str | File, str]]:
+    """The launch arguments: name, default, what it is."""
+    yield "robots", "", "only these: robot1,robot2, or so many: 2"
+    yield "use_sim_time", str(it.use_sim_time).lower(), "whether all nodes use /clock"
+    if it.windows or any(robot.windows for robot in it.robots):
+        yield "rviz", "true", "whether to open RViz"
+    if it.simulators:
+        yield "simulator", "true", "whether to start the simulator and to spawn the robots in it"
+        yield "headless", "false", "whether the simulator has no window"
+        yield "world", it.world, "the world of the simulator"

@@ -1,0 +1,119 @@
+"""A file beside a description, with what its package declares -> what the rules for its kind find."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Sequence
+
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.selection import is_on, level_of
+from multibot_rewrite.base.model import Claim, InputError
+from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.companions.context import Context
+from multibot_rewrite.companions.formats import read_named
+from multibot_rewrite.companions.kinds import MOVEIT, kind_of
+from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.names.rename_map import KINDS, CompanionNames
+from multibot_rewrite.description.rewriters.forms import Declared
+from multibot_rewrite.description.sources.packages import entries, package_of
+from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.lint.files.named import robot_name
+from multibot_rewrite.lint.files.pairing import described
+from multibot_rewrite.lint.files.subjects import make_subject
+from multibot_rewrite.rules.files.judge import judged, rules_for
+from multibot_rewrite.rules.settings import Settings
+from multibot_rewrite.rules.subject import NO_ROBOTS, Robots, Subject
+
+_ENDINGS = (".urdf", ".xacro")
+# A package's folders, how deep, and how many descriptions are read.
+_SKIPPED = frozenset(("meshes", "mesh", "test", "tests", "build", "install", "log", "worlds"))
+_DEEP, _MOST, _TRIED = 3, 60, 6
+_DESCRIPTION = "_description"
+_KINDS = ("link", "frame", "joint", "sensor", "gpio", "hardware")
+_AS_WRITTEN = make_naming("tf-per-robot")
+# Kinds of names for which a file's robots have to be known.
+_DECLARED = frozenset(KINDS)
+
+
+def robots_of(file: str, settings: Settings) -> Robots:
+    """The descriptions of the file's package, else of the description packages beside it, else those
+    that are linted with it."""
+    own = package_of(file)
+    folder = own[1] if own else os.path.dirname(os.path.abspath(file))
+    paths = _descriptions(folder)
+    if not paths and own:
+        above = os.path.dirname(folder)
+        others = sorted(it for it in entries(above) if it.endswith(_DESCRIPTION))
+        paths = [path for it in others for path in _descriptions(os.path.join(above, it))]
+    paths = paths or [path for _, path in settings.urdfs]
+    return _together(paths, settings) if len(paths) > 0 else NO_ROBOTS
+
+
+def _descriptions(folder: str) -> list[str]:
+    """The files below a folder with a robot that has a name: others are parts of these."""
+    files = [path for path, _ in zip(_files(folder, _DEEP), range(_MOST), strict=False)]
+    return [path for path in files if robot_name(path)]
+
+
+def _files(folder: str, deep: int) -> Iterator[str]:
+    inner = []
+    for name in sorted(entries(folder)):
+        if name.endswith(_ENDINGS):
+            yield os.path.join(folder, name)
+        elif "." not in name and name not in _SKIPPED:
+            inner.append(os.path.join(folder, name))
+    for it in inner if deep else ():
+        yield from _files(it, deep - 1)
+
+
+def _together(paths: Sequence[str], settings: Settings) -> Robots:
+    found: dict[str, dict[str, Claim]] = {kind: {} for kind in _KINDS}
+    subjects: list[Subject] = []
+    for path in paths[:_TRIED]:
+        try:
+            data, name = described(path, settings)
+            subjects.append(make_subject(read_document(data, name), settings))
+        except InputError:  # it is told where it is linted
+            continue
+        for kind in _KINDS:
+            found[kind] |= subjects[-1].inventory.declared.get(kind, {})
+    return Robots(found, tuple(subjects), len(subjects) == len(paths))
+
+
+def named_in_package(kind: str, data: bytes, path: str, settings: Settings) -> NamedFile:
+    """The file as rules ask it; raises InputError for one that its reader rejects."""
+    file = read_named(kind, data, path, _context({}, settings))
+    looked = file.others or any(it.kind in _DECLARED for it in file.names)
+    robots = robots_of(path, settings) if looked else None
+    context = _context(robots.declared if robots else {}, settings)
+    # Whether a key of MoveIt is a name rests on what is declared.
+    file = read_named(kind, data, path, context) if kind == MOVEIT else file
+    return file._replace(
+        context=context,
+        memo={Robots: robots},
+        is_certain=False,
+        is_whole=robots is not None and robots.is_whole,
+        robots=frozenset(settings.robots),
+        roots=settings.roots,
+    )
+
+
+def _context(declared: Declared, settings: Settings) -> Context:
+    every = {it: declared.get(it, {}) for kinds in KINDS.values() for it in kinds}
+    naming = settings.naming if settings.robots else _AS_WRITTEN
+    names = CompanionNames(every, naming, "")
+    return Context(names, names, {}, settings.distro)
+
+
+def beside_findings(path: str, data: bytes, settings: Settings) -> Iterator[Finding]:
+    """What the active rules find in a file; raises InputError for one that is of no known kind."""
+    kind = kind_of(data)
+    if not kind:
+        hint = (
+            "name a description, or a file of parameters, RViz, MoveIt, ros_gz_bridge, Nav2 or Lua"
+        )
+        raise InputError(f"{path}:1:1: it is none of the files that are linted; {hint}")
+    file = named_in_package(kind, data, path, settings)
+    active = [it for it in rules_for(kind) if is_on(settings, it.code)]
+    for it in judged(file, active):
+        yield it._replace(level=level_of(settings, it.code, it.level))

@@ -1,1 +1,0 @@
-"""Files beside a description: what they are, and what is wrong in them."""

@@ -1,0 +1,75 @@
+"""What is wrong with the structure of a document and the values in it: found once for all rules."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.findings.rule import SRDF, URDF
+from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.rules.facts.memo import memoized
+from multibot_rewrite.rules.facts.simulators import simulator_plugins
+from multibot_rewrite.rules.schema.faults import Fault, read_faults
+from multibot_rewrite.rules.subject import Subject
+
+
+def faults(kind: str, subject: Subject) -> Iterator[Problem]:
+    """The faults of one kind, which a rule reports."""
+    for it in _by_kind(subject).get(kind, ()):
+        yield Problem(it.element, it.message, it.attribute, it.hint, level=it.level)
+
+
+@memoized
+def urdf_faults(subject: Subject) -> tuple[Fault, ...]:
+    """The faults of a URDF; the source of a xacro file has none yet."""
+    return read_faults(subject.document) if subject.format == URDF else ()
+
+
+@memoized
+def _by_kind(subject: Subject) -> Mapping[str, list[Fault]]:
+    found: dict[str, list[Fault]] = {}
+    for faults_of in (urdf_faults, _of_srdf, _in_blocks, _of_parameters):
+        for it in faults_of(subject):
+            found.setdefault(it.kind, []).append(it)
+    return found
+
+
+def _of_srdf(subject: Subject) -> Iterable[Fault]:
+    if subject.format != SRDF:
+        return ()
+    from multibot_rewrite.rules.schema.srdf import srdf_faults  # a URDF needs none of it
+
+    return srdf_faults(subject.document.root, subject.beside)
+
+
+def _in_blocks(subject: Subject) -> Iterable[Fault]:
+    """What is wrong below ``<gazebo>``, or in the models of an SDF file."""
+    root, release = subject.document.root, subject.settings.distro
+    blocks = subject.elements.tops("gazebo")
+    if not blocks and root.tag != "sdf":
+        return ()
+    # Many descriptions have none, and a lint of them loads nothing of this.
+    from multibot_rewrite.rules.schema.sdf import block_faults, model_faults
+
+    return block_faults(blocks, subject.robot, release) if blocks else model_faults(root, release)
+
+
+def _of_parameters(subject: Subject) -> Iterator[Fault]:
+    """What is wrong with the parameters of plugins and of hardware."""
+    vocabulary, systems = subject.tree.vocabulary, subject.elements.tops("ros2_control")
+    plugins = simulator_plugins(subject)
+    if not plugins and not systems:
+        return
+    from multibot_rewrite.rules.schema.plugins import hardware_faults, plugin_faults
+
+    of_ros_1 = _of_ros_1(subject)
+    for one in plugins:
+        yield from plugin_faults(one, vocabulary, one in of_ros_1)
+    for hardware in (it for system in systems for it in system.iterchildren("hardware")):
+        yield from hardware_faults(hardware, vocabulary)
+
+
+def _of_ros_1(subject: Subject) -> set[_Element]:
+    """The plugins that are written as ROS 1's: their libraries have the same names in ROS 2."""
+    return {element for element, section in subject.inventory.served if section.ros == "1"}

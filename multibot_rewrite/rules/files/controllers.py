@@ -1,0 +1,177 @@
+"""Controllers in parameter files: what MoveIt sends to, and sections that no manager declares.
+
+Sources: moveit2 moveit_simple_controller_manager_plugin.cpp (``controller_names``; of each the
+``type``, ``action_ns`` and ``joints``; a FollowJointTrajectory goes to the action ``NAME/ACTION_NS``);
+ros2_control controller_manager.cpp (a controller is what ``NAME.type`` of the manager names, or a
+``type`` in its own section).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+
+import yaml
+
+from multibot_rewrite.base.conventions import PLACEHOLDER
+from multibot_rewrite.base.findings.finding import NOTE, WARNING
+from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.nearest import nearest
+from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
+from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.yaml_text import pairs
+from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
+from multibot_rewrite.producers.evidence.claims import TYPE
+from multibot_rewrite.producers.evidence.moveit import (
+    NAMES,
+    controllers_of,
+    joints_of,
+    managers,
+    names_of,
+)
+from multibot_rewrite.producers.evidence.records import GivenNode
+from multibot_rewrite.rules.files.examples import a_controller
+from multibot_rewrite.rules.files.given import beside, did_you_mean_at, is_in
+from multibot_rewrite.rules.files.records import Remark, remark_at
+from multibot_rewrite.system.records import ACTION, SERVES, Place
+
+
+def _moved_by(name: str) -> str:
+    return (
+        "moveit_simple_controller_manager:\n"
+        f"  controller_names: [{name}]\n"
+        f"  {name}:\n"
+        "    {type: FollowJointTrajectory, action_ns: follow_joint_trajectory, "
+        "joints: [left_wheel_joint]}\n"
+    )
+
+
+@rule(
+    "MB857",
+    "undeclared-controller-beside",
+    WARNING,
+    what="MoveIt sends trajectories to a controller that no parameter file of the robot declares, for "
+    "a joint that the controller does not move, or to an action that it does not serve. Of a file "
+    "alone the parameter files in its folder count. An error where the rewrite has made it so.",
+    why="MoveIt waits for the action, and rejects every plan to execute: 'Action client not "
+    "connected to action server'.",
+    fix="Use the controller's name, its joints and its action.",
+    bad=_moved_by("arm_controler"),
+    good=_moved_by("arm_controller"),
+    line=3,
+    formats=(MOVEIT, PARAMS),
+    beside={"ros2_controllers.yaml": a_controller("arm_controller", "arm_controller")},
+)
+def undeclared_controller(file: NamedFile) -> Iterator[Remark]:
+    """Controllers of ``moveit_simple_controller_manager``; nothing where no file declares any."""
+    found = [*managers(file.document.root)] if file.document else []
+    given = beside(file).given if found else ()
+    declared = {it.name.rpartition("/")[2]: it for it in given if it.manager}
+    for manager in found if declared else ():
+        yield from _without_body(file, manager)
+        for key, body in controllers_of(manager):
+            yield from _of_one(file, key, body, declared)
+
+
+def _without_body(file: NamedFile, manager: yaml.Node) -> Iterator[Remark]:
+    """Listed controllers that have no parameters, which may be in another file."""
+    keys = {str(key.value): key for key, _ in pairs(manager) if key.value != NAMES}
+    names = names_of(manager)
+    left = keys.keys() - {it.value for it in names}
+    for it in names:
+        near = nearest(str(it.value), left) if it.value not in keys else ""
+        if near:
+            place = Place(file.file, keys[near].start_mark.line + 1)
+            yield from _lacks(it, f"controller {it.value}", did_you_mean_at(near, place))
+
+
+def _of_one(
+    file: NamedFile, key: yaml.ScalarNode, body: yaml.Node, declared: Mapping[str, GivenNode]
+) -> Iterator[Remark]:
+    name = str(key.value)
+    controller = declared.get(name.rpartition("/")[2])
+    if controller is None:
+        near = nearest(name, declared)
+        hint = did_you_mean_at(near, declared[near].place) if near else ""
+        yield from _lacks(key, f"controller {name}", hint)
+        return
+    own = _own_joints(controller)
+    for joint in joints_of(body) if own else ():
+        if joint.value not in own:
+            near = nearest(joint.value, own)
+            hint = did_you_mean_at(near, own.get(near) or next(iter(own.values())))
+            yield from _lacks(joint, f"joint {joint.value} of {name}", hint)
+    facts = beside(file).known.get(controller.known)
+    if facts is not None and not controller.unknown_type:
+        yield from _action(key, body, controller, facts)
+
+
+def _action(
+    key: yaml.ScalarNode, body: yaml.Node, controller: GivenNode, facts: NodeFacts
+) -> Iterator[Remark]:
+    """The action that MoveIt calls, if the controller serves others alone."""
+    ends = (it for it in facts.endpoints if (it.kind, it.role) == (ACTION, SERVES))
+    served = {it.name.removeprefix("~/"): it.type.rpartition("/")[2] for it in ends}
+    row = {it.value: value for it, value in pairs(body) if isinstance(value, yaml.ScalarNode)}
+    given, type_ = row.get("action_ns"), row.get("type")
+    if given is None or type_ is None:
+        return
+    called = f"{key.value}/{given.value}"
+    if given.value not in served:
+        near = next((f"{key.value}/{it}" for it in served), "")
+        yield from _lacks(given, f"action {called}", did_you_mean_at(near, controller.place))
+    elif served[given.value] != type_.value:
+        hint = did_you_mean_at(served[given.value], controller.place)
+        yield from _lacks(type_, f"{called} as {type_.value}", hint)
+
+
+def _lacks(node: yaml.Node, name: str, hint: str) -> Iterator[Remark]:
+    # Launch files fill in placeholders.
+    if not PLACEHOLDER.search(name):
+        yield remark_at(node, f"MoveIt uses {name}, which no parameter file of the robot has", hint)
+
+
+def _own_joints(controller: GivenNode) -> dict[str, Place]:
+    """The joints of a controller; none where its parameters do not list any."""
+    found: dict[str, Place] = {}
+    for given in filter(None, map(controller.values.get, ("joints", "joint"))):
+        words = given.value if isinstance(given.value, list) else [given.value]
+        found |= {str(it): given.place for it in words}
+    return found
+
+
+@rule(
+    "MB878",
+    "section-of-no-controller",
+    WARNING,
+    what="A section has the parameters of a controller, and no controller manager declares it. In a "
+    "build it is a note unless it is called nearly as a declared controller that has no section; of a "
+    "file alone only that is told.",
+    why="Nothing reads the section: the controller that is meant runs with its defaults, or fails.",
+    fix="Give the section the controller's name, or declare the controller below controller_manager.",
+    bad=a_controller("arm_controller", "arm_controler"),
+    good=a_controller("arm_controller", "arm_controller"),
+    line=4,
+    formats=(PARAMS,),
+)
+def section_of_no_controller(file: NamedFile) -> Iterator[Remark]:
+    """Nothing is said where no parameter file of the robot declares a controller."""
+    given, known = beside(file)
+    declared = {it.name: it for it in given if it.manager}
+    bare = [name for name, it in declared.items() if not it.values]
+    for it in _undeclared((it for it in given if is_in(file, it.place)), known):
+        near = nearest(it.name, bare)
+        if not declared or not (near or file.is_certain):
+            continue
+        place = declared[near or next(iter(declared))].place
+        hint = f"declare it as at {place}, or leave it out"
+        yield Remark(
+            it.place.line, 1, f"{it.name} has parameters of a controller that nothing declares",
+            did_you_mean_at(near, place) if near else hint, WARNING if near else NOTE,
+        )  # fmt: skip
+
+
+def _undeclared(given: Iterable[GivenNode], known: Mapping[str, NodeFacts]) -> Iterator[GivenNode]:
+    for it in given:
+        node = known.get(it.known)
+        if not it.manager and TYPE not in it.values and node and node.host == MANAGER:
+            yield it

@@ -1,0 +1,216 @@
+"""Values that stay the same for all robots, or that get a robot's name twice."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.naming import NAMESPACE
+from multibot_rewrite.companions.context import Context
+from multibot_rewrite.companions.kinds import MOVEIT, PARAMS, RVIZ
+from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.names.by_kind import expressible, frames_differ, is_plain
+from multibot_rewrite.companions.names.placeholders import filled, is_robot
+from multibot_rewrite.companions.names.rename_map import is_declared
+from multibot_rewrite.companions.params.sections import ParamSection, scalars
+from multibot_rewrite.companions.rviz.read_config import GRAPH_NAMESPACE, RvizItem, text_of
+from multibot_rewrite.companions.rviz.values import LINK, TF_PREFIX
+from multibot_rewrite.companions.sites import Site
+from multibot_rewrite.knowledge.parameter_entries import RUN_TIME
+from multibot_rewrite.rules.files.examples import a_section
+from multibot_rewrite.rules.files.given import given_in
+from multibot_rewrite.rules.files.records import Remark, of_robots, remark, remark_at
+
+_TWO = ("robot1", "robot2")
+# Patterns that match everything or nothing hold no robot's name.
+_OPEN_PATTERNS = frozenset({".*", "*", "[*]", "(?!)", "^$"})
+_OFF = ("false", "no", "off")
+
+
+@rule(
+    "MB880",
+    "same-port-or-file",
+    WARNING,
+    what="A port, file or other thing that only one node can have is the same for all robots.",
+    why="The node of the second robot cannot open the port, or both write into one file and damage it.",
+    fix="Set it for each robot, in a parameter file that is loaded after this one.",
+    bad=a_section("rosbridge_websocket", "port: 9090"),
+    good=a_section("rosbridge_websocket", "max_message_size: 1000000"),
+    line=3,
+    formats=(PARAMS,),
+    options={"robots": _TWO},
+)
+@of_robots
+def same_for_all(file: NamedFile) -> Iterator[Remark]:
+    """Each such parameter that is set."""
+    for site in file.names:
+        if site.kind == "exclusive" and site.text and site.text.lower() not in _OFF:
+            message = f"{site.key} {site.text} is the same for all robots"
+            hint = "set it for each robot, in a parameter file that is loaded after this one"
+            yield remark(site, message, hint)
+
+
+@rule(
+    "MB881",
+    "value-not-renamed",
+    WARNING,
+    what="A value that may hold names is not rewritten: a pattern or expression (also the filters of "
+    "RViz's TF), a description file in a display, or a namespace of topics in a layout that renames "
+    "each topic.",
+    why="Topics and frames get the robot's name, but the value still has the old ones: a pattern "
+    "matches nothing, or the names of all robots, and a display is empty.",
+    fix="Check that it works for each robot: a pattern that matches in any namespace, Description "
+    "Source Topic, or a layout with namespaces.",
+    bad=a_section("foxglove_bridge", 'topic_whitelist: ["/scan.*"]'),
+    good=a_section("foxglove_bridge", 'topic_whitelist: [".*"]'),
+    line=3,
+    formats=(PARAMS, RVIZ),
+    options={"robots": _TWO},
+)
+@of_robots
+def not_renamed(file: NamedFile) -> Iterator[Remark]:
+    """Patterns and expressions of nodes; values of displays."""
+    for site in file.names if file.kind == PARAMS else ():
+        sure = site.kind == "pattern"
+        sure = sure or (site.kind == "text" and _mentions(file.context, site.text))
+        if sure and site.text not in _OPEN_PATTERNS:
+            message = f"names in {site.key} {site.text!r} are not rewritten"
+            yield remark(site, message, "check that it works for each robot")
+    for one in file.shown:
+        yield from (it for place in one.places for it in _in_display(file, one, place))
+
+
+def _mentions(context: Context, value: str) -> bool:
+    words = "".join(c if c.isalnum() or c in "_-/" else " " for c in value).split()
+    return any(is_declared(context.names, kind, it) for it in words for kind in ("link", "joint"))
+
+
+def _in_display(file: NamedFile, one: RvizItem, place: Site) -> Iterator[Remark]:
+    there = _why_not(file.context, one, place) if place.slot.value else None
+    if there:
+        message, hint = there
+        yield remark(place, f"{place.key.rstrip('.*')} {place.slot.value!r} {message}", hint)
+
+
+def _why_not(context: Context, one: RvizItem, place: Site) -> tuple[str, str] | None:
+    """Why a value of a display stays unchanged, and what to do; None for a value that may."""
+    naming = context.names.naming
+    if place.kind == "regex" and naming.layout.frames:
+        return "is a pattern for frames and stays unchanged", "make it match the robots' frames"
+    if place.kind == "file" and text_of(one.node, "Description Source") == "File":
+        renamed = LINK in naming.separators
+        hint = "set Description Source to Topic" if renamed else "fine if all robots look the same"
+        return "is one description file, shown for every robot", hint
+    if place.kind == GRAPH_NAMESPACE and naming.topics != NAMESPACE:
+        problem = "is a namespace of topics, but this layout renames each topic instead"
+        return problem, "use a layout with namespaces"
+    return None
+
+
+@rule(
+    "MB882",
+    "robot-twice-in-value",
+    ERROR,
+    what="A name holds its robot twice, as in robot1/robot1/scan, or a parameter or a display of RViz "
+    "adds a prefix to frames that have the robot's name already. A warning where all robots use the "
+    "same frames, where a launch file sets the prefix, and in RViz, where the rewrite takes it out.",
+    why="No other node uses that name: topics have no publisher. robot_state_publisher sends "
+    "robot1/robot1/base_link, and all others look for robot1/base_link: no transform is found.",
+    fix="Remove the robot name from the source. Write an empty frame_prefix, tf_prefix or TF Prefix, "
+    "and false at tf_frame_prefix_enable.",
+    bad=a_section("robot_state_publisher", "frame_prefix: rover/"),
+    good=a_section("robot_state_publisher", 'frame_prefix: ""'),
+    line=3,
+    formats=(PARAMS, RVIZ),
+    options={"robots": _TWO},
+)
+@of_robots
+def robot_twice(file: NamedFile) -> Iterator[Remark]:
+    """Prefixes that a node or a display puts before frames."""
+    layout = file.context.names.naming.layout
+    certain = frames_differ(file.context)
+    for site in file.names if not layout.at_run_time else ():
+        # Where there is none, or none is filled in, nothing is twice.
+        if site.kind in RUN_TIME and site.text.strip("/") and not is_robot(site.text):
+            level = "" if certain and is_plain(site.text) else WARNING
+            yield remark(site, prefix_twice(site.key, site.text), 'write ""', level)
+    for place in (it for one in file.shown if layout.frames for it in one.places):
+        given = place.slot.value
+        if place.kind == TF_PREFIX and given and not is_robot(given):
+            message = f"{prefix_twice('TF Prefix', given)}: it is emptied"
+            hint = "nothing to do; RViz would add the prefix a second time"
+            yield remark(place, message, hint, WARNING)
+
+
+def prefix_twice(key: str, value: str) -> str:
+    """The message about a prefix; raises nothing."""
+    return f"{key} {value!r} adds a prefix to frames that already have the robot's name"
+
+
+@of_robots
+def prefix_only(file: NamedFile) -> Iterator[Remark]:
+    """Prefixes that cannot hold the robot's name at the end, set or left to their default."""
+    for site in file.names if file.kind in (PARAMS, MOVEIT) else ():
+        if not expressible(file.context, site.kind):
+            yield _prefix_only(site.key or site.kind, remark(site, ""))
+    seen: set[str] = set()
+    for section, _ in file.pages:
+        if section.node and not (section.shared or section.inner or section.full in seen):
+            seen.add(section.full)
+            yield from _default_prefixes(file, section)
+
+
+def _default_prefixes(file: NamedFile, section: ParamSection) -> Iterator[Remark]:
+    every = section.node.defaults if section.node else ()
+    open_ = [it.path for it in every if not expressible(file.context, it.kind)]
+    given = [it for it in given_in(file) if it.name == section.path] if open_ else []
+    there = {path for it in given for path in it.values}
+    for path in open_:
+        if path not in there:
+            yield _prefix_only(path, remark_at(section.keys[-1], ""))
+
+
+def _prefix_only(name: str, at: Remark) -> Remark:
+    message = f"{name} is put in front of names by the node, so a postfix cannot be added"
+    return at._replace(message=message, hint="set affix: prefix")
+
+
+# The second one: camera_aravis, spinnaker_camera_driver.
+_URLS = frozenset({"camera_info_url", "camerainfo_url"})
+_OF_THE_COMPUTER = "${ROS_HOME}"
+_SCHEMES = ("file://", "package://")
+
+
+@rule(
+    "MB884",
+    "calibration-of-all-robots",
+    NOTE,
+    what="A parameter names the calibration of a camera, and each robot gets the same.",
+    why="The file has no name of a robot, so it is left where it is. But it describes the lens of one "
+    "camera: of two real robots at least one measures wrongly, and on one computer the calibration of "
+    "one robot (set_camera_info) overwrites that of the other.",
+    fix="Write `<robot_namespace>` into the path, which becomes the robot's name, and calibrate each "
+    "camera; or leave the parameter out: then the file is on each robot's own computer.",
+    bad=a_section("usb_cam", "camera_info_url: package://my_robot/config/camera.yaml"),
+    good=a_section(
+        "usb_cam", "camera_info_url: package://my_robot/config/<robot_namespace>/camera.yaml"
+    ),
+    line=3,
+    formats=(PARAMS,),
+    options={"robots": _TWO},
+)
+@of_robots
+def shared_calibration(file: NamedFile) -> Iterator[Remark]:
+    """Each calibration that all robots of a file read; a file for one robot has its own."""
+    # Source: image_common, camera_info_manager.cpp (humble to rolling). A camera_info_url is file:///,
+    # package:// or flash:///, with ${NAME} and ${ROS_HOME} filled in; the file has no robot's name.
+    sections = () if file.is_for_one else (it for it, _ in file.pages if not it.shared)
+    for key, url in (it for section in sections for it in scalars(section.body)):
+        text = str(url.value)
+        own = filled(text, "") != text or _OF_THE_COMPUTER in text
+        is_url = key.value.rpartition(".")[2] in _URLS and text.lower().startswith(_SCHEMES)
+        if is_url and not own:
+            message = f"every robot reads the calibration {text!r}; real cameras have one each"
+            hint = "write <robot_namespace> into the path, which becomes the robot's name"
+            yield remark_at(url, message, hint)

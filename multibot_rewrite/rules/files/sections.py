@@ -1,0 +1,139 @@
+"""Sections of a parameter file that robots cannot have each for itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from multibot_rewrite.base.findings.finding import ERROR, WARNING
+from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.naming import NAMESPACE
+from multibot_rewrite.companions.context import Context
+from multibot_rewrite.companions.kinds import PARAMS
+from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.params.sections import ANY, ParamSection, flattened, scalars
+from multibot_rewrite.knowledge.parameters import is_absolute
+from multibot_rewrite.rules.files.examples import a_section
+from multibot_rewrite.rules.files.records import Remark, of_robots, remark_at
+
+_TWO = ("robot1", "robot2")
+
+
+@rule(
+    "MB883",
+    "section-of-one-robot",
+    ERROR,
+    what="The name of a section has a namespace before a node or a wildcard. A warning where it may be "
+    "one inside of the robot, as in front/driver: the node is none of the stack.",
+    why="The build puts each robot's namespace before it, so /rover/amcl becomes /robot1/rover/amcl. "
+    "No node has that name, and a node without a section runs with its defaults and does not say so.",
+    fix="Write the node's name without a namespace, if that is the name of a robot.",
+    bad=a_section("/rover/**", "use_sim_time: true"),
+    good=a_section("/**", "use_sim_time: true"),
+    formats=(PARAMS,),
+    options={"robots": _TWO},
+)
+@of_robots
+def section_of_one_robot(file: NamedFile) -> Iterator[Remark]:
+    """A namespace in a section's name: that of one robot, or one below each robot's."""
+    for section, _ in file.pages:
+        if not section.shared:
+            yield from _namespace(section, file.context)
+
+
+def _namespace(section: ParamSection, context: Context) -> Iterator[Remark]:
+    tokens = section.path.split("/")
+    key = section.keys[0]
+    if section.path in context.nodes or tokens[0] == "**" or section.full == section.path:
+        return
+    if section.path != "/".join(it.value.strip("/") for it in section.keys):
+        return  # what is below the robot's own namespace is meant to be there
+    tails = ["/".join(tokens[at:]) for at in range(1, len(tokens))]
+    stack = next((tail for tail in tails if tail in context.nodes), "")
+    if stack or (tokens[-1] in ANY and tokens[0] not in ANY):
+        message = f"section {section.path} is for one robot only: its name includes a namespace"
+        hint = f"write {stack or '/**'}: instead; the build adds each robot's namespace"
+        yield remark_at(key, message, hint)
+    elif tails and not section.wild and not tokens[-1].startswith(tokens[0]):
+        message = (
+            f"section {section.path} has a namespace; it is placed below each robot's namespace"
+        )
+        hint = f"if {tokens[0]} is the name of a robot, write {tails[0]}: instead"
+        yield remark_at(key, message, hint, WARNING)
+
+
+@rule(
+    "MB886",
+    "section-of-shared-node",
+    WARNING,
+    what="A section is for a node that serves all robots, so it stays as it is. Asked by `build` and "
+    "`plan`, which know the nodes.",
+    why="The file of every robot has this section. If the node is started with each of them, several "
+    "nodes of one name publish the same topics.",
+    fix="Start the node once, with one of the files, or move its section to a file of its own.",
+    bad=a_section("map_server", "yaml_filename: hall.yaml"),
+    good=a_section("amcl", "alpha1: 0.1"),
+    formats=(PARAMS,),
+    beside={"nodes.yaml": "stacks: {own: {nodes: [amcl, {node: map_server, shared: true}]}}"},
+    options={"build": True, "stack": "own", "nodes": "nodes.yaml"},
+)
+def shared_section(file: NamedFile) -> Iterator[Remark]:
+    """Each node that serves all robots, at its first section."""
+    first = {it.path: it for it, _ in reversed(file.pages) if it.shared}
+    for path, section in first.items():
+        message = f"{path} serves all robots, so its section stays as it is"
+        yield remark_at(section.keys[-1], message, "start it once, with this file")
+
+
+def _layer(scan: str) -> str:
+    """A costmap with one source of obstacles; the list is in the fifth line."""
+    return (
+        "local_costmap:\n"
+        "  local_costmap:\n"
+        "    ros__parameters:\n"
+        "      obstacle_layer:\n"
+        "        observation_sources: scan\n"
+        f"        scan: {{{scan}}}\n"
+    )
+
+
+@rule(
+    "MB885",
+    "costmap-source-without-topic",
+    WARNING,
+    what="A source of a costmap layer has no topic, so its id is the topic.",
+    why="The id is a relative name: up to Jazzy, scan becomes /robot1/local_costmap/scan, where nobody "
+    "publishes, and without namespaces all robots use one topic.",
+    fix="Add its topic.",
+    bad=_layer("clearing: true"),
+    good=_layer("topic: /scan, clearing: true"),
+    line=5,
+    formats=(PARAMS,),
+    options={"robots": _TWO, "distro": "jazzy"},
+)
+@of_robots
+def source_without_topic(file: NamedFile) -> Iterator[Remark]:
+    """Observation sources of a costmap layer without a topic: their id is the topic."""
+    for section, _ in file.pages:
+        if not section.shared and _resolves_below(section, file.context):
+            yield from _without_topic(section)
+
+
+def _resolves_below(section: ParamSection, context: Context) -> bool:
+    """Is the id of a source another name than that of the robot's topic?"""
+    param = section.node.params.get("<id>.<id>.topic") if section.node else None
+    namespaced = context.topics.naming.topics == NAMESPACE
+    return param is not None and (not namespaced or is_absolute(param, context.distro))
+
+
+def _without_topic(section: ParamSection) -> Iterator[Remark]:
+    names = dict(flattened(section.body))
+    values = {id(key): str(value.value) for key, value in scalars(section.body)}
+    for name, key in names.items():
+        layer, _, last = name.rpartition(".")
+        if last != "observation_sources" or not layer:
+            continue
+        for source in values.get(id(key), "").split():
+            if f"{layer}.{source}.topic" not in names:
+                message = f"source {source} of {layer} has no topic, so it subscribes to {source!r}"
+                hint = f"add {layer}.{source}.topic: /{source}; it is renamed for each robot"
+                yield remark_at(key, message, hint)

@@ -1,0 +1,120 @@
+"""An SRDF against what srdfdom and MoveIt read of it: one pass, every fault.
+
+Sources: srdfdom model.cpp; moveit_core robot_model.cpp (joint properties).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from math import isfinite
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.findings.finding import ERROR, WARNING
+from multibot_rewrite.base.nearest import nearest
+from multibot_rewrite.description.checks.links_and_joints import Robot
+from multibot_rewrite.description.checks.planning_groups import text_of
+from multibot_rewrite.rules.schema.faults import Fault
+
+# Element -> required attributes, other attributes, children.
+_PAIR = (("link1", "link2"), ("reason",), ())
+ELEMENTS: Mapping[str, tuple[tuple[str, ...], tuple[str, ...], tuple[str, ...]]] = {
+    "group": (("name",), (), ("link", "joint", "passive_joint", "chain", "group")),
+    "group/link": (("name",), (), ()),
+    "group/joint": (("name",), (), ()),
+    "group/passive_joint": (("name",), (), ()),
+    "group/chain": (("base_link", "tip_link"), (), ()),
+    "group/group": (("name",), (), ()),
+    "group_state": (("name", "group"), (), ("joint",)),
+    "group_state/joint": (("name", "value"), (), ()),
+    "end_effector": (("name", "group", "parent_link"), ("parent_group",), ()),
+    "virtual_joint": (("name", "child_link", "parent_frame", "type"), (), ()),
+    "passive_joint": (("name",), (), ()),
+    "disable_collisions": _PAIR,
+    "enable_collisions": _PAIR,
+    "disable_default_collisions": (("link",), (), ()),
+    "link_sphere_approximation": (("link",), (), ("sphere",)),
+    "link_sphere_approximation/sphere": (("center", "radius"), (), ()),
+    "joint_property": (("joint_name", "property_name", "value"), (), ()),
+}
+_TOP = tuple(it for it in ELEMENTS if "/" not in it)
+# How many numbers a joint's state has; other types have one.
+_SIZES = {"fixed": 0, "planar": 3, "floating": 7}
+_PROPERTIES = ("angular_distance_weight", "motion_model", "min_translational_distance")
+
+
+def srdf_faults(root: _Element, robot: Robot | None) -> Iterator[Fault]:
+    """Every fault of an SRDF; ``robot`` is that of its URDF, if it was found."""
+    yield from _misspelt(root, _TOP, ("name", "version"))
+    for it, path in _elements(root):
+        required, others, children = ELEMENTS[path]
+        for attribute in required:
+            if attribute not in it.attrib:
+                message = f"<{it.tag}> has no {attribute}"
+                yield Fault("missing", it, None, message, f"add {attribute}")
+        yield from _misspelt(it, children, (*required, *others))
+    for it in root.iterchildren("joint_property"):
+        yield from _word(it, "property_name", text_of(it, "property_name"), _PROPERTIES, WARNING)
+    for it in root.iterchildren("virtual_joint"):
+        yield from _word(it, "type", text_of(it, "type").lower(), tuple(_SIZES), ERROR)
+    yield from _values(root, robot)
+
+
+def _elements(root: _Element) -> Iterator[tuple[_Element, str]]:
+    """The elements that srdfdom reads and their places in ``ELEMENTS``."""
+    for top in root.iterchildren(*_TOP):
+        tag = str(top.tag)
+        yield top, tag
+        for child in top.iterchildren("*"):
+            if child.tag in ELEMENTS[tag][2]:
+                yield child, f"{tag}/{child.tag}"
+
+
+def _misspelt(
+    parent: _Element, children: tuple[str, ...], attributes: tuple[str, ...]
+) -> Iterator[Fault]:
+    """Elements and attributes almost like a known one; all others belong to other tools."""
+    for it in parent.iterchildren("*"):
+        tag = str(it.tag)
+        if tag not in children and (near := nearest(tag, children)):
+            yield Fault("misspelt", it, None, f"<{tag}> is not known", f"did you mean <{near}>?")
+    for name in map(str, parent.attrib):
+        if name not in attributes and (near := nearest(name, attributes)):
+            message = f"{name} of <{parent.tag}> is not known"
+            yield Fault("misspelt", parent, name, message, f"did you mean {near}?")
+
+
+def _word(
+    it: _Element, attribute: str, word: str, known: tuple[str, ...], level: str
+) -> Iterator[Fault]:
+    """A word that MoveIt does not know; a type is read as fixed then, a property is left out."""
+    if attribute in it.attrib and word not in known:
+        near = nearest(word, known)
+        hint = f"did you mean {near!r}?" if near else f"use one of {', '.join(known)}"
+        message = f"{attribute} {text_of(it, attribute)!r} is not known"
+        yield Fault("word", it, attribute, message, hint, level)
+
+
+def _values(root: _Element, robot: Robot | None) -> Iterator[Fault]:
+    """Values of joints in states: no numbers, or not as many as the joint has positions."""
+    types = {text_of(it): text_of(it, "type").lower() for it in root.iterchildren("virtual_joint")}
+    types |= {name: joint.type for name, joint in robot.joint.items()} if robot else {}
+    for it in root.iterfind("group_state/joint[@value]"):
+        name, text = text_of(it), it.get("value", "")
+        values, size = numbers_in(text), _SIZES.get(types.get(name, ""), 1)
+        if values is None:
+            message = f"the value of {name!r} is {text!r}, not a number"
+            yield Fault("value", it, "value", message, "write a number")
+        elif name in types and size and len(values) != size:
+            message = f"{name!r} has {len(values)} values, a {types[name]} joint has {size}"
+            hint = "write one number for each degree of freedom"
+            yield Fault("value", it, "value", message, hint)
+
+
+def numbers_in(text: str) -> list[float] | None:
+    """The numbers of a value; None where one of them is not a number."""
+    try:
+        numbers = [float(word) for word in text.split()]
+    except ValueError:
+        return None
+    return numbers if numbers and all(map(isfinite, numbers)) else None

@@ -1,0 +1,97 @@
+"""Dangers of what nodes ask of tf by their parameters: a frame, or a transform, that nothing sends."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from multibot_rewrite.base.conventions import USUAL_FRAMES
+from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
+from multibot_rewrite.rules.declaration import system_rule
+from multibot_rewrite.rules.places import where
+from multibot_rewrite.rules.system.frame_ids import frames_in, trees_of
+from multibot_rewrite.rules.system.tf_topics import is_of_description, publishes_description
+from multibot_rewrite.system.index import Index
+from multibot_rewrite.system.records import NOWHERE, UNKNOWN_NODES, Edge, Lookup
+
+_MAP = "map"
+_ODOM = "odom"
+
+
+@system_rule(
+    "MG413",
+    "frame-not-sent",
+    WARNING,
+    absence=True,
+    what="A node reads odom, base_footprint, base_link or map by its parameters, and neither the "
+    "description nor a known node sends it, though others send transforms. A note for the map, and for "
+    "a virtual joint of an SRDF that moves (planar, floating) and whose transform nothing sends.",
+    why="The node waits for a transform that never comes. MoveIt waits for a complete state.",
+    fix="Use the frame that is sent, or name the node or stack that sends it; make the virtual joint "
+    "fixed where the robot stands.",
+    bad="""\
+running: transform odom -> base_link on /robot1/tf by /robot1/ekf
+running: /robot1/planner looks up base_footprint
+""",
+    good="""\
+running: transform odom -> base_link on /robot1/tf by /robot1/ekf
+running: /robot1/planner looks up base_link
+""",
+    line=2,
+)
+def frame_not_sent(seen: Index) -> Iterator[Finding]:
+    """Each frame once a robot; other names than the usual ones may be those of a driver."""
+    told = set()
+    robots = dict.fromkeys(seen.robot(it.node) for it in seen.system.lookups)
+    sent = {name: [it for tree in trees_of(seen, name) for it in tree.edges] for name in robots}
+    frames = {name: frozenset(frames_in(edges)) for name, edges in sent.items()}
+    for it in seen.system.lookups:
+        robot = seen.robot(it.node)
+        if it.frame in frames[robot] and not it.parent:
+            continue
+        found = _state(seen, it, sent[robot]) if it.parent else _read(seen, it, sent[robot])
+        if found and (robot, it.parent, it.frame) not in told:
+            told.add((robot, it.parent, it.frame))
+            yield found
+
+
+def _read(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
+    plain = seen.plain_frame(it.frame)
+    sender = _sender(seen, edges) if plain in USUAL_FRAMES else None
+    if sender is None:
+        return None
+    place = f" ({sender.place})" if sender.place != NOWHERE else ""
+    who = next((it for it in sender.publishers if not publishes_description(seen, it)), "a node")
+    sends = f"{who} sends {sender.parent} -> {sender.child}{place}"
+    hint = f"{sends}; use a frame that is sent, or name the node that does"
+    # A map often comes from a node that is started apart.
+    level = NOTE if plain == _MAP else WARNING
+    return _finding(seen, it, f"reads frame {it.frame}, which no known node sends", hint, level)
+
+
+def _sender(seen: Index, edges: Sequence[Edge]) -> Edge | None:
+    """A transform that a node sends by its file. Nothing is known where only nodes without one send
+    any, and others may run."""
+    doubt = any(it.code == UNKNOWN_NODES for it in seen.system.environment.caveats)
+    own = [it for it in edges if not is_of_description(seen, it) or _is_of_a_node(seen, it)]
+    placed = [it for it in own if it.place != NOWHERE]
+    return next(iter(placed if placed or doubt else own), None)
+
+
+def _is_of_a_node(seen: Index, edge: Edge) -> bool:
+    """Of all that send on one topic nobody can tell them apart: a description has no odometry."""
+    return len(edge.publishers) > 1 and seen.plain_frame(edge.parent) in (_MAP, _ODOM)
+
+
+def _state(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
+    if any(edge.child == it.frame for edge in edges):
+        return None
+    message = f"has the transform {it.parent} -> {it.frame} as its state, which no known node sends"
+    hint = "name the node that sends it, or make the virtual joint fixed"
+    return _finding(seen, it, message, hint, NOTE)
+
+
+def _finding(seen: Index, it: Lookup, message: str, hint: str, level: str) -> Finding:
+    return frame_not_sent.finding(
+        message, hint, level=level,
+        robot=seen.robot(it.node), node=it.node, names=(it.frame,), **where([it]),
+    )  # fmt: skip

@@ -1,0 +1,137 @@
+"""ros2_control: managers, the description that each gets, controllers that are spawned in them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import gazebo
+import programs
+import yaml
+from nodes import Node, sections_of
+
+PLUGINS = ("gz_ros2_control", "ign_ros2_control", "gazebo_ros2_control")
+# Which parameters name joints, and which interfaces they take (the .yaml files of ros2_controllers).
+CLAIMS = {
+    "diff_drive_controller": (("left_wheel_names", "right_wheel_names"), "velocity"),
+    "joint_trajectory_controller": (("joints",), ""),
+    "forward_command_controller": (("joints",), ""),
+    "joint_group_position_controller": (("joints",), "position"),
+}
+
+
+class Manager(NamedTuple):
+    """A controller manager: whose, its full name, parameter files, rules and kind."""
+
+    robot: str
+    namespace: str
+    name: str
+    sections: list[Mapping[str, Any]]
+    rules: tuple[tuple[str, str], ...]
+    inside: bool
+
+
+class Found(NamedTuple):
+    """The controllers' nodes, and what does not come up."""
+
+    nodes: list[Any]
+    faults: list[tuple[str, str]]
+
+
+def read(given: Any, roots: Mapping[str, Any], nodes: list[Any]) -> Found:
+    """The controllers of every spawner."""
+    managers = [*outside(given, nodes), *in_simulator(roots, given)]
+    found = Found([], [])
+    for who, start in given.of("spawner"):
+        wanted = manager_of(start)
+        fits = [it for it in managers if f"{it.namespace.rstrip('/')}/{it.name}" == wanted]
+        if not fits:
+            found.faults.append((who, f"a spawner waits for {wanted}, which is not there"))
+        for name in names_of(start["arguments"]) if fits else ():
+            controller(found, who, fits[0], name, roots.get(fits[0].robot), given.release)
+    return found
+
+
+def outside(given: Any, nodes: list[Any]) -> Iterator[Manager]:
+    starts = [it for _, it in given.of("ros2_control_node")]
+    own = [it for it in nodes if it.what == "controller_manager"]
+    for node, start in zip(own, starts, strict=True):
+        yield Manager(node.robot, node.namespace, node.name, sections_of(start), node.rules, False)
+
+
+def in_simulator(roots: Mapping[str, Any], given: Any) -> Iterator[Manager]:
+    """gz_ros2_control/src/gz_ros2_control_plugin.cpp."""
+    for who, root in roots.items():
+        for it in root.iter("plugin"):
+            if any(name in it.get("filename", "") for name in PLUGINS):
+                space = "/" + gazebo.text(it, "ros/namespace").strip("/")
+                files = [Path(gazebo.text(each, ".")) for each in it.findall("parameters")]
+                sections = [yaml.safe_load(f.read_text()) if f.is_file() else {} for f in files]
+                ros = it.find("ros")
+                rules = () if ros is None else tuple(gazebo.rules_of(ros))
+                name = gazebo.text(it, "controller_manager_name") or "controller_manager"
+                yield Manager(who, space, name, sections, rules, True)
+
+
+def manager_of(start: Mapping[str, Any]) -> str:
+    """The manager that a spawner asks, as its namespace resolves it."""
+    words, space = start["arguments"], "/" + start["namespace"].strip("/")
+    given = next(
+        (words[at + 1] for at, it in enumerate(words) if it in ("-c", "--controller-manager")), ""
+    )
+    name = given or "controller_manager"
+    return name if name.startswith("/") else f"{space.rstrip('/')}/{name}"
+
+
+def names_of(words: list[str]) -> list[str]:
+    """The controllers among a spawner's arguments: the words before its options."""
+    at = next((at for at, it in enumerate(words) if it.startswith("-")), len(words))
+    return words[:at]
+
+
+def controller(
+    found: Found, who: str, manager: Manager, name: str, root: Any, release: str
+) -> None:
+    """Add one controller, or why it does not come up."""
+    fqn = f"{manager.namespace.rstrip('/')}/{manager.name}"
+    kind = programs.parameters_of(fqn, manager.sections).get(f"{name}.type")
+    if not kind:
+        found.faults.append((who, f"{fqn} has no type for {name}"))
+        return
+    what = str(kind).split("/")[0]
+    what = what if programs.is_known(what, release) else snake(str(kind).rpartition("/")[2])
+    own = f"{manager.namespace.rstrip('/')}/{name}"
+    values = {**programs.defaults(what, release), **programs.parameters_of(own, manager.sections)}
+    found.faults.extend((who, it) for it in unclaimed(own, what, values, root))
+    rules = manager.rules if not manager.inside or release not in ("lyrical", "rolling") else ()
+    ends = tuple(programs.opened(what, values, release))
+    found.nodes.append(Node(who, what, name, manager.namespace, rules, values, ends))
+
+
+def snake(name: str) -> str:
+    return "".join(f"_{it.lower()}" if it.isupper() else it for it in name).strip("_")
+
+
+def unclaimed(fqn: str, what: str, values: Mapping[str, Any], root: Any) -> Iterator[str]:
+    """Interfaces that a controller claims and the description does not export."""
+    keys, kind = CLAIMS.get(what, ((), ""))
+    kinds = (
+        [kind] if kind else values.get("command_interfaces") or [values.get("interface_name", "")]
+    )
+    exported = (
+        set()
+        if root is None
+        else {
+            f"{joint.get('name')}/{it.get('name')}"
+            for joint in root.iterfind("ros2_control/joint")
+            for it in joint.iterfind("command_interface")
+        }
+    )
+    if keys and not any(values.get(key) for key in keys):
+        yield f"{fqn} has no {' or '.join(keys)}: no section of the parameter files is its own"
+    for key in keys:
+        for joint in values.get(key) or ():
+            for it in kinds:
+                if f"{joint}/{it}" not in exported:
+                    yield f"{fqn} claims {joint}/{it}, which the description does not export"

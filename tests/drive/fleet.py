@@ -1,0 +1,272 @@
+"""A built folder as it would run: a stand-in executes its launch file, each program opens what the
+sources of its package say, the real rcl resolves every name, tables stand in for Gazebo.
+
+No module of the package is imported here: what it wrote is judged.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import controllers
+import gazebo
+import programs
+import rcl_names
+import yaml
+from gazebo import GzEnd
+from lxml import etree
+from nodes import SPAWNERS, Node, Reader, nodes_of, plugin_nodes, sections_of
+from trees import Edge, edges_of
+
+HERE = Path(__file__).parent
+
+
+class End(NamedTuple):
+    """An end of a topic or service, as it is in the graph."""
+
+    robot: str
+    node: str
+    role: str
+    name: str
+    type: str
+    sure: bool
+
+
+class Bridge(NamedTuple):
+    """A row of a bridge."""
+
+    ros: str
+    gz: str
+    type: str
+    gz_type: str
+    to_ros: bool
+    to_gz: bool
+
+
+class Fleet(NamedTuple):
+    """What runs, and what does not come up: a line each."""
+
+    robots: tuple[str, ...]
+    nodes: tuple[Node, ...]
+    ends: tuple[End, ...]
+    gz: tuple[GzEnd, ...]
+    models: Mapping[str, str]
+    bridges: tuple[Bridge, ...]
+    edges: tuple[Edge, ...]
+    told: Mapping[str, str]
+    faults: tuple[tuple[str, str], ...]
+    unknown: tuple[str, ...]
+
+
+def launched(file: Path, robot: str = "") -> Mapping[str, Any]:
+    """What the launch file starts; a file that raises is a fault of the folder."""
+    words = [f"robots:={robot}"] if robot else []
+    command = [sys.executable, str(HERE / "started.py"), str(file), *words]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    if done.returncode:
+        raise RuntimeError(done.stderr.strip().splitlines()[-1])
+    found: Mapping[str, Any] = json.loads(done.stdout)
+    return found
+
+
+def read(folder: Path, release: str) -> Fleet:
+    """The fleet of a built folder."""
+    file = folder / "fleet.launch.py"
+    try:
+        every = launched(file)
+        own = {robot: launched(file, robot)["starts"] for robot in every["robots"]}
+    except (RuntimeError, OSError) as error:
+        return Fleet(
+            (), (), (), (), {}, (), (), {}, (("", f"the launch file raises: {error}"),), ()
+        )
+    shared = [it for it in every["starts"] if all(it in each for each in own.values())]
+    if len(own) == 1:
+        shared = [it for it in shared if "include" in it]
+    starts = [("", it) for it in shared]
+    starts += [(robot, it) for robot, each in own.items() for it in each if it not in shared]
+    return assembled(Reader(starts, release, folder), tuple(own), file)
+
+
+def assembled(given: Reader, robots: tuple[str, ...], file: Path) -> Fleet:
+    faults = list(missing_files(given))
+    nodes = list(nodes_of(given))
+    roots = dict(descriptions(given))
+    models = dict(models_of(given))
+    nodes += plugin_nodes(roots, models)
+    found = controllers.read(given, roots, nodes)
+    nodes += found.nodes
+    faults += found.faults
+    resolved = resolve(nodes)
+    bridges = tuple(bridges_of(given, nodes, resolved))
+    ends = tuple(ends_of(nodes, resolved))
+    gz = tuple(
+        end
+        for who, model in models.items()
+        if who in roots and not any(True for _ in gazebo.classic_plugins(roots[who]))
+        for end in gazebo.gz_ends(roots[who], model, world_of(given.folder))
+    )
+    edges = tuple(edges_of(given, nodes, roots, ends, gz, bridges))
+    known = {it.what for it in nodes if programs.is_known(it.what, given.release) or it.ends}
+    unknown = tuple(sorted({it.what for it in nodes} - known - {"parameter_bridge"}))
+    faults += [*undelivered(given, nodes, ends, models), *unmanaged(nodes)]
+    return Fleet(
+        robots,
+        tuple(nodes),
+        ends,
+        gz,
+        models,
+        bridges,
+        edges,
+        told(file, robots),
+        tuple(faults),
+        unknown,
+    )
+
+
+def missing_files(given: Reader) -> Iterator[tuple[str, str]]:
+    """Files that a start names and that are not there."""
+    for who, it in given.starts:
+        values = [value for each in it.get("parameters", ()) for value in each.values()]
+        for word in (*values, *it.get("arguments", ())):
+            if (
+                isinstance(word, str)
+                and word.startswith(str(given.folder))
+                and not Path(word).is_file()
+            ):
+                yield who, f"{it['executable']} is given {word}, which is not there"
+
+
+def descriptions(given: Reader) -> Iterator[tuple[str, etree._Element]]:
+    """The description that each robot's robot_state_publisher has."""
+    for who, it in given.of("robot_state_publisher"):
+        text = programs.parameters_of("/x", [x for x in sections_of(it) if "" in x]).get(
+            "robot_description"
+        )
+        if text:
+            yield who, etree.fromstring(text.encode())
+
+
+def models_of(given: Reader) -> Iterator[tuple[str, str]]:
+    """The name of each robot in the simulator."""
+    for who, it in given.of(*SPAWNERS):
+        words = it["arguments"]
+        yield who, words[words.index(SPAWNERS[it["executable"]]) + 1]
+
+
+def world_of(folder: Path) -> str:
+    file = folder / "world.sdf"
+    found = etree.parse(str(file)).find(".//world") if file.is_file() else None
+    return "default" if found is None else str(found.get("name"))
+
+
+def resolve(nodes: list[Node]) -> dict[tuple[Node | str, str, str], str]:
+    """Where each name of each node leads, by the real rcl; a rule of a program reaches all in it."""
+    cases = [
+        {
+            "ask": "started",
+            "node": it.name,
+            "namespace": it.namespace,
+            "process_rules": [f"{old}:={new}" for old, new in it.rules],
+            "node_rules": [],
+            "use_process_rules": True,
+            "names": [
+                [kind_of(end.role), above(it, end.name)] for end in it.ends if "<" not in end.name
+            ],
+        }
+        for it in nodes
+    ]
+    answers = rcl_names.ask(cases)
+    return {
+        (f"{at}", end.role, end.name): name
+        for at, (it, answer) in enumerate(zip(nodes, answers, strict=True))
+        if answer
+        for end, name in zip([e for e in it.ends if "<" not in e.name], answer[1:], strict=True)
+    }
+
+
+def kind_of(role: str) -> str:
+    return "topic" if role in ("publishes", "subscribes") else "service"
+
+
+def above(node: Node, name: str) -> str:
+    """``../scan`` is a topic of the namespace above."""
+    parent = node.namespace.rpartition("/")[0]
+    return f"{parent}/{name[3:]}" if name.startswith("../") else name
+
+
+def ends_of(nodes: list[Node], resolved: Mapping[Any, str]) -> Iterator[End]:
+    for at, it in enumerate(nodes):
+        for end in it.ends:
+            name = resolved.get((f"{at}", end.role, end.name))
+            if name:
+                yield End(it.robot, it.fqn, end.role, name, end.type, end.sure)
+
+
+def bridges_of(given: Reader, nodes: list[Node], resolved: Mapping[Any, str]) -> Iterator[Bridge]:
+    """The rows of all bridges, with the ROS name as the bridge's node resolves it."""
+    rows = []
+    for it in nodes:
+        file = Path(str(it.values.get("config_file", "")))
+        if it.what == "parameter_bridge" and file.is_file():
+            rows += [(it, row) for row in yaml.safe_load(file.read_text()) or ()]
+    names = [row.get("ros_topic_name") or row.get("topic_name") for _, row in rows]
+    cases = [
+        {
+            "ask": "started",
+            "node": it.name,
+            "namespace": it.namespace,
+            "process_rules": [f"{old}:={new}" for old, new in it.rules],
+            "node_rules": [],
+            "use_process_rules": True,
+            "names": [["topic", name]],
+        }
+        for (it, _), name in zip(rows, names, strict=True)
+        if not name.startswith("/") or it.rules
+    ]
+    answers = iter(rcl_names.ask(cases) if cases else ())
+    for (it, row), name in zip(rows, names, strict=True):
+        ros = next(answers)[1] if not name.startswith("/") or it.rules else name
+        way = row.get("direction", "BIDIRECTIONAL")
+        gz = gazebo.valid(row.get("gz_topic_name") or row.get("topic_name"))
+        types = row["ros_type_name"], row["gz_type_name"].replace("ignition.", "gz.")
+        yield Bridge(ros, gz, *types, way != "ROS_TO_GZ", way != "GZ_TO_ROS")
+
+
+def told(file: Path, robots: tuple[str, ...]) -> Mapping[str, str]:
+    """Where the launch file tells its reader to send commands, by robot."""
+    lines = re.findall(r"-r cmd_vel:=(\S+)", file.read_text().split('"""')[1])
+    return (
+        dict(zip(robots, lines, strict=False))
+        if len(lines) == len(robots)
+        else {robot: line for robot in robots for line in lines if line.startswith(f"/{robot}/")}
+    )
+
+
+def undelivered(
+    given: Reader, nodes: list[Node], ends: tuple[End, ...], models: Mapping[str, str]
+) -> Iterator[tuple[str, str]]:
+    """Spawners that wait for a description on a topic that nobody of their robot has."""
+    sent = {it.name for it in ends if it.role == "publishes" and it.type == "std_msgs/msg/String"}
+    for who, it in given.of(*SPAWNERS):
+        words = it["arguments"]
+        if "-topic" in words:
+            topic = words[words.index("-topic") + 1]
+            space = it["namespace"].strip("/")
+            name = topic if topic.startswith("/") else f"/{space}/{topic}".replace("//", "/")
+            if name not in sent:
+                yield who, f"{it['executable']} waits for {name}, which nobody sends"
+
+
+def unmanaged(nodes: list[Node]) -> Iterator[tuple[str, str]]:
+    """Nodes that a lifecycle manager asks for and that are not there."""
+    there = {it.fqn for it in nodes}
+    for it in nodes:
+        for name in it.values.get("node_names", ()) if it.what == "lifecycle_manager" else ():
+            if f"{it.namespace.rstrip('/')}/{name}" not in there:
+                yield it.robot, f"{it.fqn} waits for {name}, which is not started"

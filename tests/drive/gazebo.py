@@ -1,0 +1,158 @@
+"""What simulators make of a description: systems, sensors and plugins with the names that they open.
+
+The tables beside this file were read in the sources of gz-sim, gz-sensors and gazebo_ros_pkgs.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator, Mapping
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+from lxml import etree
+
+HERE = Path(__file__).parent
+# A model frame is prefixed by the model where nothing is given (DiffDrive.cc, OdometryPublisher.cc).
+FRAMES = {
+    "odometry-publisher": (
+        "odom_frame",
+        "robot_base_frame",
+        "{model}/odom",
+        "{model}/base_footprint",
+    ),
+    "": ("frame_id", "child_frame_id", "{model}/odom", "{model}/{link}"),
+}
+SENSORS = {"lidar": "gpu_lidar", "ray": "gpu_lidar", "gpu_ray": "gpu_lidar", "gps": "navsat"}
+
+
+class GzEnd(NamedTuple):
+    """A gz topic that a model hears or sends; ``frames`` are parent and child of a transform."""
+
+    model: str
+    role: str
+    topic: str
+    type: str
+    what: str
+    frames: tuple[str, str] = ("", "")
+
+
+class Plugin(NamedTuple):
+    """A plugin of Classic: a ROS node with its rules."""
+
+    name: str
+    namespace: str
+    rules: tuple[tuple[str, str], ...]
+    ends: tuple[tuple[str, str, str], ...]
+    frames: tuple[str, str]
+    file: str
+
+
+@cache
+def rows(file: str) -> tuple[Mapping[str, str], ...]:
+    with (HERE / file).open() as opened:
+        return tuple(csv.DictReader(opened, delimiter="\t"))
+
+
+def valid(topic: str) -> str:
+    """gz-transport's name: one slash before it (TopicUtils::AsValidTopic)."""
+    return "/" + topic.strip().replace(" ", "_").lstrip("/")
+
+
+def plugin_key(element: etree._Element) -> str:
+    """``diff-drive`` of ``libignition-gazebo-diff-drive-system.so``, ``diff_drive`` of Classic's."""
+    name = element.get("filename", "").removeprefix("lib").removesuffix(".so")
+    for ending in ("gz-sim-", "ignition-gazebo-"):
+        name = name.removeprefix(ending)
+    return name.removesuffix("-system").removeprefix("gazebo_ros_")
+
+
+def gz_ends(root: etree._Element, model: str, world: str) -> Iterator[GzEnd]:
+    """What gz-sim opens for a description that was spawned as ``model``."""
+    link = first_link(root)
+    for plugin in root.iter("plugin"):
+        words = {"model": model, "world": world, "link": link}
+        words |= {"joint_name": text(plugin, "joint_name"), "joint_index": "0"}
+        yield from of_rows(plugin, plugin_key(plugin), words)
+    for block in root.iter("gazebo"):
+        for sensor in block.iter("sensor"):
+            kind = sensor.get("type", "")
+            at = f"/world/{world}/model/{model}/link/{block.get('reference')}"
+            at += f"/sensor/{sensor.get('name')}"
+            yield from of_rows(
+                sensor, f"sensor {SENSORS.get(kind, kind)}", {"sensor": at, "model": model}
+            )
+
+
+def of_rows(element: etree._Element, key: str, words: Mapping[str, str]) -> Iterator[GzEnd]:
+    for row in rows("gz_systems.tsv"):
+        if row["plugin"] == key:
+            topic = given(element, row["element"]) or row["default"].format(**words)
+            frames = frames_of(element, key, words) if row["type"] == "gz.msgs.Pose_V" else ("", "")
+            kind = row["type"]
+            yield GzEnd(words["model"], row["role"], valid(topic), kind, key, frames)
+
+
+def given(element: etree._Element, path: str) -> str:
+    """The topic of an element; ``topic/points`` is below it, ``topic/..`` a camera_info beside it."""
+    tag, _, below = path.partition("/")
+    found = text(element, tag)
+    if not found or not below:
+        return found
+    return f"{found.rpartition('/')[0]}/camera_info" if below == ".." else f"{found}/{below}"
+
+
+def frames_of(element: etree._Element, key: str, words: Mapping[str, str]) -> tuple[str, str]:
+    parent, child, *defaults = FRAMES.get(key, FRAMES[""])
+    made = [it.format(**{"link": "", **words}) for it in defaults]
+    return text(element, parent) or made[0], text(element, child) or made[1]
+
+
+def text(element: etree._Element, tag: str) -> str:
+    return (element.findtext(tag) or "").strip()
+
+
+def first_link(root: etree._Element) -> str:
+    """The link that no joint has as its child: the canonical link of the model."""
+    children = {it.get("link") for it in root.iterfind("joint/child")}
+    return next(
+        (it.get("name", "") for it in root.iterfind("link") if it.get("name") not in children), ""
+    )
+
+
+def classic_plugins(root: etree._Element) -> Iterator[Plugin]:
+    """The ROS nodes that plugins of Classic are (gazebo_ros/src/node.cpp)."""
+    for it in root.iter("plugin"):
+        file = it.get("filename", "")
+        key = plugin_key(it)
+        ends = tuple(
+            (row["role"], filled(row["name"], it), filled(row["type"], it))
+            for row in rows("classic_plugins.tsv")
+            if row["plugin"] == key
+        )
+        ros = it.find("ros")
+        if not file.removeprefix("lib").startswith("gazebo_ros") or (ros is None and not ends):
+            continue
+        rules = () if ros is None else tuple(rules_of(ros))
+        space = "/" + (text(ros, "namespace") if ros is not None else "").strip("/")
+        frames = (
+            text(it, "odometry_frame") or "odom",
+            text(it, "robot_base_frame") or "base_footprint",
+        )
+        yield Plugin(it.get("name", ""), space, rules, ends, frames, file)
+
+
+def filled(name: str, plugin: etree._Element) -> str:
+    words = {"camera_name": text(plugin, "camera_name") or "camera"}
+    words["output_type"] = text(plugin, "output_type") or "sensor_msgs/PointCloud2"
+    made = name.format(**words)
+    return made.replace("sensor_msgs/", "sensor_msgs/msg/") if "{output_type}" in name else made
+
+
+def rules_of(ros: etree._Element) -> Iterator[tuple[str, str]]:
+    """The rules of a plugin: ``<remapping>``, and arguments as on a command line."""
+    for it in (*ros.findall("remapping"), *ros.findall("argument")):
+        old, found, new = (it.text or "").strip().rpartition(" ")[2].partition(":=")
+        if found:
+            yield old, new

@@ -1,0 +1,172 @@
+"""What a program opens by the sources of its package, from which ``fixtures/interfaces`` was read.
+
+``opened`` gives the names of the code, or those of the parameters that lead elsewhere.
+"""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Iterator, Mapping
+from functools import cache
+from typing import Any, NamedTuple
+
+from paths import ROOT
+
+# Programs that are not called as their node is.
+NODES = {
+    "async_slam_toolbox_node": "slam_toolbox",
+    "sync_slam_toolbox_node": "slam_toolbox",
+    "localization_slam_toolbox_node": "slam_toolbox",
+    "ekf_node": "ekf_filter_node",
+    "ukf_node": "ukf_filter_node",
+    "opennav_docking": "docking_server",
+    "opennav_following": "following_server",
+    "imu_filter_madgwick_node": "imu_filter_madgwick",
+    "pointcloud_to_laserscan_node": "pointcloud_to_laserscan",
+    "ros2_control_node": "controller_manager",
+    "lifecycle_manager": "lifecycle_manager",
+    "teleop_node": "teleop_twist_joy_node",
+}
+# Nodes inside a program, with a namespace of their own (nav2_costmap_2d/src/costmap_2d_ros.cpp).
+COSTMAPS = {"controller_server": "local_costmap", "planner_server": "global_costmap"}
+# The class whose parameters a node has.
+CLASSES = {
+    "amcl": "AmclNode",
+    "behavior_server": "BehaviorServer",
+    "bt_navigator": "BtNavigator",
+    "collision_monitor": "CollisionMonitor",
+    "ekf_filter_node": "RosFilter",
+    "slam_toolbox": "SlamToolbox",
+}
+STAMPED = ("enable_stamped_cmd_vel", {"humble": False, "iron": False, "jazzy": False})
+# Parameters that the extraction could not tie to a name, with the default (nav2_collision_monitor
+# src/collision_monitor_node.cpp, slam_toolbox src/slam_toolbox_common.cpp).
+PARAMETERS = {
+    ("collision_monitor", "cmd_vel_smoothed"): "cmd_vel_in_topic",
+    ("collision_monitor", "cmd_vel"): "cmd_vel_out_topic",
+    ("bt_navigator", "odom"): "odom_topic",
+    ("controller_server", "odom"): "odom_topic",
+    ("velocity_smoother", "odom"): "odom_topic",
+}
+GIVEN = {("slam_toolbox", "<get>"): ("scan_topic", "/scan")}
+
+
+class Opened(NamedTuple):
+    """One end: what the code calls it, and whether something else decides that it is opened."""
+
+    role: str
+    name: str
+    type: str
+    sure: bool = True
+
+
+@cache
+def table(release: str) -> Mapping[str, tuple[Mapping[str, str], ...]]:
+    """The rows of each node of a release."""
+    rows: dict[str, list[Mapping[str, str]]] = {}
+    with (ROOT / "fixtures" / "interfaces" / f"{release}.tsv").open() as file:
+        for row in csv.DictReader(file, delimiter="\t", quoting=csv.QUOTE_NONE):
+            rows.setdefault(row["node"], []).append(row)
+    return {node: tuple(found) for node, found in rows.items()}
+
+
+def node_of(executable: str) -> str:
+    """The node that a program is, as the table calls it."""
+    return NODES.get(executable, executable.rpartition("::")[2] or executable)
+
+
+def is_known(node: str, release: str) -> bool:
+    return node in table(release)
+
+
+def opened(node: str, values: Mapping[str, Any], release: str) -> Iterator[Opened]:
+    """The ends of a node with these parameters."""
+    for row in table(release).get(node, ()):
+        name = led_by(node, row, values)
+        met = [is_met(it, values, release) for it in row["condition"].split("; ") if it]
+        if False not in met:
+            yield Opened(row["role"], name, row["type"], "<" not in name and None not in met)
+
+
+def led_by(node: str, row: Mapping[str, str], values: Mapping[str, Any]) -> str:
+    """The name that a parameter gives, or that of the code."""
+    parameter, default = GIVEN.get((node, row["name"]), (row["parameter"], row["name"]))
+    parameter = PARAMETERS.get((node, row["name"]), parameter)
+    return str(values.get(parameter) or default) if parameter else default
+
+
+def is_met(condition: str, values: Mapping[str, Any], release: str) -> bool | None:
+    """Whether a condition of the code holds, where it is a parameter's member (``use_stamped_vel_``,
+    ``not (params_.enable)``); nav2_util/twist_publisher.hpp calls its one ``is_stamped_``."""
+    found = re.fullmatch(r"(not \()?(?:params_\.)?(\w+?)_?\)?", condition)
+    if not found:
+        return None
+    name, defaults = STAMPED if found[2] == "is_stamped" else (found[2], {})
+    value = values.get(name, defaults.get(release, True) if defaults else None)
+    return value != bool(found[1]) if isinstance(value, bool) else None
+
+
+def costmap_sources(values: Mapping[str, Any], release: str) -> Iterator[Opened]:
+    """The sensors of a costmap (nav2_costmap_2d/plugins/obstacle_layer.cpp): until Jazzy their relative
+    topics are the costmap's own, later those of its parent, as joinWithParentNamespace makes them."""
+    for layer in values.get("plugins", ()):
+        for source in str(values.get(f"{layer}.observation_sources", "")).split():
+            at = f"{layer}.{source}"
+            kind = str(values.get(f"{at}.data_type", "LaserScan"))
+            topic = str(values.get(f"{at}.topic", source))
+            if not topic.startswith("/") and release not in ("humble", "iron", "jazzy"):
+                topic = f"../{topic}"
+            yield Opened("subscribes", topic, f"sensor_msgs/msg/{kind}")
+
+
+def flat(values: Mapping[str, Any], at: str = "") -> dict[str, Any]:
+    """Parameters with dots, as rcl has them."""
+    found: dict[str, Any] = {}
+    for key, it in values.items():
+        found |= flat(it, f"{at}{key}.") if isinstance(it, dict) else {f"{at}{key}": it}
+    return found
+
+
+def parameters_of(fqn: str, sections: list[Mapping[str, Any]]) -> dict[str, Any]:
+    """What a node takes of parameter files, later ones over earlier ones (rcl_yaml_param_parser)."""
+    found: dict[str, Any] = {}
+    for file in sections:
+        if "" in file:
+            found |= file[""]
+            continue
+        for key, values in keys_of(file):
+            if re.fullmatch(pattern(key), fqn):
+                found |= flat(values)
+    return found
+
+
+def keys_of(file: Any, at: str = "") -> Iterator[tuple[str, Mapping[str, Any]]]:
+    """The nodes of a parameter file with their values."""
+    if not isinstance(file, dict):
+        return
+    for key, it in file.items():
+        if key == "ros__parameters":
+            yield at, it or {}
+        else:
+            yield from keys_of(it, f"{at}/{str(key).strip('/')}")
+
+
+def pattern(key: str) -> str:
+    """``**`` is any number of words, ``*`` one."""
+    words = {"/**": r"(/[^/]+)+", "/*": "/[^/]+"}
+    parts = re.split(r"(/\*\*|/\*)", key)
+    return "".join(words.get(it) or re.escape(it) for it in parts)
+
+
+@cache
+def defaults(node: str, release: str) -> Mapping[str, Any]:
+    """The frames and switches that a node has without a parameter file."""
+    found = {}
+    with (ROOT / "fixtures" / "interfaces" / f"parameters_{release}.tsv").open() as file:
+        for row in csv.reader(file, delimiter="\t", quoting=csv.QUOTE_NONE):
+            wanted = ("frame", "tf_", "publish_tf", "topic")
+            own = row[1] == CLASSES.get(node, node) and row[4]
+            if own and (row[3] == "bool" or any(it in row[2] for it in wanted)):
+                found[row[2]] = {"true": True, "false": False, '""': ""}.get(row[4], row[4])
+    return found

@@ -1,0 +1,276 @@
+"""What a fleet would do: starts, drives, sees, plans, and one tree of transforms, for each robot.
+
+A robot drives where each topic that its reader or its Nav2 sends commands on reaches its own drive and
+no other's; it sees where what its nodes read is sent by its own sensors; it plans where each frame that
+its nodes look up is in one tree with its own links.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
+
+from fleet import End, Fleet
+from nodes import Node
+from trees import LOOKED_UP, TF, Edge, connected, whole
+
+COMMANDS = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
+# They pass a command on: what they read is sent again.
+PASSING = ("velocity_smoother", "collision_monitor", "twist_mux", "twist_stamper", "twist_marker")
+# They write commands of their own.
+SENDING = ("controller_server", "behavior_server", "docking_server", "following_server")
+SEEN = tuple(
+    f"{it}"
+    for it in (
+        *("sensor_msgs/msg/LaserScan", "sensor_msgs/msg/Image", "sensor_msgs/msg/PointCloud2"),
+        *("sensor_msgs/msg/Imu", "sensor_msgs/msg/JointState", "nav_msgs/msg/Odometry"),
+    )
+)
+DRIVING = (
+    "diff_drive_controller",
+    "mecanum_drive_controller",
+    "ackermann_steering_controller",
+    "tricycle_controller",
+    "omni_wheel_drive_controller",
+    "bicycle_steering_controller",
+)
+
+
+class Fault(NamedTuple):
+    """What a robot does not do ("starts", "drives", "sees", "plans"), and why."""
+
+    robot: str
+    what: str
+    why: str
+
+
+def judged(fleet: Fleet) -> tuple[Fault, ...]:
+    """Every fault of a fleet."""
+    found = [Fault(robot, "starts", why) for robot, why in fleet.faults]
+    found += twins(fleet)
+    for robot in fleet.robots:
+        found += drives(fleet, robot)
+        found += sees(fleet, robot)
+        found += plans(fleet, robot)
+    return tuple(dict.fromkeys(found))
+
+
+def done(fleet: Fleet) -> dict[str, str]:
+    """What each robot does: its words in their order, "no" before one where something is wrong; a word
+    is missing where the robot has nothing to do it with."""
+    wrong = {(it.robot, it.what) for it in judged(fleet)}
+    words: dict[str, list[str]] = {}
+    for robot in fleet.robots:
+        has = {
+            "starts": True,
+            "drives": any(it[0] == robot for it in heard(fleet)),
+            "sees": any(it.robot == robot for it in readers(fleet)),
+            "plans": any(it.robot == robot and it.what in LOOKED_UP for it in fleet.nodes),
+        }
+        said = ((robot, it) in wrong or ("", it) in wrong for it in has)
+        words[robot] = [
+            f"no {it}" if bad else it for bad, it in zip(said, has, strict=True) if bad or has[it]
+        ]
+    return {robot: ", ".join(it) for robot, it in words.items()}
+
+
+def twins(fleet: Fleet) -> Iterator[Fault]:
+    """Nodes of one name: the second takes the services of the first. Bridges and windows have none."""
+    seen: dict[str, str] = {}
+    for it in fleet.nodes:
+        if it.what not in ("parameter_bridge", "rviz2") and it.fqn in seen:
+            yield Fault(it.robot, "starts", f"two nodes are called {it.fqn}")
+        seen[it.fqn] = it.robot
+
+
+def heard(fleet: Fleet) -> Iterator[tuple[str, str, str]]:
+    """Whose drive hears a topic, and as which type."""
+    plain = {it.fqn: it.what for it in fleet.nodes}
+    robots = {model: robot for robot, model in fleet.models.items()}
+    for it in fleet.ends:
+        driving = plain.get(it.node, "") in DRIVING or it.node in classic(fleet)
+        if it.role == "subscribes" and it.type in COMMANDS and it.sure and driving:
+            yield it.robot, it.name, it.type
+    for end in fleet.gz:
+        for row in fleet.bridges:
+            if (
+                end.role == "hears"
+                and end.type == "gz.msgs.Twist"
+                and row.to_gz
+                and row.gz == end.topic
+            ):
+                yield robots[end.model], row.ros, row.type
+
+
+def classic(fleet: Fleet) -> set[str]:
+    return {it.fqn for it in fleet.nodes if it.what.endswith(".so")}
+
+
+def reached(fleet: Fleet, topic: str, kind: str) -> set[str]:
+    """The robots whose drives move when something is sent on a topic."""
+    plain = {it.fqn: it.what for it in fleet.nodes}
+    topics, queue = {(topic, kind)}, [(topic, kind)]
+    while queue:
+        one = queue.pop()
+        through = {
+            it.node
+            for it in fleet.ends
+            if it.role == "subscribes" and (it.name, it.type) == one and plain[it.node] in PASSING
+        }
+        for it in fleet.ends:
+            out = it.name, it.type
+            if (
+                it.node in through
+                and it.role == "publishes"
+                and it.type in COMMANDS
+                and out not in topics
+            ):
+                topics.add(out)
+                queue.append(out)
+    return {robot for robot, name, sort in heard(fleet) if (name, sort) in topics}
+
+
+def drives(fleet: Fleet, robot: str) -> Iterator[Fault]:
+    """Commands for a robot that move another, or nothing."""
+    own = [it for it in heard(fleet) if it[0] == robot]
+    has_drive = own or any(
+        end.type == "gz.msgs.Twist" and end.model == fleet.models.get(robot) for end in fleet.gz
+    )
+    if not has_drive:
+        return
+    if not own:
+        yield Fault(robot, "drives", "no topic of ROS reaches its drive")
+    for _, topic, kind in own:
+        yield from wrong(robot, topic, reached(fleet, topic, kind))
+    said = fleet.told.get(robot)
+    if said and said not in {topic for _, topic, _ in own}:
+        whom = set().union(*(reached(fleet, said, kind) for kind in COMMANDS))
+        if whom != {robot}:
+            yield Fault(
+                robot,
+                "drives",
+                f"the line for its reader sends to {said}: that moves {sorted(whom)}",
+            )
+    for it in senders(fleet, robot):
+        whom = reached(fleet, it.name, it.type)
+        if whom != {robot}:
+            why = f"{it.node} sends {it.type} on {it.name}: that moves {sorted(whom) or 'nothing'}"
+            yield Fault(robot, "drives", why)
+
+
+def senders(fleet: Fleet, robot: str) -> list[End]:
+    nodes = {it.fqn for it in fleet.nodes if it.robot == robot and it.what in SENDING}
+    return [
+        it
+        for it in fleet.ends
+        if it.node in nodes and it.role == "publishes" and it.type in COMMANDS
+    ]
+
+
+def wrong(robot: str, topic: str, whom: set[str]) -> Iterator[Fault]:
+    for other in sorted(whom - {robot}):
+        yield Fault(robot, "drives", f"{topic} moves {other}, too")
+
+
+def readers(fleet: Fleet) -> list[End]:
+    """The ends that read a sensor or odometry."""
+    return [it for it in fleet.ends if it.role == "subscribes" and it.type in SEEN and it.sure]
+
+
+def sees(fleet: Fleet, robot: str) -> Iterator[Fault]:
+    """Readers of a robot without a sender, or with another's."""
+    for it in (it for it in readers(fleet) if it.robot == robot):
+        whose = set(senders_of(fleet, it.name, it.type))
+        if whose - {robot, ""}:
+            others = ", ".join(sorted(whose - {robot, ""}))
+            yield Fault(robot, "sees", f"{it.node} reads {it.name}, which {others} sends")
+        elif not whose and offered(fleet, robot, it.type):
+            had = ", ".join(sorted(offered(fleet, robot, it.type)))
+            yield Fault(
+                robot, "sees", f"{it.node} reads {it.name}, which nobody sends; it has {had}"
+            )
+
+
+def senders_of(fleet: Fleet, name: str, kind: str) -> Iterator[str]:
+    robots = {model: robot for robot, model in fleet.models.items()}
+    yield from (
+        it.robot
+        for it in fleet.ends
+        if it.role == "publishes" and (it.name, it.type) == (name, kind)
+    )
+    for row in fleet.bridges:
+        if row.to_ros and (row.ros, row.type) == (name, kind):
+            yield from (
+                robots[it.model] for it in fleet.gz if it.role == "sends" and it.topic == row.gz
+            )
+
+
+def offered(fleet: Fleet, robot: str, kind: str) -> set[str]:
+    """The topics on which a robot has such messages."""
+    ends = {
+        it.name
+        for it in fleet.ends
+        if it.robot == robot and it.role == "publishes" and it.type == kind
+    }
+    model = fleet.models.get(robot)
+    own = {it.topic for it in fleet.gz if it.model == model and it.role == "sends"}
+    return ends | {
+        row.ros for row in fleet.bridges if row.to_ros and row.type == kind and row.gz in own
+    }
+
+
+def plans(fleet: Fleet, robot: str) -> Iterator[Fault]:
+    """Frames that are not in the robot's tree, in two, or another's."""
+    listens = {
+        it.node: it.name
+        for it in fleet.ends
+        if it.role == "subscribes" and it.type == TF and not it.name.endswith("_static")
+    }
+    for it in fleet.nodes:
+        topic = listens.get(it.fqn)
+        if it.robot != robot or topic is None:
+            continue
+        near = [e for e in fleet.edges if e.topic in (topic, f"{topic}_static")]
+        yield from unknown_frames(fleet, robot, it, topic, near)
+    yield from two_parents(fleet, robot)
+
+
+def unknown_frames(
+    fleet: Fleet, robot: str, node: Node, topic: str, near: list[Edge]
+) -> Iterator[Fault]:
+    names = [node.values.get(key) for key in LOOKED_UP.get(node.what, ())]
+    own = {it.child for it in near if it.robot == robot or it.robot == fleet.models.get(robot)}
+    for name in dict.fromkeys(str(it) for it in names if it):
+        if not any(connected(near, name, link) for link in own):
+            why = f"{node.fqn} looks for {name} on {topic}, where it is not with the robot's links"
+            yield Fault(robot, "plans", why)
+
+
+def two_parents(fleet: Fleet, robot: str) -> Iterator[Fault]:
+    mine = {
+        (it.topic, it.child) for it in fleet.edges if it.robot in (robot, fleet.models.get(robot))
+    }
+    for topic, children in whole(one_tree(fleet.edges)).items():
+        for child, parents in children.items():
+            if len(parents) > 1 and (topic, child) in mine:
+                yield Fault(
+                    robot,
+                    "plans",
+                    f"{child} on {topic} has the parents {', '.join(sorted(parents))}",
+                )
+    for it in fleet.edges:
+        others = {e.robot for e in fleet.edges if (e.topic, e.child) == (it.topic, it.child)} - {
+            it.robot
+        }
+        same = {fleet.models.get(robot), robot}
+        if it.robot in same and others - same - {""}:
+            yield Fault(
+                robot,
+                "plans",
+                f"{it.child} on {it.topic} is sent by {', '.join(sorted(others))}, too",
+            )
+
+
+def one_tree(edges: Iterable[Edge]) -> list[Edge]:
+    """tf's buffer holds static and other transforms in one tree."""
+    return [it._replace(topic=it.topic.removesuffix("_static")) for it in edges]

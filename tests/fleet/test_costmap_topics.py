@@ -1,0 +1,79 @@
+"""The plan has the topics of costmaps as the built parameter files have them.
+
+Source: navigation2 jazzy, nav2_costmap_2d/plugins/obstacle_layer.cpp (a relative topic is below the
+costmap); kilted joins it with the namespace above, but for the BinaryFilter.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+import yaml
+from paths import ROOT
+
+from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.fleet.checks.read_back import read_back
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
+
+OUT = "/anywhere/out"
+EXAMPLE = ROOT / "examples" / "namespace_and_prefix"
+FLEET = f"""\
+layout: LAYOUT
+distro: DISTRO
+description: {EXAMPLE}/hexbase.urdf.xacro
+stack: [robot_state_publisher, navigation]
+simulator: none
+robots: [{{name: robot1}}, {{name: robot2}}]
+companions: {{params: params.yaml}}
+"""
+PARAMS = """\
+local_costmap:
+  local_costmap:
+    ros__parameters:
+      plugins: [obstacles]
+      filters: [zones]
+      obstacles:
+        plugin: nav2_costmap_2d::ObstacleLayer
+        observation_sources: front
+        front: {topic: TOPIC, data_type: LaserScan}
+      zones: {plugin: "nav2_costmap_2d::BinaryFilter", filter_info_topic: info}
+"""
+
+
+def built(folder: Path, layout: str, distro: str, topic: str) -> list[str]:
+    """The topics of robot1's local costmap in the plan of a build, which is as planned."""
+    (folder / "params.yaml").write_text(PARAMS.replace("TOPIC", topic))
+    fleet = folder / "fleet.yaml"
+    fleet.write_text(FLEET.replace("LAYOUT", layout).replace("DISTRO", distro))
+    plan = plan_fleet(read_fleet(str(fleet), "", os.environ))
+    made = make_outputs(plan, OUT)
+    assert [str(it) for it in read_back(plan, made, OUT)] == []
+    text = next(it.data for it in made.files if it.path == "plan.yaml").decode()
+    nodes = yaml.safe_load(text)["robots"]["robot1"]["nodes"]
+    (ends,) = (
+        rows
+        for name, rows in nodes.items()
+        if name.endswith("/local_costmap") and "local_costmap/" in name
+    )
+    return [it[2] for it in ends if it[0] == "subscribes"]
+
+
+@pytest.mark.sample(7)
+@pytest.mark.parametrize("topic", ["scan", "/scan"])
+@pytest.mark.parametrize("distro", ["humble", "jazzy", "kilted"])
+@pytest.mark.parametrize(
+    ("layout", "scan"), [("tf-per-robot", "/robot1/scan"), ("postfix", "/scan/robot1")]
+)
+def test_a_source_is_the_robots_scan_in_every_release(
+    tmp_path: Path, layout: str, scan: str, distro: str, topic: str
+) -> None:
+    assert scan in built(tmp_path, layout, distro, topic)
+
+
+@pytest.mark.sample(2)
+@pytest.mark.parametrize("distro", ["jazzy", "kilted"])
+def test_the_info_of_a_binary_filter_too(tmp_path: Path, distro: str) -> None:
+    assert "/robot1/info" in built(tmp_path, "tf-per-robot", distro, "scan")

@@ -1,0 +1,240 @@
+"""Files that hold the word of a robot already, at their own lines; nothing where it is right."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from fleet_folder import SMALL, fleet_folder, mixed
+from paths import CORPUS
+
+from multibot_rewrite.base.model import MultibotError
+from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleet.outputs.output_file import OutputFile, line_in_source
+from multibot_rewrite.lint.check import lint_file
+from multibot_rewrite.rules.settings import Settings
+
+
+def planned(folder: Path, text: str = SMALL, **files: str) -> FleetPlan:
+    return plan_fleet(read_fleet(str(fleet_folder(folder, text, **files)), "", {}))
+
+
+def params(value: str) -> str:
+    return f"acme:\n  ros__parameters:\n    {value}\n"
+
+
+def plugin(value: str) -> str:
+    key, _, text = value.partition(": ")
+    return f"""\
+<robot name="rover"><link name="base_link"/><gazebo>
+  <plugin name="acme" filename="libacme.so">
+    <{key}>{text}</{key}>
+  </plugin>
+</gazebo></robot>
+"""
+
+
+L1, L4 = SMALL.replace("frames-per-robot", "L1"), SMALL.replace("frames-per-robot", "L4")
+L4 = L4.replace("affix: prefix", "affix: postfix")
+UNDERSCORES = f"separators: {{link: _}}\n{SMALL}"
+# A value that no node or plugin is known to read -> the code of what is wrong with it.
+WRONG = {
+    "frame-of-another": ("what: robot2/base_link", SMALL, "MB863"),
+    "topic-of-another": ("what: /robot2/scan", L1, "MB863"),
+    "in-a-list-of-words": ("what: a:=/robot2/scan", L1, "MB863"),
+    "postfix-of-another": ("what: base_link/robot2", L4, "MB863"),
+    "model-of-another": ("what: /world/w/model/robot2/link", SMALL, "MB863"),
+    "twice": ("what: robot1/robot1/odom", SMALL, "MB863"),
+    "wrong-separator": ("what: robot1_odom", SMALL, "MB863"),
+    "no-separator": ("what: robot1odom", SMALL, "MB863"),
+    "no-separator-behind": ("what: base_linkrobot1", L4, "MB863"),
+    "slash-for-underscore": ("what: robot1/base_link", UNDERSCORES, "MB863"),
+    "own-tf": ("what: /robot1/tf", SMALL, "MB863"),
+    "one-tf": ("what: /tf", L1, "MB901"),
+}
+# What only one of the two has.
+IN_PARAMETERS = {
+    "frame-prefix": ("frame_prefix: robot1/", SMALL, "MB882"),
+    "tf-prefix": ("tf_prefix: rover", SMALL, "MB882"),
+}
+IN_DESCRIPTION = {
+    "bare-odometry": ("odom_frame: odom", SMALL, "MB901"),
+    "bare-frame": ("base_frame: base_link", SMALL, "MB901"),
+}
+OURS = ("MB106", "MB863", "MB901", "MB882")
+
+
+def found_in(folder: Path, name: str, text: str, **files: str) -> list[tuple[str, int]]:
+    found = make_outputs(planned(folder, text, **files)).findings
+    return sorted(
+        {(it.code, it.line) for it in found if it.file.endswith(name) and it.code in OURS}
+    )
+
+
+@pytest.mark.sample(7)
+@pytest.mark.parametrize("case", [*WRONG, *IN_PARAMETERS])
+def test_a_value_of_a_parameter_file_is_told_at_its_line(case: str, tmp_path: Path) -> None:
+    value, text, code = {**WRONG, **IN_PARAMETERS}[case]
+    assert (code, 3) in found_in(tmp_path, "params.yaml", text, params__yaml=params(value))
+
+
+@pytest.mark.sample(7)
+@pytest.mark.parametrize("case", [*WRONG, *IN_DESCRIPTION])
+def test_a_value_of_a_description_is_told_at_its_line(case: str, tmp_path: Path) -> None:
+    value, text, code = {**WRONG, **IN_DESCRIPTION}[case]
+    assert (code, 3) in found_in(tmp_path, "rover.urdf", text, rover__urdf=plugin(value))
+
+
+@pytest.mark.parametrize("case", [it for it in WRONG if WRONG[it][2] == "MB863"])
+def test_the_lint_says_the_same_of_a_parameter_file(case: str, tmp_path: Path) -> None:
+    (tmp_path / "p.yaml").write_text(params(WRONG[case][0]))
+    found = lint_file(str(tmp_path / "p.yaml"), Settings(robots=("robot1", "robot2")))
+    assert ("MB863", 3) in {(it.code, it.line) for it in found}
+
+
+RIGHT = {
+    "comment": "what: 1  # robot2/base_link, robot1odom",
+    "file": "map_file: /maps/robot2/site.yaml",
+    "package": "url: package://robot2/meshes/a.stl",
+    "substitution": "x: $(find-pkg-share robot2)/params",
+    "another-word": "what: robot1_front/scan",
+    "a-longer-word": "what: robot11/lamp",
+    "robot-alone": "what: robot1",
+    "map": "what: map",
+    "topic": "what: odom",
+}
+
+
+@pytest.mark.sample(7)
+@pytest.mark.parametrize("case", RIGHT)
+def test_what_is_no_fault(case: str, tmp_path: Path) -> None:
+    assert found_in(tmp_path, "params.yaml", SMALL, params__yaml=params(RIGHT[case])) == []
+    if case != "comment":
+        assert found_in(tmp_path, "rover.urdf", SMALL, rover__urdf=plugin(RIGHT[case])) == []
+
+
+OWN = """\
+layout: frames-per-robot
+robots:
+  - {name: robot1, description: rover.urdf}
+  - {name: robot2, description: own.urdf, companions: {params: own.yaml}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("robot", "files"), [("robot2", set()), ("robot1", {"own.yaml", "own.urdf"})]
+)
+def test_a_file_of_one_robot_may_name_it(robot: str, files: set[str], tmp_path: Path) -> None:
+    (tmp_path / "own.yaml").write_text(params(f"what: {robot}/odom"))
+    (tmp_path / "own.urdf").write_text(plugin(f"what: {robot}/odom"))
+    found = make_outputs(planned(tmp_path, OWN)).findings
+    assert {Path(it.file).name for it in found if it.code == "MB863"} == files
+
+
+@pytest.mark.sample(7)
+@pytest.mark.parametrize("layout", ["L1", "L2", "L3", "L4"])
+@pytest.mark.parametrize("affix", ["prefix", "postfix"])
+def test_nothing_is_said_of_a_right_fleet(layout: str, affix: str, tmp_path: Path) -> None:
+    found = make_outputs(planned(tmp_path, mixed(layout, affix))).findings
+    assert [str(it) for it in found if it.code in OURS] == []
+
+
+IMU = """\
+<sdf version="1.9"><model name="cart"><link name="base_link"><sensor name="imu" type="imu">
+  <topic>imu</topic>
+</sensor></link></model></sdf>
+"""
+
+
+def test_a_topic_that_is_called_as_a_sensor_is_right(tmp_path: Path) -> None:
+    (tmp_path / "cart.sdf").write_text(IMU)
+    robots = f"robots: [{{name: robot1, description: {tmp_path}/cart.sdf}}]"
+    found = make_outputs(planned(tmp_path, f"layout: frames-per-robot\n{robots}\n")).findings
+    assert [str(it) for it in found if it.code in OURS] == []
+
+
+PARTS = """\
+<robot name="rover">
+  <link name="base_link"/>
+  <link name="left_wheel"/>
+  <joint name="axle" type="fixed"><parent link="base_link"/><child link="left_wheel"/></joint>
+  <gazebo reference="base_link">
+    <sensor name="lidar" type="gpu_lidar"><topic>left_scan</topic></sensor>
+  </gazebo>
+</robot>
+"""
+SIDES = """\
+layout: LAYOUT
+affix: prefix
+separators: {link: _}
+description: rover.urdf
+robots: [{name: left}, {name: right}]
+companions: {params: params.yaml}
+"""
+OWN_SCAN = "collision_monitor:\n  ros__parameters: {scan: {type: scan, topic: /left_scan}}\n"
+
+
+@pytest.mark.parametrize("layout", ["L1", "L2", "L3", "L4"])
+def test_a_part_called_like_its_robot_is_no_fault(layout: str, tmp_path: Path) -> None:
+    text = SIDES.replace("LAYOUT", layout)
+    plan = planned(tmp_path, text, rover__urdf=PARTS, params__yaml=OWN_SCAN)
+    made = make_outputs(plan)
+    params = next(it.data.decode() for it in made.files if it.path == "left/params.yaml")
+    assert "/left/left_scan" in params
+    assert [it for it in made.findings if it.code in OURS] == []
+
+
+@pytest.mark.parametrize(
+    "name", ["left_left_base_link", "left/left_base_link", "left/left/lamp", "/left/left/lamp"]
+)
+def test_a_robot_called_like_a_part_in_a_name(name: str, tmp_path: Path) -> None:
+    text = SIDES.replace("LAYOUT", "L2")
+    files = {"rover__urdf": PARTS, "params__yaml": params(f"what: {name}")}
+    assert ("MB863", 3) in found_in(tmp_path, "params.yaml", text, **files)
+
+
+def test_an_author_s_own_prefix_in_a_parameter_is_an_error(tmp_path: Path) -> None:
+    """The parameter's own finding is a warning: it names no frame."""
+    own = "amcl: {ros__parameters: {base_frame_id: left_base_link}}\n"
+    text = SIDES.replace("LAYOUT", "L2")
+    made = make_outputs(planned(tmp_path, text, rover__urdf=PARTS, params__yaml=own))
+    levels = {it.code: it.level for it in made.findings}
+    assert (levels["MB863"], levels["MB853"]) == ("error", "warning")
+
+
+NAMED_ROBOT1 = '<robot name="x"><link name="robot1"/><link name="base_link"/></robot>'
+
+
+def test_a_link_called_like_its_robot_hides_no_fault(tmp_path: Path) -> None:
+    files = {"rover__urdf": NAMED_ROBOT1, "params__yaml": params("what: robot1/base_link")}
+    assert ("MB863", 3) in found_in(tmp_path, "params.yaml", SMALL, **files)
+
+
+def test_the_line_is_that_of_the_source_behind_inserted_ones(tmp_path: Path) -> None:
+    source = tmp_path / "a.yaml"
+    source.write_text("a: 1\nb: 2\nc: 3\n")
+    file = OutputFile("r/a.yaml", b"new: 0\na: 1\nb: r2\nmore: 1\nc: 3\n", (str(source),))
+    lines = [line_in_source(file, at)[1] for at in (2, 3, 5)]
+    assert lines == [1, 2, 3]
+
+
+@pytest.mark.parametrize("layout", ["L1", "L2", "L3", "L4"])
+def test_nothing_is_found_in_what_real_files_become(layout: str, tmp_path: Path) -> None:
+    params = sorted((CORPUS / "nav2_params").rglob("*.yaml"))
+    urdfs = sorted((CORPUS / "urdf").rglob("*.urdf"))
+    if not params or not urdfs:
+        pytest.skip(f"no corpus of real files: looked in {CORPUS}")
+    looked_at, told = 0, []
+    for at, file in enumerate(params[:: len(params) // 12]):
+        text = f"layout: {layout}\naffix: prefix\nstack: nav2\ndescription: {urdfs[at * 80]}\n"
+        text += f"companions: {{params: {file}}}\nrobots: [{{name: rob_a}}, {{name: rob_b}}]\n"
+        try:
+            made = make_outputs(planned(tmp_path, text))
+        except MultibotError:
+            continue
+        looked_at += 1
+        told += [it for it in made.findings if it.code in ("MB863", "MB882")]
+    assert looked_at > 3
+    assert told == []

@@ -1,0 +1,89 @@
+"""Arguments of bridges to Gazebo as topics of ROS, as ``parameter_bridge.cpp`` reads them."""
+
+from __future__ import annotations
+
+import pytest
+from launched_nodes import launched, runs, started
+
+from multibot_rewrite.producers.launch.bridges import bridge_rows
+
+BRIDGE = ("ros_gz_bridge", "parameter_bridge", "bridge")
+
+
+def said(*arguments: str, program: tuple[str, ...] = BRIDGE, **more: object) -> list[str]:
+    node = started(*program, arguments=arguments, **more)
+    rows = bridge_rows(node, {"robot1"})
+    return [f"{it.role} {it.kind} {it.name} {it.type}" for it in rows]
+
+
+@pytest.mark.parametrize(
+    ("row", "expected"),
+    [
+        ("/scan@sensor_msgs/msg/LaserScan[gz.msgs.LaserScan", ["publishes topic /scan"]),
+        ("/scan@sensor_msgs/LaserScan[ignition.msgs.LaserScan", ["publishes topic /scan"]),
+        ("scan@sensor_msgs/msg/LaserScan]gz.msgs.LaserScan", ["subscribes topic scan"]),
+        (
+            "/scan@sensor_msgs/msg/LaserScan@gz.msgs.LaserScan",
+            ["publishes topic /scan", "subscribes topic /scan"],
+        ),
+    ],
+)
+def test_a_row_is_a_topic_in_its_direction(row: str, expected: list[str]) -> None:
+    assert said(row) == [f"{it} sensor_msgs/msg/LaserScan" for it in expected]
+
+
+def test_a_row_of_a_service_serves_it() -> None:
+    type_ = "ros_gz_interfaces/srv/ControlWorld"
+    expected = [f"serves service /world/w/control {type_}"]
+    assert said(f"/world/w/control@{type_}") == expected
+    assert said(f"/world/w/control@{type_}@gz.msgs.WorldControl@gz.msgs.Boolean") == expected
+
+
+def test_an_image_bridge_publishes_images() -> None:
+    program = ("ros_gz_image", "image_bridge", "images")
+    assert said("/camera/image", program=program) == [
+        "publishes topic /camera/image sensor_msgs/msg/Image"
+    ]
+
+
+@pytest.mark.parametrize(
+    "word",
+    ["", "scan", "@a/msg/B[c", "/scan@", "/scan@a/msg/B", "--x", "/a@b c[d", "@@@", "[", "]"],
+)
+def test_what_is_no_row_is_nothing(word: str) -> None:
+    assert said(word) == []
+
+
+def test_the_arguments_of_another_program_are_no_rows() -> None:
+    assert said("/scan@a/msg/B[c", program=("acme", "parameter_bridge", "b")) == []
+
+
+def test_a_topic_of_one_robots_model_is_known_by_its_rule() -> None:
+    row = "/model/robot1/{}@nav_msgs/msg/Odometry[gz.msgs.Odometry"
+    rules = (("/model/robot1/odometry", "odom"), ("/model/robot1/tf", "tf"))
+    # What leads to this robot alone is not the name for any robot.
+    rules += (("/model/robot1/own", "/robot1/own"),)
+    found = said(*(row.format(it) for it in ("odometry", "tf", "own", "other")), remappings=rules)
+    assert found == [f"publishes topic {it} nav_msgs/msg/Odometry" for it in ("odom", "/tf")]
+
+
+def test_a_launched_bridge_has_the_topics_of_its_arguments() -> None:
+    rows = ("/front@sensor_msgs/msg/LaserScan[gz.msgs.LaserScan",)
+    rules = (("/front", "scan"),)
+    node = started(*BRIDGE, arguments=rows, remappings=rules, namespace="/robot1")
+    found = runs(launched(node))["bridge"]
+    assert [(it.name, it.remapped, it.role) for it in found.endpoints] == [
+        ("/front", "scan", "publishes")
+    ]
+    assert not found.shared
+    # Without rows it is the node of a file of rows.
+    alone = runs(launched(started(*BRIDGE)))["bridge"].endpoints
+    assert [(it.name, it.when) for it in alone] == [("/clock", "bridge: /clock")]
+
+
+def test_a_bridge_of_images_is_known_by_its_arguments() -> None:
+    node = started("ros_gz_image", "image_bridge", "images", arguments=("/camera/image",))
+    found = launched(node)
+    assert not [it for it in found.findings if it.code == "MF822"]
+    (facts,) = (it for it in found.nodes if it.name == "images")
+    assert [it.name for it in facts.endpoints] == ["/camera/image"]

@@ -1,0 +1,117 @@
+"""Trees of transforms: two that nodes of a robot send are apart; a driver may join the description."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from closed_robot import FILES
+
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.fleet.checks.closed_plan import gaps_of
+from multibot_rewrite.fleet.checks.written_system import DRIVERS
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
+from multibot_rewrite.knowledge.stacks import load_nodes
+from multibot_rewrite.producers.evidence.records import Given, GivenNode
+from multibot_rewrite.producers.transforms import edge, edges_off, joint_edges
+from multibot_rewrite.rules.system.tf_topics import tf_tree_in_pieces
+from multibot_rewrite.system.index import index
+from multibot_rewrite.system.ownership import ALONE
+from multibot_rewrite.system.records import NOWHERE, Edge, Place, System, edge_of
+
+
+def pair(text: str) -> Edge:
+    parent, child = text.split(">")
+    return edge_of(parent, child)
+
+
+def told(*edges: Edge) -> list[Finding]:
+    assert tf_tree_in_pieces.check
+    return list(tf_tree_in_pieces.check(index(System(edges=edges, environment=DRIVERS), ALONE)))
+
+
+@pytest.mark.parametrize(
+    ("description", "senders", "apart"),
+    [
+        ("base>lidar", {"slam": "map>odom", "ekf": "odom>base"}, []),
+        ("base>lidar", {"slam": "map>odom", "ekf": "odom2>base"}, ["/ekf"]),
+        ("base>lidar", {"slam": "map>odom"}, []),
+        ("base>lidar base>mast mast>head", {"slam": "map>odom", "head": "head>eye"}, []),
+        (
+            "base>mast",
+            {"slam": "map>odom", "ekf": "odom2>base", "eye": "mast>eye"},
+            ["/ekf", "/eye"],
+        ),
+        ("odom>base", {"slam": "map>odom", "arm": "base>hand"}, []),
+        ("", {"a": "x>y", "b": "y>z", "c": "p>q"}, ["/c"]),
+        ("", {"a": "x>y", "b": "p>q", "c": "q>y"}, []),
+    ],
+)
+def test_nodes_whose_transforms_are_apart(
+    description: str, senders: dict[str, str], apart: list[str]
+) -> None:
+    tree = joint_edges((pair(it), NOWHERE) for it in description.split())
+    sent = (edge(pair(text), f"/{node}") for node, text in senders.items())
+    assert [it.node for it in told(*tree, *sent)] == apart
+
+
+def test_both_places_are_told() -> None:
+    slam, ekf = Place("slam.yaml", 3), Place("ekf.yaml", 5)
+    (found,) = told(
+        edge(pair("map>odom"), "/slam", slam),
+        edge(pair("odom2>base"), "/ekf", ekf),
+        edge(pair("base>mast"), "/ekf", ekf),
+    )
+    assert (found.code, found.level, found.file, found.line) == ("MG406", "warning", *ekf[:2])
+    assert "odom2 -> base, apart from map -> odom of /slam" in found.message
+    assert "see slam.yaml:3" in found.hint
+
+
+def test_a_tree_that_the_rewrite_has_cut_is_an_error(tmp_path: Path) -> None:
+    for name, text in FILES.items():
+        (tmp_path / name).write_text(text)
+    plan = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {}))
+    key = ("robot1", "ekf_filter_node")
+    assert plan.fleet.edges[key]
+    for cut, levels in (([pair("x>y")], ["error"]), (plan.fleet.edges[key], [])):
+        fleet = plan.fleet._replace(edges={**plan.fleet.edges, key: cut})
+        found = [it.level for it in gaps_of(plan, fleet, [], []) if it.code == "MG406"]
+        assert found == levels
+
+
+HERE = Place("ekf.yaml", 5)
+
+
+def ekf(name: str = "ekf", **values: object) -> GivenNode:
+    given = {it: Given(value, HERE) for it, value in values.items()}  # type: ignore[arg-type]
+    return GivenNode(name, "ekf_filter_node", "", given, HERE)  # type: ignore[arg-type]
+
+
+OFF = ekf(publish_tf=False, odom_frame="odom", base_link_frame="base", world_frame="odom")
+
+
+def off(*given: GivenNode) -> list[Edge]:
+    return list(edges_off(given, load_nodes(NEWEST_LTS)))
+
+
+def test_a_transform_that_is_switched_off_and_that_nobody_sends() -> None:
+    one, both = told(*off(OFF)), told(*off(OFF, OFF._replace(name="second")))
+    for (found,), level in ((one, "warning"), (both, "error")):
+        assert (found.names, found.node, found.level) == (("base",), "/ekf", level)
+        assert (found.file, found.line) == HERE[:2]
+
+
+def test_a_transform_that_another_one_sends_is_whole() -> None:
+    assert told(*off(OFF), edge(pair("odom>base"), "/driver")) == []
+
+
+def test_a_filter_of_the_map_would_send_another_one() -> None:
+    of_map = OFF._replace(values={**OFF.values, "world_frame": Given("map", HERE)})  # type: ignore[arg-type]
+    assert [it.names for it in told(*off(of_map))] == [("odom",)]
+
+
+def test_a_filter_that_sends_is_not_off() -> None:
+    on = OFF._replace(values={**OFF.values, "publish_tf": Given(True, HERE)})  # type: ignore[arg-type]
+    assert off(on) == []
