@@ -121,7 +121,7 @@ CASES: dict[str, tuple[str | bytes, tuple[str, ...], int, str]] = {
         2,
         "correct the XML",
     ),
-    "deep-fleet": ("[" * 100_000, (MULTIBOT, "build", "in.yaml", "-o", "out"), 2, "nested deeper"),
+    "deep-fleet": ("[" * 100_000, (MULTIBOT, "build", "in.yaml", "-o", "out"), 2, "nest"),
     "deep-plan": (
         "- " * 50_000 + "a",
         (MULTIBOT, "check", "in.yaml", "--snapshot", "good.urdf"),
