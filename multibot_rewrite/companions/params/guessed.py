@@ -37,8 +37,8 @@ def in_doubt(
 
 
 def stays(site: Site, doubt: dict[str, yaml.ScalarNode]) -> bool:
-    """Does a guess change nothing here?"""
-    return not site.is_sure and site.kind in doubt
+    """Is nothing changed here? What is called as a parameter of a known node is a guess, too."""
+    return site.kind in doubt
 
 
 def _kinds_of(context: Context, text: str, names: SectionNames) -> tuple[str, ...]:

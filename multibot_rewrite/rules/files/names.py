@@ -230,19 +230,26 @@ def unknown_uses(file: NamedFile) -> Iterator[Remark]:
 def _guessed(file: NamedFile) -> Iterator[Remark]:
     """Parameters of a node that is not known, taken for names by their own: one remark a section."""
     for section, names in (it for it in file.pages if is_guessed(it[0])):
-        taken = [it for it in names.sites if not it.is_sure and _is_taken(file, it)]
+        taken = [it for it in names.sites if _is_taken(file, it)]
         doubt = in_doubt(file.context, section, names)
-        hint = "describe the node in a file under nodes:"
-        for left in (False, True):
-            sites = [it for it in taken if stays(it, doubt) == left]
-            if sites:
-                words = ", ".join(dict.fromkeys(it.key for it in sites))
-                told = f"parameters that hold names are guessed: {words}"
-                if left:
-                    other = doubt[sites[0].kind]
-                    told = f"{other.value!r} in line {line_of(other)} may be a name, too: "
-                    told += f"{words} stay as they are"
-                yield remark(sites[0], f"node {section.path} is not known; {told}", hint)
+        left = [it for it in taken if stays(it, doubt)]
+        guessed = [it for it in taken if not it.is_sure and it not in left]
+        if guessed:
+            told = f"parameters that hold names are guessed: {_keys(guessed)}"
+            yield _unknown(guessed[0], section.path, told)
+        if left:
+            other = doubt[left[0].kind]
+            told = f"{other.value!r} in line {line_of(other)} may be a name, too: "
+            yield _unknown(left[0], section.path, f"{told}{_keys(left)} stay as they are")
+
+
+def _keys(sites: Iterable[Site]) -> str:
+    return ", ".join(dict.fromkeys(it.key for it in sites))
+
+
+def _unknown(site: Site, node: str, told: str) -> Remark:
+    hint = "describe the node in a file under nodes:"
+    return remark(site, f"node {node} is not known; {told}", hint)
 
 
 def _is_taken(file: NamedFile, site: Site) -> bool:
