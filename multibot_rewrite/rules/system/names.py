@@ -10,24 +10,13 @@ from itertools import islice, zip_longest
 from multibot_rewrite.base.conventions import EVERYBODYS, chooses
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.nearest import CHOICE, COMPARED, MISTYPED, nearest
+from multibot_rewrite.base.wording import and_then
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import see, where
 from multibot_rewrite.rules.system.unsent import meant
-from multibot_rewrite.system.index import (
-    TF,
-    Ends,
-    Index,
-    and_then,
-    at_work,
-    in_namespaces_above,
-    is_spawner,
-    is_viewer,
-    last_word,
-    nodes_of,
-    once,
-    robots_of,
-)
+from multibot_rewrite.system.index import TF, Ends, Index, at_work, nodes_of, once, robots_of
 from multibot_rewrite.system.records import ACTION, SERVES, SERVICE, TOPIC, End
+from multibot_rewrite.system.tool_nodes import in_namespaces_above, is_spawner, is_viewer, last_word
 
 ABSENT = "is that robot started, and is its name right?"
 _DIGITS = re.compile(r"_?\d+")
