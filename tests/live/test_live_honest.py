@@ -76,7 +76,7 @@ def test_the_participants_beyond_32_are_not_called_missing(ros: None, tmp_path: 
     names, nodes = crowd(36)
     plan = write_plan(tmp_path / "plan.yaml", names, ("drive", "pilot"))
     with live_fleet.running(domain(80), nodes):
-        done = check(plan, 80, "-v")
+        done = check(plan, 80, "-v", *PATIENTLY)
     assert_inconclusive(done)
     assert done.stdout.count(": inconclusive: MG101 node /robot") == 36 - LIMIT
     limit, verdict, _ = done.stderr.splitlines()

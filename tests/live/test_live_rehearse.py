@@ -37,7 +37,7 @@ def domain(offset: int) -> int:
 
 def rehearse(offset: int, *arguments: str, **more: str) -> subprocess.CompletedProcess[str]:
     env = {**live_fleet.environ(domain(offset)), **more}
-    words = ("rehearse", *arguments, "--domain", domain(offset))
+    words = ("rehearse", *arguments, "--domain", domain(offset), *live_commands.PATIENTLY)
     return live_commands.multibot(*words, env=env)
 
 
