@@ -302,6 +302,27 @@ def test_a_name_is_renamed_by_its_kind(
     assert value(node, old, policy) == new
 
 
+@pytest.mark.parametrize("distro", ["jazzy", "kilted"])
+@pytest.mark.parametrize("policy", [L1, L2, L4])
+@pytest.mark.parametrize("layer", ["ObstacleLayer", "StaticLayer"])
+def test_a_private_topic_of_a_costmap_stays_private(
+    layer: str, policy: tuple[str, str], distro: str
+) -> None:
+    """Whatever namespace the costmap reads its topics in: ``~`` is the node."""
+    lines = (
+        "plugins: [all]",
+        "all:",
+        f"  plugin: nav2_costmap_2d::{layer}",
+        "  map_topic: ~/map",
+        "  observation_sources: front",
+        "  front: {topic: ~/scan}",
+    )
+    text = section("local_costmap", *lines)
+    nested = "local_costmap:\n" + "".join(f"  {line}\n" for line in text.splitlines())
+    rewritten, _ = made(nested, policy, distro)
+    assert ("map_topic: ~/map" in rewritten, "topic: ~/scan" in rewritten) == (True, True)
+
+
 @pytest.mark.parametrize(
     ("lines", "new"),
     [
