@@ -11,7 +11,6 @@ import programs
 import yaml
 from nodes import Node, sections_of
 
-PLUGINS = ("gz_ros2_control", "ign_ros2_control", "gazebo_ros2_control")
 # Which parameters name joints, and which interfaces they take (the .yaml files of ros2_controllers).
 CLAIMS = {
     "diff_drive_controller": (("left_wheel_names", "right_wheel_names"), "velocity"),
@@ -64,7 +63,7 @@ def in_simulator(roots: Mapping[str, Any], given: Any) -> Iterator[Manager]:
     """gz_ros2_control/src/gz_ros2_control_plugin.cpp."""
     for who, root in roots.items():
         for it in root.iter("plugin"):
-            if any(name in it.get("filename", "") for name in PLUGINS):
+            if any(name in it.get("filename", "") for name in gazebo.CONTROL):
                 space = "/" + gazebo.text(it, "ros/namespace").strip("/")
                 files = [Path(gazebo.text(each, ".")) for each in it.findall("parameters")]
                 sections = [yaml.safe_load(f.read_text()) if f.is_file() else {} for f in files]

@@ -61,7 +61,7 @@ class Fleet(NamedTuple):
     edges: tuple[Edge, ...]
     told: Mapping[str, str]
     faults: tuple[tuple[str, str], ...]
-    unknown: tuple[str, ...]
+    unknown: tuple[tuple[str, str], ...]
 
 
 def launched(file: Path, robot: str = "") -> Mapping[str, Any]:
@@ -112,8 +112,7 @@ def assembled(given: Reader, robots: tuple[str, ...], file: Path) -> Fleet:
         for end in gazebo.gz_ends(roots[who], model, world_of(given.folder))
     )
     edges = tuple(edges_of(given, nodes, roots, ends, gz, bridges))
-    known = {it.what for it in nodes if programs.is_known(it.what, given.release) or it.ends}
-    unknown = tuple(sorted({it.what for it in nodes} - known - {"parameter_bridge"}))
+    unknown = tuple(sorted({*strangers(given, nodes), *gazebo.strangers(roots, models)}))
     faults += [*undelivered(given, nodes, ends, models), *unmanaged(nodes)]
     return Fleet(
         robots,
@@ -127,6 +126,21 @@ def assembled(given: Reader, robots: tuple[str, ...], file: Path) -> Fleet:
         tuple(faults),
         unknown,
     )
+
+
+# What opens nothing of a robot's, beside the programs of the table.
+QUIET = ("parameter_bridge", "rviz2", "gz_sim.launch.py", "gazebo.launch.py")
+
+
+def strangers(given: Reader, nodes: list[Node]) -> Iterator[tuple[str, str]]:
+    """Programs, components, controllers and included launch files that no source was read of."""
+    for it in nodes:
+        if not it.ends and it.what not in QUIET and not programs.is_known(it.what, given.release):
+            yield it.robot, it.what
+    for who, start in given.starts:
+        name = start.get("include") or " ".join(start.get("command", ()))
+        if name and Path(name).name not in QUIET:
+            yield who, name
 
 
 def missing_files(given: Reader) -> Iterator[tuple[str, str]]:

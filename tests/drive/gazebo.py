@@ -24,6 +24,9 @@ FRAMES = {
     ),
     "": ("frame_id", "child_frame_id", "{model}/odom", "{model}/{link}"),
 }
+TABLES = ("gz_systems.tsv", "classic_plugins.tsv")
+# Plugins with a controller manager inside.
+CONTROL = ("gz_ros2_control", "ign_ros2_control", "gazebo_ros2_control")
 SENSORS = {"lidar": "gpu_lidar", "ray": "gpu_lidar", "gpu_ray": "gpu_lidar", "gps": "navsat"}
 
 
@@ -141,6 +144,22 @@ def classic_plugins(root: etree._Element) -> Iterator[Plugin]:
             text(it, "robot_base_frame") or "base_footprint",
         )
         yield Plugin(it.get("name", ""), space, rules, ends, frames, file)
+
+
+def strangers(
+    roots: Mapping[str, etree._Element], models: Mapping[str, str]
+) -> Iterator[tuple[str, str]]:
+    """Plugins and sensors of spawned robots that no source was read of."""
+    known = {row["plugin"] for file in TABLES for row in rows(file)}
+    for who in (it for it in roots if it in models):
+        for it in roots[who].iter("plugin"):
+            ours = any(word in it.get("filename", "") for word in CONTROL)
+            if not ours and plugin_key(it) not in known:
+                yield who, it.get("filename", "")
+        for it in roots[who].iter("sensor"):
+            kind = it.get("type", "")
+            if f"sensor {SENSORS.get(kind, kind)}" not in known:
+                yield who, f"sensor {kind}"
 
 
 def filled(name: str, plugin: etree._Element) -> str:

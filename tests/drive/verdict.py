@@ -55,23 +55,36 @@ def judged(fleet: Fleet) -> tuple[Fault, ...]:
     return tuple(dict.fromkeys(found))
 
 
-def done(fleet: Fleet) -> dict[str, str]:
-    """What each robot does: its words in their order, "no" before one where something is wrong; a word
-    is missing where the robot has nothing to do it with."""
+def done(fleet: Fleet) -> dict[str, dict[str, str]]:
+    """What each robot does: "yes", "no" or "unknown: PROGRAM" for each word; a word is missing where
+    the robot has nothing to do it with. A program that was not read may do anything."""
     wrong = {(it.robot, it.what) for it in judged(fleet)}
-    words: dict[str, list[str]] = {}
-    for robot in fleet.robots:
-        has = {
-            "starts": True,
-            "drives": any(it[0] == robot for it in heard(fleet)),
-            "sees": any(it.robot == robot for it in readers(fleet)),
-            "plans": any(it.robot == robot and it.what in LOOKED_UP for it in fleet.nodes),
-        }
-        said = ((robot, it) in wrong or ("", it) in wrong for it in has)
-        words[robot] = [
-            f"no {it}" if bad else it for bad, it in zip(said, has, strict=True) if bad or has[it]
-        ]
-    return {robot: ", ".join(it) for robot, it in words.items()}
+    return {robot: dict(words(fleet, robot, wrong)) for robot in fleet.robots}
+
+
+def words(fleet: Fleet, robot: str, wrong: set[tuple[str, str]]) -> Iterator[tuple[str, str]]:
+    nodes = [it for it in fleet.nodes if it.robot == robot]
+    unknown = ", ".join(what for who, what in fleet.unknown if who in ("", robot))
+    has = {
+        "starts": True,
+        "drives": any(it[0] == robot for it in heard(fleet)),
+        "sees": any(it.robot == robot for it in readers(fleet)),
+        "plans": any(it.what in LOOKED_UP for it in nodes),
+    }
+    for word, is_there in has.items():
+        if (robot, word) in wrong or ("", word) in wrong:
+            yield word, "no"
+        elif unknown:
+            yield word, f"unknown: {unknown}"
+        elif is_there:
+            yield word, "yes"
+
+
+def said(found: dict[str, str]) -> str:
+    """The words of a robot in one line."""
+    return ", ".join(
+        {"yes": word, "no": f"no {word}"}.get(it, f"{word} {it}") for word, it in found.items()
+    )
 
 
 def twins(fleet: Fleet) -> Iterator[Fault]:
