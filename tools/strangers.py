@@ -1,7 +1,8 @@
 """``python -m tools.strangers FOLDER``: what a new user would get with public robots.
 
-FOLDER has a checkout of each repository of ``strangers.tsv``, called owner+name. Each is given to ``multibot
-init``, what that wrote to ``multibot build``, and the built folder to the drive test. Printed is a table.
+FOLDER has a checkout of each repository of ``strangers.tsv``, called owner+name. Each is given to
+``multibot init``, what that wrote to ``multibot build``, and the built folder to the drive test, with
+ROS_DISTRO as the repository's users have it. Printed is a table; times are those of the processor.
 """
 
 from __future__ import annotations
@@ -9,10 +10,10 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import resource
 import subprocess
 import sys
 import tempfile
-import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -20,6 +21,8 @@ from typing import NamedTuple
 LIST = Path(__file__).with_name("strangers.tsv")
 DRIVE = Path(__file__).parents[1] / "tests" / "drive"
 MULTIBOT = (sys.executable, "-m", "multibot_rewrite.cli.multibot")
+# What stands for a release that is no longer kept, or where the repository names none.
+RELEASE = {"foxy": "humble", "galactic": "humble", "iron": "humble", "-": "jazzy"}
 # Seconds after which a command is ended.
 PATIENCE = 300
 
@@ -64,27 +67,33 @@ def tried(it: Stranger, checkout: Path, folder: Path) -> Row:
     """Init, build and drive one repository; everything is written below ``folder``."""
     folder.mkdir(parents=True, exist_ok=True)
     fleet, out = folder / "fleet.yaml", folder / "out"
-    made = run([*MULTIBOT, "init", str(checkout), "-n", "2", "--yes", "--force", "-o", str(fleet)])
+    release = RELEASE.get(it.release, it.release)
+    made = run(
+        [*MULTIBOT, "init", str(checkout), "-n", "2", "--yes", "--force", "-o", str(fleet)], release
+    )
     if made.code:
         return Row(it, _word(made, "init"), _first(made), made.seconds, 0.0)
-    built = run([*MULTIBOT, "build", str(fleet), "-o", str(out), "--force"])
+    built = run([*MULTIBOT, "build", str(fleet), "-o", str(out), "--force"], release)
     if built.code:
         return Row(it, _word(built, "build"), _first(built), made.seconds, built.seconds)
-    driven = run([sys.executable, str(DRIVE), str(out), "--json"])
+    driven = run([sys.executable, str(DRIVE), str(out), "--json"], release)
     return Row(it, *_driven(driven), made.seconds, built.seconds)
 
 
-def run(command: Sequence[str]) -> Ran:
+def run(command: Sequence[str], release: str) -> Ran:
     """Run a command without a terminal."""
-    start = time.monotonic()
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    environ = {**os.environ, "ROS_DISTRO": release}
     try:
         done = subprocess.run(
             command, capture_output=True, text=True, timeout=PATIENCE, stdin=subprocess.DEVNULL,
-            check=False,
+            check=False, env=environ,
         )  # fmt: skip
     except subprocess.TimeoutExpired:
         return Ran(-1, "", f"it took more than {PATIENCE} seconds", PATIENCE)
-    return Ran(done.returncode, done.stdout, done.stderr, time.monotonic() - start)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    spent = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return Ran(done.returncode, done.stdout, done.stderr, spent)
 
 
 def _word(it: Ran, command: str) -> str:
@@ -105,7 +114,7 @@ def _driven(it: Ran) -> tuple[str, str]:
         found = json.loads(it.out)
     except json.JSONDecodeError:
         return "drive: not judged", _first(it)
-    does = next(iter(found["robots"].values()), {})
+    does: dict[str, str] = next(iter(found["robots"].values()), {})
     why = "; ".join(f"{each['robot']} {each['what']}: {each['why']}" for each in found["wrong"][:2])
     unknown = "; ".join(f"{what} {said}" for what, said in does.items() if "unknown" in said)
     yes = ", ".join(what for what, said in does.items() if said == "yes")
