@@ -46,7 +46,7 @@ class Fault(NamedTuple):
 
 def judged(fleet: Fleet) -> tuple[Fault, ...]:
     """Every fault of a fleet."""
-    found = [Fault(robot, "starts", why) for robot, why in fleet.faults]
+    found = [Fault(*it) for it in fleet.faults]
     found += twins(fleet)
     for robot in fleet.robots:
         found += drives(fleet, robot)
