@@ -83,7 +83,11 @@ def _lines(names: list[str]) -> Iterator[str]:
     for name in names:
         levels = {fault: level_of(fault) for fault in faults(name)}
         for fault, level in levels.items():
-            other = "" if level != SILENT else "; ".join(sorted({f"{it.code} {it.message}" for it in found_for(fault)}))
+            other = (
+                ""
+                if level != SILENT
+                else "; ".join(sorted({f"{it.code} {it.message}" for it in found_for(fault)}))
+            )
             yield f"{level:8} {fault.name}  {other}"
         yield f"{name}: {dict(Counter(levels.values()))}"
 

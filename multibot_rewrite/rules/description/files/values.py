@@ -7,7 +7,7 @@ from functools import partial
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.base.findings.rule import SRDF, URDF, rule
-from multibot_rewrite.companions.kinds import PARAMS
+from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.description.examples import a_link, block
 from multibot_rewrite.rules.description.structure.limits import limits_in_degrees
@@ -50,10 +50,12 @@ unknown_word = rule(
     "unknown-word",
     ERROR,
     what="A value is not one of the words that its reader knows: the type of a joint, of a sensor, "
-    "of a ros2_control or a virtual joint, a version of URDF, the name of a joint property. It is "
-    "a warning for a parameter of a plugin, where it is nearly such a word.",
+    "of a ros2_control or a virtual joint, a version of URDF, the name of a joint property, the class "
+    "of a plugin or controller in parameters. It is a warning for a parameter of a plugin, where it is "
+    "nearly such a word, and for a class that another release has.",
     why="urdfdom rejects the file ('has no known type'), the sensor or the hardware does not exist, "
-    "srdfdom takes a virtual joint for fixed, and a plugin takes its default.",
+    "srdfdom takes a virtual joint for fixed, and a plugin takes its default. pluginlib throws for a "
+    "class that no package registers: a server of Nav2 does not start, a controller is not loaded.",
     fix="Use one of the words in the message or hint; case counts.",
     bad='<ros2_control name="c" type="System">\n'
     "  <hardware><plugin>p/P</plugin></hardware>\n"
@@ -61,7 +63,7 @@ unknown_word = rule(
     good='<ros2_control name="c" type="system">\n'
     "  <hardware><plugin>p/P</plugin></hardware>\n"
     "</ros2_control>\n",
-    formats=(URDF, SRDF),
+    formats=(URDF, SRDF, PARAMS, MOVEIT),
 )(partial(faults, "word"))
 
 out_of_range = rule(
