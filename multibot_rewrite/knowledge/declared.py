@@ -1,7 +1,8 @@
-"""The parameters that packages and plugins of Nav2 declare, as ``declared.schema`` has them, and what they
-demand of the values, in ``demanded.schema``.
+"""The parameters that packages and plugins of Nav2 declare, as ``declared.schema`` has them, and what
+they demand of the values, in ``demanded.schema``.
 
-The first one is made by ``python -m tools.interfaces.declared_table``; its first lines have the grammar.
+The first one is made by ``python -m tools.interfaces.declared_table``; its first lines have the
+grammar.
 """
 
 from __future__ import annotations
@@ -16,8 +17,8 @@ from multibot_rewrite.base.record import NamedTuple
 
 FILE = os.path.join(os.path.dirname(__file__), "declared.schema")
 _DEMANDS = os.path.join(os.path.dirname(__file__), "demanded.schema")
-# How a source comes to a parameter: by a file of generate_parameter_library, in code, never declared; or
-# what its code demands of the value.
+# How a source comes to a parameter: by a file of generate_parameter_library, in code, never declared;
+# or what its code demands of the value.
 YAML, DECLARED, READ, DEMANDED = "yaml", "declared", "read", "demanded"
 EVERY_NODE = "*"
 ANY, CHECKS, RELEASES = "any", " ! ", "releases="
@@ -56,7 +57,7 @@ def _pattern(path: str) -> re.Pattern[str]:
 
 @lru_cache(maxsize=512)
 def declared_by(owner: str) -> tuple[Declared, ...]:
-    """What a package or the class of a plugin declares and demands; nothing for one that is not known."""
+    """What a package or the class of a plugin declares and demands; nothing for an unknown one."""
     declared = [it for it in _rows(_sections(FILE).get(owner, "")) if says_something(it.path)]
     demanded = _rows(_sections(_DEMANDS).get(owner, ""))
     return (*declared, *(it._replace(how=DEMANDED) for it in demanded))

@@ -1,4 +1,4 @@
-"""The checks of generate_parameter_library on a value, and those of ``demanded.schema`` on a value alone.
+"""The checks of generate_parameter_library on a value, and those of ``demanded.schema``.
 
 Source: PickNikRobotics/rsl and generate_parameter_library, parameter_validators (README, "Built-In
 Validators"); control_filters of ros2_controllers take nan as well.
@@ -50,12 +50,17 @@ def _said(name: str, given: list[Any], value: Any) -> str:
     if name in _SIZES and isinstance(value, str | list) and _is_number(first):
         holds, words = _SIZES[name]
         return "" if holds(len(value), first) else f"{words} {first}"
+    if name in _SHAPES:
+        return _SHAPES[name](first, value)
+    return _of_many(name, given, value)
+
+
+def _of_many(name: str, given: list[Any], value: Any) -> str:
+    first: Any = given[0] if given else None
     if name in _EACH and isinstance(value, list) and _is_number(first):
         holds, words = _NUMBERS[name]
         every = all(holds(it, first) for it in value if _is_number(it))
         return "" if every else f"{words} {first} in each place"
-    if name in _SHAPES:
-        return _SHAPES[name](first, value)
     if name == "bounds" and _is_number(value) and len(given) == 2:
         return "" if given[0] <= value <= given[1] else f"from {given[0]} to {given[1]}"
     if name == "not_empty" and value in ("", []):

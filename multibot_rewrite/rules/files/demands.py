@@ -20,7 +20,6 @@ from multibot_rewrite.rules.files.examples import a_section
 from multibot_rewrite.rules.files.parameter_facts import of_release
 from multibot_rewrite.rules.files.records import Remark, remark_at
 
-
 _OWN = re.compile(r"nav2_\w+_bt_node")
 
 

@@ -10,7 +10,12 @@ from multibot_rewrite.base.findings.rule import SRDF, URDF, rule
 from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.description.examples import a_link, block
-from multibot_rewrite.rules.description.structure.limits import limits_in_degrees
+from multibot_rewrite.rules.description.physics.sensor_values import sees_nothing
+from multibot_rewrite.rules.description.structure.control_values import unreadable_numbers
+from multibot_rewrite.rules.description.structure.limits import (
+    limits_in_degrees,
+    origins_in_degrees,
+)
 from multibot_rewrite.rules.facts.faults import faults
 from multibot_rewrite.rules.subject import Subject
 
@@ -42,7 +47,8 @@ def _imu(inside: str) -> str:
 )
 def unreadable_value(subject: Subject) -> Iterator[Problem]:
     """All but those with a substitution: MB105 reports them."""
-    return (it for it in faults("value", subject) if "$" not in it.message)
+    yield from (it for it in faults("value", subject) if "$" not in it.message)
+    yield from unreadable_numbers(subject)
 
 
 unknown_word = rule(
@@ -66,7 +72,8 @@ unknown_word = rule(
     formats=(URDF, SRDF, PARAMS, MOVEIT),
 )(partial(faults, "word"))
 
-out_of_range = rule(
+
+@rule(
     "MB125",
     "out-of-range",
     ERROR,
@@ -83,15 +90,19 @@ out_of_range = rule(
     bad='<link name="a"><visual><geometry><box size="0 0 0"/></geometry></visual></link>',
     good='<link name="a"><visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual></link>',
     formats=(URDF, PARAMS),
-)(partial(faults, "range"))
+)
+def out_of_range(subject: Subject) -> Iterator[Problem]:
+    """By what each reader takes, and what a sensor needs to see anything."""
+    yield from faults("range", subject)
+    yield from sees_nothing(subject)
 
 
 @rule(
     "MB170",
     "angle-in-degrees",
     WARNING,
-    what="An angle is more than a turn: of a lidar's scan or a <pose> below <gazebo>, of a plugin; "
-    "or a limit of a revolute joint looks like degrees.",
+    what="An angle is more than a turn: of a lidar's scan or a <pose> below <gazebo>, of a plugin, a "
+    "round number in the rpy of an <origin>; or a limit of a revolute joint looks like degrees.",
     why="URDF, SDF and plugins have radians: a scan from -180 to 180 goes round 57 times, a joint "
     "turns many times before it reaches such a limit, and a steering limit of 30 limits nothing.",
     fix='Multiply by pi/180; xacro has radians(). A pose may have degrees="true" from SDF 1.9 on.',
@@ -102,4 +113,5 @@ out_of_range = rule(
 def angle_in_degrees(subject: Subject) -> Iterator[Problem]:
     """Values below <gazebo> and of plugins, and limits."""
     yield from faults("degrees", subject)
+    yield from origins_in_degrees(subject)
     yield from limits_in_degrees(subject)
