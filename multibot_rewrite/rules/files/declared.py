@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 import yaml
 
 from multibot_rewrite.base.conventions import PLACEHOLDER
-from multibot_rewrite.base.findings.finding import ERROR
+from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import MISTYPED, Guesses, meant_name, nearest
 from multibot_rewrite.base.record import NamedTuple
@@ -267,14 +267,16 @@ def below_unknown_names(file: NamedFile) -> Iterator[Remark]:
             for fact in known if len(known) == 1 and known[0].how == YAML else ():
                 for word, name in stands_for(fact.path, it.name).items():
                     listed = section.whole.get(section.at + word.strip("<>"))
-                    names = listed.value if listed and isinstance(listed.value, list) else []
-                    if names and name not in names and it.value is not None:
-                        near = nearest(name, map(str, names))
-                        hint = f"did you mean {near!r}?" if near else "nothing reads it"
-                        message = (
-                            f"{section.title}: {it.name} is for {name!r}, not in {listed.name}"
-                        )
-                        yield remark_at(it.key, message, hint)
+                    names = listed.value if listed else None
+                    if isinstance(names, list) and names and name not in names:
+                        yield _for_unknown(section, it, name, [str(each) for each in names], word)
+
+
+def _for_unknown(section: Section, it: Given, name: str, names: Sequence[str], word: str) -> Remark:
+    near = nearest(name, names)
+    hint = f"did you mean {near!r}?" if near else "nothing reads it"
+    message = f"{section.title}: {it.name} is for {name!r}, which is not in {word.strip('<>')}"
+    return remark_at(it.key, message, hint, WARNING if near else "")
 
 
 def of_other_releases(file: NamedFile) -> Iterator[Remark]:

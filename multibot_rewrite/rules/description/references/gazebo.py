@@ -115,11 +115,8 @@ def sensors_of_joints(subject: Subject) -> Iterator[Problem]:
 
 def _two_sensors(other: str) -> str:
     one = '<sensor name="a" type="imu"><topic>imu</topic></sensor>'
-    return a_link("a") + block(
-        '<gazebo reference="a">',
-        one,
-        f'<sensor name="b" type="camera"><topic>{other}</topic></sensor>',
-    )
+    two = f'<sensor name="b" type="camera"><topic>{other}</topic></sensor>'
+    return a_link("a") + a_block('<gazebo reference="a">', one, two)
 
 
 @rule(
