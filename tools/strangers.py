@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import re
 import resource
 import subprocess
 import sys
@@ -77,7 +78,7 @@ def tried(it: Stranger, checkout: Path, folder: Path) -> Row:
     if built.code:
         return Row(it, _word(built, "build"), _first(built), made.seconds, built.seconds)
     driven = run([sys.executable, str(DRIVE), str(out), "--json"], release)
-    return Row(it, *_driven(driven), made.seconds, built.seconds)
+    return Row(it, *_driven(driven, built.err + built.out), made.seconds, built.seconds)
 
 
 def run(command: Sequence[str], release: str) -> Ran:
@@ -109,18 +110,32 @@ def _first(it: Ran) -> str:
     return next(errors, lines[-1] if lines else "")
 
 
-def _driven(it: Ran) -> tuple[str, str]:
+def _driven(it: Ran, told: str) -> tuple[str, str]:
+    """The word and why: what is wrong was told by the build (``told``), or it is silent."""
     try:
         found = json.loads(it.out)
     except json.JSONDecodeError:
         return "drive: not judged", _first(it)
     does: dict[str, str] = next(iter(found["robots"].values()), {})
-    why = "; ".join(f"{each['robot']} {each['what']}: {each['why']}" for each in found["wrong"][:2])
-    unknown = "; ".join(f"{what} {said}" for what, said in does.items() if "unknown" in said)
-    yes = ", ".join(what for what, said in does.items() if said == "yes")
+    silent = [each for each in found["wrong"] if not _is_told(each["why"], told)]
     if found["wrong"]:
-        return "drive: wrong", why
+        shown = (silent or found["wrong"])[:2]
+        why = "; ".join(f"{each['robot']} {each['what']}: {each['why']}" for each in shown)
+        return ("drive: wrong in silence" if silent else "drive: the build says what is wrong"), why
+    unknown = next((said for said in does.values() if "unknown" in said), "")
+    yes = ", ".join(what for what, said in does.items() if said == "yes")
     return ("drive: unknown", unknown) if unknown else (f"yes: {yes}", "")
+
+
+def _is_told(why: str, told: str) -> bool:
+    """Does the build name the topic, node or frame that this is about?"""
+    names = re.findall(r"/?[\w/]*[a-z]_?[\w/]*[/_][\w/]+", why)
+    bare = {re.sub(r"^/?robot\d+/", "", name).lstrip("/") for name in names} - {
+        "",
+        "robot1",
+        "robot2",
+    }
+    return any(name in told for name in bare)
 
 
 def _table(rows: Sequence[Row]) -> Iterator[str]:

@@ -68,7 +68,8 @@ def companions_of(robot: Looked, found: Found, release: str) -> Companions:
     files = {kind: tuple(_of_kind(kind, robot, found, left)) for kind in KINDS if kind != "params"}
     sections = dict(_sections(_nearest(robot, found.params), release, left))
     idle = _controllers_of_others(robot, sections)
-    left |= idle
+    left |= idle | _bridges_of_others(robot, found)
+    files |= {"bridge": tuple(it for it in files["bridge"] if it not in left)}
     sections = {path: names for path, names in sections.items() if path not in idle}
     files["params"] = tuple(sections)
     srdf = _nearest(robot, found.srdf)[:1]
@@ -87,6 +88,13 @@ def _controllers_of_others(robot: Looked, sections: Mapping[str, frozenset[str]]
         return {}
     reason = "no plugin of the simulated robot makes a controller manager"
     return {path: reason for path, names in sections.items() if _MANAGER in names}
+
+
+def _bridges_of_others(robot: Looked, found: Found) -> dict[str, str]:
+    """Bridges to a simulator, beside a description that has nothing for one."""
+    if robot.simulator != NO_SIMULATOR:
+        return {}
+    return dict.fromkeys(found.bridge, "the description has nothing for a simulator")
 
 
 def _of_kind(kind: str, robot: Looked, found: Found, left: dict[str, str]) -> Iterator[str]:
