@@ -11,13 +11,14 @@ import argparse
 import json
 import os
 import re
-import resource
 import subprocess
 import sys
 import tempfile
+import threading
 from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import NamedTuple
+from typing import IO, NamedTuple
 
 LIST = Path(__file__).with_name("strangers.tsv")
 DRIVE = Path(__file__).parents[1] / "tests" / "drive"
@@ -83,18 +84,24 @@ def tried(it: Stranger, checkout: Path, folder: Path) -> Row:
 
 def run(command: Sequence[str], release: str) -> Ran:
     """Run a command without a terminal."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
     environ = {**os.environ, "ROS_DISTRO": release}
-    try:
-        done = subprocess.run(
-            command, capture_output=True, text=True, timeout=PATIENCE, stdin=subprocess.DEVNULL,
-            check=False, env=environ,
-        )  # fmt: skip
-    except subprocess.TimeoutExpired:
-        return Ran(-1, "", f"it took more than {PATIENCE} seconds", PATIENCE)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    spent = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    return Ran(done.returncode, done.stdout, done.stderr, spent)
+    with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as err:
+        child = subprocess.Popen(
+            command, stdin=subprocess.DEVNULL, stdout=out, stderr=err, env=environ
+        )
+        end = threading.Timer(PATIENCE, child.kill)
+        end.start()
+        # The time of this process alone, whatever else runs.
+        _, status, spent = os.wait4(child.pid, 0)
+        child.returncode = os.waitstatus_to_exitcode(status)
+        end.cancel()
+        said, faults = (_text(it) for it in (out, err))
+    return Ran(child.returncode, said, faults, spent.ru_utime + spent.ru_stime)
+
+
+def _text(file: IO[str]) -> str:
+    file.seek(0)
+    return file.read()
 
 
 def _word(it: Ran, command: str) -> str:
@@ -147,23 +154,27 @@ def _table(rows: Sequence[Row]) -> Iterator[str]:
         yield f"| {it.stranger.name} | {it.stranger.kind} | {it.word} | {why} | {times} |"
 
 
+def _noted(it: Row) -> Row:
+    print(it.word, it.why, it.stranger.name, sep="\t", file=sys.stderr, flush=True)
+    return it
+
+
 def main(words: Sequence[str]) -> int:
     """Run those that were asked for; returns the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
     parser.add_argument("--half", choices=("work", "last"), default="work")
     parser.add_argument("--only", default="", help="a part of the names")
+    parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--keep", type=Path, help="where to write fleets and folders")
     given = parser.parse_args(words)
     chosen = [it for it in strangers() if it.half == given.half and given.only in it.name]
     with tempfile.TemporaryDirectory() as scratch:
         kept = given.keep or Path(scratch)
         places = [it.name.replace("/", "+") for it in chosen]
-        pairs = zip(chosen, places, strict=True)
-        rows = []
-        for it, place in pairs:
-            rows.append(tried(it, given.folder / place, (kept / place).resolve()))
-            print(*rows[-1][1:3], it.name, sep="\t", file=sys.stderr, flush=True)
+        folders = [(given.folder / it, (kept / it).resolve()) for it in places]
+        with ThreadPoolExecutor(given.jobs) as pool:
+            rows = list(pool.map(lambda it, two: _noted(tried(it, *two)), chosen, folders))
     print(*_table(rows), sep=os.linesep)
     return 0
 

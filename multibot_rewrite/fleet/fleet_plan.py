@@ -31,7 +31,7 @@ from multibot_rewrite.fleet.robots.robot_nodes import (
     node_sources,
     robot_nodes,
 )
-from multibot_rewrite.fleet.robots.simulators import may_be_real, note, other_hardware
+from multibot_rewrite.fleet.robots.simulators import may_be_real, note
 
 
 class FleetPlan(NamedTuple):
@@ -125,6 +125,6 @@ def _fleet(
     fleet = merge(fleets)
     members = [it.member for it in robots]
     table = with_meetings(fleet.table, members, naming)
-    told = (*declared_twice(robots, naming, table), *left_out(members), *other_hardware(robots))
+    told = (*declared_twice(robots, naming, table), *left_out(members))
     problems = tuple(dict.fromkeys((*table.problems, *told, *notes)))
     return fleet._replace(table=table._replace(problems=problems))
