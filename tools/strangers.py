@@ -25,6 +25,8 @@ DRIVE = Path(__file__).parents[1] / "tests" / "drive"
 MULTIBOT = (sys.executable, "-m", "multibot_rewrite.cli.multibot")
 # What stands for a release that is no longer kept, or where the repository names none.
 RELEASE = {"foxy": "humble", "galactic": "humble", "iron": "humble", "-": "jazzy"}
+# How a question which description is meant ends: a user names the one that is meant.
+_NAMED = re.compile(r"name one: multibot init (\S+)")
 # Seconds after which a command is ended.
 PATIENCE = 300
 
@@ -106,7 +108,7 @@ def _text(file: IO[str]) -> str:
 
 def _word(it: Ran, command: str) -> str:
     """Exit code 2 is an answer, 1 a fleet that does not build; anything else is a fault of ours."""
-    words = {1: f"{command}: does not build", 2: f"{command}: asks"}
+    words = {1: f"{command}: does not build", 2: f"{command}: says what is missing"}
     return words.get(it.code, f"{command}: broke")
 
 

@@ -83,10 +83,13 @@ def companions_of(robot: Looked, found: Found, release: str) -> Companions:
 
 
 def _controllers_of_others(robot: Looked, sections: Mapping[str, frozenset[str]]) -> dict[str, str]:
-    """The files of controllers of the real robot, whose simulated one is driven by other plugins."""
-    if robot.control or robot.simulator == NO_SIMULATOR:
+    """The files of controllers of the real robot, whose simulated one is driven by other plugins, and
+    those beside a description that has nothing for them to move."""
+    if robot.control:
         return {}
     reason = "no plugin of the simulated robot makes a controller manager"
+    if robot.simulator == NO_SIMULATOR:
+        reason = "the description has no <ros2_control>"
     return {path: reason for path, names in sections.items() if _MANAGER in names}
 
 

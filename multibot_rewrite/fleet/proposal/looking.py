@@ -15,7 +15,7 @@ from multibot_rewrite.description.reports.xacro_arguments import find_arguments,
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.expand import expand
-from multibot_rewrite.description.sources.own_names import filled
+from multibot_rewrite.description.sources.own_names import ROBOT, filled
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.fleet.file.simulator_switch import suits_real, suits_simulator, switch_for
@@ -96,6 +96,16 @@ def with_own_arguments(it: Looked, tree: Tree, reach: Reach) -> Looked:
     known = {one.name for one in found.arguments} | set(found.untried)
     kept = {name: value for name, value in given.items() if name in known}
     return it._replace(arguments=tuple({**kept, **own}.items()))
+
+
+def without_names(it: Looked, given: Mapping[str, str]) -> Looked:
+    """The same with the arguments that name robots empty, but for those that were ``given`` or that it
+    cannot do without."""
+    kept = {*given, *it.needed}
+    values = {
+        name: value if name in kept or ROBOT not in value else "" for name, value in it.arguments
+    }
+    return it._replace(arguments=tuple(values.items()))
 
 
 def in_its_world(it: Looked, simulated: bool, reach: Reach) -> Looked:

@@ -238,11 +238,11 @@ def with_arguments(robots: Sequence[Looked], wanted: Wanted, found: Found) -> li
     makes them simulated or real: as it was asked for, or as the files are."""
     tree = builtin_tree((), wanted.release)
     reach = Reach(trust=wanted.trust)
-    named = [with_own_arguments(it, tree, reach) for it in robots]
+    own = [with_own_arguments(it, tree, reach) for it in robots]
     launched = any(it in text_of(path) for path in found.launch for it in _SIMULATORS)
     return [
         in_its_world(it, _is_simulated(it, wanted) or (launched and not wanted.simulator), reach)
-        for it in named
+        for it in own
     ]
 
 

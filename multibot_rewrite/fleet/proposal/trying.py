@@ -14,7 +14,7 @@ from multibot_rewrite.fleet.checks.read_back import read_back
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.fleet.proposal.fleet_text import data_of
-from multibot_rewrite.fleet.proposal.looking import Looked
+from multibot_rewrite.fleet.proposal.looking import Looked, without_names
 from multibot_rewrite.fleet.proposal.propose import (
     Choice,
     Proposal,
@@ -62,9 +62,22 @@ def that_builds(
     robots: Sequence[Looked], found: Found, wanted: Wanted, refused: Mapping[str, str] | None = None
 ) -> Proposal:
     """The fleet of these robots without the files that do not go with them (``refused`` are left out,
-    too), in its own layout or the first one that builds."""
+    too), in its own layout or the first one that builds; the arguments that name robots stay empty
+    where it builds so alone."""
     own = with_arguments(robots, wanted, found)
-    out = dict(refused or {})
+    made, errors = _without_blamed(own, found, wanted, refused or {})
+    bare = [without_names(it, wanted.arguments) for it in own] if errors else own
+    if bare != own:
+        other, wrong = _without_blamed(bare, found, wanted, refused or {})
+        made, errors = (made, errors) if wrong else (other, wrong)
+    return in_a_layout_that_builds(made, errors, wanted.trust)
+
+
+def _without_blamed(
+    own: Sequence[Looked], found: Found, wanted: Wanted, refused: Mapping[str, str]
+) -> tuple[Proposal, list[tuple[str, str]]]:
+    """The proposal without the files that have an error, and the errors that are left."""
+    out = dict(refused)
     for _ in range(MOST_ROUNDS):
         made = propose(own, found, wanted, out)
         errors = errors_of(data_of(made, os.curdir), wanted.trust)
@@ -72,7 +85,7 @@ def that_builds(
         if not blamed:
             break
         out |= blamed
-    return in_a_layout_that_builds(made, errors, wanted.trust)
+    return made, errors
 
 
 def _blamed(it: Proposal, errors: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:

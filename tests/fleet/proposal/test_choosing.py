@@ -159,3 +159,36 @@ def test_a_real_robot_has_no_bridge(two: Path) -> None:
     )
     fleet = taken(two)
     assert fleet["simulator"] == "none" and "companions" not in fleet
+
+
+MIR = """\
+<robot name="mir" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="tf_prefix" default=""/>
+  <link name="$(arg tf_prefix)base_link"/><link name="$(arg tf_prefix)l"/>
+  <joint name="$(arg tf_prefix)left" type="continuous">
+    <parent link="$(arg tf_prefix)base_link"/><child link="$(arg tf_prefix)l"/>
+    <axis xyz="0 1 0"/>
+  </joint>
+  <gazebo>
+    <plugin name="drive" filename="libgazebo_ros_planar_move.so">
+      <ros><remapping>cmd_vel:=$(arg tf_prefix)cmd_vel</remapping></ros>
+    </plugin>
+  </gazebo>
+</robot>
+"""
+
+
+def test_an_argument_that_would_name_the_robot_twice_stays_empty(
+    tmp_path: Path, capsys: Any
+) -> None:
+    """As MiR's: the namespace names the topics already."""
+    (tmp_path / "mir.urdf.xacro").write_text(MIR)
+    fleet = taken(tmp_path, "--distro", "humble")
+    assert fleet["arguments"] == {"tf_prefix": ""}
+    assert fleet["layout"] == "frames-per-robot"
+    file = tmp_path / "fleet.yaml"
+    file.write_text(file.read_text().replace("tf_prefix: ''", "tf_prefix: '{robot}_'"))
+    assert main(["build", str(file), "-o", str(tmp_path / "out")]) == 1
+    said = capsys.readouterr().err
+    assert "MF844 /robot1/robot1_cmd_vel has the name of robot 'robot1' twice" in said
+    assert "write tf_prefix: '' under arguments" in said
