@@ -229,7 +229,8 @@ def _by_launches(looked: Iterable[Looked], found: Found) -> list[Looked]:
 
 def _refuse(which: Sequence[Looked], more: str) -> None:
     for it in which[:1]:
-        fault = it.fault or f"{it.path}: it has no link; give the file that has the robot"
+        why = "nothing in it moves or senses" if it.links else "it has no link"
+        fault = it.fault or f"{it.path}: {why}; give the file that has the robot"
         raise UsageError(f"{fault}{more}")
 
 

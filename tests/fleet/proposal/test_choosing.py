@@ -192,3 +192,40 @@ def test_an_argument_that_would_name_the_robot_twice_stays_empty(
     said = capsys.readouterr().err
     assert "MF844 /robot1/robot1_cmd_vel has the name of robot 'robot1' twice" in said
     assert "write tf_prefix: '' under arguments" in said
+
+
+RVIZ = """\
+Visualization Manager:
+  Class: ""
+  Displays:
+    - Class: rviz_default_plugins/RobotModel
+      Name: RobotModel
+      Links:
+        All Links Enabled: true
+        {}_base:
+          Alpha: 1
+        {}_wheel:
+          Alpha: 1
+"""
+
+
+def test_rviz_and_srdf_of_another_robot_are_not_taken(two: Path) -> None:
+    """Not even where no description of that robot is there: of its names none is known."""
+    (two / "tractor.urdf").unlink()
+    (two / "a.rviz").write_text(RVIZ.format("other", "other"))
+    (two / "z.rviz").write_text(RVIZ.format("digger", "dig_left"))
+    group = '<group name="g"><joint name="{}"/></group>'
+    for name, joint in (("a", "elbow"), ("z", "dig_left")):
+        (two / f"{name}.srdf").write_text(f'<robot name="digger">{group.format(joint)}</robot>')
+    fleet = taken(two)
+    assert (fleet["companions"]["rviz"], fleet["srdf"]) == ("z.rviz", "z.srdf")
+    assert "#   a.rviz: of its links and joints 0 in a hundred" in (two / "fleet.yaml").read_text()
+
+
+def test_the_navigation_that_is_launched_is_taken(two: Path) -> None:
+    (two / "tractor.urdf").unlink()
+    section = {"amcl": {"ros__parameters": {"base_frame_id": "digger_base"}}}
+    for name in ("a_nav.yaml", "z_nav.yaml"):
+        (two / name).write_text(yaml.safe_dump(section))
+    (two / "up.launch.py").write_text("params = 'z_nav.yaml'\n")
+    assert taken(two)["companions"]["params"] == ["z_nav.yaml"]
