@@ -85,7 +85,16 @@ def read(folder: Path, release: str) -> Fleet:
         own = {robot: launched(file, robot)["starts"] for robot in every["robots"]}
     except (RuntimeError, OSError) as error:
         return Fleet(
-            (), (), (), (), {}, (), (), {}, (("", "starts", f"the launch file raises: {error}"),), ()
+            (),
+            (),
+            (),
+            (),
+            {},
+            (),
+            (),
+            {},
+            (("", "starts", f"the launch file raises: {error}"),),
+            (),
         )
     shared = [it for it in every["starts"] if all(it in each for each in own.values())]
     if len(own) == 1:

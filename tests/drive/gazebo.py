@@ -73,9 +73,7 @@ def plugin_key(element: etree._Element) -> str:
     return name.removesuffix("-system").removeprefix("gazebo_ros_")
 
 
-def of_plugin(
-    plugin: etree._Element, model: str, world: str, link: str
-) -> Iterator[GzEnd]:
+def of_plugin(plugin: etree._Element, model: str, world: str, link: str) -> Iterator[GzEnd]:
     """What gz-sim opens for a plugin of a model; ``link`` is the canonical one."""
     words = {"model": model, "world": world, "link": link}
     words |= {"joint_name": text(plugin, "joint_name"), "joint_index": "0"}

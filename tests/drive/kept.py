@@ -16,8 +16,9 @@ from typing import NamedTuple
 
 from lxml import etree
 
-# Until then what a massless link that is lumped carries was left out, too.
+# Until then what a massless link that is lumped carries was left out, too, and a milligram was no mass.
 WHOLE = (12, 7)
+NEARLY = 1e-6
 YES = ("true", "yes", "1")
 
 
@@ -95,13 +96,13 @@ def of_urdf(root: etree._Element, old: bool = False) -> Kept:
     joints = list(joints_of(root))
     body = bodies(root, joints)
     masses = {it.get("name", ""): mass_of(it) for it in root.iterfind("link")}
-    links, made = [], []
+    links, made, none = [], [], NEARLY if old else 0.0
     queue = [it for it in body if it not in {joint.child for joint in joints}][:1]
     while queue:
         name = queue.pop()
         own = next((it for it in joints if it.child == name), None)
         lumped = own is not None and own.lumped
-        if name != "world" and (old or not lumped) and weight(name, masses, joints) <= 0:
+        if name != "world" and (old or not lumped) and weight(name, masses, joints) <= none:
             continue
         if name != "world" and not lumped:
             links.append(name)
