@@ -68,15 +68,23 @@ def strangers(path: Path = LIST) -> list[Stranger]:
 
 
 def tried(it: Stranger, checkout: Path, folder: Path) -> Row:
-    """Init, build and drive one repository; everything is written below ``folder``."""
+    """Init, build and drive one repository; everything is written below ``folder``. Where init asks
+    which robot is meant, the first that it names is."""
     folder.mkdir(parents=True, exist_ok=True)
-    fleet, out = folder / "fleet.yaml", folder / "out"
-    release = RELEASE.get(it.release, it.release)
-    made = run(
-        [*MULTIBOT, "init", str(checkout), "-n", "2", "--yes", "--force", "-o", str(fleet)], release
-    )
+    fleet, release = folder / "fleet.yaml", RELEASE.get(it.release, it.release)
+    words = ["-n", "2", "--yes", "--force", "-o", str(fleet)]
+    made = run([*MULTIBOT, "init", str(checkout), *words], release)
+    if named := _NAMED.search(made.err):
+        row = _built(it, run([*MULTIBOT, "init", named[1], *words], release), fleet, release)
+        return row._replace(word=f"asks which robot; the first: {row.word}", init=made.seconds)
+    return _built(it, made, fleet, release)
+
+
+def _built(it: Stranger, made: Ran, fleet: Path, release: str) -> Row:
+    """Build what init has written, and drive it."""
     if made.code:
         return Row(it, _word(made, "init"), _first(made), made.seconds, 0.0)
+    out = fleet.parent / "out"
     built = run([*MULTIBOT, "build", str(fleet), "-o", str(out), "--force"], release)
     if built.code:
         return Row(it, _word(built, "build"), _first(built), made.seconds, built.seconds)
