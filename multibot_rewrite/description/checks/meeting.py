@@ -27,7 +27,7 @@ from multibot_rewrite.description.steps.apply import fill
 from multibot_rewrite.description.steps.document import Document
 from multibot_rewrite.system.records import KINDS
 
-LOST_RULE, SAME_TEXT, PARTED, NO_LINK = "MB436", "MB438", "MB439", "MB502"
+LOST_RULE, SAME_TEXT, PARTED, NO_LINK = "MB436", "MB437", "MB438", "MB502"
 ALL = "all robots would"
 # Stands for the name of a robot in a hint.
 ROBOT = "ROBOT"

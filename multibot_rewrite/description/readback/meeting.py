@@ -20,7 +20,7 @@ from multibot_rewrite.system.words import is_order
 
 TWO_NODES, TWO_SERVERS, COMMAND, DATA = "MG301", "MG305", "MG310", "MG320"
 FRAMES, LOOKUP, NOT_TAKEN = "MG402", "MB425", "MR105"
-OPENED = "MB437"
+OPENED = "MB412"
 SHARED_CODES = frozenset({TWO_NODES, TWO_SERVERS, COMMAND, DATA, FRAMES, LOOKUP, NOT_TAKEN, OPENED})
 # The type of a topic called as one that moves a robot, where it is not known.
 _USUAL = "geometry_msgs/msg/Twist"
@@ -94,7 +94,7 @@ def code_of(name: RuntimeName) -> str:
         return TWO_SERVERS
     if name.kind in TOPIC_KINDS:
         return COMMAND if is_order(name.name, name.type or _USUAL) else DATA
-    others = {NODE: TWO_NODES, FRAME: FRAMES, ADDRESS: OPENED, FILE: OPENED, RELATIVE: OPENED}
+    others = {NODE: TWO_NODES, FRAME: FRAMES, ADDRESS: OPENED, FILE: OPENED, RELATIVE: TWO_NODES}
     return others.get(name.kind, LOOKUP)
 
 
@@ -112,7 +112,7 @@ def said(who: str, *names: RuntimeName) -> str:
 def advice(name: RuntimeName) -> str:
     """What to do about a shared name, but for those of controllers."""
     if name.kind == RELATIVE:
-        return "give each robot a namespace: --layout tf-per-robot or both"
+        return "give each robot a namespace: use --layout tf-per-robot or both"
     of_all = f"use --layout both, which renames {name.kind}s for each robot"
     return _ADVICE.get(code_of(name), of_all)
 

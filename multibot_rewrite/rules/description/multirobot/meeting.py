@@ -140,35 +140,8 @@ lost_rule = rule(
     options={"robots": TWO, "naming": IN_FRONT},
 )(partial(_of_code, "MB436"))
 
-_HARDWARE = """\
-<link name="a"/>
-<ros2_control name="h" type="system">
-  <hardware>
-    <plugin>kortex_driver/KortexMultiInterfaceHardware</plugin>
-    <param name="robot_ip">{}</param>
-  </hardware>
-</ros2_control>
-"""
-
-same_resource = rule(
-    "MB437",
-    "same-resource",
-    WARNING,
-    what="A plugin or driver of each robot would open the same network address, the same file, or "
-    "names that only a namespace keeps apart.",
-    why="Two programs cannot listen at one port, two drivers command one arm, and a file has what was "
-    "written last. Nodes that a driver makes itself have fixed names: without a namespace they are "
-    "the same for all robots.",
-    fix="Give each robot a value of its own, as with an argument of the xacro; for names, use a layout "
-    "with a namespace.",
-    bad=_HARDWARE.format("192.168.1.10"),
-    good=_HARDWARE.format("{name}"),
-    line=2,
-    options={"robots": TWO, "naming": APART},
-)(partial(_of_code, "MB437"))
-
 same_text = rule(
-    "MB438",
+    "MB437",
     "same-text-for-all",
     WARNING,
     what="All robots would get the same description, and a plugin, sensor or driver runs in it.",
@@ -179,7 +152,7 @@ same_text = rule(
     good='<link name="a"/>\n<gazebo><plugin name="p" filename="libgazebo_grasp_fix.so"/></gazebo>',
     line=2,
     options={"robots": TWO, "naming": AS_WRITTEN},
-)(partial(_of_code, "MB438"))
+)(partial(_of_code, "MB437"))
 
 _HEARD = """\
 <link name="a"/>
@@ -192,7 +165,7 @@ _HEARD = """\
 """
 
 parted_topic = rule(
-    "MB439",
+    "MB438",
     "parted-topic",
     WARNING,
     what="Two parameters that held one topic would hold two after the rewrite.",
@@ -202,4 +175,4 @@ parted_topic = rule(
     good=_HEARD.format("hit"),
     line=2,
     options={"robots": TWO, "naming": APART},
-)(partial(_of_code, "MB439"))
+)(partial(_of_code, "MB438"))
