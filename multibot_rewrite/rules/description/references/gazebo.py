@@ -10,6 +10,7 @@ from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.references import ambiguous
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.rules.description.examples import a_link
+from multibot_rewrite.rules.description.examples import block as a_block
 from multibot_rewrite.rules.subject import Subject
 
 _OF_JOINTS = ("force_torque", "wrench")
