@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import os
 import subprocess
-import sys
 from functools import lru_cache
 
+from multibot_rewrite.base.child import python, variables
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder, graph_of, to_json
 from multibot_rewrite.producers.launch.system_model import is_system_model, read_system_model
@@ -39,8 +39,8 @@ def launch_graph(order: LaunchOrder) -> LaunchGraph:
 
 
 def _asked(order: LaunchOrder) -> LaunchGraph:
-    environ = {**os.environ, _INSIDE: "1"}
-    command = [sys.executable, "-m", _MODULE]
+    environ = {**variables(), _INSIDE: "1"}
+    command = python(_MODULE)
     try:
         done = subprocess.run(
             command,
