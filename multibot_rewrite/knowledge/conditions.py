@@ -25,7 +25,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import has_release
 
 Values = Callable[[str], object]
-RELEASE, UNKNOWN = "release", "unknown"
+RELEASE, VERSION, UNKNOWN = "release", "version", "unknown"
 # Subject -> what its words are.
 KINDS = {
     "argument": "an argument of the command line that starts it",
@@ -51,7 +51,7 @@ KINDS = {
     "tree": "a node of the behavior tree",
     "unsent": "a topic that nobody else sends",
     "use": "what the robot is used for",
-    "version": "the package, and its version or a newer one",
+    VERSION: "the package, and its version or a newer one",
     UNKNOWN: "a text",
 }
 AND, OR, ALSO = " and ", " or ", "|"
@@ -89,6 +89,11 @@ def joined(text: str, other: str) -> str:
     return OR.join(f"{it}{AND}{other}" for it in text.split(OR))
 
 
+def said(text: str) -> str:
+    """The condition as people read it: a version as one or newer, a text as it is."""
+    return OR.join(AND.join(map(_said, it.split(AND))) for it in text.split(OR))
+
+
 def of_release(text: str, release: str) -> str | None:
     """The condition without what it says of releases; None where it never holds in this one."""
     asked = f"{RELEASE}: "
@@ -98,6 +103,12 @@ def of_release(text: str, release: str) -> str | None:
         if all(has_release(it.removeprefix(asked), release) for it in terms if it.startswith(asked))
     ]
     return OR.join(left) if left else None
+
+
+def _said(term: str) -> str:
+    if term.startswith(f"{VERSION}: "):
+        return f"{term.removeprefix(f'{VERSION}: ')} or newer"
+    return term.removeprefix(f"{UNKNOWN}: ")
 
 
 def _one(text: str) -> Condition:

@@ -10,6 +10,7 @@ from multibot_rewrite.knowledge.conditions import (
     joined,
     of_release,
     parse_condition,
+    said,
     verdict,
 )
 
@@ -116,3 +117,17 @@ def test_what_a_condition_says_of_releases_is_settled(
     text: str, release: str, left: str | None
 ) -> None:
     assert of_release(text, release) == left
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("version: nav2_route 1.3.9", "nav2_route 1.3.9 or newer"),
+        ("use_mag != false and version: a 1.0 or on", "use_mag != false and a 1.0 or newer or on"),
+        ("unknown: a camera or none", "a camera or none"),
+        ("hardware: arm", "hardware: arm"),
+        ("", ""),
+    ],
+)
+def test_people_read_a_version_as_one_or_newer(text: str, words: str) -> None:
+    assert said(text) == words
