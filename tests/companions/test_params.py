@@ -164,6 +164,15 @@ def test_a_slash_above_a_node_is_the_root_namespace() -> None:
     assert "MB312" in codes(made("/:\n  ros__parameters: {a: 1}\n")[1])
 
 
+@pytest.mark.parametrize("key", ["robot1", "/robot1", "robot1/", "/"])
+def test_the_namespace_of_the_robot_that_a_file_is_for_is_no_name_of_a_node(key: str) -> None:
+    """Clearpath's generator writes a key with the namespace alone above the nodes."""
+    source = f"{key}:\n  twist_server_node:\n    ros__parameters: {{a: 1}}\n"
+    assert "MB312" not in codes(made(source, own=("robot1",))[1])
+    wrong = source.replace("twist_server_node", "twist-server")
+    assert "MB312" in codes(made(wrong, own=("robot1",))[1])
+
+
 def test_a_robots_name_in_a_file_is_an_error() -> None:
     source = section("amcl", "scan_topic: /robot2/scan")
     companion = rewrite_params(read_yaml(source.encode(), "p.yaml"), setting())
