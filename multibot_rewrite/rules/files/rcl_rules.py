@@ -1,0 +1,105 @@
+"""What rcl rejects in any parameter file, whatever node it is for, and what makes it skip a section.
+
+Source: rcl_yaml_param_parser parse.c (``parse_value``: a sequence is of one type and of single values;
+``PARAMS_KEY`` is ``ros__parameters``; what is above it is a name).
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterator
+
+import yaml
+
+from multibot_rewrite.base.conventions import PLACEHOLDER
+from multibot_rewrite.base.findings.finding import ERROR
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.wording import shorten
+from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.params.rcl_parameters import typed, value_of
+from multibot_rewrite.companions.params.sections import ANY, PARAMETERS, ParamSection, scalars
+from multibot_rewrite.companions.yaml_text import pairs
+from multibot_rewrite.rules.files.records import Remark, remark_at
+
+_PLACE = re.compile(r"^.*?:\d+(?::\d+)?: ")
+_NEARLY = re.compile(r"_*ros_*param(?:eter)?s?_*", re.IGNORECASE)
+_DEEP = 4
+_TIME = "use_sim_time"
+
+
+def rejected_values(file: NamedFile) -> Iterator[Remark]:
+    """Lists of several types, of lists or of maps."""
+    document = file.document
+    if document is None:
+        return
+    for section, _ in file.pages:
+        for node in filter(_is_read, _lists(section.body)):
+            if PLACEHOLDER.search(document.text[node.start_mark.index : node.end_mark.index]):
+                continue
+            try:
+                value_of(document, node)
+            except InputError as error:
+                message = _PLACE.sub("", str(error))
+                yield remark_at(node, f"rcl rejects the file: {message}", "", ERROR)
+
+
+def _lists(node: yaml.Node) -> Iterator[yaml.Node]:
+    for _, value in pairs(node):
+        if isinstance(value, yaml.SequenceNode):
+            yield value
+        else:
+            yield from _lists(value)
+
+
+def _is_read(node: yaml.Node) -> bool:
+    """Is it one of values? rcl 9.2 takes ``- key: [a]``, and rejects maps of two keys."""
+    maps = [it for it in node.value if isinstance(it, yaml.MappingNode)]
+    return not maps or any(len(it.value) > 1 for it in maps)
+
+
+def misspelt_marks(file: NamedFile) -> Iterator[Remark]:
+    """Keys that are nearly ``ros__parameters``: what is below is part of a name, and no parameter."""
+    root = file.document.root if file.document else None
+    for key in _keys(root, _DEEP):
+        if key.value != PARAMETERS and _NEARLY.fullmatch(str(key.value)):
+            message = f"{key.value!r} is no {PARAMETERS}: no node gets what is below it"
+            yield remark_at(key, message, f"write {PARAMETERS}, with two underscores", ERROR)
+
+
+def _keys(node: yaml.Node | None, deep: int) -> Iterator[yaml.ScalarNode]:
+    for key, value in pairs(node):
+        yield key
+        if deep and key.value != PARAMETERS:
+            yield from _keys(value, deep - 1)
+
+
+def mixed_clocks(file: NamedFile) -> Iterator[Remark]:
+    """Nodes of one file of which some are on simulated time and some say that they are not."""
+    found: list[tuple[str, yaml.Node, bool]] = []
+    for section, _ in file.pages:
+        for key, value in scalars(section.body):
+            given = typed(value.value) if not value.style else ""
+            if key.value == _TIME and isinstance(given, bool) and not _is_left_out(section):
+                found.append((section.path, value, given))
+    counted = Counter(given for *_, given in found)
+    if len(counted) < 2:
+        return
+    most = counted.most_common(1)[0][0]
+    others = [(path, node) for path, node, given in found if given != most]
+    first = next(path for path, _, value in found if value == most)
+    names = shorten(path for path, _ in others)
+    message = f"{_TIME} is {_word(not most)} for {names}, and {_word(most)} for {first}"
+    yield remark_at(
+        others[0][1], message, "set it alike in all nodes of a robot: tf compares times"
+    )
+
+
+def _is_left_out(section: ParamSection) -> bool:
+    """Is it for no one node, or for a helper node of old releases?"""
+    wild = any(it in ANY for it in section.path.split("/"))
+    return wild or section.inner or PLACEHOLDER.search(section.path) is not None
+
+
+def _word(value: bool) -> str:
+    return str(value).lower()
