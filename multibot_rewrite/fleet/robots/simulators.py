@@ -10,6 +10,7 @@ from lxml import etree
 
 from multibot_rewrite.base.findings.finding import NOTE, Finding
 from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.fleet.file.fleet_file import REAL
 from multibot_rewrite.fleet.robots.member import Member
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence
@@ -48,8 +49,16 @@ SIMULATED_OR_REAL = declare(
 
 def may_be_real(robot: RewrittenRobot, evidence: RobotEvidence) -> bool:
     """Has its description something for a simulator, and does nothing say that it runs in one?"""
-    said = robot.spec.simulator or robot.spec.companions.get("bridge")
-    return evidence.unsimulated and not said and _for_simulator(robot.member)
+    return evidence.unsimulated and not _said(robot) and _for_simulator(robot.member)
+
+
+def is_chosen(robot: RewrittenRobot) -> bool:
+    """Does its fleet file say that it runs in a simulator?"""
+    return bool(_said(robot)) and robot.spec.simulator != REAL
+
+
+def _said(robot: RewrittenRobot) -> object:
+    return robot.spec.simulator or robot.spec.companions.get("bridge")
 
 
 def note(robot: RewrittenRobot) -> Finding:
