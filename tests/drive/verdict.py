@@ -48,7 +48,7 @@ class Fault(NamedTuple):
 def judged(fleet: Fleet) -> tuple[Fault, ...]:
     """Every fault of a fleet."""
     found = [Fault(*it) for it in fleet.faults]
-    found += twins(fleet)
+    found += [*twins(fleet), *models_twice(fleet)]
     for robot in fleet.robots:
         found += drives(fleet, robot)
         found += sees(fleet, robot)
@@ -95,6 +95,15 @@ def twins(fleet: Fleet) -> Iterator[Fault]:
         if it.what not in ("parameter_bridge", "rviz2") and it.fqn in seen:
             yield Fault(it.robot, "starts", f"two nodes are called {it.fqn}")
         seen[it.fqn] = it.robot
+
+
+def models_twice(fleet: Fleet) -> Iterator[Fault]:
+    """Models of one name: the simulator refuses the second (-allow_renaming=false)."""
+    first: dict[str, str] = {}
+    for robot, model in fleet.models.items():
+        if model in first:
+            yield Fault(robot, "starts", f"two models are called {model}")
+        first.setdefault(model, robot)
 
 
 def heard(fleet: Fleet) -> Iterator[tuple[str, str, str]]:
@@ -279,6 +288,21 @@ def plans(fleet: Fleet, robot: str) -> Iterator[Fault]:
         near = [e for e in fleet.edges if e.topic in (topic, f"{topic}_static")]
         yield from unknown_frames(fleet, robot, it, topic, near)
     yield from two_parents(fleet, robot)
+    yield from one_start(fleet, robot)
+
+
+def one_start(fleet: Fleet, robot: str) -> Iterator[Fault]:
+    """Odometry that begins at a frame where another robot's begins: the two are laid on each other."""
+    plain = {it.fqn: it.what for it in fleet.nodes}
+    names = {model: who for who, model in fleet.models.items()}
+    begins = {
+        (names.get(it.robot, it.robot), it.topic, it.parent)
+        for it in fleet.edges
+        if it.node.startswith("gz ") or plain.get(it.node) in DRIVING
+    }
+    for who, topic, frame in sorted(begins):
+        if who != robot and (robot, topic, frame) in begins:
+            yield Fault(robot, "plans", f"{frame} on {topic} is where {who} begins, too")
 
 
 def mapless(fleet: Fleet, robot: str) -> Iterator[Fault]:
