@@ -73,6 +73,11 @@ class Layout(NamedTuple):
     about: str
     at_run_time: bool = False
 
+    @property
+    def renames_models(self) -> bool:
+        """Has the model another name for each robot? Else its spawner gives it one."""
+        return self.frames and not self.at_run_time
+
 
 LAYOUTS = (
     Layout("tf-per-robot", "L1", False, True, True, "tf topic per robot, bare frames"),

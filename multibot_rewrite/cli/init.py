@@ -50,8 +50,11 @@ def run(options: argparse.Namespace) -> int:
     if not options.yes and sys.stdin.isatty() and sys.stderr.isatty():
         made = ask_for_fleet(seen, wanted, options.simulator)
     else:
-        build = that_builds if seen.named else first_that_builds
-        made = build(seen.robots, seen.found, wanted._replace(each=wanted.each or 2))
+        wanted = wanted._replace(each=wanted.each or 2)
+        if seen.named:
+            made = that_builds(seen.robots, seen.found, wanted)
+        else:
+            made = first_that_builds(seen, wanted)
     if options.simulator:
         simulator = Choice(options.simulator, MEANT)
         made = made._replace(keys={**made.keys, "simulator": simulator})
@@ -109,7 +112,7 @@ def _deliver(options: argparse.Namespace, made: Proposal) -> int:
 
 def ask_for_fleet(seen: Seen, wanted: Wanted, simulator: str) -> Proposal:
     """The fleet that the user describes; what ``wanted`` or ``simulator`` says is not asked."""
-    robots = seen.robots if seen.named else _chosen(seen.robots)
+    robots = seen.robots if seen.named else _chosen([seen.robots[0], *seen.rivals])
     wanted = _with_names(wanted) if len(robots) == 1 else _with_count(wanted)
     if not wanted.named:
         release = release_of(robots, wanted)

@@ -1,6 +1,8 @@
-"""The parameters that packages and plugins of Nav2 declare, as ``declared.schema`` has them.
+"""The parameters that packages and plugins of Nav2 declare, as ``declared.schema`` has them, and what
+they demand of the values, in ``demanded.schema``.
 
-It is made by ``python -m tools.interfaces.declared_table``; its first lines have its grammar.
+The first one is made by ``python -m tools.interfaces.declared_table``; its first lines have the
+grammar.
 """
 
 from __future__ import annotations
@@ -14,8 +16,11 @@ from multibot_rewrite.base.bounded import read_text
 from multibot_rewrite.base.record import NamedTuple
 
 FILE = os.path.join(os.path.dirname(__file__), "declared.schema")
-# How a source comes to a parameter: by a file of generate_parameter_library, in code, never declared.
-YAML, DECLARED, READ = "yaml", "declared", "read"
+_DEMANDS = os.path.join(os.path.dirname(__file__), "demanded.schema")
+# How a source comes to a parameter: by a file of generate_parameter_library, in code, never declared;
+# or what its code demands of the value.
+YAML, DECLARED, READ, DEMANDED = "yaml", "declared", "read", "demanded"
+EVERY_NODE = "*"
 ANY, CHECKS, RELEASES = "any", " ! ", "releases="
 _WILD = re.compile(r"<[^>]*>")
 # A name that is put together at run time says nothing.
@@ -52,14 +57,27 @@ def _pattern(path: str) -> re.Pattern[str]:
 
 @lru_cache(maxsize=512)
 def declared_by(owner: str) -> tuple[Declared, ...]:
-    """What a package or the class of a plugin declares; nothing for one that is not known."""
-    text = _sections().get(owner, "")
-    return tuple(it for it in _rows(text) if says_something(it.path)) if text else ()
+    """What a package or the class of a plugin declares and demands; nothing for an unknown one."""
+    declared = [it for it in _rows(_sections(FILE).get(owner, "")) if says_something(it.path)]
+    demanded = _rows(_sections(_DEMANDS).get(owner, ""))
+    return (*declared, *(it._replace(how=DEMANDED) for it in demanded))
 
 
 def is_known(owner: str) -> bool:
     """Is there a section of that name?"""
-    return owner in _sections()
+    return owner in _sections(FILE)
+
+
+def stands_for(path: str, name: str) -> dict[str, str]:
+    """What the words in brackets of a path are in a name of that path: ``<id>`` -> ``odom0``."""
+    parts = (f"({re.escape(it)})" if i % 2 == 0 else "(.+)" for i, it in enumerate(_split(path)))
+    found = re.fullmatch("".join(parts), name)
+    words = _split(path)[1::2]
+    return dict(zip(words, found.groups()[1::2], strict=True)) if found else {}
+
+
+def _split(path: str) -> list[str]:
+    return re.split(r"(<[^>]*>)", path)
 
 
 def says_something(path: str) -> bool:
@@ -68,13 +86,15 @@ def says_something(path: str) -> bool:
 
 
 @lru_cache
-def _sections() -> Mapping[str, str]:
+def _sections(path: str) -> Mapping[str, str]:
     """The text of every section by its name; nothing is read of it yet."""
-    _, *parts = read_text(FILE).split("\n[")
+    _, *parts = read_text(path).split("\n[")
     return {part[: part.index("]")]: part for part in parts}
 
 
 def _rows(section: str) -> Iterator[Declared]:
+    if not section:
+        return
     head, *lines = section.splitlines()
     repository, tag, *folder = head.partition("] ")[2].split()
     for line in filter(None, lines):

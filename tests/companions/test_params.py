@@ -302,6 +302,27 @@ def test_a_name_is_renamed_by_its_kind(
     assert value(node, old, policy) == new
 
 
+@pytest.mark.parametrize("distro", ["jazzy", "kilted"])
+@pytest.mark.parametrize("policy", [L1, L2, L4])
+@pytest.mark.parametrize("layer", ["ObstacleLayer", "StaticLayer"])
+def test_a_private_topic_of_a_costmap_stays_private(
+    layer: str, policy: tuple[str, str], distro: str
+) -> None:
+    """Whatever namespace the costmap reads its topics in: ``~`` is the node."""
+    lines = (
+        "plugins: [all]",
+        "all:",
+        f"  plugin: nav2_costmap_2d::{layer}",
+        "  map_topic: ~/map",
+        "  observation_sources: front",
+        "  front: {topic: ~/scan}",
+    )
+    text = section("local_costmap", *lines)
+    nested = "local_costmap:\n" + "".join(f"  {line}\n" for line in text.splitlines())
+    rewritten, _ = made(nested, policy, distro)
+    assert ("map_topic: ~/map" in rewritten, "topic: ~/scan" in rewritten) == (True, True)
+
+
 @pytest.mark.parametrize(
     ("lines", "new"),
     [
@@ -883,3 +904,57 @@ def test_a_calibration_below_a_camera_is_found() -> None:
         "driver", "cam_0: {camerainfo_url: 'file:///a.yaml'}", "cam_1.camerainfo_url: ''"
     )
     assert [it.line for it in made(text)[1] if it.code == "MB884"] == [3]
+
+
+# ---------------------------------------------------------------- nodes that are not known
+
+
+@pytest.mark.parametrize(
+    ("lines", "new"),
+    [
+        (("base_frame: base_link",), ("base_frame: r1/base_link",)),
+        # What is at tf_root may be a frame as well: the tf of the node would be half the robot's.
+        (
+            ("base_frame: base_link", "tf_root: odom"),
+            ("base_frame: base_link", "tf_root: odom"),
+        ),
+        (
+            ("base_frame: base_link", "joints: [elbow]", "tf_root: base_link"),
+            ("base_frame: base_link", "joints: [r1_elbow]", "tf_root: base_link"),
+        ),
+        (
+            ("odom_frame: base_link", "world_frame: base_link"),
+            ("odom_frame: r1/base_link", "world_frame: r1/base_link"),
+        ),
+    ],
+)
+def test_names_of_an_unknown_node_change_all_or_none(
+    lines: tuple[str, ...], new: tuple[str, ...]
+) -> None:
+    text, findings = made(section("acme_driver", *lines), L2)
+    assert tuple(it.strip() for it in text.splitlines()[2:]) == new
+    told = [it.message for it in findings if "acme_driver is not known" in it.message]
+    assert any("stay as they are" in it for it in told) == (lines[0] == new[0])
+
+
+@pytest.mark.parametrize(
+    ("word", "told"), [("lbr", True), ("lbr_", True), ("link", False), ("lb", False)]
+)
+def test_a_word_that_begins_the_names_is_told(word: str, told: bool) -> None:
+    """Code that puts it before ``_link_0`` makes a name that no robot has."""
+    links = dict.fromkeys(("world", *(f"lbr_link_{it}" for it in range(3))))
+    declared = {kind: links if kind == "link" else {} for kind in DECLARED}
+    context = make_context(declared, make_naming("L2"), (), NEWEST_LTS)  # type: ignore[arg-type]
+    text = section("acme_driver", f"robot_name: {word}")
+    companion = rewrite_params(read_yaml(text.encode(), "p.yaml"), context)
+    assert [it.line for it in findings_of(companion) if "begins" in it.message] == [3] * told
+
+
+def test_gazebo_is_everybodys() -> None:
+    assert made(section("gazebo", "publish_rate: 100.0"), L2)[0].startswith("gazebo:")
+    assert made(section("/gazebo", "publish_rate: 100.0"), L4)[0].startswith("/gazebo:")
+
+
+def test_the_frame_of_a_message_of_joy_teleop() -> None:
+    line = "walk.message_value.header-frame_id.value: base_link"
+    assert value("joy_teleop", line).endswith(": r1/base_link")

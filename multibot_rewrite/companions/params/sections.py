@@ -11,7 +11,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 import yaml
 
-from multibot_rewrite.base.conventions import PLACEHOLDER
+from multibot_rewrite.base.conventions import PLACEHOLDER, WORLD_NODES
 from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.base.model import InputError
@@ -181,7 +181,8 @@ def _section(
     name = it.path.rpartition("/")[2]
     filled = bool(PLACEHOLDER.search(it.path))
     wild = filled or any(token in ANY for token in it.path.split("/"))
-    place = context.nodes.get(name if wild else it.path, "")
+    everybodys = f"/{it.path}" if it.path in WORLD_NODES else ""
+    place = context.nodes.get(name if wild else it.path, everybodys)
     shared = bool(place) and NAMESPACE_SLOT not in place
     if filled:
         full = it.path

@@ -85,9 +85,9 @@ class Job(NamedTuple):
     @property
     def inventories(self) -> list[Inventory]:
         """What is in the description, and in the URDF beside an SRDF; raises InputError."""
-        tree, apart = self.tree, self.naming.layout.at_run_time
-        own = collect(read_document(self.data, self.file), tree, self.urdf_declarations, apart)
-        urdf = [collect(read_document(*self.urdf), tree, apart=apart)] if self.urdf else []
+        tree, layout = self.tree, self.naming.layout
+        own = collect(read_document(self.data, self.file), tree, self.urdf_declarations, layout)
+        urdf = [collect(read_document(*self.urdf), tree, layout=layout)] if self.urdf else []
         return [own, *urdf]
 
 

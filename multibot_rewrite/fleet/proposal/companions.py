@@ -15,7 +15,8 @@ from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.fleet.proposal.looking import CLASSIC, GZ, NO_SIMULATOR, Looked
-from multibot_rewrite.fleet.proposal.searching import Found, moveit_of_others, of_others, without
+from multibot_rewrite.fleet.proposal.owners import moveit_of_others, of_others
+from multibot_rewrite.fleet.proposal.searching import Found, without
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 

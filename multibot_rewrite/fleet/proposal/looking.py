@@ -3,14 +3,11 @@ these that launch files have where nobody gave any."""
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from functools import lru_cache
 
 from lxml import etree
 
-from multibot_rewrite.base.bounded import read_bytes
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
@@ -21,14 +18,11 @@ from multibot_rewrite.description.sources.expand import expand
 from multibot_rewrite.description.sources.own_names import filled
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.fleet.proposal.searching import text_of
 
 GZ, CLASSIC, NO_SIMULATOR = "gz", "classic", "none"
 # How the file names of plugins for Gazebo Classic begin.
 _CLASSIC = ("libgazebo_", "libhector_gazebo")
-# What descriptions of a part alone are called.
-_PART = lazy_compile(
-    r"gripper|hand|finger|camera|sensor|lidar|tool|effector|mount|wheel|dock|geometr"
-)
 # The end of the message about an argument that a xacro needs.
 _NEEDED = lazy_compile(r"give it as (\w+):=VALUE$")
 MOST_ARGUMENTS = 20
@@ -152,25 +146,6 @@ def holds_the_world(it: Looked) -> bool:
     return any(link.get("name") == WORLD for link in links)
 
 
-def ranked(found: Sequence[Looked]) -> list[Looked]:
-    """Those first that have several links, are no part by their name, can move, have something for a
-    simulator, ``<ros2_control>``, the shortest path."""
-
-    def rank(it: Looked) -> tuple[bool, bool, bool, bool, bool, int, str]:
-        part = _PART.search(os.path.basename(it.path).lower()) is not None
-        without = it.simulator == NO_SIMULATOR, not it.control
-        return it.links < 2, part, not _moves(it), *without, len(it.path), it.path
-
-    return sorted(found, key=rank)
-
-
-def _moves(it: Looked) -> bool:
-    """Has it a joint that is not fixed? A house or a shelf has none."""
-    joints = it.root.iter("joint") if it.root is not None else ()
-    return any(joint.get("type", "fixed") != "fixed" for joint in joints)
-
-
-MOST_BYTES = 1_000_000
 # What gives each robot its own names.
 _PREFIX, _NAME = ("prefix", "tf_prefix"), ("name", "robot_name", "namespace", "ns")
 # A declaration in Python or XML: its default, or the first of its choices.
@@ -202,7 +177,7 @@ class NeededValues(NamedTuple):
     def of_mandatory(self, path: str) -> dict[str, str]:
         """The arguments of a xacro that every launch has to choose a value for, with the first of them:
         the xacro's own default may be no value at all. Raises nothing."""
-        names = dict.fromkeys(_ARGUMENT.findall(_text(path)))
+        names = dict.fromkeys(_ARGUMENT.findall(text_of(path)))
         return {name: value for name in names if (value := self._choice(name))}
 
     def _choice(self, name: str) -> str:
@@ -213,14 +188,6 @@ class NeededValues(NamedTuple):
     def _found(self, patterns: Sequence[str]) -> Iterator[str]:
         for pattern in patterns:
             for path in self.launch:
-                found = re.search(pattern, _text(path))
+                found = re.search(pattern, text_of(path))
                 if found:
                     yield found[1]
-
-
-@lru_cache(maxsize=256)
-def _text(path: str) -> str:
-    try:
-        return read_bytes(path, MOST_BYTES).decode("utf-8", "replace")
-    except OSError:
-        return ""

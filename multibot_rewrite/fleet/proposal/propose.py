@@ -12,6 +12,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.footprint import reach_of
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.sources.access import Reach
+from multibot_rewrite.fleet.proposal.choosing import Chosen, acts, chosen, launches_of
 from multibot_rewrite.fleet.proposal.companions import Companions, companions_of
 from multibot_rewrite.fleet.proposal.looking import (
     CLASSIC,
@@ -20,7 +21,6 @@ from multibot_rewrite.fleet.proposal.looking import (
     NeededValues,
     holds_the_world,
     look,
-    ranked,
     with_own_arguments,
 )
 from multibot_rewrite.fleet.proposal.searching import Found, search, without
@@ -162,34 +162,63 @@ class Wanted(NamedTuple):
 
 
 class Seen(NamedTuple):
-    """What there is: the files, and descriptions that may be meant; ``named`` is true for those that
-    were asked for, all of which count."""
+    """What there is: the files, and descriptions that may be meant, the likeliest first; ``named`` is
+    true for those that were asked for, all of which count. ``rivals`` are as likely as the first,
+    ``alike`` are other files of it."""
 
     found: Found
     robots: Sequence[Looked]
     named: bool
+    rivals: Sequence[Looked] = ()
+    alike: Sequence[Looked] = ()
 
 
 def see(wanted: Wanted) -> Seen:
     """Look at all descriptions; the likeliest robot of a folder is the first.
 
-    Raises UsageError where there is none, and for one that was named and cannot be read.
+    Raises UsageError where there is none, for one that was named and cannot be read, and for the one
+    that launch files load where it cannot be read.
     """
     found = search(wanted.paths)
     reach = Reach(trust=wanted.trust)
     values = NeededValues(found.launch)
     every = found.descriptions[:MOST]
     looked = [look(it, wanted.arguments, reach, values) for it in every]
-    usable = [it for it in looked if it.links]
     named = [it for it in looked if it.path in map(os.path.normpath, wanted.paths)]
-    if bad := next((it for it in (named or looked if not usable else named) if not it.links), None):
-        fault = bad.fault or f"{bad.path}: it has no link; give the file that has the robot"
-        others = "" if named or not looked[1:] else f" (of {len(looked)} files none is a robot)"
-        raise UsageError(f"{fault}{others}")
+    if named:
+        _refuse([it for it in named if not it.links], "")
+        return Seen(found, named, True)
+    usable = [it for it in looked if it.links and acts(it)]
     if not usable:
+        others = f" (of {len(looked)} files none is a robot)" if looked[1:] else ""
+        _refuse(_by_launches(looked, found), others)
         where = ", ".join(found.folders)
         raise UsageError(f"{where}: no description of a robot is there; give a URDF, xacro or SDF")
-    return Seen(found, named or ranked(usable), bool(named))
+    best = chosen(usable, found)
+    _refuse(
+        _rather(best, looked, found), "; the launch files load it, name another one if you mean it"
+    )
+    order, rivals, alike = ([it.robot for it in its] for its in best)
+    return Seen(found, order, False, rivals, alike)
+
+
+def _rather(best: Chosen, looked: Sequence[Looked], found: Found) -> list[Looked]:
+    """Descriptions that cannot be read, and that more launch files load than the likeliest; any where
+    that one cannot move."""
+    least = best.order[0].launched if best.order[0].moving else -1
+    broken = _by_launches([it for it in looked if it.fault], found)
+    return [it for it in broken if launches_of(it.path, found) > least]
+
+
+def _by_launches(looked: Iterable[Looked], found: Found) -> list[Looked]:
+    """Those that cannot be read, and that launch files load, first."""
+    return sorted(looked, key=lambda it: (not it.fault, -launches_of(it.path, found)))
+
+
+def _refuse(which: Sequence[Looked], more: str) -> None:
+    for it in which[:1]:
+        fault = it.fault or f"{it.path}: it has no link; give the file that has the robot"
+        raise UsageError(f"{fault}{more}")
 
 
 def with_arguments(robots: Sequence[Looked], wanted: Wanted) -> list[Looked]:

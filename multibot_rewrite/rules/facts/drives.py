@@ -9,6 +9,7 @@ gazebo_plugins/src/gazebo_ros_diff_drive.cpp (ros2: the same), gazebo_ros_skid_s
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from math import sqrt
 from typing import Any
 
 from lxml.etree import _Element
@@ -31,6 +32,8 @@ ALONG = 0.99
 TOLERANCE, UNSEEN, SKIDDING = 0.1, 0.25, 2.0
 # A robot that is more than a few millimetres off: CAD programs round.
 ROUNDING = 0.003
+# As cosines; and a step that a suspension does not explain, in metres.
+_UPRIGHT, _CROSS, _STEP = 0.9, 0.3, 0.01
 
 
 class Tags(NamedTuple):
@@ -201,6 +204,39 @@ def are_swapped(left: Wheel, right: Wheel) -> float:
 def are_opposite(left: Wheel, right: Wheel) -> bool:
     """Do the axes of two wheels point in opposite directions?"""
     return dot(left.axis, right.axis) < -ALONG
+
+
+def rolling_faults(robot: Robot, left: Wheel, right: Wheel) -> Iterator[str]:
+    """Why two wheels of one axle would not roll: an upright axis, one along the robot's length, a
+    cylinder that turns about its side, wheels at two heights."""
+    for wheel in (left, right):
+        name = wheel.joint.name
+        if abs(wheel.axis[2]) > _UPRIGHT:
+            yield f"the axis of wheel {name!r} is upright: it turns like a turntable"
+        elif lies_flat(robot, wheel):
+            yield f"wheel {name!r} is a cylinder that does not turn about its own axis"
+    one, other = left.pose.at, right.pose.at
+    across = (one[0] - other[0], one[1] - other[1], 0.0)
+    flat = abs(left.axis[2]) <= 1 - ALONG and abs(dot(left.axis, right.axis)) > ALONG
+    length = sqrt(dot(across, across))
+    if flat and length > 0 and abs(dot(left.axis, across)) < _CROSS * length:
+        yield f"the axis of wheel {left.joint.name!r} does not point to {right.joint.name!r}"
+    higher = one[2] - other[2]
+    if abs(higher) > max(_STEP, 0.1 * max([*radii(robot, left), *radii(robot, right), 0.0])):
+        names = f"{left.joint.name!r} and {right.joint.name!r}"
+        yield f"wheels {names} are at two heights, {abs(higher):.3g} m apart"
+
+
+def lies_flat(robot: Robot, wheel: Wheel) -> bool:
+    """Is a wheel that touches the ground nothing but cylinders across its axis?"""
+    link = robot.link.get(wheel.joint.child)
+    shapes = list(shapes_of(link.element, "collision")) if link else []
+    across = [
+        abs(dot(turned(placed(wheel.pose, own).matrix, (0.0, 0.0, 1.0)), wheel.axis)) < 1 - ALONG
+        for element, shape in shapes
+        if shape.tag == "cylinder" and (own := origin_of(element)) is not None
+    ]
+    return bool(across) and len(across) == len(shapes) and all(across)
 
 
 def radii(robot: Robot, wheel: Wheel) -> list[float]:

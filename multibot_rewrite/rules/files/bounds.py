@@ -1,4 +1,4 @@
-"""The checks of generate_parameter_library on a value.
+"""The checks of generate_parameter_library on a value, and those of ``demanded.schema``.
 
 Source: PickNikRobotics/rsl and generate_parameter_library, parameter_validators (README, "Built-In
 Validators"); control_filters of ros2_controllers take nan as well.
@@ -50,6 +50,17 @@ def _said(name: str, given: list[Any], value: Any) -> str:
     if name in _SIZES and isinstance(value, str | list) and _is_number(first):
         holds, words = _SIZES[name]
         return "" if holds(len(value), first) else f"{words} {first}"
+    if name in _SHAPES:
+        return _SHAPES[name](first, value)
+    return _of_many(name, given, value)
+
+
+def _of_many(name: str, given: list[Any], value: Any) -> str:
+    first: Any = given[0] if given else None
+    if name in _EACH and isinstance(value, list) and _is_number(first):
+        holds, words = _NUMBERS[name]
+        every = all(holds(it, first) for it in value if _is_number(it))
+        return "" if every else f"{words} {first} in each place"
     if name == "bounds" and _is_number(value) and len(given) == 2:
         return "" if given[0] <= value <= given[1] else f"from {given[0]} to {given[1]}"
     if name == "not_empty" and value in ("", []):
@@ -68,6 +79,48 @@ def _of_list(name: str, choices: Any, value: Any) -> str:
     if name == "subset_of" and isinstance(value, list) and not set(value) <= set(choices):
         return f"of {words}"
     return ""
+
+
+def _limits(_: Any, value: Any) -> str:
+    known = not isinstance(value, list) or len(value) in (3, 6)
+    return "" if known else "with three values (x, y, theta), or six from Lyrical on"
+
+
+def _square(side: Any, value: Any) -> str:
+    known = not isinstance(value, list) or len(value) in (side, side * side)
+    return "" if known else f"with {side * side} values, or {side} on its diagonal"
+
+
+def _polygon(_: Any, value: Any) -> str:
+    """What nav2_util parseVVF reads, with three points."""
+    if not isinstance(value, str) or value in ("", "[]"):
+        return ""
+    points = polygon_of(value)
+    if points is None:
+        return "a list of points as text, [[x, y], ...]"
+    return "" if len(points) >= 3 else "of three points or more"
+
+
+def polygon_of(text: str) -> list[tuple[float, float]] | None:
+    """The points of a footprint; None for a text that is none."""
+    inner = text.strip()
+    if not (inner.startswith("[") and inner.endswith("]") and inner.count("[") == inner.count("]")):
+        return None
+    try:
+        read = load_yaml(inner)
+    except ValueError:
+        return None
+    points = read if isinstance(read, list) else []
+    whole = all(isinstance(it, list) and len(it) == 2 and all(map(_is_number, it)) for it in points)
+    return [(float(x), float(y)) for x, y in points] if whole else None
+
+
+_EACH = ("lower_bounds", "upper_bounds")
+_SHAPES: dict[str, Callable[[Any, Any], str]] = {
+    "limits": _limits,
+    "square": _square,
+    "polygon": _polygon,
+}
 
 
 def _is_number(value: Any) -> bool:

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import yaml
 
 from multibot_rewrite.base.conventions import PLACEHOLDER
+from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.nearest import MISTYPED, Guesses, meant_name
+from multibot_rewrite.base.nearest import MISTYPED, Guesses, meant_name, nearest
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.name_sites import params_at
 from multibot_rewrite.companions.params.rcl_parameters import Value, value_of
@@ -20,7 +22,15 @@ from multibot_rewrite.companions.params.sections import (
     controller_types,
 )
 from multibot_rewrite.companions.yaml_text import YamlText, pairs
-from multibot_rewrite.knowledge.declared import READ, YAML, Declared
+from multibot_rewrite.knowledge.declared import (
+    DEMANDED,
+    EVERY_NODE,
+    READ,
+    YAML,
+    Declared,
+    declared_by,
+    stands_for,
+)
 from multibot_rewrite.knowledge.parameters import KnownNode
 from multibot_rewrite.rules.files.bounds import beyond
 from multibot_rewrite.rules.files.parameter_facts import facts_of_node, of_release
@@ -37,6 +47,7 @@ _ARRAY = re.compile(r"(\w+?)_array(?:_fixed_\d+)?")
 _CAPITALS = re.compile(r"[A-Z][A-Z0-9]*_[A-Z0-9_]+")
 ID = "<id>."
 _NUMBERS = frozenset(("double", "int", "bool"))
+_SURE = frozenset((YAML, DEMANDED))
 _WORDS = {bool: "bool", int: "int", float: "double", str: "string"}
 
 
@@ -50,13 +61,16 @@ class Given(NamedTuple):
 
 
 class Section(NamedTuple):
-    """The parameters of one node, each with what declares it, and all that the node declares."""
+    """The parameters of one node or plugin, each with what declares it, and all that is declared.
+    ``whole`` is all that the node is given, where names of a plugin begin with ``at``."""
 
     title: str
     node: KnownNode | None
     given: tuple[Given, ...]
     facts: tuple[Declared, ...]
     known: tuple[tuple[Given, tuple[Declared, ...]], ...]
+    whole: Mapping[str, Given]
+    at: str = ""
 
 
 def sections(file: NamedFile) -> tuple[Section, ...]:
@@ -71,28 +85,36 @@ def _sections(file: NamedFile) -> Iterator[Section]:
     types = controller_types(RawSection(*it[:3]) for it, _ in file.pages)
     for it, _ in file.pages:
         name = it.path.rpartition("/")[2]
-        if file.document is None or name in ANY or PLACEHOLDER.search(it.path):
-            continue
+        if file.document is None:
+            return
         given = tuple(_given(file.document, it.body, ""))
+        if name in ANY or PLACEHOLDER.search(it.path):
+            yield _section(it.path, None, given, declared_by(EVERY_NODE), given)
+            continue
         type_ = types.get(name) or next((str(at.value) for at in given if at.name == "type"), "")
         node = it.node
         if node is not None and not _is_surely(node, name, type_, given):
             node = None
         facts = facts_of_node(node, type_, file.file, file.roots)
         below, rest = _of_plugins(it.path, given)
-        yield _section(it.path, node, rest, facts)
+        yield _section(it.path, node, rest, (*facts, *declared_by(EVERY_NODE)), given)
         yield from below
 
 
 def _section(
-    title: str, node: KnownNode | None, given: tuple[Given, ...], facts: tuple[Declared, ...]
+    title: str,
+    node: KnownNode | None,
+    given: tuple[Given, ...],
+    facts: tuple[Declared, ...],
+    whole: Sequence[Given],
+    at: str = "",
 ) -> Section:
     exact: dict[str, list[Declared]] = {}
     wild: list[Declared] = []
     for fact in facts:
         (wild if "<" in fact.path else exact.setdefault(fact.path, [])).append(fact)
     known = tuple((it, (*exact.get(it.name, ()), *_matching(wild, it.name))) for it in given)
-    return Section(title, node, given, facts, known)
+    return Section(title, node, given, facts, known, {it.name: it for it in whole}, at)
 
 
 def _matching(wild: Sequence[Declared], name: str) -> Iterator[Declared]:
@@ -112,7 +134,7 @@ def _of_plugins(title: str, given: Sequence[Given]) -> tuple[list[Section], tupl
     for name, its in of.items():
         class_, facts = plugins[name]
         own = tuple(it._replace(name=it.name.removeprefix(f"{name}.")) for it in its)
-        found.append(_section(f"{title}: {name} ({class_})", None, own, facts))
+        found.append(_section(f"{title}: {name} ({class_})", None, own, facts, given, f"{name}."))
     return found, tuple(rest)
 
 
@@ -188,28 +210,96 @@ def _meant(name: str, known: Sequence[str], guesses: Guesses) -> str:
 
 
 def wrong_types(file: NamedFile) -> Iterator[Remark]:
-    """Values of another type than the one that all declarations of a parameter have."""
+    """Values of another type than the one that all declarations of a parameter have. It is an error
+    where no release takes the value."""
     for section in sections(file):
-        for it, facts in _declared(section, file.context.distro):
-            types = {fact.type for fact in facts}
-            if len(types) != 1 or it.value is None or it.value == []:
-                continue
-            (type_,) = types
-            given = _type_of(it.value)
-            # What code gives as a default may be a variable of any type.
-            sure = all(fact.how == YAML for fact in facts) or type_ in _NUMBERS
-            if sure and _expected(type_) not in ("", given) and not _is_filled_in(it.value):
+        for it, known in section.known:
+            type_ = _wrong_type(it, of_release(known, file.context.distro))
+            if type_:
+                given = _type_of(it.value) if it.value is not None else ""
                 message = f"{section.title}: {it.name} is {_article(given)}, not {_article(type_)}"
-                yield remark_at(it.node, message, _other_type(type_, given, it))
+                level = (
+                    ERROR
+                    if all(
+                        _wrong_type(it, of_release(known, release))
+                        for release in RELEASES
+                        if of_release(known, release)
+                    )
+                    else ""
+                )
+                yield remark_at(it.node, message, _other_type(type_, given, it), level)
+
+
+def _wrong_type(it: Given, known: Sequence[Declared]) -> str:
+    """The type that a value has to be and is not."""
+    if it.value is None or it.value == [] or _is_filled_in(it.value):
+        return ""
+    read = [fact for fact in known if fact.how != READ]
+    exact = [fact for fact in read if fact.path == it.name] or read
+    facts = [fact for fact in exact if fact.how == DEMANDED] or exact
+    types = {fact.type for fact in facts}
+    if len(types) != 1:
+        return ""
+    (type_,) = types
+    # What code gives as a default may be a variable of any type.
+    sure = all(fact.how in _SURE for fact in facts) or type_ in _NUMBERS
+    return type_ if sure and _expected(type_) not in ("", _type_of(it.value)) else ""
+
+
+def not_read(file: NamedFile) -> Iterator[Remark]:
+    """Parameters of a node whose package declares all of its own in one file, and not these."""
+    for section in sections(file):
+        facts = [fact for fact in section.facts if fact.how != DEMANDED]
+        if not facts or any(fact.how != YAML for fact in facts) or section.node is None:
+            continue
+        paths = [fact.path for fact in facts]
+        for it, found in section.known:
+            if found or _is_known(section, it) or _meant(it.name, paths, Guesses()):
+                continue
+            message = f"{section.title} declares no parameter {it.name!r}"
+            yield remark_at(it.key, message, f"nothing reads it; see {facts[0].source}")
+
+
+def below_unknown_names(file: NamedFile) -> Iterator[Remark]:
+    """Parameters below a name that the list which has those names lacks: ``constraints.JOINT``."""
+    for section in sections(file):
+        for it, known in section.known:
+            for fact in known if len(known) == 1 and known[0].how == YAML else ():
+                for word, name in stands_for(fact.path, it.name).items():
+                    listed = section.whole.get(section.at + word.strip("<>"))
+                    names = listed.value if listed else None
+                    if isinstance(names, list) and names and name not in names:
+                        yield _for_unknown(section, it, name, [str(each) for each in names], word)
+
+
+def _for_unknown(section: Section, it: Given, name: str, names: Sequence[str], word: str) -> Remark:
+    near = nearest(name, names)
+    hint = f"did you mean {near!r}?" if near else "nothing reads it"
+    message = f"{section.title}: {it.name} is for {name!r}, which is not in {word.strip('<>')}"
+    return remark_at(it.key, message, hint, WARNING if near else "")
+
+
+def of_other_releases(file: NamedFile) -> Iterator[Remark]:
+    """Parameters that the node declares in other releases only."""
+    release = file.context.distro
+    for section in sections(file):
+        for it, known in section.known:
+            facts = [fact for fact in known if fact.how != READ]
+            if not facts or of_release(facts, release) or _is_known(section, it):
+                continue
+            others = [at for at in RELEASES if of_release(facts, at)]
+            message = f"{section.title}: {it.name} is not in {release}, only in {', '.join(others)}"
+            yield remark_at(it.key, message, f"delete it; see {facts[0].source}")
 
 
 def out_of_bounds(file: NamedFile) -> Iterator[Remark]:
-    """Values that a check of generate_parameter_library rejects."""
+    """Values that a check of generate_parameter_library, or of the node's code, rejects."""
     for section in sections(file):
         for it, facts in _declared(section, file.context.distro):
             given = None if it.value is None else _type_of(it.value)
-            for fact in facts if len(facts) == 1 else ():
-                if given != _expected(fact.type):
+            alone = sum(fact.how != DEMANDED for fact in facts) == 1
+            for fact in facts:
+                if given != _expected(fact.type) or not (alone or fact.how == DEMANDED):
                     continue
                 said = [beyond(*check, it.value) for check in fact.checks]
                 for words in filter(None, said):
@@ -227,7 +317,7 @@ def _declared(section: Section, release: str) -> Iterator[tuple[Given, list[Decl
     for it, known in section.known:
         found = [fact for fact in of_release(known, release) if fact.how != READ]
         exact = [fact for fact in found if fact.path == it.name]
-        if found:
+        if found and not (isinstance(it.value, str) and _is_filled_in(it.value)):
             yield it, exact or found
 
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import cache
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.companions.kinds import PARAMS
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.rules.description import rewriting
 from multibot_rewrite.rules.description.files import reading, shape, values
@@ -16,13 +17,17 @@ from multibot_rewrite.rules.description.names import ros_names as description_na
 from multibot_rewrite.rules.files import (
     bridges,
     controllers,
+    costmaps,
     declared,
+    demands,
     frames,
     included,
     keys,
     lists,
     moveit,
     names,
+    plugin_names,
+    rcl_rules,
     releases,
     robot_words,
     ros_names,
@@ -31,6 +36,8 @@ from multibot_rewrite.rules.files import (
     sections,
     wheels,
 )
+from multibot_rewrite.rules.files.records import Remark
+from multibot_rewrite.rules.system import clocks
 
 THEMES = (
     names,
@@ -48,17 +55,45 @@ THEMES = (
     sections,
     same_for_all,
     wheels,
+    demands,
+    costmaps,
 )
+
+
+def _each(
+    *finders: Callable[[NamedFile], Iterator[Remark]],
+) -> Callable[[NamedFile], Iterator[Remark]]:
+    """What any of several functions finds, for a rule that they all answer."""
+
+    def found(file: NamedFile) -> Iterator[Remark]:
+        for find in finders:
+            yield from find(file)
+
+    return found
+
+
 # They are asked of a description as well; here a file is looked at.
 SHARED: tuple[Rule, ...] = (
     reading.leftover._replace(check=ros_names.placeholders),
     description_names.invalid_ros_name._replace(check=ros_names.invalid_names),
     description_names.leading_slash._replace(check=frames.slashes),
     rewriting.unclaimed_mention._replace(check=names.unknown_uses),
-    shape.misspelt._replace(check=declared.unknown_parameters),
-    values.unreadable_value._replace(check=declared.wrong_types, level=WARNING),
+    shape.misspelt._replace(
+        check=_each(
+            declared.unknown_parameters, rcl_rules.misspelt_marks, plugin_names.renamed_nodes
+        )
+    ),
+    shape.not_read._replace(check=_each(declared.not_read, declared.below_unknown_names)),
+    shape.missing._replace(check=plugin_names.without_plugin),
+    values.unreadable_value._replace(
+        check=_each(declared.wrong_types, rcl_rules.rejected_values), level=WARNING
+    ),
+    values.unknown_word._replace(check=plugin_names.unknown_classes),
+    clocks.clocks_mixed._replace(check=rcl_rules.mixed_clocks, level=WARNING, formats=(PARAMS,)),
     named_robots.prefix_only._replace(check=same_for_all.prefix_only),
-    values.out_of_range._replace(check=declared.out_of_bounds, level=WARNING),
+    values.out_of_range._replace(
+        check=_each(declared.out_of_bounds, demands.above_others), level=WARNING
+    ),
 )
 # Up to a reason, which is behind a dash.
 _COMMENT = lazy_compile(r"(?:#|--)\s*urdf-lint:\s*ignore\s+((?:MB\d+[,\s]*)+)(?:$|[-:])")

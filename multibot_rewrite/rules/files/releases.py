@@ -16,6 +16,7 @@ from multibot_rewrite.companions.params.sections import ParamSection, flattened
 from multibot_rewrite.companions.yaml_text import items, pairs
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import NodeParameters, Param
+from multibot_rewrite.rules.files.declared import of_other_releases
 from multibot_rewrite.rules.files.records import Remark, remark_at
 
 _BROADCASTER = "joint_state_broadcaster"
@@ -117,6 +118,7 @@ def of_another_release(file: NamedFile) -> Iterator[Remark]:
     """Nodes and parameters that only other releases have."""
     for section, _ in file.pages:
         yield from _of_another_release(section, file.context.distro)
+    yield from of_other_releases(file)
 
 
 def _deprecated_parameters(section: ParamSection, release: str) -> Iterator[Remark]:

@@ -24,6 +24,7 @@ from multibot_rewrite.rules.facts.drives import (
     are_opposite,
     are_swapped,
     radius,
+    rolling_faults,
     separation,
     wheel_of,
 )
@@ -67,8 +68,8 @@ def _sizes_of(separation: str) -> str:
     "controller-wheels",
     WARNING,
     what="The wheels of a diff_drive_controller are not as it is told: their separation or radius "
-    "is another in the package's description, left and right are swapped, or their axes point in "
-    "opposite directions.",
+    "is another in the package's description, left and right are swapped, their axes point in "
+    "opposite directions, or they do not roll.",
     why="The robot turns or drives too far or the wrong way, and its odometry says otherwise.",
     fix="Write the sizes of the description, or correct its joints.",
     bad=_sizes_of("0.8"),
@@ -98,7 +99,14 @@ def _faults(subject: Subject, section: Section) -> list[Remark] | None:
     left, right = (_wheels(subject, values.get(it)) for it in (LEFT, _RIGHT))
     if not left or not right:
         return None
-    return [*_sizes(subject, values, left, right), *_ways(values[_RIGHT].node, left, right)]
+    node = values[_RIGHT].node
+    rolling = rolling_faults(subject.robot, left[0], right[0])
+    hint = "the controller takes them for wheels that roll"
+    return [
+        *_sizes(subject, values, left, right),
+        *_ways(node, left, right),
+        *(remark_at(node, words, hint) for words in rolling),
+    ]
 
 
 def _wheels(subject: Subject, given: Given | None) -> list[Wheel]:

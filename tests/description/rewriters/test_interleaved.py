@@ -163,7 +163,7 @@ def test_another_thread_comes_when_a_line_first_runs() -> None:
     assert missed(lambda _: range(1, 2)) == []
 
 
-@pytest.mark.slow
+@pytest.mark.deep
 def test_another_thread_comes_whenever_a_line_runs() -> None:
     assert missed(lambda times: range(2, times + 1)) == []
 

@@ -147,6 +147,13 @@ def test_controllers_are_those_that_the_files_declare() -> None:
     assert [(it.code, it.line) for it in found.findings] == [("MF802", 7)]
 
 
+def test_a_controller_that_a_file_declares_needs_no_hardware_of_a_stack() -> None:
+    text = "controller_manager:\n  ros__parameters:\n    joint_trajectory_controller:\n"
+    text += "      type: joint_trajectory_controller/JointTrajectoryController\n"
+    found = nodes_of(load_stack("ros2_control", "jazzy"), given(text), load_nodes("jazzy"))
+    assert {it.name: it.when for it in found.nodes}["joint_trajectory_controller"] == ""
+
+
 def test_a_node_of_a_file_may_run_and_then_sends_only_what_no_other_sends() -> None:
     amcl = "amcl:\n  ros__parameters: {base_frame_id: base_link}\n"
     beside = nodes_of(load_stack("slam_toolbox", "jazzy"), given(amcl), load_nodes("jazzy"))

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE
+from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.nearest import nearest, slip_of
 from multibot_rewrite.description.checks.audit import is_unknown
@@ -48,6 +48,10 @@ def class_not_in_library(subject: Subject) -> Iterator[Problem]:
     """Systems that come with Gazebo: their libraries have no other classes, in any release."""
     for it in simulator_plugins(subject):
         library = library_of(it)
+        if "::" in it.get("filename", ""):
+            message = f"filename {it.get('filename')!r} is a class, not a library"
+            yield Problem(it, message, "filename", "swap name and filename")
+            continue
         name = it.get("name", "").strip().replace("ignition::gazebo::", "gz::sim::")
         if not name or "$" in name or not library.startswith(FAMILIES[0][0]):
             continue
@@ -89,7 +93,7 @@ def misspelt_hardware(subject: Subject) -> Iterator[Problem]:
 @rule(
     "MB172",
     "library-of-ignition",
-    NOTE,
+    WARNING,
     what="A system of Gazebo is loaded by the name that it had in Ignition.",
     why="Gazebo Jetty (Lyrical and later) no longer takes ignition-gazebo for gz-sim: it reports "
     "that it cannot find the library.",

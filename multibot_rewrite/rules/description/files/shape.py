@@ -14,6 +14,7 @@ from multibot_rewrite.rules.description.files.libraries import (
     misspelt_libraries,
     plugins_without_library,
 )
+from multibot_rewrite.rules.description.references.gazebo import sensors_of_joints
 from multibot_rewrite.rules.description.references.interfaces import misspelt_interfaces
 from multibot_rewrite.rules.facts.faults import faults
 from multibot_rewrite.rules.subject import Subject
@@ -48,16 +49,19 @@ not_read = rule(
     "not-read",
     NOTE,
     what="An element, attribute, parameter or text that nothing reads: of a URDF, below <gazebo>, "
-    "or of a known plugin. Below <ros2_control> it is an error where it is no component.",
+    "or of a known plugin; of a node whose package declares all of its parameters. Below "
+    "<ros2_control> it is an error where it is no component.",
     why="It has no effect: <gravity> works in a <gazebo reference> block and not in a link, <alwaysOn> "
     "in a sensor and not in its plugin. ros2_control's parser throws 'invalid tag name', and the "
     "controller manager has no hardware.",
     fix="Delete it, or move it to where it is read; make a remark a comment.",
     bad='<link name="a"><gravity>1</gravity></link>',
     good='<link name="a"/><gazebo reference="a"><gravity>1</gravity></gazebo>',
+    formats=(URDF, PARAMS),
 )(partial(faults, "not-read"))
 
-misplaced = rule(
+
+@rule(
     "MB112",
     "misplaced",
     WARNING,
@@ -73,7 +77,11 @@ misplaced = rule(
     '    <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>\n'
     "  </inertial>\n"
     "</link>\n",
-)(partial(faults, "misplaced"))
+)
+def misplaced(subject: Subject) -> Iterator[Problem]:
+    """By what each reader looks for where, and sensors that no link has."""
+    yield from faults("misplaced", subject)
+    yield from sensors_of_joints(subject)
 
 
 @rule(
@@ -81,7 +89,8 @@ misplaced = rule(
     "missing",
     ERROR,
     what="A required attribute, child element or parameter is missing or empty: of a URDF or SRDF, "
-    "below <gazebo>, of a plugin or of ros2_control hardware.",
+    "below <gazebo>, of a plugin or of ros2_control hardware; in parameters the class of a listed "
+    "plugin or the type of a controller, and, as a warning, what belongs to a listed source.",
     why="urdfdom rejects the whole file for a part of a joint; in a link it drops every visual and "
     "collision from the fault on. libsdformat does not load the model, srdfdom skips the element, and "
     "a plugin or hardware is not loaded.",
@@ -90,7 +99,7 @@ misplaced = rule(
     good='<link name="a">\n'
     '  <visual><geometry><cylinder radius="1" length="1"/></geometry></visual>\n'
     "</link>\n",
-    formats=(URDF, SRDF),
+    formats=(URDF, SRDF, PARAMS),
 )
 def missing(subject: Subject) -> Iterator[Problem]:
     """By what each reader requires."""

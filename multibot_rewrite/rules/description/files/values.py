@@ -7,10 +7,15 @@ from functools import partial
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.base.findings.rule import SRDF, URDF, rule
-from multibot_rewrite.companions.kinds import PARAMS
+from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.description.examples import a_link, block
-from multibot_rewrite.rules.description.structure.limits import limits_in_degrees
+from multibot_rewrite.rules.description.physics.sensor_values import sees_nothing
+from multibot_rewrite.rules.description.structure.control_values import unreadable_numbers
+from multibot_rewrite.rules.description.structure.limits import (
+    limits_in_degrees,
+    origins_in_degrees,
+)
 from multibot_rewrite.rules.facts.faults import faults
 from multibot_rewrite.rules.subject import Subject
 
@@ -42,7 +47,8 @@ def _imu(inside: str) -> str:
 )
 def unreadable_value(subject: Subject) -> Iterator[Problem]:
     """All but those with a substitution: MB105 reports them."""
-    return (it for it in faults("value", subject) if "$" not in it.message)
+    yield from (it for it in faults("value", subject) if "$" not in it.message)
+    yield from unreadable_numbers(subject)
 
 
 unknown_word = rule(
@@ -50,10 +56,12 @@ unknown_word = rule(
     "unknown-word",
     ERROR,
     what="A value is not one of the words that its reader knows: the type of a joint, of a sensor, "
-    "of a ros2_control or a virtual joint, a version of URDF, the name of a joint property. It is "
-    "a warning for a parameter of a plugin, where it is nearly such a word.",
+    "of a ros2_control or a virtual joint, a version of URDF, the name of a joint property, the class "
+    "of a plugin or controller in parameters. It is a warning for a parameter of a plugin, where it is "
+    "nearly such a word, and for a class that another release has.",
     why="urdfdom rejects the file ('has no known type'), the sensor or the hardware does not exist, "
-    "srdfdom takes a virtual joint for fixed, and a plugin takes its default.",
+    "srdfdom takes a virtual joint for fixed, and a plugin takes its default. pluginlib throws for a "
+    "class that no package registers: a server of Nav2 does not start, a controller is not loaded.",
     fix="Use one of the words in the message or hint; case counts.",
     bad='<ros2_control name="c" type="System">\n'
     "  <hardware><plugin>p/P</plugin></hardware>\n"
@@ -61,10 +69,11 @@ unknown_word = rule(
     good='<ros2_control name="c" type="system">\n'
     "  <hardware><plugin>p/P</plugin></hardware>\n"
     "</ros2_control>\n",
-    formats=(URDF, SRDF),
+    formats=(URDF, SRDF, PARAMS, MOVEIT),
 )(partial(faults, "word"))
 
-out_of_range = rule(
+
+@rule(
     "MB125",
     "out-of-range",
     ERROR,
@@ -81,15 +90,19 @@ out_of_range = rule(
     bad='<link name="a"><visual><geometry><box size="0 0 0"/></geometry></visual></link>',
     good='<link name="a"><visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual></link>',
     formats=(URDF, PARAMS),
-)(partial(faults, "range"))
+)
+def out_of_range(subject: Subject) -> Iterator[Problem]:
+    """By what each reader takes, and what a sensor needs to see anything."""
+    yield from faults("range", subject)
+    yield from sees_nothing(subject)
 
 
 @rule(
     "MB170",
     "angle-in-degrees",
     WARNING,
-    what="An angle is more than a turn: of a lidar's scan or a <pose> below <gazebo>, of a plugin; "
-    "or a limit of a revolute joint looks like degrees.",
+    what="An angle is more than a turn: of a lidar's scan or a <pose> below <gazebo>, of a plugin, a "
+    "round number in the rpy of an <origin>; or a limit of a revolute joint looks like degrees.",
     why="URDF, SDF and plugins have radians: a scan from -180 to 180 goes round 57 times, a joint "
     "turns many times before it reaches such a limit, and a steering limit of 30 limits nothing.",
     fix='Multiply by pi/180; xacro has radians(). A pose may have degrees="true" from SDF 1.9 on.',
@@ -100,4 +113,5 @@ out_of_range = rule(
 def angle_in_degrees(subject: Subject) -> Iterator[Problem]:
     """Values below <gazebo> and of plugins, and limits."""
     yield from faults("degrees", subject)
+    yield from origins_in_degrees(subject)
     yield from limits_in_degrees(subject)

@@ -17,6 +17,7 @@ from multibot_rewrite.rules.facts.drives import (
     are_swapped,
     drives,
     radius,
+    rolling_faults,
     separation,
     size_of,
     wheel_joints,
@@ -72,7 +73,8 @@ def _size(drive: Drive, name: str, value: float, words: str, measured: float) ->
     WARNING,
     what="The left wheel of a drive is on the right, seen in the direction in which a positive "
     "speed turns the wheels: the joints are swapped, or the axes of both point the wrong way. Or "
-    "the axes of the left and the right wheel point in opposite directions.",
+    "the axes of the left and the right wheel point in opposite directions, or the two do not roll: an "
+    "upright axis, a cylinder that lies flat, wheels at two heights.",
     why="A command to turn left turns the robot right, and its odometry says left; with opposite "
     "axes it turns on the spot when it is to drive straight on. Localization is lost at once.",
     fix="Swap the joints, or turn axes around: with x forward both are 0 1 0 in the frame of the base.",
@@ -91,6 +93,8 @@ def wheels_turn_wrong(subject: Subject) -> Iterator[Problem]:
             hint = "swap left and right, or turn the axes of both joints around"
             yield Problem(left.named, f"left wheel {names}", "", hint)
         for left, right in drive.pairs:
+            for words in rolling_faults(subject.robot, left, right):
+                yield Problem(right.named, words, "", "the drive takes them for wheels that roll")
             if are_opposite(left, right):
                 names = f"{left.joint.name!r} and {right.joint.name!r}"
                 message = f"the axes of wheels {names} point in opposite directions"

@@ -17,6 +17,7 @@ from multibot_rewrite.rules.description.physics.shared import (
     one_link,
 )
 from multibot_rewrite.rules.facts.kept import relied_on
+from multibot_rewrite.rules.facts.simulators import simulator_plugins
 from multibot_rewrite.rules.subject import Subject
 
 TINY_MASS = 1e-6
@@ -86,9 +87,10 @@ def root_inertia(subject: Subject) -> Iterator[Problem]:
     "MB610",
     "no-inertia",
     NOTE,
-    what="No link has a mass: the robot cannot be simulated.",
+    what="No link has a mass: the robot cannot be simulated. It is an error where the description has "
+    "plugins or sensors of a simulator, or its fleet file says that it is simulated.",
     why="Gazebo spawns nothing of it; MuJoCo rejects a moving body without mass. RViz and MoveIt "
-    "do not need it. Where the fleet file says that the robot is simulated, it is an error.",
+    "do not need it.",
     fix="Add <inertial> to the links, if the robot is to be simulated.",
     bad='<link name="a"/>\n'
     '<link name="b"/>\n'
@@ -97,14 +99,16 @@ def root_inertia(subject: Subject) -> Iterator[Problem]:
 )
 def no_inertia(subject: Subject) -> Iterator[Problem]:
     """A robot without mass: with joints that move, or one that runs in Gazebo."""
-    robot, simulated = subject.robot, subject.settings.simulated
+    robot, chosen = subject.robot, subject.settings.simulated
     massless = bool(robot.links) and not any(it > 0 for it in _masses(robot).values())
     unweighed = not any(it.inertial for it in robot.links)
     moving = any(it.type != "fixed" for it in robot.joints)
-    if (massless and simulated) or (unweighed and moving):
-        what = "no link has an <inertial>" if unweighed else "no link has a mass"
-        message = f"{what}: the robot cannot be simulated"
-        yield Problem(subject.document.root, message, level=ERROR if simulated else "")
+    if not (massless and chosen) and not (unweighed and moving):
+        return
+    simulated = chosen or subject.elements.every("sensor") or simulator_plugins(subject)
+    what = "no link has an <inertial>" if unweighed else "no link has a mass"
+    message = f"{what}: the robot cannot be simulated"
+    yield Problem(subject.document.root, message, level=ERROR if simulated else "")
 
 
 @rule(

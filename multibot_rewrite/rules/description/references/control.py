@@ -18,6 +18,7 @@ from multibot_rewrite.rules.description.references.shared import (
     a_system,
     name_of,
 )
+from multibot_rewrite.rules.description.structure.control_values import mimic_of_none
 from multibot_rewrite.rules.facts.driven import driven_joints
 from multibot_rewrite.rules.subject import Subject
 
@@ -122,7 +123,8 @@ def commanded_mimic(subject: Subject) -> Iterator[Problem]:
     "MB227",
     "mimic-without-its-joint",
     WARNING,
-    what="A joint in <ros2_control> mimics one that is not in the same <ros2_control>.",
+    what="A joint in <ros2_control> mimics one that is not in the same <ros2_control>, or has "
+    'mimic="true" and none to mimic.',
     why="From Jazzy on the controller manager rejects the description ('Mimic joint ... not found "
     "in <ros2_control> tag').",
     fix='Put both joints in one <ros2_control>, or set mimic="false".',
@@ -132,6 +134,7 @@ def commanded_mimic(subject: Subject) -> Iterator[Problem]:
 )
 def mimic_without_its_joint(subject: Subject) -> Iterator[Problem]:
     """Mimicking joints whose leader is not in the same <ros2_control>."""
+    yield from mimic_of_none(subject)
     beside: dict[_Element, set[str]] = {}
     for it, other in _mimicking(subject):
         system = it.getparent()

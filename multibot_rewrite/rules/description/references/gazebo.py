@@ -8,8 +8,12 @@ from multibot_rewrite.base.findings.finding import NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.references import ambiguous
+from multibot_rewrite.description.rewriters.text import text_at
+from multibot_rewrite.rules.description.examples import a_link
+from multibot_rewrite.rules.description.examples import block as a_block
 from multibot_rewrite.rules.subject import Subject
 
+_OF_JOINTS = ("force_torque", "wrench")
 # The values of a <gazebo> block of which a link has one each (libsdformat parser_urdf.cc); some have
 # two tags.
 SINGLE = {
@@ -96,3 +100,46 @@ def contradicting_blocks(subject: Subject) -> Iterator[Problem]:
             if earlier != text:
                 message = f"{it.tag} of {target!r} is {text!r} here and was {earlier!r} before"
                 yield Problem(it, message, "", "keep one")
+
+
+def sensors_of_joints(subject: Subject) -> Iterator[Problem]:
+    """Sensors in the block of a joint: SDF has only those of forces there (sdformat joint.sdf)."""
+    for block_ in subject.elements.tops("gazebo"):
+        name = block_.get("reference", "")
+        if name in subject.robot.joint and name not in subject.robot.link:
+            for it in block_.iterchildren("sensor"):
+                if it.get("type") not in _OF_JOINTS:
+                    message = f"sensor {it.get('name')!r} is in the block of joint {name!r}"
+                    child = subject.robot.joint[name].child
+                    yield Problem(it, message, None, f"refer to a link: {child!r}?")
+
+
+def _two_sensors(other: str) -> str:
+    one = '<sensor name="a" type="imu"><topic>imu</topic></sensor>'
+    two = f'<sensor name="b" type="camera"><topic>{other}</topic></sensor>'
+    return a_link("a") + a_block('<gazebo reference="a">', one, two)
+
+
+@rule(
+    "MB241",
+    "topic-of-two-sensors",
+    WARNING,
+    what="Two simulated sensors of a robot have the same <topic>.",
+    why="Readers get the data of both in turn; if the sensors are of two types, gz-transport refuses "
+    "the second one, and it sends nothing.",
+    fix="Give each its own.",
+    bad=_two_sensors("imu"),
+    good=_two_sensors("image"),
+    line=4,
+)
+def topic_of_two_sensors(subject: Subject) -> Iterator[Problem]:
+    """Topics as they are written; the first sensor keeps its own."""
+    first: dict[str, str] = {}
+    for sensor in subject.elements.every("sensor"):
+        topic, name = text_at(sensor, "topic"), sensor.get("name", "")
+        element = sensor.find("topic")
+        if not topic or "$" in topic or element is None or sensor.getparent() is None:
+            continue
+        other = first.setdefault(topic, name)
+        if other != name:
+            yield Problem(element, f"sensors {other!r} and {name!r} have one topic, {topic!r}", "")

@@ -101,6 +101,11 @@ def no_controllers_file(subject: Subject) -> Iterator[Problem]:
             )
         for it in given:
             path = text_of(it)
+            if "$(" in path:
+                words = "is a substitution of xacro, and the file is none"
+                hint = "name the file .xacro, or write the path out: the plugin takes the text"
+                yield Problem(it, f"<parameters> {path!r} {words}", "", hint)
+                continue
             # Where xacro has expanded $(find), the folder of the package is there.
             home = os.path.dirname(os.path.dirname(path))
             is_here = subject.origins and os.path.isabs(path) and is_folder(home)

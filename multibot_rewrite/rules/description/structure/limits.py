@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from math import pi
+from math import pi, radians
 
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.description.checks.links_and_joints import Joint, Robot
-from multibot_rewrite.description.checks.numbers import number, value_of
+from multibot_rewrite.description.checks.numbers import number, numbers, value_of
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.description.structure.shared import (
     BOUNDED,
@@ -27,6 +27,7 @@ from multibot_rewrite.rules.subject import Subject
 # Above DEGREES[0] radians (more than two turns) and up to DEGREES[1] degrees (two turns); ENDLESS are
 # numbers that people write for "no limit".
 DEGREES = (4.5 * pi, 720.0)
+_TURN, _ROUND = 2.05 * pi, 5.0
 ENDLESS = frozenset((50.0, 100.0, 200.0, 500.0, 999.0))
 # Metres; a gripper moves so many millimetres.
 LONG_WAY = 25.0
@@ -199,6 +200,16 @@ def limits_in_degrees(subject: Subject) -> Iterator[Problem]:
             message = f"revolute joint {joint.name!r} turns from {lower:g} to {upper:g} radians"
             name = "upper" if _is_degrees(upper) else "lower"
             yield Problem(limit, message, name, "are these degrees?")
+
+
+def origins_in_degrees(subject: Subject) -> Iterator[Problem]:
+    """Rotations of more than a turn by a round number: nobody writes 90 radians."""
+    for origin in subject.elements.every("origin"):
+        found = numbers(origin.get("rpy", "")) or ()
+        odd = next((it for it in found if abs(it) > _TURN and it % _ROUND == 0), None)
+        if odd is not None:
+            message = f"rpy has {odd:g}, which is more than a turn: it is in radians"
+            yield Problem(origin, message, "rpy", f"{odd:g} degrees are {radians(odd):.4g}")
 
 
 def _is_degrees(angle: float) -> bool:

@@ -1,0 +1,118 @@
+"""Values in <ros2_control> that its parser or the hardware refuses, or that leave the joint's limits.
+
+Sources: ros2_control hardware_interface/src/component_parser.cpp (``parse_rw_rate_attribute``,
+``parse_interfaces_from_xml``, 'has no mimic information in the URDF'), joint_limits of the URDF in
+``retrieve_position_limits``; gz_ros2_control/src/gz_system.cpp (stod of ``initial_value``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.findings.finding import NOTE, WARNING
+from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.description.checks.links_and_joints import Joint
+from multibot_rewrite.description.checks.numbers import number, value_of
+from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.description.rewriters.text import text_of
+from multibot_rewrite.rules.description.examples import block
+from multibot_rewrite.rules.description.structure.shared import BOUNDED, LIMIT, one_joint
+from multibot_rewrite.rules.subject import Subject
+
+_COMMAND, _STATE = "command_interface", "state_interface"
+# <param> of an interface that code reads as a number.
+_NUMBERS = frozenset(("min", "max", "initial_value"))
+# Of a limit; numbers are rounded.
+_SLACK = 1.02
+_WHOLE = {"rw_rate": "a whole number of hertz", "thread_priority": "a whole number"}
+
+
+def unreadable_numbers(subject: Subject) -> Iterator[Problem]:
+    """Rates and limits of <ros2_control> that are no numbers."""
+    for system in subject.elements.tops("ros2_control"):
+        for name, words in _WHOLE.items():
+            text = system.get(name, "0")
+            if not text.isdigit() and "$" not in text:
+                yield Problem(system, f"{name} is {text!r}, not {words}", name)
+        for it in _params(system):
+            text = text_of(it)
+            if it.get("name") in _NUMBERS and "$" not in text and number(text) is None:
+                hint = "use a decimal point" if "," in text else "write a number"
+                yield Problem(it, f"{it.get('name')} is {text!r}, which is no number", "", hint)
+
+
+def _params(system: _Element) -> Iterator[_Element]:
+    for part in system.iterchildren("joint", "gpio", "sensor"):
+        for interface in part.iterchildren(_COMMAND, _STATE):
+            yield from interface.iterchildren("param")
+
+
+def mimic_of_none(subject: Subject) -> Iterator[Problem]:
+    """Joints of <ros2_control> that are to mimic and have no <mimic> in the robot."""
+    for system in subject.elements.tops("ros2_control"):
+        for it in system.iterchildren("joint"):
+            joint = subject.robot.joint.get(it.get("name", ""))
+            if joint is None or it.get("mimic", "").strip().lower() not in ("true", "1"):
+                continue
+            if "mimic" not in joint.parts:
+                message = f"joint {joint.name!r} is to mimic, and its <joint> has no <mimic>"
+                yield Problem(it, message, "mimic", "add <mimic>, or leave the attribute out")
+
+
+def _commanded(least: str) -> str:
+    interface = block('<command_interface name="position">', f'<param name="min">{least}</param>')
+    return one_joint("revolute", LIMIT) + block(
+        '<ros2_control name="s" type="system">',
+        "<hardware><plugin>p/P</plugin></hardware>",
+        block('<joint name="j">', interface),
+    )
+
+
+@rule(
+    "MB538",
+    "command-beyond-limits",
+    WARNING,
+    what="A command interface of a joint has a min or max outside of the joint's <limit>. It is a note "
+    "for velocities and efforts.",
+    why="ros2_control takes the narrower one, a driver or simulator without joint limits the wider "
+    "one: the joint is commanded past its stop.",
+    fix="Write the joint's limits, or narrower ones.",
+    bad=_commanded("-9"),
+    good=_commanded("-1"),
+    line=11,
+)
+def command_beyond_limits(subject: Subject) -> Iterator[Problem]:
+    """Positions against lower and upper, velocities and efforts against theirs."""
+    for system in subject.elements.tops("ros2_control"):
+        for it in system.iterchildren("joint"):
+            joint = subject.robot.joint.get(it.get("name", ""))
+            for interface in it.iterchildren(_COMMAND):
+                bounds = _bounds(joint, interface.get("name", "")) if joint else None
+                if joint and bounds:
+                    yield from _beyond(joint, interface, *bounds)
+
+
+def _beyond(joint: Joint, interface: _Element, low: float, high: float) -> Iterator[Problem]:
+    for param in interface.iterchildren("param"):
+        value = number(text_of(param))
+        if value is None or param.get("name") not in ("min", "max"):
+            continue
+        if not low * _SLACK - 0.01 <= value <= high * _SLACK + 0.01:
+            name = interface.get("name")
+            message = f"{param.get('name')} of {name} of joint {joint.name!r} is {value:g}"
+            hint = f"its <limit> is {low:g} to {high:g}"
+            yield Problem(param, message, "", hint, level="" if name == "position" else NOTE)
+
+
+def _bounds(joint: Joint, interface: str) -> tuple[float, float] | None:
+    limit = joint.parts.get("limit")
+    if limit is None:
+        return None
+    if interface == "position":
+        low, high = value_of(limit, "lower"), value_of(limit, "upper")
+        known = joint.type in BOUNDED and low is not None and high is not None and low < high
+        return (low, high) if known and low is not None and high is not None else None
+    most = value_of(limit, interface) if interface in ("velocity", "effort") else None
+    return (-most, most) if most else None

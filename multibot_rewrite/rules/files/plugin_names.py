@@ -1,0 +1,188 @@
+"""Classes of plugins in parameter files, against those that packages register for pluginlib.
+
+Sources: pluginlib class_loader_imp.hpp (``createInstance`` throws for a name that no plugin description
+has); nav2_ros_common node_utils.hpp (``get_plugin_type_param``: 'plugin' param not defined);
+controller_manager.cpp ('type' param was not defined, controller type does not exist).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import yaml
+
+from multibot_rewrite.base.findings.finding import ERROR, WARNING
+from multibot_rewrite.base.nearest import MISTYPED, nearest
+from multibot_rewrite.base.releases import has_release, releases_with
+from multibot_rewrite.companions.kinds import MOVEIT
+from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.params.sections import MANAGER, RawSection, controller_types
+from multibot_rewrite.companions.yaml_text import pairs
+from multibot_rewrite.knowledge.declared import declared_by
+from multibot_rewrite.knowledge.plugin_classes import (
+    NODE,
+    Base,
+    canonical,
+    packages,
+    plugin_bases,
+)
+from multibot_rewrite.rules.files.declared import Given
+from multibot_rewrite.rules.files.demands import Demand, demands
+from multibot_rewrite.rules.files.records import Remark, remark_at
+
+_DWB, _CRITIC = "dwb_critics", "Critic"
+_CRITIC_SCOPES = {
+    "dwb_core::TrajectoryCritic": _DWB,
+    "mppi::critics::CriticFunction": "mppi::critics",
+}
+_KINEMATICS, _SOLVER = "kinematics::KinematicsBase", "kinematics_solver"
+
+
+def unknown_classes(file: NamedFile) -> Iterator[Remark]:
+    """Classes that no package of the release registers, in parameters and kinematics of MoveIt."""
+    release = file.context.distro
+    if file.kind == MOVEIT:
+        yield from _solvers(file, release)
+        return
+    for it in demands(file, "class", "classes"):
+        for given in [it.given] if it.check == "class" else _plugins(it):
+            if isinstance(given.value, str):
+                where = f"{it.section.title}: {given.name}"
+                yield from _of_class(given.node, where, given.value, it.words[0], release)
+    for it in demands(file, "critics"):
+        yield from _critics(it)
+
+
+def _plugins(it: Demand) -> Iterator[Given]:
+    """NAME.plugin of each word of a list."""
+    found = (it.section.whole.get(f"{it.section.at}{word}.plugin") for word in words_of(it.given))
+    return (given for given in found if given)
+
+
+def words_of(given: Given) -> list[str]:
+    """The words of a list, or of a text."""
+    value = given.value
+    return [str(word) for word in value] if isinstance(value, list) else str(value or "").split()
+
+
+def _of_class(node: yaml.Node, where: str, name: str, base: str, release: str) -> Iterator[Remark]:
+    known = plugin_bases()[base]
+    if has_release(known.classes.get(name, "none"), release) if name in known.classes else False:
+        return
+    said, hint, level = _said(name, base, known, release)
+    if said:
+        yield remark_at(node, f"{where} is {name!r}, {said}", hint, level)
+
+
+def _said(name: str, base: str, known: Base, release: str) -> tuple[str, str, str]:
+    """What is wrong with a class that the release has not, what is to do, and how bad it is; nothing
+    where a package that is not known may have it."""
+    there = [it for it, words in known.classes.items() if has_release(words, release)]
+    alike = next((it for it in there if canonical(it) == canonical(name)), "")
+    if alike:
+        return f"which is written with other signs in {release}", f"write {alike}", WARNING
+    if name in known.older:
+        return "which ROS 2 has under another name", f"write {known.older[name]}", ERROR
+    if name in known.classes:
+        others = ", ".join(releases_with(known.classes[name]))
+        return f"which is not in {release}, only in {others}", _near(name, there), WARNING
+    other = next((it for it, of in plugin_bases().items() if name in of.classes), "")
+    if other:
+        return f"which is a {other}, not a {base}", "name a class of that kind", ERROR
+    near = nearest(canonical(name), {canonical(it): it for it in there}, MISTYPED)
+    package, _, last = canonical(name).partition("::")
+    if package in packages():
+        return "which its package does not have", _near(name, there), ERROR if near else WARNING
+    slip = nearest(package, packages(), MISTYPED)
+    alike = next((it for it in there if canonical(it) == f"{slip}::{last}"), "")
+    return ("which no known package has", f"did you mean {alike}?", "") if alike else ("", "", "")
+
+
+def _near(name: str, there: Sequence[str]) -> str:
+    by_name = {canonical(it): it for it in there}
+    near = by_name.get(nearest(canonical(name), by_name))
+    return f"did you mean {near}?" if near else "see the plugins of its package"
+
+
+def _critics(it: Demand) -> Iterator[Remark]:
+    """Critics are classes of a scope: DWB adds the word Critic, and may look in others."""
+    base = it.words[0]
+    scope, known = _CRITIC_SCOPES[base], plugin_bases()[base].classes
+    names = {name.rpartition("::")[2]: name for name in known}
+    whole = it.section.whole
+    if f"{it.section.at}default_critic_namespaces" in whole:
+        return
+    for word in words_of(it.given):
+        plain = "::" not in word and f"{it.section.at}{word}.class" not in whole
+        short = scope == _DWB and f"{word}{_CRITIC}" in names
+        if plain and word not in names and not short:
+            shown = [n.removesuffix(_CRITIC) for n in names] if scope == _DWB else [*names]
+            near = nearest(word, shown)
+            hint = f"did you mean {near}?" if near else f"there are {', '.join(shown)}"
+            message = f"{it.section.title}: no critic of {scope} is called {word!r}"
+            yield remark_at(it.given.node, message, hint, ERROR if near else WARNING)
+
+
+def _solvers(file: NamedFile, release: str) -> Iterator[Remark]:
+    for group, body in pairs(file.document.root if file.document else None):
+        for key, value in pairs(body):
+            if key.value == _SOLVER and isinstance(value, yaml.ScalarNode):
+                where = f"{_SOLVER} of {group.value}"
+                yield from _of_class(value, where, value.value, _KINEMATICS, release)
+
+
+def without_plugin(file: NamedFile) -> Iterator[Remark]:
+    """Words of a list of plugins without NAME.plugin, sources without parameters, controllers without
+    a type."""
+    for it in demands(file, "classes", "blocks"):
+        ids, words = it.words[1:], words_of(it.given)
+        for word in [] if words == [*ids] else words:
+            below = f"{it.section.at}{word}."
+            found = f"{below}plugin" in it.section.whole or (
+                it.check == "blocks" and any(name.startswith(below) for name in it.section.whole)
+            )
+            if not found and not _is_misspelt(it, word, words):
+                yield _without(it, word)
+    yield from _without_type(file)
+
+
+def _without(it: Demand, word: str) -> Remark:
+    what, level = ("plugin", ERROR) if it.check == "classes" else ("parameters", WARNING)
+    message = f"{it.section.title}: {it.given.name} has {word}, which has no {what}"
+    name = f"{it.section.at}{word}" + (".plugin" if what == "plugin" else "")
+    return remark_at(it.given.node, message, f"add {name}, or take {word} off the list", level)
+
+
+def _is_misspelt(it: Demand, word: str, words: Sequence[str]) -> bool:
+    """Has nearly that name parameters, which MB877 says?"""
+    own = {name.removeprefix(it.section.at).partition(".")[0] for name in it.section.whole}
+    return bool(nearest(word, own - set(words)))
+
+
+def _without_type(file: NamedFile) -> Iterator[Remark]:
+    raw = [RawSection(*it[:3]) for it, _ in file.pages]
+    types = controller_types(raw)
+    own = {fact.path.partition(".")[0] for fact in declared_by(MANAGER)}
+    typed = {
+        it.path.rpartition("/")[2]
+        for it in raw
+        if any(k.value == "type" for k, _ in pairs(it.body))
+    }
+    for section in raw:
+        if section.path.rpartition("/")[2] != MANAGER:
+            continue
+        for key, body in pairs(section.body):
+            free = isinstance(body, yaml.MappingNode) and key.value not in own
+            if free and key.value not in types and key.value not in typed:
+                message = f"{section.path}: controller {key.value} has no type"
+                yield remark_at(key, message, f"add {key.value}.type: PACKAGE/CLASS", ERROR)
+
+
+def renamed_nodes(file: NamedFile) -> Iterator[Remark]:
+    """Sections of nodes that have another name since a release before Humble."""
+    now = plugin_bases()[NODE].older
+    for section, _ in file.pages:
+        name = section.path.rpartition("/")[2]
+        if name in now:
+            message = f"no supported release has a node {name}: it is called {now[name]}"
+            yield remark_at(section.keys[-1], message, f"write {now[name]}")
