@@ -8,12 +8,12 @@ its nodes look up is in one tree with its own links.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
 
 from fleet import End, Fleet
 from nodes import Node
 from programs import MAP
 from trees import LOOKED_UP, TF, Edge, connected, whole
+from twins import Fault, models_twice, twins
 
 COMMANDS = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 # They pass a command on: what they read is sent again.
@@ -35,14 +35,6 @@ DRIVING = (
     "omni_wheel_drive_controller",
     "bicycle_steering_controller",
 )
-
-
-class Fault(NamedTuple):
-    """What a robot does not do ("starts", "drives", "sees", "plans"), and why."""
-
-    robot: str
-    what: str
-    why: str
 
 
 def judged(fleet: Fleet) -> tuple[Fault, ...]:
@@ -86,24 +78,6 @@ def said(found: dict[str, str]) -> str:
     return ", ".join(
         {"yes": word, "no": f"no {word}"}.get(it, f"{word} {it}") for word, it in found.items()
     )
-
-
-def twins(fleet: Fleet) -> Iterator[Fault]:
-    """Nodes of one name: the second takes the services of the first. Bridges and windows have none."""
-    seen: dict[str, str] = {}
-    for it in fleet.nodes:
-        if it.what not in ("parameter_bridge", "rviz2") and it.fqn in seen:
-            yield Fault(it.robot, "starts", f"two nodes are called {it.fqn}")
-        seen[it.fqn] = it.robot
-
-
-def models_twice(fleet: Fleet) -> Iterator[Fault]:
-    """Models of one name: the simulator refuses the second (-allow_renaming=false)."""
-    first: dict[str, str] = {}
-    for robot, model in fleet.models.items():
-        if model in first:
-            yield Fault(robot, "starts", f"two models are called {model}")
-        first.setdefault(model, robot)
 
 
 def heard(fleet: Fleet) -> Iterator[tuple[str, str, str]]:
