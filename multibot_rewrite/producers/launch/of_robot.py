@@ -76,9 +76,7 @@ def with_launched(
     left = [it for it in stack if _is_left(it, nodes)] if graph.whole else []
     gone = {it.name for it in left}
     # A node that every robot has, such as robot_state_publisher, may be launched under another name.
-    gone |= {it.known for it in nodes.values() if it.known} - {
-        it.name for it in stack if _is_named(it)
-    }
+    gone |= {it.known for it in nodes.values() if it.known} - {it.name for it in stack if it.origin}
     kept = [it for it in stack if it.name not in nodes and not {it.name, it.host} & gone]
     hosted = list(_hosted(pairs, known, {it.name for it in kept}))
     inside = [*hosted, *(it for it in kept if it.host)]
@@ -188,11 +186,7 @@ def _is_left(node: NodeFacts, launched: Mapping[str, NodeFacts]) -> bool:
     """Should a launch file have started it? What has no process of its own is not launched, and what
     no stack is named for is added to every robot."""
     own = not node.host and not node.plugin and node.name != MANAGER
-    return own and node.name not in launched and _is_named(node)
-
-
-def _is_named(node: NodeFacts) -> bool:
-    return node.origin.startswith("stack ")
+    return own and node.name not in launched and bool(node.origin)
 
 
 def _hosted(
