@@ -41,7 +41,9 @@ from multibot_rewrite.fleet.outputs.yarp_files import yarp_files
 from multibot_rewrite.fleet.outputs.zenoh_configuration import ZENOH, configurations
 from multibot_rewrite.fleet.robots.apart import too_near
 from multibot_rewrite.fleet.robots.devices import one_device_each
+from multibot_rewrite.fleet.robots.named_twice import named_twice
 from multibot_rewrite.fleet.robots.robot_groups import said_once, split_per_robot
+from multibot_rewrite.fleet.robots.simulators import other_hardware
 from multibot_rewrite.fleet.robots.start_poses import with_start_pose_nodes
 from multibot_rewrite.fleet.robots.two_descriptions import differences
 from multibot_rewrite.spelling.enclaves import to_policy
@@ -108,6 +110,8 @@ def _of_robots(plan: FleetPlan) -> Iterator[Finding]:
     """What is wrong with the robots themselves, whatever files go with them."""
     for robot in plan.robots:
         yield from robot.findings
+    yield from other_hardware(plan.robots)
+    yield from named_twice(plan.robots)
     yield from one_device_each(plan.robots)
     for found in plan.evidence.values():
         yield from found.findings

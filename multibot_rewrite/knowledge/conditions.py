@@ -25,7 +25,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import has_release
 
 Values = Callable[[str], object]
-RELEASE, UNKNOWN = "release", "unknown"
+RELEASE, VERSION, UNKNOWN = "release", "version", "unknown"
 # Subject -> what its words are.
 KINDS = {
     "argument": "an argument of the command line that starts it",
@@ -48,7 +48,7 @@ KINDS = {
     "tree": "a node of the behavior tree",
     "unsent": "a topic that nobody else sends",
     "use": "what the robot is used for",
-    "version": "the package, and its version or a newer one",
+    VERSION: "the package, and its version or a newer one",
     UNKNOWN: "a text",
 }
 AND, OR, ALSO = " and ", " or ", "|"
@@ -86,6 +86,11 @@ def joined(text: str, other: str) -> str:
     return OR.join(f"{it}{AND}{other}" for it in text.split(OR))
 
 
+def said(text: str) -> str:
+    """The condition as people read it: a version as one or newer, a text as it is."""
+    return OR.join(AND.join(map(_said, it.split(AND))) for it in text.split(OR))
+
+
 def of_release(text: str, release: str) -> str | None:
     """The condition without what it says of releases; None where it never holds in this one."""
     return of_kind(text, RELEASE, lambda words: has_release(words, release))
@@ -101,6 +106,12 @@ def of_kind(text: str, kind: str, is_so: Callable[[str], bool]) -> str | None:
         if all(is_so(it.removeprefix(asked)) for it in terms if it.startswith(asked))
     ]
     return None if not left else "" if "" in left else OR.join(left)
+
+
+def _said(term: str) -> str:
+    if term.startswith(f"{VERSION}: "):
+        return f"{term.removeprefix(f'{VERSION}: ')} or newer"
+    return term.removeprefix(f"{UNKNOWN}: ")
 
 
 def _one(text: str) -> Condition:

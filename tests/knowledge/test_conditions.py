@@ -11,6 +11,7 @@ from multibot_rewrite.knowledge.conditions import (
     of_kind,
     of_release,
     parse_condition,
+    said,
     verdict,
 )
 
@@ -155,3 +156,17 @@ def test_without_use_sim_time_nothing_says_how_it_runs() -> None:
 )
 def test_what_is_known_of_a_kind_is_asked_no_more(text: str, left: str | None) -> None:
     assert of_kind(text, "program", "one".__eq__) == left
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("version: nav2_route 1.3.9", "nav2_route 1.3.9 or newer"),
+        ("use_mag != false and version: a 1.0 or on", "use_mag != false and a 1.0 or newer or on"),
+        ("unknown: a camera or none", "a camera or none"),
+        ("hardware: arm", "hardware: arm"),
+        ("", ""),
+    ],
+)
+def test_people_read_a_version_as_one_or_newer(text: str, words: str) -> None:
+    assert said(text) == words

@@ -23,6 +23,7 @@ from multibot_rewrite.fleet.outputs.rviz_outputs import RvizOutput, window_path
 from multibot_rewrite.fleet.robots import start_poses
 from multibot_rewrite.fleet.robots.node_names import NodeNames, names_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+from multibot_rewrite.knowledge.conditions import said
 from multibot_rewrite.knowledge.programs import (
     LIFECYCLE_MANAGER,
     NAV2,
@@ -106,7 +107,7 @@ def _left(given: _Given) -> Iterator[tuple[str, str]]:
         elif it is None:
             yield name, "nothing is known of its program"
         elif it.when and not _is_needed(given, it):
-            yield name, it.when
+            yield name, said(it.when)
         elif given.plan.file.params_style == BRINGUP and name != STATE:
             yield name, "parameter files are in the form of nav2_bringup, which starts it"
         elif not given.names.is_controller(name) and program_of(it, given.release) is None:

@@ -63,10 +63,10 @@ def chosen(robots: Sequence[Looked], found: Found) -> Chosen:
 
 
 def acts(it: Looked) -> bool:
-    """Can it move, or is it more than a model of a thing?"""
-    if it.tag != "sdf" or any(_moving(it)):
+    """Can it move, or does it sense? A model of a thing has at most a plugin of its own."""
+    if it.tag != "sdf" or it.links > 1 or any(_moving(it)):
         return True
-    return it.root is not None and next(it.root.iter("plugin", "sensor"), None) is not None
+    return it.root is not None and next(it.root.iter("sensor"), None) is not None
 
 
 def _candidate(it: Looked, said: frozenset[str], found: Found) -> Candidate:

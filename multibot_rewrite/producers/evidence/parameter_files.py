@@ -155,7 +155,12 @@ def _typed(sections: Sequence[_Section], known: KnownNodes) -> Iterator[tuple[st
 def _node(
     name: str, sections: Sequence[_Section], controller: _Controller | None, known: KnownNodes
 ) -> GivenNode:
-    own = [it for it in sections if re.fullmatch(pattern_of(it.raw.path), f"/{name}")]
+    # A section such as /*/NODE is for the node in whatever namespace it is.
+    own = [
+        it
+        for it in sections
+        if it.name == name or re.fullmatch(pattern_of(it.raw.path), f"/{name}")
+    ]
     values = {key: given for it in own for key, given in it.values.items()}
     named = [it for it in own if it.name]
     last = name.rpartition("/")[2]
