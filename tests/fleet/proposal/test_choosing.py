@@ -161,10 +161,14 @@ def test_a_real_robot_has_no_bridge(two: Path) -> None:
     assert fleet["simulator"] == "none" and "companions" not in fleet
 
 
+MASS = (
+    '<inertial><mass value="1"/>'
+    '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
+)
 MIR = """\
 <robot name="mir" xmlns:xacro="http://www.ros.org/wiki/xacro">
   <xacro:arg name="tf_prefix" default=""/>
-  <link name="$(arg tf_prefix)base_link"/><link name="$(arg tf_prefix)l"/>
+  <link name="$(arg tf_prefix)base_link">MASS</link><link name="$(arg tf_prefix)l">MASS</link>
   <joint name="$(arg tf_prefix)left" type="continuous">
     <parent link="$(arg tf_prefix)base_link"/><child link="$(arg tf_prefix)l"/>
     <axis xyz="0 1 0"/>
@@ -182,7 +186,7 @@ def test_an_argument_that_would_name_the_robot_twice_stays_empty(
     tmp_path: Path, capsys: Any
 ) -> None:
     """As MiR's: the namespace names the topics already."""
-    (tmp_path / "mir.urdf.xacro").write_text(MIR)
+    (tmp_path / "mir.urdf.xacro").write_text(MIR.replace("MASS", MASS))
     fleet = taken(tmp_path, "--distro", "humble")
     assert fleet["arguments"] == {"tf_prefix": ""}
     assert fleet["layout"] == "frames-per-robot"

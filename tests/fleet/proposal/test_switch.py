@@ -14,7 +14,11 @@ ROVER = """\
 <robot name="rover" xmlns:xacro="http://www.ros.org/wiki/xacro">
   <xacro:arg name="{switch}" default="{default}"/>
   <xacro:arg name="simple" default="true"/>
-  <link name="base_link"/><link name="wheel"/>
+  <xacro:property name="mass">
+    <inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+  </xacro:property>
+  <link name="base_link"><xacro:insert_block name="mass"/></link>
+  <link name="wheel"><xacro:insert_block name="mass"/></link>
   <joint name="turn" type="continuous">
     <parent link="base_link"/><child link="wheel"/><axis xyz="0 1 0"/>
   </joint>
