@@ -147,14 +147,12 @@ def _driven(it: Ran, told: str) -> tuple[str, str]:
 
 
 def _is_told(why: str, told: str) -> bool:
-    """Does the build name the topic, node or frame that this is about?"""
-    names = re.findall(r"/?[\w/]*[a-z]_?[\w/]*[/_][\w/]+", why)
-    bare = {re.sub(r"^/?robot\d+/", "", name).lstrip("/") for name in names} - {
-        "",
-        "robot1",
-        "robot2",
-    }
-    return any(name in told for name in bare)
+    """Does the build name the topic, node or frame that this is about, as a whole word?"""
+    names = re.findall(r"/?[\w/]*[/_]\w+", why)
+    bare = {re.sub(r"^/?robot\d+/", "", name).lstrip("/") for name in names}
+    words = {word.strip("/") for word in re.findall(r"[\w/]+", told)}
+    said = {re.sub(r"^robot\d+/", "", word) for word in words}
+    return not said.isdisjoint(bare - {"", "robot1", "robot2"})
 
 
 def short(why: str, it: Stranger) -> str:

@@ -95,9 +95,10 @@ def test_hardware_of_the_other_world_stops_the_build(
 ) -> None:
     write(folder, "use_sim", value)
     file = folder / "fleet.yaml"
+    stack = "ros2_control" if simulator == "none" else "gz_ros2_control"
     file.write_text(
         f"layout: tf-per-robot\ndistro: jazzy\nsimulator: {simulator}\n"
-        f"description: rover.urdf.xacro\nrobots:\n  - {{name: robot1}}\n  - {{name: robot2}}\n"
+        f"description: rover.urdf.xacro\nstack: [{stack}]\nrobots:\n  - {{name: robot1}}\n  - {{name: robot2}}\n"
     )
     assert main(["build", str(file), "-o", str(folder / "out")]) == 1
     said = capsys.readouterr().err
