@@ -102,14 +102,15 @@ def _same_robot(it: Candidate, best: Candidate) -> bool:
 
 
 def launches_of(path: str, found: Found) -> int:
-    """How many launch files load this description. Of files of one base name it is that of the package
-    that the launch file names or is in, of models that of the folder."""
+    """How many launch files load this description, or worlds have this model. Of files of one base name
+    it is that of the package that the launch file names or is in, of models that of the folder."""
     base = os.path.basename(path)
     alike = [it for it in found.every if os.path.basename(it) == base]
     # A model is called by its folder.
     own = os.path.basename(os.path.dirname(path)) if base.endswith(".sdf") else _package(path)
     pattern = re.compile(rf"""(?<![\w.-]){re.escape(base)}(?![\w.-])""")
-    return sum(_loads(launch, pattern, own, len(alike) > 1) for launch in found.launch)
+    worlds = (f"model://{own}" in text_of(it) for it in found.worlds if base.endswith(".sdf"))
+    return sum(_loads(it, pattern, own, len(alike) > 1) for it in found.launch) + sum(worlds)
 
 
 def _loads(launch: str, pattern: re.Pattern[str], own: str, several: bool) -> bool:

@@ -98,7 +98,8 @@ def test_hardware_of_the_other_world_stops_the_build(
     stack = "ros2_control" if simulator == "none" else "gz_ros2_control"
     file.write_text(
         f"layout: tf-per-robot\ndistro: jazzy\nsimulator: {simulator}\n"
-        f"description: rover.urdf.xacro\nstack: [{stack}]\nrobots:\n  - {{name: robot1}}\n  - {{name: robot2}}\n"
+        f"description: rover.urdf.xacro\nstack: [{stack}]\n"
+        "robots:\n  - {name: robot1}\n  - {name: robot2}\n"
     )
     assert main(["build", str(file), "-o", str(folder / "out")]) == 1
     said = capsys.readouterr().err
