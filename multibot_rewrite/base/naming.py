@@ -253,6 +253,15 @@ def spelled(naming: Naming, robot: str, kind: str, text: str, namespaced: bool =
     return there.spell(text, robot) if there else text
 
 
+def is_of_world(topic: str) -> bool:
+    """Is it a topic or service of the world, as ``/world/w/set_pose``, and not of a model in it?
+
+    Source: gazebosim/gz-sim src/SimulationRunner.cc, systems/user_commands/UserCommands.cc,
+    systems/scene_broadcaster/SceneBroadcaster.cc."""
+    parts = topic.split("/")
+    return parts[:2] == ["", "world"] and len(parts) > 3 and parts[3] != "model"
+
+
 def is_keyword(text: str) -> bool:
     """SDF reserves ``__model__`` and the like (sdformat Utils.cc isReservedName)."""
     return len(text) >= 4 and text.startswith("__") and text.endswith("__")
@@ -267,7 +276,12 @@ def _name_affix(side: str, separator: str, text: str) -> Affix:
 def _topic_affix(naming: Naming, separator: str, text: str, below: bool) -> Affix | None:
     """``below`` tells that a relative name is put under something that is the robot's already."""
     bare = text.strip("/")
-    if not bare or bare in naming.shared_topics or text.startswith(("~", "__")):
+    if (
+        not bare
+        or bare in naming.shared_topics
+        or text.startswith(("~", "__"))
+        or is_of_world(text)
+    ):
         return None
     if text.endswith("/") or not NOT_PLAIN.isdisjoint(text):
         return None

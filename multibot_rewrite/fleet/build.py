@@ -13,7 +13,7 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.yaml_text import quoted
 from multibot_rewrite.description.sources.read import is_xacro
-from multibot_rewrite.fleet.checks.closed_plan import bridged_by, demanded, gaps_of
+from multibot_rewrite.fleet.checks.closed_plan import bridged_by, demanded, gaps_of, sorted_out
 from multibot_rewrite.fleet.checks.for_another_robot import for_another_robot
 from multibot_rewrite.fleet.file.fleet_file import input_files
 from multibot_rewrite.fleet.fleet import Fleet, expected, possible
@@ -78,19 +78,21 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
     with gc_paused():
         fleet, each = with_start_pose_nodes(plan), list(split_per_robot(plan))
         configs = list(rviz_outputs(plan, each))
-        files, findings = _sorted_out(
-            *_descriptions(plan, plan.file.installed or folder),
-            *companion_files(plan),
-            *rviz_files(configs),
-            *bridge_outputs(plan),
-            *commands_file(plan, each, rviz_commands(plan, configs)),
+        made = [*companion_files(plan), *bridge_outputs(plan)]
+        files, findings = sorted_out(
+            [
+                *_descriptions(plan, plan.file.installed or folder),
+                *made,
+                *rviz_files(configs),
+                *commands_file(plan, each, rviz_commands(plan, configs)),
+            ]
         )
         findings += _of_robots(plan)
-        gaps = gaps_of(plan, fleet, files, findings)
+        gaps = gaps_of(plan, fleet, made)
         findings += gaps
         fleet = fleet._replace(gaps=gaps, bridged=bridged_by(demanded(plan, files)))
-        kept, told = _sorted_out(
-            *in_style(plan, files), *cell_outputs(plan, files), *yarp_files(plan.robots)
+        kept, told = sorted_out(
+            [*in_style(plan, files), *cell_outputs(plan, files), *yarp_files(plan.robots)]
         )
         planned = _portable_plan(plan, fleet)
         tables = _tables(plan, fleet, planned)
@@ -102,11 +104,6 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
         _check_paths_differ(files)
         said = tuple(said_once(plan, [*findings, *told]))
         return Outputs(tuple(files), said, started(starts), planned)
-
-
-def _sorted_out(*made: OutputFile | Finding) -> tuple[list[OutputFile], list[Finding]]:
-    files = sorted(it for it in made if isinstance(it, OutputFile))
-    return files, [it for it in made if isinstance(it, Finding)]
 
 
 def _of_robots(plan: FleetPlan) -> Iterator[Finding]:

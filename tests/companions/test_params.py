@@ -65,6 +65,10 @@ def value(node: str, line: str, policy: tuple[str, str] = L2, distro: str = "jaz
         (L4, "/**/planner_server", "/**/planner_server"),
         (L4, "/**/local_costmap", "/**/local_costmap"),
         (L4, "/**/smoother_server", "/**/smoother_server_robot1"),
+        (L2, "/*", "/*"),
+        (L2, "/*/planner_server", "/*/planner_server"),
+        (L2, "/*/front/driver", "/*/front/driver"),
+        (L4, "/*/smoother_server", "/*/smoother_server_robot1"),
         (L2, "front/driver", "/robot1/front/driver"),
         (L4, "front/driver", "/front/driver_robot1"),
         (L2, "<robot_namespace>/amcl_x", "/robot1/amcl_x"),
@@ -158,6 +162,15 @@ def test_a_slash_above_a_node_is_the_root_namespace() -> None:
     assert "r1/base_link" in text
     assert not {"MB883", "MB312"} & set(codes(findings))
     assert "MB312" in codes(made("/:\n  ros__parameters: {a: 1}\n")[1])
+
+
+@pytest.mark.parametrize("key", ["robot1", "/robot1", "robot1/", "/"])
+def test_the_namespace_of_the_robot_that_a_file_is_for_is_no_name_of_a_node(key: str) -> None:
+    """Clearpath's generator writes a key with the namespace alone above the nodes."""
+    source = f"{key}:\n  twist_server_node:\n    ros__parameters: {{a: 1}}\n"
+    assert "MB312" not in codes(made(source, own=("robot1",))[1])
+    wrong = source.replace("twist_server_node", "twist-server")
+    assert "MB312" in codes(made(wrong, own=("robot1",))[1])
 
 
 def test_a_robots_name_in_a_file_is_an_error() -> None:

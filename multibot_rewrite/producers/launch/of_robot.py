@@ -18,6 +18,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.companions.params.sections import raw_sections
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
+from multibot_rewrite.knowledge.conditions import ALSO, of_kind
 from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.programs import runs
@@ -181,6 +182,22 @@ def _unmapped(facts: NodeFacts) -> tuple[Endpoint, ...]:
     return tuple(end._replace(remapped="") for end in facts.endpoints)
 
 
+def _as_started(facts: NodeFacts, it: LaunchedNode) -> NodeFacts:
+    """What is known of a node as this program has it with these arguments."""
+    program, arguments = {it.executable}, {*it.arguments}
+    ends: list[Endpoint] = []
+    for end in facts.endpoints:
+        when = of_kind(end.when, "argument", lambda words: not arguments.isdisjoint(_or(words)))
+        if when and "::" not in it.executable:
+            when = of_kind(when, "program", lambda words: not program.isdisjoint(_or(words)))
+        ends += [] if when is None else [end._replace(when=when)]
+    return facts._replace(endpoints=tuple(ends))
+
+
+def _or(words: str) -> list[str]:
+    return [it.strip() for it in words.split(ALSO)]
+
+
 def known_node(
     it: LaunchedNode, stack: Sequence[NodeFacts], known: Mapping[str, NodeFacts]
 ) -> NodeFacts | None:
@@ -192,7 +209,8 @@ def known_node(
     of_package = [node for node in known.values() if node.package == it.package and not node.host]
     by_word = (node for node in of_package if node.name in wanted)
     chosen = (node for node in known.values() if runs(node, program))
-    return next(of_stack, None) or next(chosen, None) or next(by_word, None)
+    found = next(of_stack, None) or next(chosen, None) or next(by_word, None)
+    return _as_started(found, it) if found else None
 
 
 def _is_of_robot(namespace: str, words: Collection[str]) -> bool:

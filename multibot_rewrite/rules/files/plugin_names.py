@@ -83,8 +83,9 @@ def _said(name: str, base: str, known: Base, release: str) -> tuple[str, str, st
         return f"which is written with other signs in {release}", f"write {alike}", WARNING
     if name in known.older:
         return "which ROS 2 has under another name", f"write {known.older[name]}", ERROR
-    if name in known.classes:
-        others = ", ".join(releases_with(known.classes[name]))
+    same = next((it for it in known.classes if canonical(it) == canonical(name)), "")
+    if same:
+        others = ", ".join(releases_with(known.classes[same]))
         return f"which is not in {release}, only in {others}", _near(name, there), WARNING
     other = next((it for it, of in plugin_bases().items() if name in of.classes), "")
     if other:
