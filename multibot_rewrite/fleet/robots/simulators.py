@@ -58,6 +58,8 @@ SIMULATED_OR_REAL = declare(
     formats=("fleet",),
     beside={"system_model.yaml": _AMCL, "robot.urdf": _DRIVE},
 )
+# The stack whose ros2_control_node loads the hardware of a real robot.
+_LOADING = "ros2_control"
 _CONTROLLED = """\
 <robot name="rover">
   <link name="base_link"/>
@@ -100,7 +102,8 @@ def _of_other_world(robot: RewrittenRobot) -> str:
     root: etree._Element = robot.member.inventory.document.root
     classes = hardware_classes(root)
     if robot.spec.simulator == REAL:
-        return next(filter(of_simulator, classes), "")
+        loaded = _LOADING in robot.spec.stacks
+        return next(filter(of_simulator, classes), "") if loaded else ""
     if robot.spec.simulator and loads_hardware(root):
         return next((it for it in classes if not may_be_simulated(it)), "")
     return ""
