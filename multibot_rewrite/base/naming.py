@@ -28,6 +28,7 @@ SEPARATORS = {
     "gpio": "_",
     "model": "_",
     "group": "_",
+    "shape": "_",
     "node": "_",
     "stem": "_",
     "topic": "/",
@@ -50,7 +51,7 @@ ROS_KINDS = frozenset({*TOPIC_KINDS, "stem", "namespace"})
 # A use of one of these must be declared in the same file.
 CLOSED_KINDS = frozenset({"link", "joint", "model", "group"})
 # Declarations of these are looked up by name.
-DECLARED_KINDS = (*sorted(CLOSED_KINDS), "frame", "sensor", "light")
+DECLARED_KINDS = (*sorted(CLOSED_KINDS), "frame", "sensor", "light", "shape")
 # Stands for a robot in a text that is made to see what is the same for all. Letters alone are taken by
 # every file that takes a name.
 TWIN = "qzrobotzq"

@@ -28,7 +28,7 @@ def respell_collisions(
 ) -> list[tuple[Claim, str]]:
     """Each contact collision whose name changes, with its new text.
 
-    ``respell(kind, name)`` is the new spelling of a link or joint.
+    ``respell(kind, name)`` is the new spelling of a link, joint or shape.
     """
     contacts = [claim for claim in claims if claim.site.form == "collision"]
     if not contacts:
@@ -75,7 +75,8 @@ def _named(
     left: str, collisions: list[tuple[str, int, str]], spell: Respell
 ) -> Iterator[tuple[tuple[str, int], str]]:
     for number, (link, place, own) in enumerate(collisions):
-        name = f"{own or spell('link', link)}_collision" + (f"_{number}" if number else "")
+        start = spell("shape", own) if own else spell("link", link)
+        name = f"{start}_collision" + (f"_{number}" if number else "")
         yield (link, place), name if name.startswith(left) else f"{left}{LUMP}{name}"
 
 

@@ -154,6 +154,14 @@ def test_a_controller_that_a_file_declares_needs_no_hardware_of_a_stack() -> Non
     assert {it.name: it.when for it in found.nodes}["joint_trajectory_controller"] == ""
 
 
+def test_a_helper_of_a_navigator_serves_no_action() -> None:
+    """nav2_util simple_action_server.hpp (Humble): a node for the callbacks of the other's action."""
+    helper = "bt_navigator_navigate_to_pose_rclcpp_node"
+    body = ":\n  ros__parameters: {use_sim_time: true}\n"
+    found = given(f"bt_navigator{body}{helper}{body}")
+    assert [it.name for it in found] == ["bt_navigator"]
+
+
 def test_a_node_of_a_file_may_run_and_then_sends_only_what_no_other_sends() -> None:
     amcl = "amcl:\n  ros__parameters: {base_frame_id: base_link}\n"
     beside = nodes_of(load_stack("slam_toolbox", "jazzy"), given(amcl), load_nodes("jazzy"))
