@@ -245,7 +245,8 @@ def _page(outcomes: list[Outcome], options: argparse.Namespace) -> Iterator[str]
     yield "# Planted bugs\n"
     yield "Made by `python benchmarks/planted_bugs.py --write`, on " + time.strftime("%Y-%m-%d.")
     yield f"Seed {options.seed}: operators, constants, conditions, calls and statements, by chance."
-    yield f"For each bug the tests that call its function are run, {MOST_TESTS} at most{_asked(options)}."
+    yield f"For each bug the tests that call its function are run, {MOST_TESTS} at most"
+    yield f"{_asked(options)}."
     yield "Bugs that change nothing anybody could see are judged by hand: `fixtures/harmless_bugs.tsv`."
     yield "\n| room | planted | noticed | harmless | survived |\n|---|--:|--:|--:|--:|"
     for room in [*options.rooms, "all"]:
@@ -261,9 +262,9 @@ def _page(outcomes: list[Outcome], options: argparse.Namespace) -> Iterator[str]
 
 def _asked(options: argparse.Namespace) -> str:
     if not options.whole:
-        return ""
+        return "and no others"
     asked = "" if options.tests == ["tests"] else f" of {', '.join(options.tests)}"
-    return f";\nwhere none of them notices it, the whole fast suite{asked}"
+    return f"and, where none of them notices it, the whole fast suite{asked}"
 
 
 def _named(room: str) -> str:

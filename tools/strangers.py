@@ -29,6 +29,8 @@ RELEASE = {"foxy": "humble", "galactic": "humble", "iron": "humble", "-": "jazzy
 _NAMED = re.compile(r"name one: multibot init (\S+)")
 # Seconds after which a command is ended.
 PATIENCE = 300
+# Letters of a reason in the table.
+LONGEST = 200
 
 
 class Stranger(NamedTuple):
@@ -145,21 +147,26 @@ def _driven(it: Ran, told: str) -> tuple[str, str]:
 
 
 def _is_told(why: str, told: str) -> bool:
-    """Does the build name the topic, node or frame that this is about?"""
-    names = re.findall(r"/?[\w/]*[a-z]_?[\w/]*[/_][\w/]+", why)
-    bare = {re.sub(r"^/?robot\d+/", "", name).lstrip("/") for name in names} - {
-        "",
-        "robot1",
-        "robot2",
-    }
-    return any(name in told for name in bare)
+    """Does the build name the topic, node or frame that this is about, as a whole word?"""
+    names = re.findall(r"/?[\w/]*[/_]\w+", why)
+    bare = {re.sub(r"^/?robot\d+/", "", name).lstrip("/") for name in names}
+    words = {word.strip("/") for word in re.findall(r"[\w/]+", told)}
+    said = {re.sub(r"^robot\d+/", "", word) for word in words}
+    return not said.isdisjoint(bare - {"", "robot1", "robot2"})
+
+
+def short(why: str, it: Stranger) -> str:
+    """A reason without the place of the checkout, and no longer than a table takes."""
+    place = re.sub(rf"\S*/{re.escape(it.name.replace('/', '+'))}/", "", why)
+    plain = place.removeprefix("multibot: ")
+    return plain if len(plain) <= LONGEST else f"{plain[: LONGEST - 3]}..."
 
 
 def _table(rows: Sequence[Row]) -> Iterator[str]:
     yield "| repository | kind | happened | why | init, build (s) |"
     yield "|---|---|---|---|--:|"
     for it in rows:
-        why = it.why.replace("|", "\\|")
+        why = short(it.why, it.stranger).replace("|", "\\|")
         times = f"{it.init:.1f}, {it.build:.1f}"
         yield f"| {it.stranger.name} | {it.stranger.kind} | {it.word} | {why} | {times} |"
 

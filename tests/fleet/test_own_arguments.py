@@ -123,7 +123,7 @@ def test_a_name_of_its_own_beside_another_prefix_or_namespace(tmp_path: Path, ke
     srdf = made.text("left/arm.srdf")
     assert 'base_link="left_base_link" tip_link="left_tool0"' in srdf
     assert f'link2="{camera}"' in srdf
-    assert worth_a_look((*made.findings, *made.made.findings)) == []
+    assert worth_a_look((*made.findings, *made.made.findings)) == ["MB610"]
 
 
 def test_a_namespace_argument(tmp_path: Path) -> None:
@@ -150,7 +150,7 @@ robots:
     made = load_fleet(fleet(tmp_path, text))
     root = etree.fromstring(made.robot("two").description.encode())
     assert [it.text for it in root.iter("namespace")] == ["fleet_b", "/fleet_b"]
-    assert worth_a_look((*made.findings, *made.made.findings)) == []
+    assert worth_a_look((*made.findings, *made.made.findings)) == ["MB610"]
     assert [it.shared for robot in made.plan.robots for it in [robot.member]] == [(), ()]
 
 

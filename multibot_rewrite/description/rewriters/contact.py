@@ -15,7 +15,7 @@ from lxml import etree
 
 from multibot_rewrite.base.model import Claim
 from multibot_rewrite.description.rewriters.forms import Declared, is_included
-from multibot_rewrite.description.rewriters.text import text_at
+from multibot_rewrite.description.rewriters.text import kept_joints
 
 Respell = Callable[[str, str], str]
 Links = dict[str, etree._Element]
@@ -82,12 +82,7 @@ def _named(
 
 def _lumped(root: etree._Element) -> Lumped:
     """Parent link -> (joint, child link) of the fixed joints that are merged."""
-    kept = {
-        block.get("reference")
-        for block in root.iterchildren("gazebo")
-        for tag in ("preserveFixedJoint", "disableFixedJointLumping")
-        if text_at(block, tag).lower() in ("true", "yes", "1")
-    }
+    kept = kept_joints(root)
     lumped = defaultdict(list)
     for joint in root.iterchildren("joint"):
         if joint.get("type") != "fixed" or joint.get("name") in kept:

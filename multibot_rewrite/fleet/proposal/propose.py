@@ -190,7 +190,9 @@ def see(wanted: Wanted) -> Seen:
     found = search(wanted.paths)
     reach = Reach(trust=wanted.trust)
     values = NeededValues(found.launch)
-    every = found.descriptions[:MOST]
+    every = found.descriptions
+    if len(every) > MOST:
+        every = tuple(sorted(every, key=lambda it: -launches_of(it, found)))[:MOST]
     looked = [look(it, wanted.arguments, reach, values) for it in every]
     named = [it for it in looked if it.path in map(os.path.normpath, wanted.paths)]
     if named:

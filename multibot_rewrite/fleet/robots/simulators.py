@@ -58,6 +58,8 @@ SIMULATED_OR_REAL = declare(
     formats=("fleet",),
     beside={"system_model.yaml": _AMCL, "robot.urdf": _DRIVE},
 )
+# The stack whose ros2_control_node loads the hardware of a real robot.
+_LOADING = "ros2_control"
 _CONTROLLED = """\
 <robot name="rover">
   <link name="base_link"/>
@@ -100,7 +102,8 @@ def _of_other_world(robot: RewrittenRobot) -> str:
     root: etree._Element = robot.member.inventory.document.root
     classes = hardware_classes(root)
     if robot.spec.simulator == REAL:
-        return next(filter(of_simulator, classes), "")
+        loaded = _LOADING in robot.spec.stacks
+        return next(filter(of_simulator, classes), "") if loaded else ""
     if robot.spec.simulator and loads_hardware(root):
         return next((it for it in classes if not may_be_simulated(it)), "")
     return ""
@@ -124,8 +127,16 @@ def _other(robot: RewrittenRobot, wrong: str) -> Finding:
 
 def may_be_real(robot: RewrittenRobot, evidence: RobotEvidence) -> bool:
     """Has its description something for a simulator, and does nothing say that it runs in one?"""
-    said = robot.spec.simulator or robot.spec.companions.get("bridge")
-    return evidence.unsimulated and not said and _for_simulator(robot.member)
+    return evidence.unsimulated and not _said(robot) and _for_simulator(robot.member)
+
+
+def is_chosen(robot: RewrittenRobot) -> bool:
+    """Does its fleet file say that it runs in a simulator?"""
+    return bool(_said(robot)) and robot.spec.simulator != REAL
+
+
+def _said(robot: RewrittenRobot) -> object:
+    return robot.spec.simulator or robot.spec.companions.get("bridge")
 
 
 def note(robot: RewrittenRobot) -> Finding:

@@ -161,10 +161,14 @@ def test_a_real_robot_has_no_bridge(two: Path) -> None:
     assert fleet["simulator"] == "none" and "companions" not in fleet
 
 
+MASS = (
+    '<inertial><mass value="1"/>'
+    '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
+)
 MIR = """\
 <robot name="mir" xmlns:xacro="http://www.ros.org/wiki/xacro">
   <xacro:arg name="tf_prefix" default=""/>
-  <link name="$(arg tf_prefix)base_link"/><link name="$(arg tf_prefix)l"/>
+  <link name="$(arg tf_prefix)base_link">MASS</link><link name="$(arg tf_prefix)l">MASS</link>
   <joint name="$(arg tf_prefix)left" type="continuous">
     <parent link="$(arg tf_prefix)base_link"/><child link="$(arg tf_prefix)l"/>
     <axis xyz="0 1 0"/>
@@ -182,7 +186,7 @@ def test_an_argument_that_would_name_the_robot_twice_stays_empty(
     tmp_path: Path, capsys: Any
 ) -> None:
     """As MiR's: the namespace names the topics already."""
-    (tmp_path / "mir.urdf.xacro").write_text(MIR)
+    (tmp_path / "mir.urdf.xacro").write_text(MIR.replace("MASS", MASS))
     fleet = taken(tmp_path, "--distro", "humble")
     assert fleet["arguments"] == {"tf_prefix": ""}
     assert fleet["layout"] == "frames-per-robot"
@@ -229,3 +233,30 @@ def test_the_navigation_that_is_launched_is_taken(two: Path) -> None:
         (two / name).write_text(yaml.safe_dump(section))
     (two / "up.launch.py").write_text("params = 'z_nav.yaml'\n")
     assert taken(two)["companions"]["params"] == ["z_nav.yaml"]
+
+
+def test_a_model_that_a_world_has_is_launched_too(tmp_path: Path, capsys: Any) -> None:
+    """A launch file loads another one: both may be meant."""
+    for name in ("cart", "dog"):
+        (tmp_path / name).mkdir()
+        joint = (
+            '<joint name="{0}_j" type="revolute"><parent>{0}</parent><child>{0}_w</child></joint>'
+        )
+        parts = f'<link name="{name}"/><link name="{name}_w"/>{joint.format(name)}'
+        model = f'<sdf version="1.9"><model name="{name}">{parts}</model></sdf>'
+        (tmp_path / name / "model.sdf").write_text(model)
+    (tmp_path / "dog.launch.py").write_text("model = 'dog/model.sdf'\n")
+    (tmp_path / "yard.world").write_text(
+        '<sdf version="1.9"><world name="w"><include><uri>model://cart</uri></include></world></sdf>'
+    )
+    assert init(tmp_path, "--simulator", "none") == 2
+    assert "2 descriptions" in capsys.readouterr().err
+
+
+def test_the_robot_is_found_behind_many_things(tmp_path: Path) -> None:
+    for at in range(70):
+        thing = '<sdf version="1.9"><model name="t"><link name="t"/></model></sdf>'
+        (tmp_path / f"a{at}.sdf").write_text(thing)
+    (tmp_path / "zebra.urdf").write_text(robot("zebra", "z1", "z2"))
+    (tmp_path / "up.launch.py").write_text("urdf = 'zebra.urdf'\n")
+    assert taken(tmp_path)["description"] == "zebra.urdf"

@@ -14,7 +14,11 @@ ROVER = """\
 <robot name="rover" xmlns:xacro="http://www.ros.org/wiki/xacro">
   <xacro:arg name="{switch}" default="{default}"/>
   <xacro:arg name="simple" default="true"/>
-  <link name="base_link"/><link name="wheel"/>
+  <xacro:property name="mass">
+    <inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+  </xacro:property>
+  <link name="base_link"><xacro:insert_block name="mass"/></link>
+  <link name="wheel"><xacro:insert_block name="mass"/></link>
   <joint name="turn" type="continuous">
     <parent link="base_link"/><child link="wheel"/><axis xyz="0 1 0"/>
   </joint>
@@ -91,9 +95,11 @@ def test_hardware_of_the_other_world_stops_the_build(
 ) -> None:
     write(folder, "use_sim", value)
     file = folder / "fleet.yaml"
+    stack = "ros2_control" if simulator == "none" else "gz_ros2_control"
     file.write_text(
         f"layout: tf-per-robot\ndistro: jazzy\nsimulator: {simulator}\n"
-        f"description: rover.urdf.xacro\nrobots:\n  - {{name: robot1}}\n  - {{name: robot2}}\n"
+        f"description: rover.urdf.xacro\nstack: [{stack}]\n"
+        "robots:\n  - {name: robot1}\n  - {name: robot2}\n"
     )
     assert main(["build", str(file), "-o", str(folder / "out")]) == 1
     said = capsys.readouterr().err
