@@ -57,8 +57,8 @@ _XML = (
     (SRDF, lazy_compile(rb"<(?:group|group_state|disable_collisions|virtual_joint)\s", 0)),
     (URDF, lazy_compile(rb"<robot\b", 0)),
 )
-# Of YAML, Python, Lua: what only files of one kind have at the start of a line or an item. A file of one
-# node's sections may be MoveIt's as well: that is a parameter file for its reader.
+# Of YAML, Python, Lua: what only files of one kind have at the start of a line or an item. A file of
+# one node's sections may be MoveIt's as well: that is a parameter file for its reader.
 BESIDE = (
     (PARAMS, lazy_compile(rb"^\s+[\"']?ros__parameters[\"']?\s*:", re.MULTILINE)),
     (RVIZ, lazy_compile(rb"^Visualization Manager\s*:", re.MULTILINE)),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.base.findings.finding import NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.description.checks.links_and_joints import WORLD, Link, Robot, reached
 from multibot_rewrite.description.checks.problem import Problem
@@ -16,7 +16,6 @@ from multibot_rewrite.rules.description.physics.shared import (
     moving_link,
     one_link,
 )
-from multibot_rewrite.rules.facts.simulators import simulator_plugins
 from multibot_rewrite.rules.subject import Subject
 
 TINY_MASS = 1e-6
@@ -80,8 +79,7 @@ def root_inertia(subject: Subject) -> Iterator[Problem]:
     "MB610",
     "no-inertia",
     NOTE,
-    what="No link has a mass: the robot cannot be simulated. It is an error where the description has "
-    "plugins or sensors of a simulator.",
+    what="No link has a mass: the robot cannot be simulated.",
     why="Gazebo spawns nothing of it; MuJoCo rejects a moving body without mass. RViz and MoveIt "
     "do not need it.",
     fix="Add <inertial> to the links, if the robot is to be simulated.",
@@ -95,9 +93,7 @@ def no_inertia(subject: Subject) -> Iterator[Problem]:
     robot = subject.robot
     if any(it.inertial for it in robot.links) or not any(it.type != "fixed" for it in robot.joints):
         return
-    simulated = subject.elements.every("sensor") or simulator_plugins(subject)
-    message = "no link has an <inertial>: the robot cannot be simulated"
-    yield Problem(subject.document.root, message, level=ERROR if simulated else "")
+    yield Problem(subject.document.root, "no link has an <inertial>: the robot cannot be simulated")
 
 
 @rule(
