@@ -44,9 +44,11 @@ def unknown_classes(file: NamedFile) -> Iterator[Remark]:
     if file.kind == MOVEIT:
         yield from _solvers(file, release)
         return
+    known = file.known.nodes.values() if file.known else ()
+    told = {type_ for node in known for type_ in node.facts.deprecated_types}  # MB869
     for it in demands(file, "class", "classes"):
         for given in [it.given] if it.check == "class" else _plugins(it):
-            if isinstance(given.value, str):
+            if isinstance(given.value, str) and given.value not in told:
                 where = f"{it.section.title}: {given.name}"
                 yield from _of_class(given.node, where, given.value, it.words[0], release)
     for it in demands(file, "critics"):
