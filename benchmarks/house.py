@@ -72,6 +72,7 @@ def kinds(module: Module) -> Counter[str]:
     return Counter({kind: found[kind] for kind in KINDS})
 
 
+@cache
 def _kinds_of_lines(module: Module) -> list[str]:
     kind = [_plain_kind(line) for line in module.lines]
     for node in ast.walk(module.tree):

@@ -23,7 +23,10 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
+from queue import Queue
 from typing import NamedTuple
 
 from bugs import Bug, bugs_in, planted
@@ -37,6 +40,7 @@ ROOMS = (*sorted(it.parent.name for it in (ROOT / PACKAGE).glob("*/__init__.py")
 # A bug in a file with one of these could reach beyond the copy: it ends processes or deletes folders.
 UNSAFE = re.compile(r"\b(?:os\.kill|killpg|os\.fork|os\._exit|rmtree|subprocess|signal)\b")
 AT_ONCE, MOST_TESTS, FEW_TESTS = 80, 600, 10
+TEMPORARY = "planted_bugs_"
 # Exit codes of pytest.
 WRONG_USE, NO_TESTS, TOO_LONG = 4, 5, -1
 FAST = ("-q", "-x", "-m", "not live and not slow", "-p", "no:cacheprovider", "--tb=no")
@@ -52,20 +56,28 @@ class Outcome(NamedTuple):
 
 
 class Bench(NamedTuple):
-    """The copy that bugs are planted in, and the tests that call each of its functions."""
+    """The copy that bugs are planted in, the tests that call each of its functions, and those that
+    fail without a bug; ``every`` are all that are asked."""
 
     copy: Path
     seconds: int
+    every: Sequence[str]
     called: dict[str, list[str]]
+    failing: Sequence[str]
 
 
 def main(arguments: Sequence[str]) -> int:
     """Plant, run, print the table; 1 if more than a tenth survived."""
     options = _options(arguments)
-    with tempfile.TemporaryDirectory(prefix="planted_bugs_") as folder:
-        copy = _copy(Path(folder) / "copy")
-        bench = Bench(copy, options.seconds, _called(copy, options.notes, options.tests))
-        outcomes = [it for room in options.rooms for it in _room(room, bench, options)]
+    with tempfile.TemporaryDirectory(prefix=TEMPORARY) as folder:
+        copies = [_copy(Path(folder) / f"copy{at}") for at in range(options.jobs)]
+        calls, failing = _called(copies[0], options.notes, options.tests)
+        free: Queue[Bench] = Queue()
+        for copy in copies:
+            free.put(Bench(copy, options.seconds, options.tests, calls, failing))
+        with ThreadPoolExecutor(options.jobs) as pool:
+            found = pool.map(partial(_room, free=free, options=options), options.rooms)
+            outcomes = [it for room in found for it in room]
     lines = list(_page(outcomes, options))
     print("\n".join(lines))
     if options.write:
@@ -80,7 +92,9 @@ def _options(arguments: Sequence[str]) -> argparse.Namespace:
     parser.add_argument("-n", type=int, default=6, help="bugs in each room")
     parser.add_argument("--seed", type=int, default=1, help="which ones")
     parser.add_argument("--seconds", type=int, default=600, help="for the tests of one bug")
+    parser.add_argument("--jobs", type=int, default=1, help="rooms at once, each in a copy")
     parser.add_argument("--notes", type=Path, help="file that keeps which test calls what")
+    parser.add_argument("--whole", action="store_true", help="ask all about those that survive")
     parser.add_argument("--tests", nargs="+", default=["tests"], help="those that are asked")
     parser.add_argument("--write", action="store_true", help="make the page anew")
     options = parser.parse_args(arguments)
@@ -93,19 +107,24 @@ def _copy(target: Path) -> Path:
     return Path(shutil.copytree(ROOT, target, ignore=shutil.ignore_patterns(*left)))
 
 
-def _called(copy: Path, notes: Path | None, tests: Sequence[str]) -> dict[str, list[str]]:
-    """The tests by the functions that they call, those that fail without a bug left out."""
+def _called(
+    copy: Path, notes: Path | None, tests: Sequence[str]
+) -> tuple[dict[str, list[str]], list[str]]:
+    """The tests by the functions that they call, and those that fail without a bug: left out."""
     notes = (notes or copy / "called.json").resolve()
     if not notes.exists():
         _note_calls(copy, notes, tests)
-    # The name of a test may hold the path of the copy that the notes were made in.
-    text = re.sub(r"/[^\s\"]*/planted_bugs_\w+/copy", str(copy), notes.read_text())
-    calls: dict[str, list[str]] = json.loads(text)
+    calls: dict[str, list[str]] = json.loads(notes.read_text())
     if not calls:
         sys.exit("no test was run in the copy")
     failing = set(calls.pop("", ()))
     print(f"{len(failing)} tests fail without a bug", file=sys.stderr, flush=True)
-    return {name: [it for it in tests if it not in failing] for name, tests in calls.items()}
+    # Without those that have the path of the copy in their name: another has another.
+    left = {
+        name: [it for it in tests if it not in failing and TEMPORARY not in it]
+        for name, tests in calls.items()
+    }
+    return left, sorted(failing)
 
 
 def _note_calls(copy: Path, notes: Path, tests: Sequence[str]) -> None:
@@ -114,13 +133,23 @@ def _note_calls(copy: Path, notes: Path, tests: Sequence[str]) -> None:
     subprocess.run(command, cwd=copy, env=environment, stdout=subprocess.DEVNULL, check=False)
 
 
-def _room(room: str, bench: Bench, options: argparse.Namespace) -> Iterator[Outcome]:
+def _room(room: str, free: Queue[Bench], options: argparse.Namespace) -> list[Outcome]:
+    bench = free.get()
+    try:
+        return list(_outcomes(room, bench, options))
+    finally:
+        free.put(bench)
+
+
+def _outcomes(room: str, bench: Bench, options: argparse.Namespace) -> Iterator[Outcome]:
     chance = random.Random(f"{options.seed} {room}")
     home = bench.copy / PACKAGE
     every = [bug for file in _files(room, home) for bug in bugs_in(home, file)]
     for bug in sorted(chance.sample(every, min(options.n, len(every)))):
         tests = _tests_of(bug, bench, chance)
-        noticed = any(_is_noticed(bug, part, bench) for part in (tests[:AT_ONCE], tests[AT_ONCE:]))
+        others = [*bench.every, *(f"--deselect={it}" for it in bench.failing)]
+        asked = (tests[:AT_ONCE], tests[AT_ONCE:], *([others] if options.whole else []))
+        noticed = any(_is_noticed(bug, part, bench) for part in asked)
         word = "noticed" if noticed else "SURVIVED"
         print(f"{room}: {bug}: {word}, {len(tests)} tests", file=sys.stderr, flush=True)
         yield Outcome(room, bug, len(tests), noticed)
@@ -216,7 +245,8 @@ def _page(outcomes: list[Outcome], options: argparse.Namespace) -> Iterator[str]
     yield "# Planted bugs\n"
     yield "Made by `python benchmarks/planted_bugs.py --write`, on " + time.strftime("%Y-%m-%d.")
     yield f"Seed {options.seed}: operators, constants, conditions, calls and statements, by chance."
-    yield f"For each bug the tests that call its function are run, {MOST_TESTS} at most."
+    yield f"For each bug the tests that call its function are run, {MOST_TESTS} at most"
+    yield f"{_asked(options)}."
     yield "Bugs that change nothing anybody could see are judged by hand: `fixtures/harmless_bugs.tsv`."
     yield "\n| room | planted | noticed | harmless | survived |\n|---|--:|--:|--:|--:|"
     for room in [*options.rooms, "all"]:
@@ -228,6 +258,13 @@ def _page(outcomes: list[Outcome], options: argparse.Namespace) -> Iterator[str]
     if alive:
         yield "\nWhat survived:\n"
         yield from (f"- `{it.bug}`" for it in alive)
+
+
+def _asked(options: argparse.Namespace) -> str:
+    if not options.whole:
+        return "and no others"
+    asked = "" if options.tests == ["tests"] else f" of {', '.join(options.tests)}"
+    return f"and, where none of them notices it, the whole fast suite{asked}"
 
 
 def _named(room: str) -> str:

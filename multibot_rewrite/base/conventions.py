@@ -120,6 +120,10 @@ TOOLS = (
 )
 
 
+# Nodes of a simulator, one for all robots: gazebo_ros gazebo_ros_init.cpp.
+WORLD_NODES = frozenset({"gazebo"})
+
+
 def tool_patterns() -> tuple[str, ...]:
     """The patterns of all tools, without those inside another."""
     every = [it.pattern for it in TOOLS]

@@ -82,9 +82,9 @@ BESIDE = (
 # What follows ``robots:`` in a fleet file is a list, and in a plan a map.
 _ROBOTS = rb"^robots:[ \t]*(?:#[^\n]*)?(?:\s*#[^\n]*\n)*\s*"
 _OTHERS = (
-    (LAUNCH, lazy_compile(rb"^def generate_launch_description\b|^launch:\s*$", re.MULTILINE)),
     (FLEET, lazy_compile(_ROBOTS + rb"[-\[]", re.MULTILINE)),
     (PLAN, lazy_compile(_ROBOTS + rb"[\w{\"']", re.MULTILINE)),
+    (LAUNCH, lazy_compile(rb"^def generate_launch_description\b|^launch:\s*-", re.MULTILINE)),
     (BAG, lazy_compile(rb"^rosbag2_bagfile_information:", re.MULTILINE)),
     (MAP, lazy_compile(rb"^image:[^\n]*\n(?:.*\n)*?resolution:", re.MULTILINE)),
 )

@@ -12,7 +12,7 @@ import yaml
 
 from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.naming import POSTFIX
+from multibot_rewrite.base.naming import POSTFIX, spelled
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.bridge_entry import (
     BOTH,
@@ -55,6 +55,8 @@ from multibot_rewrite.companions.yaml_text import (
     refuse_anchors,
     replaced,
 )
+from multibot_rewrite.description.rewriters.forms import NamePart
+from multibot_rewrite.description.rewriters.made_topics import STEM, parts_of
 
 # gz topics of the whole simulation, like those below /world.
 WORLD = frozenset({"clock", "stats"})
@@ -179,7 +181,8 @@ def _entry(
     gz = both or text_of(node, GZ) or text_of(node, ROS)
     bare_ros, bare_gz = (without_robot(name, "/") for name in (ros, gz))
     bare_ros = below(bare_ros, above)
-    found = GZ_MODEL.fullmatch(bare_gz)
+    made = _made_parts(context, bare_gz)
+    found = None if made else GZ_MODEL.fullmatch(bare_gz)
     another = found and found["model"] != model and not PLACEHOLDER.search(found["model"])
     if text_of(node, SERVICE) or another:
         return BridgeEntry(node, block, ros, gz, ros, gz, False)
@@ -202,6 +205,8 @@ def gz_topic(context: Context, name: str, gz_type: str = "") -> str:
     rest = (found["rest"] or "") if found else name
     if PLACEHOLDER.search(rest):
         return name
+    if made := _made_parts(context, name):
+        return _of_words(context, name, made)
     if found:
         return found["above"] + MODEL_SLOT + PART.sub(lambda it: _part(context, it), rest)
     bare = name.strip("/")
@@ -209,6 +214,22 @@ def gz_topic(context: Context, name: str, gz_type: str = "") -> str:
         return name
     base, ending = _family(name, gz_type) if context.topics.naming.topics == POSTFIX else (name, "")
     return spell(context.topics, "topic", base, namespaced=False) + ending
+
+
+def _made_parts(context: Context, name: str) -> list[NamePart]:
+    """The names in a topic that a system of the description makes of a word of its parameters."""
+    parts = [*parts_of(name, context.names.words, context.names.declared)]
+    return parts if parts and parts[0].kinds == STEM else []
+
+
+def _of_words(context: Context, name: str, parts: Sequence[NamePart]) -> str:
+    """The topic with its names as the rewritten description has them."""
+    for it in reversed(parts):
+        (kind,) = it.matched
+        names = context.topics if (kind,) == STEM else context.names
+        spelled_part = spelled(names.naming, names.robot, kind, it.text)
+        name = name[: it.at] + spelled_part + name[it.at + len(it.text) :]
+    return name
 
 
 def _part(context: Context, found: re.Match[str]) -> str:

@@ -9,6 +9,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.rename_map import NO_OWN, CompanionNames
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT
 from multibot_rewrite.description.rewriters.forms import Declared
+from multibot_rewrite.description.rewriters.made_topics import NO_WORDS, Stems
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.spelling.targets import placed
 
@@ -31,14 +32,15 @@ def make_context(
     facts: Iterable[NodeFacts],
     distro: str,
     own: Mapping[tuple[str, str], str] = NO_OWN,
+    words: Stems = NO_WORDS,
 ) -> Context:
-    """The context of a description (not rewritten) and the nodes that its robots run; ``own`` as in
-    ``CompanionNames``."""
+    """The context of a description (not rewritten) and the nodes that its robots run; ``own`` and
+    ``words`` as in ``CompanionNames``."""
     nodes = {
         it.name: f"/{it.name}" if it.shared else full_name(it.name, naming, it.apart)
         for it in facts
     }
-    names = CompanionNames(declared, naming, TAG_SLOT, own)
+    names = CompanionNames(declared, naming, TAG_SLOT, own, words)
     return Context(names, names._replace(robot=NAMESPACE_SLOT), nodes, distro)
 
 

@@ -248,8 +248,8 @@ def explain(
     )
 
     urdf_declarations = job.urdf_declarations
-    apart = naming.layout.at_run_time
-    inventory = collect(read_document(job.data, job.file), job.tree, urdf_declarations, apart)
+    document = read_document(job.data, job.file)
+    inventory = collect(document, job.tree, urdf_declarations, naming.layout)
     pipeline.check_urdf(inventory, urdf_declarations)
     return explain_line(inventory, job.naming, job.tree, robot, line)
 

@@ -43,8 +43,7 @@ def prepare(
     ``urdf_declarations`` is what the URDF beside an SRDF declares. ``own`` says more of a source that
     is one robot's own.
     """
-    apart = naming.layout.at_run_time
-    inventory = collect(read_document(source, file), tree, urdf_declarations, apart)
+    inventory = collect(read_document(source, file), tree, urdf_declarations, naming.layout)
     check_urdf(inventory, urdf_declarations)
     plan = make_plan(inventory, naming)
     findings = [*audit.audit(inventory, plan.renames, tree), *plan.findings]
@@ -71,7 +70,7 @@ def _shared_with_twin(
     """What a robot whose xacro has arguments of its own would share with all others."""
     document = inventory.document
     # What the arguments name gets the twin's name once more: only whether it has it matters.
-    read = collect(read_document(twin, document.file), tree, apart=naming.layout.at_run_time)
+    read = collect(read_document(twin, document.file), tree, layout=naming.layout)
     edits = make_plan(read, naming).edits
     text = fill(cut(twin, edits), TWIN)
     return shared_with(document, text, TWIN, naming, tree.vocabulary)
@@ -153,8 +152,7 @@ def strip(
     ``urdf_declarations`` is what the rewritten URDF beside a rewritten SRDF declares. ``before`` is
     what the robot's own xacro arguments make, where the naming has names of these.
     """
-    apart = naming.layout.at_run_time
-    inventory = collect(read_document(source, file), tree, urdf_declarations, apart)
+    inventory = collect(read_document(source, file), tree, urdf_declarations, naming.layout)
     check_urdf(inventory, urdf_declarations)
     renames = make_renames(inventory, naming)
     found = checks.not_rewritten(inventory, renames, robot)
@@ -162,7 +160,9 @@ def strip(
     _stop_on_errors(found)
     places = NOWHERE
     if before:
-        places = own_places(collect(read_document(before, file), tree, apart=apart), naming)
+        places = own_places(
+            collect(read_document(before, file), tree, layout=naming.layout), naming
+        )
     stripped = b"".join(cut(source, strip_edits(inventory, naming, robot, places)))
     again = prepare(stripped, file, naming, tree, stripped_names(urdf_declarations, naming, robot))
     if fill(again.pieces, robot) != source:

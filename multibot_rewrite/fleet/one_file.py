@@ -18,6 +18,7 @@ from multibot_rewrite.companions.alone import kind_alone, rewrite_alone
 from multibot_rewrite.companions.context import Context, make_context
 from multibot_rewrite.companions.formats import read_named
 from multibot_rewrite.companions.names.rename_map import KINDS, NO_OWN, companion_names
+from multibot_rewrite.description.rewriters.made_topics import words_of
 from multibot_rewrite.description.sources.job import Job, read_jobs
 from multibot_rewrite.description.sources.read import Source, read_whole
 from multibot_rewrite.rules.files.judge import judged_once
@@ -147,9 +148,10 @@ def _rewritten(
 def _context(job: Job | None, naming: Naming, release: str) -> Context:
     if job is None:
         return make_context({kind: {} for kind in _DECLARED}, naming, (), release)
-    declared, own = job.inventories[0].declared, job.own.plain or NO_OWN
+    described, own = job.inventories[0], job.own.plain or NO_OWN
+    declared, words = described.declared, words_of(described.claims)
     names = companion_names(declared, job.naming, "", own)
-    return make_context(names.declared, job.naming, (), release, names.own)
+    return make_context(names.declared, job.naming, (), release, names.own, words)
 
 
 def _check_free(kind: str, data: bytes, file: str, context: Context) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from multibot_rewrite.base.releases import RELEASES, has_release, releases_with, since_version
-from multibot_rewrite.knowledge.conditions import joined, of_release
+from multibot_rewrite.knowledge.conditions import VERSION, joined, of_release
 from multibot_rewrite.knowledge.node_library import NodeLibrary, Stack
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 
@@ -97,5 +97,5 @@ def _endpoint(it: Endpoint, package: str, release: str) -> Endpoint:
 def _condition(when: str, words: str, package: str, release: str) -> str:
     """The condition of a fact, with the version that it came with in this release."""
     version = since_version(words, release) if words else ""
-    newer = f"version: {package or 'its package'} {version}"
+    newer = f"{VERSION}: {package or 'its package'} {version}"
     return joined(when, newer) if version else when

@@ -111,7 +111,8 @@ def _robot_topics(
 def _sensor(sensor: etree._Element, robot: str) -> Iterator[BridgedTopic | UnbridgedTopic]:
     kind = sensor.get("type", "")
     topics = bridge_data()["sensors"].get(kind, ())
-    if not topics or sensor.find("plugin[@filename]") is not None:
+    loaded = (library_key(it.get("filename", "")) for it in sensor.iterchildren("plugin"))
+    if not topics or not all(it.startswith(GZ_LIBRARIES) for it in loaded if it):
         return  # a Gazebo Classic sensor, whose plugin is a ROS node, or an unknown type
     base = text_at(sensor, "topic")
     if not base:

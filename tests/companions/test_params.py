@@ -30,7 +30,7 @@ from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.companions.context import make_context
 from multibot_rewrite.companions.params.rewrite import nodes_without_section, rewrite_params
-from multibot_rewrite.companions.params.sections import raw_sections
+from multibot_rewrite.companions.params.sections import pattern_of, raw_sections
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, fill_template
 from multibot_rewrite.companions.yaml_text import quoted, read_yaml
 from multibot_rewrite.knowledge.node_library import extend, stack_of
@@ -65,6 +65,10 @@ def value(node: str, line: str, policy: tuple[str, str] = L2, distro: str = "jaz
         (L4, "/**/planner_server", "/**/planner_server"),
         (L4, "/**/local_costmap", "/**/local_costmap"),
         (L4, "/**/smoother_server", "/**/smoother_server_robot1"),
+        (L2, "/*", "/*"),
+        (L2, "/*/planner_server", "/*/planner_server"),
+        (L2, "/*/front/driver", "/*/front/driver"),
+        (L4, "/*/smoother_server", "/*/smoother_server_robot1"),
         (L2, "front/driver", "/robot1/front/driver"),
         (L4, "front/driver", "/front/driver_robot1"),
         (L2, "<robot_namespace>/amcl_x", "/robot1/amcl_x"),
@@ -158,6 +162,15 @@ def test_a_slash_above_a_node_is_the_root_namespace() -> None:
     assert "r1/base_link" in text
     assert not {"MB883", "MB312"} & set(codes(findings))
     assert "MB312" in codes(made("/:\n  ros__parameters: {a: 1}\n")[1])
+
+
+@pytest.mark.parametrize("key", ["robot1", "/robot1", "robot1/", "/"])
+def test_the_namespace_of_the_robot_that_a_file_is_for_is_no_name_of_a_node(key: str) -> None:
+    """Clearpath's generator writes a key with the namespace alone above the nodes."""
+    source = f"{key}:\n  twist_server_node:\n    ros__parameters: {{a: 1}}\n"
+    assert "MB312" not in codes(made(source, own=("robot1",))[1])
+    wrong = source.replace("twist_server_node", "twist-server")
+    assert "MB312" in codes(made(wrong, own=("robot1",))[1])
 
 
 def test_a_robots_name_in_a_file_is_an_error() -> None:
@@ -300,6 +313,27 @@ def test_a_name_is_renamed_by_its_kind(
     policy: tuple[str, str], node: str, old: str, new: str
 ) -> None:
     assert value(node, old, policy) == new
+
+
+@pytest.mark.parametrize("distro", ["jazzy", "kilted"])
+@pytest.mark.parametrize("policy", [L1, L2, L4])
+@pytest.mark.parametrize("layer", ["ObstacleLayer", "StaticLayer"])
+def test_a_private_topic_of_a_costmap_stays_private(
+    layer: str, policy: tuple[str, str], distro: str
+) -> None:
+    """Whatever namespace the costmap reads its topics in: ``~`` is the node."""
+    lines = (
+        "plugins: [all]",
+        "all:",
+        f"  plugin: nav2_costmap_2d::{layer}",
+        "  map_topic: ~/map",
+        "  observation_sources: front",
+        "  front: {topic: ~/scan}",
+    )
+    text = section("local_costmap", *lines)
+    nested = "local_costmap:\n" + "".join(f"  {line}\n" for line in text.splitlines())
+    rewritten, _ = made(nested, policy, distro)
+    assert ("map_topic: ~/map" in rewritten, "topic: ~/scan" in rewritten) == (True, True)
 
 
 @pytest.mark.parametrize(
@@ -562,11 +596,30 @@ def test_a_node_without_any_section_is_reported() -> None:
     assert "amcl" not in told.split()
     wild = read_yaml(section("/**/collision_monitor", "x: 1").encode(), "q.yaml")
     assert "collision_monitor" not in str(nodes_without_section([document, wild], setting(L2)))
+    every = read_yaml(section("/**", "x: 1").encode(), "r.yaml")
+    assert nodes_without_section([document, every], setting(L2)) == found
     assert nodes_without_section([document], setting(L1)) == tuple(
         it
         for it in nodes_without_section([document], setting(L1))
         if "tf_frame_prefix" in it.message
     )
+
+
+@pytest.mark.parametrize(
+    ("pattern", "full", "matches"),
+    [
+        ("/**/amcl", "/amcl", True),
+        ("/**/amcl", "/a/b/amcl", True),
+        ("/**", "/a/b/amcl", True),
+        ("/*/amcl", "/a/amcl", True),
+        ("/*/amcl", "/amcl", False),
+        ("/*/amcl", "/a/b/amcl", False),
+        ("/a.b", "/axb", False),
+    ],
+)
+def test_what_a_wildcard_stands_for(pattern: str, full: str, matches: bool) -> None:
+    """One star is one word, two are any number of them, none too (rcl_yaml_param_parser)."""
+    assert (re.fullmatch(pattern_of(pattern), full) is not None) == matches
 
 
 # ---------------------------------------------------------------- what is told
@@ -883,3 +936,57 @@ def test_a_calibration_below_a_camera_is_found() -> None:
         "driver", "cam_0: {camerainfo_url: 'file:///a.yaml'}", "cam_1.camerainfo_url: ''"
     )
     assert [it.line for it in made(text)[1] if it.code == "MB884"] == [3]
+
+
+# ---------------------------------------------------------------- nodes that are not known
+
+
+@pytest.mark.parametrize(
+    ("lines", "new"),
+    [
+        (("base_frame: base_link",), ("base_frame: r1/base_link",)),
+        # What is at tf_root may be a frame as well: the tf of the node would be half the robot's.
+        (
+            ("base_frame: base_link", "tf_root: odom"),
+            ("base_frame: base_link", "tf_root: odom"),
+        ),
+        (
+            ("base_frame: base_link", "joints: [elbow]", "tf_root: base_link"),
+            ("base_frame: base_link", "joints: [r1_elbow]", "tf_root: base_link"),
+        ),
+        (
+            ("odom_frame: base_link", "world_frame: base_link"),
+            ("odom_frame: r1/base_link", "world_frame: r1/base_link"),
+        ),
+    ],
+)
+def test_names_of_an_unknown_node_change_all_or_none(
+    lines: tuple[str, ...], new: tuple[str, ...]
+) -> None:
+    text, findings = made(section("acme_driver", *lines), L2)
+    assert tuple(it.strip() for it in text.splitlines()[2:]) == new
+    told = [it.message for it in findings if "acme_driver is not known" in it.message]
+    assert any("stay as they are" in it for it in told) == (lines[0] == new[0])
+
+
+@pytest.mark.parametrize(
+    ("word", "told"), [("lbr", True), ("lbr_", True), ("link", False), ("lb", False)]
+)
+def test_a_word_that_begins_the_names_is_told(word: str, told: bool) -> None:
+    """Code that puts it before ``_link_0`` makes a name that no robot has."""
+    links = dict.fromkeys(("world", *(f"lbr_link_{it}" for it in range(3))))
+    declared = {kind: links if kind == "link" else {} for kind in DECLARED}
+    context = make_context(declared, make_naming("L2"), (), NEWEST_LTS)  # type: ignore[arg-type]
+    text = section("acme_driver", f"robot_name: {word}")
+    companion = rewrite_params(read_yaml(text.encode(), "p.yaml"), context)
+    assert [it.line for it in findings_of(companion) if "begins" in it.message] == [3] * told
+
+
+def test_gazebo_is_everybodys() -> None:
+    assert made(section("gazebo", "publish_rate: 100.0"), L2)[0].startswith("gazebo:")
+    assert made(section("/gazebo", "publish_rate: 100.0"), L4)[0].startswith("/gazebo:")
+
+
+def test_the_frame_of_a_message_of_joy_teleop() -> None:
+    line = "walk.message_value.header-frame_id.value: base_link"
+    assert value("joy_teleop", line).endswith(": r1/base_link")

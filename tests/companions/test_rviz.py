@@ -371,7 +371,8 @@ def test_a_thousand_colours_are_all_different() -> None:
 def test_a_tf_topic_for_each_robot_gives_a_config_for_each(layout: str) -> None:
     made, findings = make(layout=layout)
     assert [one.robot for one in made] == list(ROBOTS)
-    assert "MF203" in [it.code for it in findings]
+    (found,) = [it for it in findings if it.code == "MF203"]
+    assert found.message.endswith("each robot has its own")
 
 
 def test_how_the_window_of_one_robot_is_started() -> None:
@@ -401,12 +402,20 @@ def test_bare_frames_stay_and_topics_do_not() -> None:
 
 
 def test_relayed_tf_shows_all_robots_in_one_window() -> None:
-    made, _ = make(layout="L4", relayed=True)
+    made, findings = make(layout="L4", relayed=True)
     assert [one.robot for one in made] == [""]
+    (found,) = [it for it in findings if it.code == "MF203"]
+    assert "relayed to /tf" in found.message and "relay /tf/robot1 /tf," in found.hint
     assert made[0].relays[0] == ("/tf/robot1", "/tf")
     assert [
         one["Name"] for one in yaml.safe_load(made[0].text)["Visualization Manager"]["Displays"]
     ][-2:] == ["robot1", "robot2"]
+
+
+def test_one_tf_topic_is_nothing_to_tell() -> None:
+    for relayed in (False, True):
+        _, findings = make(layout="L2", relayed=relayed)
+        assert "MF203" not in [it.code for it in findings]
 
 
 def test_bare_frames_cannot_be_relayed() -> None:

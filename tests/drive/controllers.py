@@ -11,7 +11,6 @@ import programs
 import yaml
 from nodes import Node, sections_of
 
-PLUGINS = ("gz_ros2_control", "ign_ros2_control", "gazebo_ros2_control")
 # Which parameters name joints, and which interfaces they take (the .yaml files of ros2_controllers).
 CLAIMS = {
     "diff_drive_controller": (("left_wheel_names", "right_wheel_names"), "velocity"),
@@ -39,8 +38,10 @@ class Found(NamedTuple):
     faults: list[tuple[str, str]]
 
 
-def read(given: Any, roots: Mapping[str, Any], nodes: list[Any]) -> Found:
-    """The controllers of every spawner."""
+def read(
+    given: Any, roots: Mapping[str, Any], nodes: list[Any], joints: Mapping[str, tuple[str, ...]]
+) -> Found:
+    """The controllers of every spawner; ``joints`` are those that the simulator keeps."""
     managers = [*outside(given, nodes), *in_simulator(roots, given)]
     found = Found([], [])
     for who, start in given.of("spawner"):
@@ -49,7 +50,9 @@ def read(given: Any, roots: Mapping[str, Any], nodes: list[Any]) -> Found:
         if not fits:
             found.faults.append((who, f"a spawner waits for {wanted}, which is not there"))
         for name in names_of(start["arguments"]) if fits else ():
-            controller(found, who, fits[0], name, roots.get(fits[0].robot), given.release)
+            robot, inside = fits[0].robot, fits[0].inside
+            has = exported(roots.get(robot), joints.get(robot) if inside else None)
+            controller(found, who, fits[0], name, has, given.release)
     return found
 
 
@@ -64,7 +67,7 @@ def in_simulator(roots: Mapping[str, Any], given: Any) -> Iterator[Manager]:
     """gz_ros2_control/src/gz_ros2_control_plugin.cpp."""
     for who, root in roots.items():
         for it in root.iter("plugin"):
-            if any(name in it.get("filename", "") for name in PLUGINS):
+            if any(name in it.get("filename", "") for name in gazebo.CONTROL):
                 space = "/" + gazebo.text(it, "ros/namespace").strip("/")
                 files = [Path(gazebo.text(each, ".")) for each in it.findall("parameters")]
                 sections = [yaml.safe_load(f.read_text()) if f.is_file() else {} for f in files]
@@ -91,7 +94,7 @@ def names_of(words: list[str]) -> list[str]:
 
 
 def controller(
-    found: Found, who: str, manager: Manager, name: str, root: Any, release: str
+    found: Found, who: str, manager: Manager, name: str, has: set[str], release: str
 ) -> None:
     """Add one controller, or why it does not come up."""
     fqn = f"{manager.namespace.rstrip('/')}/{manager.name}"
@@ -103,7 +106,7 @@ def controller(
     what = what if programs.is_known(what, release) else snake(str(kind).rpartition("/")[2])
     own = f"{manager.namespace.rstrip('/')}/{name}"
     values = {**programs.defaults(what, release), **programs.parameters_of(own, manager.sections)}
-    found.faults.extend((who, it) for it in unclaimed(own, what, values, root))
+    found.faults.extend((who, it) for it in unclaimed(own, what, values, has))
     rules = manager.rules if not manager.inside or release not in ("lyrical", "rolling") else ()
     ends = tuple(programs.opened(what, values, release))
     found.nodes.append(Node(who, what, name, manager.namespace, rules, values, ends))
@@ -113,25 +116,27 @@ def snake(name: str) -> str:
     return "".join(f"_{it.lower()}" if it.isupper() else it for it in name).strip("_")
 
 
-def unclaimed(fqn: str, what: str, values: Mapping[str, Any], root: Any) -> Iterator[str]:
+def exported(root: Any, kept: tuple[str, ...] | None) -> set[str]:
+    """The command interfaces of a description; in the simulator those of joints that it keeps."""
+    joints = [] if root is None else root.iterfind("ros2_control/joint")
+    return {
+        f"{joint.get('name')}/{it.get('name')}"
+        for joint in joints
+        if kept is None or joint.get("name") in kept
+        for it in joint.iterfind("command_interface")
+    }
+
+
+def unclaimed(fqn: str, what: str, values: Mapping[str, Any], has: set[str]) -> Iterator[str]:
     """Interfaces that a controller claims and the description does not export."""
     keys, kind = CLAIMS.get(what, ((), ""))
     kinds = (
         [kind] if kind else values.get("command_interfaces") or [values.get("interface_name", "")]
-    )
-    exported = (
-        set()
-        if root is None
-        else {
-            f"{joint.get('name')}/{it.get('name')}"
-            for joint in root.iterfind("ros2_control/joint")
-            for it in joint.iterfind("command_interface")
-        }
     )
     if keys and not any(values.get(key) for key in keys):
         yield f"{fqn} has no {' or '.join(keys)}: no section of the parameter files is its own"
     for key in keys:
         for joint in values.get(key) or ():
             for it in kinds:
-                if f"{joint}/{it}" not in exported:
+                if f"{joint}/{it}" not in has:
                     yield f"{fqn} claims {joint}/{it}, which the description does not export"

@@ -16,8 +16,10 @@ from typing import Any, NamedTuple
 
 import controllers
 import gazebo
+import lifecycles
 import programs
 import rcl_names
+import simulator
 import yaml
 from gazebo import GzEnd
 from lxml import etree
@@ -60,8 +62,8 @@ class Fleet(NamedTuple):
     bridges: tuple[Bridge, ...]
     edges: tuple[Edge, ...]
     told: Mapping[str, str]
-    faults: tuple[tuple[str, str], ...]
-    unknown: tuple[str, ...]
+    faults: tuple[tuple[str, str, str], ...]
+    unknown: tuple[tuple[str, str], ...]
 
 
 def launched(file: Path, robot: str = "") -> Mapping[str, Any]:
@@ -83,7 +85,16 @@ def read(folder: Path, release: str) -> Fleet:
         own = {robot: launched(file, robot)["starts"] for robot in every["robots"]}
     except (RuntimeError, OSError) as error:
         return Fleet(
-            (), (), (), (), {}, (), (), {}, (("", f"the launch file raises: {error}"),), ()
+            (),
+            (),
+            (),
+            (),
+            {},
+            (),
+            (),
+            {},
+            (("", "starts", f"the launch file raises: {error}"),),
+            (),
         )
     shared = [it for it in every["starts"] if all(it in each for each in own.values())]
     if len(own) == 1:
@@ -99,22 +110,20 @@ def assembled(given: Reader, robots: tuple[str, ...], file: Path) -> Fleet:
     roots = dict(descriptions(given))
     models = dict(models_of(given))
     nodes += plugin_nodes(roots, models)
-    found = controllers.read(given, roots, nodes)
+    world = simulator.world_of(given.starts, given.folder)
+    there = list(simulator.models_of(roots, models))
+    found = controllers.read(given, roots, nodes, {it.robot: it.kept.joints for it in there})
     nodes += found.nodes
     faults += found.faults
     resolved = resolve(nodes)
     bridges = tuple(bridges_of(given, nodes, resolved))
     ends = tuple(ends_of(nodes, resolved))
-    gz = tuple(
-        end
-        for who, model in models.items()
-        if who in roots and not any(True for _ in gazebo.classic_plugins(roots[who]))
-        for end in gazebo.gz_ends(roots[who], model, world_of(given.folder))
-    )
+    gz = tuple(end for it in there for end in simulator.ends_of(it, world))
     edges = tuple(edges_of(given, nodes, roots, ends, gz, bridges))
-    known = {it.what for it in nodes if programs.is_known(it.what, given.release) or it.ends}
-    unknown = tuple(sorted({it.what for it in nodes} - known - {"parameter_bridge"}))
-    faults += [*undelivered(given, nodes, ends, models), *unmanaged(nodes)]
+    unknown = tuple(sorted({*strangers(given, nodes), *gazebo.strangers(roots, models)}))
+    faults += [*undelivered(given, nodes, ends), *lifecycles.faults(given, nodes)]
+    posed = {it.robot for it in nodes if it.what.startswith("joint_state_publisher")}
+    broken = [fault for it in there for fault in simulator.broken(it, world, it.robot in posed)]
     return Fleet(
         robots,
         tuple(nodes),
@@ -124,9 +133,24 @@ def assembled(given: Reader, robots: tuple[str, ...], file: Path) -> Fleet:
         bridges,
         edges,
         told(file, robots),
-        tuple(faults),
+        (*((who, "starts", why) for who, why in faults), *broken),
         unknown,
     )
+
+
+# What opens nothing of a robot's, beside the programs of the table.
+QUIET = ("parameter_bridge", "rviz2", "gz_sim.launch.py", "gazebo.launch.py")
+
+
+def strangers(given: Reader, nodes: list[Node]) -> Iterator[tuple[str, str]]:
+    """Programs, components, controllers and included launch files that no source was read of."""
+    for it in nodes:
+        if not it.ends and it.what not in QUIET and not programs.is_known(it.what, given.release):
+            yield it.robot, it.what
+    for who, start in given.starts:
+        name = start.get("include") or " ".join(start.get("command", ()))
+        if name and Path(name).name not in QUIET:
+            yield who, name
 
 
 def missing_files(given: Reader) -> Iterator[tuple[str, str]]:
@@ -157,12 +181,6 @@ def models_of(given: Reader) -> Iterator[tuple[str, str]]:
     for who, it in given.of(*SPAWNERS):
         words = it["arguments"]
         yield who, words[words.index(SPAWNERS[it["executable"]]) + 1]
-
-
-def world_of(folder: Path) -> str:
-    file = folder / "world.sdf"
-    found = etree.parse(str(file)).find(".//world") if file.is_file() else None
-    return "default" if found is None else str(found.get("name"))
 
 
 def resolve(nodes: list[Node]) -> dict[tuple[Node | str, str, str], str]:
@@ -249,24 +267,30 @@ def told(file: Path, robots: tuple[str, ...]) -> Mapping[str, str]:
 
 
 def undelivered(
-    given: Reader, nodes: list[Node], ends: tuple[End, ...], models: Mapping[str, str]
+    given: Reader, nodes: list[Node], ends: tuple[End, ...]
 ) -> Iterator[tuple[str, str]]:
-    """Spawners that wait for a description on a topic that nobody of their robot has."""
-    sent = {it.name for it in ends if it.role == "publishes" and it.type == "std_msgs/msg/String"}
+    """Who waits for a description on a topic that nobody has, or another robot: spawners, managers."""
+    sent = {
+        it.name: it.robot
+        for it in ends
+        if it.role == "publishes" and it.type == "std_msgs/msg/String"
+    }
     for who, it in given.of(*SPAWNERS):
         words = it["arguments"]
         if "-topic" in words:
             topic = words[words.index("-topic") + 1]
             space = it["namespace"].strip("/")
             name = topic if topic.startswith("/") else f"/{space}/{topic}".replace("//", "/")
-            if name not in sent:
-                yield who, f"{it['executable']} waits for {name}, which nobody sends"
+            yield from unsent(who, it["executable"], name, sent)
+    told = {it.fqn for it in nodes if "robot_description" in it.values}
+    for end in ends:
+        wanted = end.role == "subscribes" and end.name.endswith("robot_description")
+        if wanted and end.node not in told:
+            yield from unsent(end.robot, end.node, end.name, sent)
 
 
-def unmanaged(nodes: list[Node]) -> Iterator[tuple[str, str]]:
-    """Nodes that a lifecycle manager asks for and that are not there."""
-    there = {it.fqn for it in nodes}
-    for it in nodes:
-        for name in it.values.get("node_names", ()) if it.what == "lifecycle_manager" else ():
-            if f"{it.namespace.rstrip('/')}/{name}" not in there:
-                yield it.robot, f"{it.fqn} waits for {name}, which is not started"
+def unsent(who: str, what: str, name: str, sent: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+    if name not in sent:
+        yield who, f"{what} waits for {name}, which nobody sends"
+    elif sent[name] != who:
+        yield who, f"{what} waits for {name}, which {sent[name] or 'another'} sends"

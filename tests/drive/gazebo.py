@@ -24,11 +24,15 @@ FRAMES = {
     ),
     "": ("frame_id", "child_frame_id", "{model}/odom", "{model}/{link}"),
 }
+TABLES = ("gz_systems.tsv", "classic_plugins.tsv")
+# Plugins with a controller manager inside.
+CONTROL = ("gz_ros2_control", "ign_ros2_control", "gazebo_ros2_control")
 SENSORS = {"lidar": "gpu_lidar", "ray": "gpu_lidar", "gpu_ray": "gpu_lidar", "gps": "navsat"}
 
 
 class GzEnd(NamedTuple):
-    """A gz topic that a model hears or sends; ``frames`` are parent and child of a transform."""
+    """A gz topic that a model hears or sends; ``frames`` are parent and child of a transform,
+    ``frame`` is that of a sensor's messages."""
 
     model: str
     role: str
@@ -36,6 +40,7 @@ class GzEnd(NamedTuple):
     type: str
     what: str
     frames: tuple[str, str] = ("", "")
+    frame: str = ""
 
 
 class Plugin(NamedTuple):
@@ -68,21 +73,21 @@ def plugin_key(element: etree._Element) -> str:
     return name.removesuffix("-system").removeprefix("gazebo_ros_")
 
 
-def gz_ends(root: etree._Element, model: str, world: str) -> Iterator[GzEnd]:
-    """What gz-sim opens for a description that was spawned as ``model``."""
-    link = first_link(root)
-    for plugin in root.iter("plugin"):
-        words = {"model": model, "world": world, "link": link}
-        words |= {"joint_name": text(plugin, "joint_name"), "joint_index": "0"}
-        yield from of_rows(plugin, plugin_key(plugin), words)
-    for block in root.iter("gazebo"):
-        for sensor in block.iter("sensor"):
-            kind = sensor.get("type", "")
-            at = f"/world/{world}/model/{model}/link/{block.get('reference')}"
-            at += f"/sensor/{sensor.get('name')}"
-            yield from of_rows(
-                sensor, f"sensor {SENSORS.get(kind, kind)}", {"sensor": at, "model": model}
-            )
+def of_plugin(plugin: etree._Element, model: str, world: str, link: str) -> Iterator[GzEnd]:
+    """What gz-sim opens for a plugin of a model; ``link`` is the canonical one."""
+    words = {"model": model, "world": world, "link": link}
+    words |= {"joint_name": text(plugin, "joint_name"), "joint_index": "0"}
+    yield from of_rows(plugin, plugin_key(plugin), words)
+
+
+def of_sensor(sensor: etree._Element, model: str, world: str, link: str) -> Iterator[GzEnd]:
+    """What it opens for a sensor, and the frame of its messages: ros_gz_bridge makes / of each ::."""
+    kind, name = sensor.get("type", ""), sensor.get("name", "")
+    at = f"/world/{world}/model/{model}/link/{link}/sensor/{name}"
+    found = (text(sensor, it) for it in ("gz_frame_id", "ignition_frame_id", "frame_id"))
+    frame = next((it for it in found if it), f"{model}/{link}/{name}")
+    for it in of_rows(sensor, f"sensor {SENSORS.get(kind, kind)}", {"sensor": at, "model": model}):
+        yield it._replace(frame=frame)
 
 
 def of_rows(element: etree._Element, key: str, words: Mapping[str, str]) -> Iterator[GzEnd]:
@@ -113,14 +118,6 @@ def text(element: etree._Element, tag: str) -> str:
     return (element.findtext(tag) or "").strip()
 
 
-def first_link(root: etree._Element) -> str:
-    """The link that no joint has as its child: the canonical link of the model."""
-    children = {it.get("link") for it in root.iterfind("joint/child")}
-    return next(
-        (it.get("name", "") for it in root.iterfind("link") if it.get("name") not in children), ""
-    )
-
-
 def classic_plugins(root: etree._Element) -> Iterator[Plugin]:
     """The ROS nodes that plugins of Classic are (gazebo_ros/src/node.cpp)."""
     for it in root.iter("plugin"):
@@ -141,6 +138,22 @@ def classic_plugins(root: etree._Element) -> Iterator[Plugin]:
             text(it, "robot_base_frame") or "base_footprint",
         )
         yield Plugin(it.get("name", ""), space, rules, ends, frames, file)
+
+
+def strangers(
+    roots: Mapping[str, etree._Element], models: Mapping[str, str]
+) -> Iterator[tuple[str, str]]:
+    """Plugins and sensors of spawned robots that no source was read of."""
+    known = {row["plugin"] for file in TABLES for row in rows(file)}
+    for who in (it for it in roots if it in models):
+        for it in roots[who].iter("plugin"):
+            ours = any(word in it.get("filename", "") for word in CONTROL)
+            if not ours and plugin_key(it) not in known:
+                yield who, it.get("filename", "")
+        for it in roots[who].iter("sensor"):
+            kind = it.get("type", "")
+            if f"sensor {SENSORS.get(kind, kind)}" not in known:
+                yield who, f"sensor {kind}"
 
 
 def filled(name: str, plugin: etree._Element) -> str:

@@ -39,6 +39,7 @@ CLASSES = {
     "ekf_filter_node": "RosFilter",
     "slam_toolbox": "SlamToolbox",
 }
+MAP = "nav_msgs/msg/OccupancyGrid"
 STAMPED = ("enable_stamped_cmd_vel", {"humble": False, "iron": False, "jazzy": False})
 # Parameters that the extraction could not tie to a name, with the default (nav2_collision_monitor
 # src/collision_monitor_node.cpp, slam_toolbox src/slam_toolbox_common.cpp).
@@ -49,7 +50,10 @@ PARAMETERS = {
     ("controller_server", "odom"): "odom_topic",
     ("velocity_smoother", "odom"): "odom_topic",
 }
-GIVEN = {("slam_toolbox", "<get>"): ("scan_topic", "/scan")}
+GIVEN = {
+    ("slam_toolbox", "<get>"): ("scan_topic", "/scan"),
+    ("slam_toolbox", "<map_name>"): ("map_name", "/map"),
+}
 
 
 class Opened(NamedTuple):
@@ -91,6 +95,8 @@ def opened(node: str, values: Mapping[str, Any], release: str) -> Iterator[Opene
 
 def led_by(node: str, row: Mapping[str, str], values: Mapping[str, Any]) -> str:
     """The name that a parameter gives, or that of the code."""
+    if row["name"] == "<either>joint_states":  # joint_state_broadcaster.cpp
+        return f"{'~/' if values.get('use_local_topics') is True else ''}joint_states"
     parameter, default = GIVEN.get((node, row["name"]), (row["parameter"], row["name"]))
     parameter = PARAMETERS.get((node, row["name"]), parameter)
     return str(values.get(parameter) or default) if parameter else default
@@ -111,6 +117,8 @@ def costmap_sources(values: Mapping[str, Any], release: str) -> Iterator[Opened]
     """The sensors of a costmap (nav2_costmap_2d/plugins/obstacle_layer.cpp): until Jazzy their relative
     topics are the costmap's own, later those of its parent, as joinWithParentNamespace makes them."""
     for layer in values.get("plugins", ()):
+        if str(values.get(f"{layer}.plugin", "")).endswith("StaticLayer"):
+            yield map_of(str(values.get(f"{layer}.map_topic", "")), release)
         for source in str(values.get(f"{layer}.observation_sources", "")).split():
             at = f"{layer}.{source}"
             kind = str(values.get(f"{at}.data_type", "LaserScan"))
@@ -118,6 +126,13 @@ def costmap_sources(values: Mapping[str, Any], release: str) -> Iterator[Opened]
             if not topic.startswith("/") and release not in ("humble", "iron", "jazzy"):
                 topic = f"../{topic}"
             yield Opened("subscribes", topic, f"sensor_msgs/msg/{kind}")
+
+
+def map_of(topic: str, release: str) -> Opened:
+    """The map of a static layer (nav2_costmap_2d/plugins/static_layer.cpp): by default the one of the
+    namespace above; a relative one is the costmap's own until Jazzy."""
+    own = topic and (topic.startswith("/") or release in ("humble", "iron", "jazzy"))
+    return Opened("subscribes", topic if own else f"../{topic or 'map'}", MAP)
 
 
 def flat(values: Mapping[str, Any], at: str = "") -> dict[str, Any]:

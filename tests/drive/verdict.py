@@ -8,11 +8,12 @@ its nodes look up is in one tree with its own links.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
 
 from fleet import End, Fleet
 from nodes import Node
+from programs import MAP
 from trees import LOOKED_UP, TF, Edge, connected, whole
+from twins import Fault, models_twice, twins
 
 COMMANDS = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 # They pass a command on: what they read is sent again.
@@ -36,18 +37,10 @@ DRIVING = (
 )
 
 
-class Fault(NamedTuple):
-    """What a robot does not do ("starts", "drives", "sees", "plans"), and why."""
-
-    robot: str
-    what: str
-    why: str
-
-
 def judged(fleet: Fleet) -> tuple[Fault, ...]:
     """Every fault of a fleet."""
-    found = [Fault(robot, "starts", why) for robot, why in fleet.faults]
-    found += twins(fleet)
+    found = [Fault(*it) for it in fleet.faults]
+    found += [*twins(fleet), *models_twice(fleet)]
     for robot in fleet.robots:
         found += drives(fleet, robot)
         found += sees(fleet, robot)
@@ -55,32 +48,36 @@ def judged(fleet: Fleet) -> tuple[Fault, ...]:
     return tuple(dict.fromkeys(found))
 
 
-def done(fleet: Fleet) -> dict[str, str]:
-    """What each robot does: its words in their order, "no" before one where something is wrong; a word
-    is missing where the robot has nothing to do it with."""
+def done(fleet: Fleet) -> dict[str, dict[str, str]]:
+    """What each robot does: "yes", "no" or "unknown: PROGRAM" for each word; a word is missing where
+    the robot has nothing to do it with. A program that was not read may do anything."""
     wrong = {(it.robot, it.what) for it in judged(fleet)}
-    words: dict[str, list[str]] = {}
-    for robot in fleet.robots:
-        has = {
-            "starts": True,
-            "drives": any(it[0] == robot for it in heard(fleet)),
-            "sees": any(it.robot == robot for it in readers(fleet)),
-            "plans": any(it.robot == robot and it.what in LOOKED_UP for it in fleet.nodes),
-        }
-        said = ((robot, it) in wrong or ("", it) in wrong for it in has)
-        words[robot] = [
-            f"no {it}" if bad else it for bad, it in zip(said, has, strict=True) if bad or has[it]
-        ]
-    return {robot: ", ".join(it) for robot, it in words.items()}
+    return {robot: dict(words(fleet, robot, wrong)) for robot in fleet.robots}
 
 
-def twins(fleet: Fleet) -> Iterator[Fault]:
-    """Nodes of one name: the second takes the services of the first. Bridges and windows have none."""
-    seen: dict[str, str] = {}
-    for it in fleet.nodes:
-        if it.what not in ("parameter_bridge", "rviz2") and it.fqn in seen:
-            yield Fault(it.robot, "starts", f"two nodes are called {it.fqn}")
-        seen[it.fqn] = it.robot
+def words(fleet: Fleet, robot: str, wrong: set[tuple[str, str]]) -> Iterator[tuple[str, str]]:
+    nodes = [it for it in fleet.nodes if it.robot == robot]
+    unknown = ", ".join(what for who, what in fleet.unknown if who in ("", robot))
+    has = {
+        "starts": True,
+        "drives": any(it[0] == robot for it in heard(fleet)),
+        "sees": any(it.robot == robot for it in readers(fleet)),
+        "plans": any(it.what in LOOKED_UP for it in nodes),
+    }
+    for word, is_there in has.items():
+        if (robot, word) in wrong or ("", word) in wrong:
+            yield word, "no"
+        elif unknown:
+            yield word, f"unknown: {unknown}"
+        elif is_there:
+            yield word, "yes"
+
+
+def said(found: dict[str, str]) -> str:
+    """The words of a robot in one line."""
+    return ", ".join(
+        {"yes": word, "no": f"no {word}"}.get(it, f"{word} {it}") for word, it in found.items()
+    )
 
 
 def heard(fleet: Fleet) -> Iterator[tuple[str, str, str]]:
@@ -97,7 +94,7 @@ def heard(fleet: Fleet) -> Iterator[tuple[str, str, str]]:
                 end.role == "hears"
                 and end.type == "gz.msgs.Twist"
                 and row.to_gz
-                and row.gz == end.topic
+                and (row.gz, row.gz_type) == (end.topic, end.type)
             ):
                 yield robots[end.model], row.ros, row.type
 
@@ -184,11 +181,44 @@ def sees(fleet: Fleet, robot: str) -> Iterator[Fault]:
         if whose - {robot, ""}:
             others = ", ".join(sorted(whose - {robot, ""}))
             yield Fault(robot, "sees", f"{it.node} reads {it.name}, which {others} sends")
+        elif it.name in frames_sent(fleet) and not is_placed(fleet, robot, it):
+            frame = frames_sent(fleet)[it.name]
+            why = f"{it.node} reads {it.name} in the frame {frame}, which is not with its links"
+            yield Fault(robot, "sees", why)
         elif not whose and offered(fleet, robot, it.type):
             had = ", ".join(sorted(offered(fleet, robot, it.type)))
             yield Fault(
                 robot, "sees", f"{it.node} reads {it.name}, which nobody sends; it has {had}"
             )
+
+
+def frames_sent(fleet: Fleet) -> dict[str, str]:
+    """The frame of what sensors in the simulator send, by the topic of ROS."""
+    return {
+        row.ros: it.frame
+        for row in fleet.bridges
+        for it in fleet.gz
+        if row.to_ros and it.topic == row.gz and it.frame
+    }
+
+
+def is_placed(fleet: Fleet, robot: str, reader: End) -> bool:
+    """Whether a reader that looks up transforms finds the frame of what it reads."""
+    topic = next((it.name for it in listening(fleet) if it.node == reader.node), None)
+    if topic is None:
+        return True
+    near = [e for e in fleet.edges if e.topic in (topic, f"{topic}_static")]
+    own = {it.child for it in near if it.robot in (robot, fleet.models.get(robot))}
+    return any(connected(near, frames_sent(fleet)[reader.name], link) for link in own)
+
+
+def listening(fleet: Fleet) -> list[End]:
+    """Who listens to transforms, each with the topic that is not static."""
+    return [
+        it
+        for it in fleet.ends
+        if it.role == "subscribes" and it.type == TF and not it.name.endswith("_static")
+    ]
 
 
 def senders_of(fleet: Fleet, name: str, kind: str) -> Iterator[str]:
@@ -201,7 +231,9 @@ def senders_of(fleet: Fleet, name: str, kind: str) -> Iterator[str]:
     for row in fleet.bridges:
         if row.to_ros and (row.ros, row.type) == (name, kind):
             yield from (
-                robots[it.model] for it in fleet.gz if it.role == "sends" and it.topic == row.gz
+                robots[it.model]
+                for it in fleet.gz
+                if it.role == "sends" and (it.topic, it.type) == (row.gz, row.gz_type)
             )
 
 
@@ -221,11 +253,8 @@ def offered(fleet: Fleet, robot: str, kind: str) -> set[str]:
 
 def plans(fleet: Fleet, robot: str) -> Iterator[Fault]:
     """Frames that are not in the robot's tree, in two, or another's."""
-    listens = {
-        it.node: it.name
-        for it in fleet.ends
-        if it.role == "subscribes" and it.type == TF and not it.name.endswith("_static")
-    }
+    listens = {it.node: it.name for it in listening(fleet)}
+    yield from mapless(fleet, robot)
     for it in fleet.nodes:
         topic = listens.get(it.fqn)
         if it.robot != robot or topic is None:
@@ -233,6 +262,32 @@ def plans(fleet: Fleet, robot: str) -> Iterator[Fault]:
         near = [e for e in fleet.edges if e.topic in (topic, f"{topic}_static")]
         yield from unknown_frames(fleet, robot, it, topic, near)
     yield from two_parents(fleet, robot)
+    yield from one_start(fleet, robot)
+
+
+def one_start(fleet: Fleet, robot: str) -> Iterator[Fault]:
+    """Odometry that begins at a frame where another robot's begins: the two are laid on each other."""
+    plain = {it.fqn: it.what for it in fleet.nodes}
+    names = {model: who for who, model in fleet.models.items()}
+    begins = {
+        (names.get(it.robot, it.robot), it.topic, it.parent)
+        for it in fleet.edges
+        if it.node.startswith("gz ") or plain.get(it.node) in DRIVING
+    }
+    for who, topic, frame in sorted(begins):
+        if who != robot and (robot, topic, frame) in begins:
+            yield Fault(robot, "plans", f"{frame} on {topic} is where {who} begins, too")
+
+
+def mapless(fleet: Fleet, robot: str) -> Iterator[Fault]:
+    """Readers of a map that nobody sends: a static layer waits for it, amcl too."""
+    sent = {it.name for it in fleet.ends if it.role == "publishes" and it.type == MAP}
+    for it in fleet.ends:
+        waits = it.role == "subscribes" and it.type == MAP and it.sure
+        if waits and it.robot == robot and it.name not in sent:
+            yield Fault(
+                robot, "plans", f"{it.node} waits for the map {it.name}, which nobody sends"
+            )
 
 
 def unknown_frames(

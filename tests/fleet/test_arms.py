@@ -13,7 +13,7 @@ import pytest
 import yaml
 from lxml import etree
 
-from multibot_rewrite.base.findings.finding import NOTE, Finding
+from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
@@ -267,6 +267,18 @@ def test_two_arms_on_a_world_of_their_own_stand_where_their_poses_are(
     assert "--frame-id map --child-frame-id right/world" in lines[1]
     assert "odom" not in files["commands.md"]
     assert "cmd_vel" not in files["commands.md"]
+
+
+def test_a_simulated_arm_stays_on_the_world(tmp_path: Path) -> None:
+    """sdformat fixes a robot to a link called world (parser_urdf.cc), to no other."""
+    robots = "[{name: left}, {name: right, simulator: gazebo, pose: {y: 1}}]"
+    more = f"shared_frames: [map]\nrobots: {robots}\n"
+    files, findings = built(tmp_path, more, "frames-per-robot")
+    assert errors(findings) == []
+    assert [it.level for it in findings if it.code == "MF709"] == [WARNING]
+    for robot in ("left", "right"):
+        root = etree.fromstring(files[f"{robot}/arm.urdf"].encode())
+        assert "world" in [it.get("name") for it in root.iter("link")]
 
 
 @pytest.mark.sample(2)

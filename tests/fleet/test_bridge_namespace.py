@@ -71,6 +71,36 @@ def test_relative_names_are_below_the_bridge(
     assert row["gz_topic_name"] == "/model/robot2/robot/imu"
 
 
+ROV = """<robot name="rov"><link name="a"/><link name="b"/><joint name="fin" type="continuous">
+<parent link="a"/><child link="b"/></joint><gazebo>
+<plugin filename="gz-sim-thruster-system" name="gz::sim::systems::Thruster">
+<namespace>rov</namespace><joint_name>fin</joint_name></plugin></gazebo></robot>"""
+
+
+@pytest.mark.parametrize("layout", ["L1", "L2", "L4"])
+def test_a_row_follows_the_word_that_a_system_makes_its_topic_of(
+    layout: str, tmp_path: Path
+) -> None:
+    """What is below the model's own name follows the spawner, with the same text in front."""
+    rows = ROW.format("a").replace("/model/robot/imu", "/model/rov/joint/fin/cmd_thrust")
+    rows += ROW.format("b").replace("/model/robot/imu", "/model/rov/odometry")
+    (tmp_path / "rov.urdf").write_text(ROV)
+    (tmp_path / "b.yaml").write_text(rows)
+    (tmp_path / "fleet.yaml").write_text(
+        f"description: rov.urdf\nlayout: {layout}\nsimulator: gazebo\n"
+        "robots: [{name: robot1}, {name: robot2}]\ncompanions: {bridge: b.yaml}\n"
+    )
+    outputs = make_outputs(plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {})))
+    files = {it.path: it.data for it in outputs.files}
+    joint = "fin" if layout == "L1" else "fin_robot2"
+    made = [it["gz_topic_name"] for it in yaml.safe_load(files["robot2/bridge.yaml"])]
+    assert made[:2] == [
+        f"/model/rov_robot2/joint/{joint}/cmd_thrust",
+        "/model/robot2/odometry",
+    ]
+    assert b"<namespace>rov_robot2</namespace>" in files["robot2/rov.urdf"]
+
+
 def test_topics_of_such_a_bridge_are_heard(tmp_path: Path) -> None:
     """The filter reads /robot1/sensors/imu_0/data: with the namespace it is sent, without it is not."""
 

@@ -8,8 +8,10 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.knowledge.conditions import (
     holds,
     joined,
+    of_kind,
     of_release,
     parse_condition,
+    said,
     verdict,
 )
 
@@ -116,3 +118,55 @@ def test_what_a_condition_says_of_releases_is_settled(
     text: str, release: str, left: str | None
 ) -> None:
     assert of_release(text, release) == left
+
+
+@pytest.mark.parametrize(
+    ("text", "known"),
+    [
+        ("words has one", True),
+        ("words has ne", False),
+        ("run: simulated", True),
+        ("run: real", False),
+        ("given: words", True),
+        ("given: absent", None),
+        ("missing: words", False),
+        ("missing: absent", None),
+    ],
+)
+def test_what_a_parameter_says_of_how_it_is_started(text: str, known: bool | None) -> None:
+    """MoveIt's capabilities are words of one text. What a file does not pass, a launch file may."""
+    values = {"words": "a/one two", "use_sim_time": True}
+    assert verdict(text, values.get) is known
+
+
+def test_without_use_sim_time_nothing_says_how_it_runs() -> None:
+    assert verdict("run: simulated", {}.get) is None
+
+
+@pytest.mark.parametrize(
+    ("text", "left"),
+    [
+        ("program: one", ""),
+        ("program: other", None),
+        ("on and program: one", "on"),
+        ("program: other or on", "on"),
+        ("program: one or on", ""),
+        ("", ""),
+    ],
+)
+def test_what_is_known_of_a_kind_is_asked_no_more(text: str, left: str | None) -> None:
+    assert of_kind(text, "program", "one".__eq__) == left
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("version: nav2_route 1.3.9", "nav2_route 1.3.9 or newer"),
+        ("use_mag != false and version: a 1.0 or on", "use_mag != false and a 1.0 or newer or on"),
+        ("unknown: a camera or none", "a camera or none"),
+        ("hardware: arm", "hardware: arm"),
+        ("", ""),
+    ],
+)
+def test_people_read_a_version_as_one_or_newer(text: str, words: str) -> None:
+    assert said(text) == words

@@ -18,6 +18,7 @@ from fault_changes import Fault, nav, shared_tf
 from graph_cases import sent
 from graph_faults import FAULTS, LIVE
 from healthy_systems import SYSTEMS
+from waiting import wait_until
 
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.producers.snapshot_file import read_snapshot
@@ -144,14 +145,17 @@ def test_what_nodes_send_and_answer(needed: Mapping[str, str], tmp_path: Path) -
     hangs = [{"name": "hangs", "namespace": "/robot1", "services": [["~/get_state", STATE_TYPE]]}]
     domain, file = live_commands.domain(18), str(tmp_path / "graph.json")
     env = {**live_fleet.environ(domain), **needed}
-    with live_fleet.running(domain, nodes, hangs, **needed):
+    heard = {("/robot1/scan", "laser"), ("/robot2/image", "robot1/laser"), ("/map", "map")}
+
+    def look() -> System | None:
+        """What is seen once all was heard: a look waits for a message 1.5 s, a busy machine longer."""
         live_commands.multibot("snapshot", "--state", "-o", file, "--timeout", "40", env=env)
-    seen = read_snapshot(file)
-    assert set(seen.heard) == {
-        ("/robot1/scan", "laser"),
-        ("/robot2/image", "robot1/laser"),
-        ("/map", "map"),
-    }
+        seen = read_snapshot(file)
+        return seen if heard <= set(seen.heard) else None
+
+    with live_fleet.running(domain, nodes, hangs, **needed):
+        seen = wait_until(look, 60)
+    assert seen and set(seen.heard) == heard
     timed = clocks(seen)
     states = {it.name: (it.lifecycle, timed.get(it.name)) for it in seen.nodes}
     assert states["/robot1/amcl"] == ("inactive", True) and states.get(

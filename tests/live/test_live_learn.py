@@ -11,6 +11,7 @@ from typing import Any
 import live_commands
 import live_fleet
 import pytest
+from live_commands import PATIENTLY
 
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
@@ -74,10 +75,11 @@ def files(
     found = {name: folder / f"{name}.yaml" for name in ("root", "below")}
     shot, stack = str(folder / "graph.json"), ["--stack", "mine", "-o"]
     with live_fleet.running(domain(0), code, below, **tf2):
-        live = multibot(0, "learn", "--node", "/driver,/pilot", *stack, str(found["root"]), **tf2)
-        seen = multibot(0, "snapshot", "-o", shot, **tf2)
-    words = ("--snapshot", shot, "--namespace", "/old", *stack, str(found["below"]))
-    later = multibot(0, "learn", *words)
+        words = ("learn", "--node", "/driver,/pilot", *stack, str(found["root"]), *PATIENTLY)
+        live = multibot(0, *words, **tf2)
+        seen = multibot(0, "snapshot", "-o", shot, *PATIENTLY, **tf2)
+    words = ("learn", "--snapshot", shot, "--namespace", "/old", *stack, str(found["below"]))
+    later = multibot(0, *words)
     for done in (live, seen, later):
         assert done.returncode == 0, done.stderr
     yield found
@@ -130,7 +132,7 @@ def test_started_with_the_rules_nothing_leaks(
     fleet = [[{**spec[it.node.node], "arguments": arguments(it)}] for it in started(rules)]
     file = tmp_path / "graph.json"
     with live_fleet.running(domain(1), *fleet, **tf2):
-        done = multibot(1, "snapshot", "-o", str(file), **tf2)
+        done = multibot(1, "snapshot", "-o", str(file), *PATIENTLY, **tf2)
     assert done.returncode == 0, done.stderr
     graph = from_json(file.read_bytes(), str(file))
     assert said(rules) <= {(e.node, e.kind, e.role, e.name) for e in graph.ends}

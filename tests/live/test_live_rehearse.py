@@ -6,7 +6,7 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from importlib.util import find_spec
 from pathlib import Path
@@ -27,7 +27,10 @@ pytest.importorskip("rclpy", reason="no rclpy: pip install '.[ros]'", exc_type=I
 COMMAND = [sys.executable, "-m", "multibot_rewrite.cli.multibot", "rehearse"]
 ROVER = str(ROBOTS / "rover.urdf")
 PAIR = (ROVER, "robot1", "robot2")
-LAYOUTS = ("L1", "L2", "L3", "L4")
+# L2 is rehearsed by the readme and an example; L3 has the rules of L1 and the frames of L2.
+LAYOUTS, DEEP = ("L1", "L4"), ("L2", "L3")
+STATE = (*PAIR, "--stack", "robot_state", "--layout")
+Done = Mapping[str, subprocess.CompletedProcess[str]]
 
 
 def domain(offset: int) -> int:
@@ -37,33 +40,51 @@ def domain(offset: int) -> int:
 
 def rehearse(offset: int, *arguments: str, **more: str) -> subprocess.CompletedProcess[str]:
     env = {**live_fleet.environ(domain(offset)), **more}
-    words = ("rehearse", *arguments, "--domain", domain(offset))
+    words = ("rehearse", *arguments, "--domain", domain(offset), *live_commands.PATIENTLY)
     return live_commands.multibot(*words, env=env)
 
 
+def words_for(layout: str, folder: Path) -> tuple[str, ...]:
+    """A rehearsal of a layout, with what it writes."""
+    written = ("--save-snapshot", str(folder / layout), "--report", str(folder / f"{layout}.html"))
+    return (*PAIR, "--stack", "nav2", "--layout", layout, "--distro", "lyrical", *written)
+
+
 @pytest.fixture(scope="module")
-def layouts(
-    tmp_path_factory: pytest.TempPathFactory,
-) -> dict[str, tuple[subprocess.CompletedProcess[str], Path]]:
-    """A rehearsal a layout, two at a time: most of it is waiting, but each has 50 nodes."""
-    folder = tmp_path_factory.mktemp("rehearsals")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("rehearsals")
 
-    def run(at: int, layout: str) -> subprocess.CompletedProcess[str]:
-        words = ["--stack", "nav2", "--layout", layout, "--distro", "lyrical"]
-        words += ["--save-snapshot", str(folder / layout)]
-        words += ["--report", str(folder / f"{layout}.html")]
-        return rehearse(at, *PAIR, *words)
 
-    with ThreadPoolExecutor(2) as pool:
-        done = list(pool.map(run, range(len(LAYOUTS)), LAYOUTS))
-    return {layout: (one, folder / layout) for layout, one in zip(LAYOUTS, done, strict=True)}
+@pytest.fixture(scope="module")
+def rehearsed(folder: Path, tf2: dict[str, str]) -> Done:
+    """What is rehearsed, three at a time: most of it is waiting, but a layout has 50 nodes."""
+    leaking = (*STATE, "tf-per-robot", "--without-rules", "all", "-v")
+    runs = {
+        **{it: (words_for(it, folder), {}) for it in LAYOUTS},
+        "leaking": (leaking, {}),
+        "own tf": ((*STATE, "L3"), tf2),
+    }
+    with ThreadPoolExecutor(3) as pool:
+        made = {
+            name: pool.submit(rehearse, at, *words, **env)
+            for at, (name, (words, env)) in enumerate(runs.items())
+        }
+    return {name: it.result() for name, it in made.items()}
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
-def test_every_layout_holds(
-    layout: str, layouts: dict[str, tuple[subprocess.CompletedProcess[str], Path]]
-) -> None:
-    done, file = layouts[layout]
+def test_every_layout_holds(layout: str, rehearsed: Done, folder: Path) -> None:
+    assert_it_holds(rehearsed[layout], layout, folder / layout)
+
+
+@pytest.mark.deep
+@pytest.mark.parametrize("layout", DEEP)
+def test_every_other_layout_holds(layout: str, tmp_path: Path) -> None:
+    done = rehearse(0, *words_for(layout, tmp_path))
+    assert_it_holds(done, layout, tmp_path / layout)
+
+
+def assert_it_holds(done: subprocess.CompletedProcess[str], layout: str, file: Path) -> None:
     assert (done.returncode, done.stdout) == (0, ""), done.stderr
     assert "2 robots, 0 findings: as planned" in done.stderr
     graph = from_json(file.read_bytes(), "graph")
@@ -88,18 +109,8 @@ def actions(graph: System) -> set[str]:
     return {name for name in names if name.endswith("/_action/send_goal")}
 
 
-def test_without_rules_it_leaks_and_is_reported() -> None:
-    words = [
-        *PAIR,
-        "--stack",
-        "robot_state",
-        "--layout",
-        "tf-per-robot",
-        "--without-rules",
-        "all",
-        "-v",
-    ]
-    done = rehearse(4, *words)
+def test_without_rules_it_leaks_and_is_reported(rehearsed: Done) -> None:
+    done = rehearsed["leaking"]
     assert done.returncode == 1, done.stderr
     assert "graph: error: MG402 robot1 and robot2 send frames without" in done.stdout
     assert "/robot2/robot_state_publisher: error: MG102" in done.stdout
@@ -132,11 +143,10 @@ def test_many_robots_share_processes() -> None:
     assert "12 robots, 0 findings: as planned" in done.stderr
 
 
-def test_tf_is_its_own_type_where_it_is_installed(tf2: dict[str, str]) -> None:
+def test_tf_is_its_own_type_where_it_is_installed(tf2: dict[str, str], rehearsed: Done) -> None:
     if not tf2 and not find_spec("tf2_msgs"):
         pytest.skip(f"tf2_msgs is not there and not built: {tf2_build.missing()}")
-    words = [*PAIR, "--stack", "robot_state", "--layout", "L3"]
-    done = rehearse(7, *words, **tf2)
+    done = rehearsed["own tf"]
     assert (done.returncode, done.stdout) == (0, ""), done.stderr
     assert "replaced by others" not in done.stderr
 

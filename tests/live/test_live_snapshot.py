@@ -17,9 +17,10 @@ import live_commands
 import live_fleet
 import pytest
 import tf2_build
-from live_commands import domain
+from live_commands import PATIENTLY, domain
 from waiting import wait_until
 
+from multibot_rewrite.producers.ros.assemble import QUIET_SECONDS
 from multibot_rewrite.system.json import from_json, to_json
 from multibot_rewrite.system.records import EXPECTED, QUIET, TIMEOUT, Edge, End, System
 
@@ -86,7 +87,7 @@ def fleet(tf2: Build, has_tf: bool) -> Iterator[Build]:
 def seen(fleet: Build, tmp_path_factory: pytest.TempPathFactory) -> System:
     """The whole graph as the command writes it."""
     file = tmp_path_factory.mktemp("graph") / "graph.json"
-    result = multibot(0, "-o", str(file), **fleet)
+    result = multibot(0, "-o", str(file), *PATIENTLY, **fleet)
     assert result.returncode == 0, result.stderr
     return from_json(file.read_bytes(), str(file))
 
@@ -146,7 +147,7 @@ def test_the_environment_is_shown(seen: System) -> None:
     around = seen.environment
     assert (around.domain, around.range, around.rmw) == (domain(0), "LOCALHOST", "rmw_fastrtps_cpp")
     assert around.settled == QUIET
-    assert 3.5 <= around.seconds < 12
+    assert around.seconds >= QUIET_SECONDS
     # The bare node tells its process by its service only.
     assert around.participants == 4
     assert "" not in {node.process for node in seen.nodes}
@@ -181,10 +182,11 @@ def test_actions_are_in_the_snapshot(seen: System, has_tf: bool) -> None:
 def test_frames_that_could_not_be_read_are_a_caveat(fleet: Build) -> None:
     if not fleet:
         pytest.skip("tf2_msgs was not built for this run, so it cannot be taken away")
-    result = multibot(0, "--expect", "/robot1/state,/robot2/state")
     # On a busy machine the expected nodes are there before all of their topics.
+    words = ("--expect", "/robot1/state,/robot2/state", "--topic", "/tf_static")
+    result = multibot(0, *words, *PATIENTLY)
     assert re.search(
-        r"the frames on (/robot1/tf, |/robot2/tf, |/tf_static){1,3} were not read: No module",
+        r"the frames on (/robot1/tf, )?(/robot2/tf, )?/tf_static were not read: No module",
         result.stderr,
     )
     assert result.stdout.splitlines()[2].split()[:3] == ["node", "process", "publishes"]
@@ -193,12 +195,19 @@ def test_frames_that_could_not_be_read_are_a_caveat(fleet: Build) -> None:
 
 def test_expected_nodes_end_the_observation_and_a_topic_is_queried(fleet: Build) -> None:
     names = ["/robot1/drive", "/robot2/drive"]
-    result = multibot(0, "-o", "-", "--expect", ",".join(names), "--topic", "/heartbeat", **fleet)
-    assert result.returncode == 0, result.stderr
-    view = from_json(result.stdout.encode(), "stdout")
-    assert view.environment.settled == EXPECTED
-    qos = [end.qos for end in ends(view, "/heartbeat", "publishes") if end.node in names]
-    assert [it.deadline for it in qos if it] == [0.5, 0.5]
+
+    def deadlines() -> list[float]:
+        words = ("-o", "-", "--expect", ",".join(names), "--topic", "/heartbeat")
+        result = multibot(0, *words, *PATIENTLY, **fleet)
+        assert result.returncode == 0, result.stderr
+        view = from_json(result.stdout.encode(), "stdout")
+        assert view.environment.settled == EXPECTED
+        qos = [end.qos for end in ends(view, "/heartbeat", "publishes") if end.node in names]
+        assert None not in qos
+        return [it.deadline for it in qos if it]
+
+    # On a busy machine the second publisher may come long after its node: nobody can expect it.
+    wait_until(lambda: deadlines() == [0.5, 0.5])
 
 
 def test_a_view_out_of_time_is_written_and_inconclusive(fleet: Build, tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ from subprocess import CompletedProcess
 import live_commands
 import live_fleet
 import pytest
+from live_commands import PATIENTLY
 from paths import ROBOTS
 
 pytestmark = pytest.mark.live
@@ -55,7 +56,7 @@ def _rehearsed(folder: Path, at: int, case: Case) -> CompletedProcess[str]:
     robot = ROBOTS / "rover_gz.urdf"
     file.write_text(FLEET.format(release=release, stack=stack, robot=robot))
     domain = live_commands.domain(90 + at)
-    words = ["rehearse", str(file), "--domain", domain, "--ignore", "MB425"]
+    words = ["rehearse", str(file), "--domain", domain, "--ignore", "MB425", *PATIENTLY]
     words += ["--without-rules", left_out] if left_out else []
     return live_commands.multibot(*words, env=live_fleet.environ(domain))
 

@@ -353,22 +353,49 @@ def test_a_long_list_is_cut() -> None:
 
 
 @pytest.mark.parametrize(
-    ("now", "changed_", "seen", "wanted", "why"),
+    ("now", "changed_", "complete", "why"),
     [
-        (0.8, (0.7, 0.2), {"/a", "/b"}, ["/a"], EXPECTED),
-        (0.8, (0.7, 0.4), {"/a", "/b"}, ["/a"], ""),
-        (0.5, (0.2, 0.1), {"/a"}, ["/a", "/b"], ""),
-        (3.4, (0.0, 0.0), {"/a"}, [], ""),
-        (3.5, (0.0, 0.0), {"/a"}, [], QUIET),
-        (5.0, (2.0, 0.0), {"/a"}, ["/b"], ""),
-        (9.0, (8.0, 0.0), {"/a"}, ["/b"], TIMEOUT),
-        (9.0, (5.5, 0.0), set(), [], QUIET),
+        (0.8, (0.7, 0.2), True, EXPECTED),
+        (0.8, (0.7, 0.4), True, ""),
+        (0.7, (0.2, 0.1), False, ""),
+        (3.4, (0.0, 0.0), False, ""),
+        (3.5, (0.0, 0.0), False, QUIET),
+        (5.0, (2.0, 0.0), False, ""),
+        (9.0, (8.0, 0.0), False, TIMEOUT),
+        (9.0, (5.5, 0.0), False, QUIET),
     ],
 )
 def test_when_the_observation_ends(
-    now: float, changed_: tuple[float, float], seen: set[str], wanted: list[str], why: str
+    now: float, changed_: tuple[float, float], complete: bool, why: str
 ) -> None:
-    assert why_settled(now, LastChange(*changed_), seen, wanted, 9.0) == why
+    assert why_settled(now, LastChange(*changed_), complete, 9.0) == why
+
+
+@pytest.mark.parametrize(
+    ("expected", "topics", "met"),
+    [
+        (("/a",), (), True),
+        (("/a", "/b"), (), True),
+        (("/a", "/c"), (), False),
+        (("/a",), ("/one",), True),
+        (("/a",), ("/one", "/two"), True),
+        # A node of that name is no topic, nor the other way round.
+        (("/a",), ("/b",), False),
+        (("/one",), (), False),
+        ((), ("/one",), False),
+    ],
+)
+def test_what_is_expected_is_there(
+    expected: tuple[str, ...], topics: tuple[str, ...], met: bool
+) -> None:
+    """The nodes, and the topics that are asked about; topics alone end no look."""
+    ends = [end("/a", "/one"), end("/b", "/two")]
+    asked = Request(9.0, expected, topics)
+    assert asked.is_met(ends) == met
+    assert [asked.expects(it) for it in ends] == [
+        "/a" in expected or "/one" in topics,
+        "/b" in expected or "/two" in topics,
+    ]
 
 
 TOPICS = {

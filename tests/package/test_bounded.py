@@ -84,6 +84,36 @@ def test_every_yaml_reader_has_the_bounds(reader: str, fault: str) -> None:
     assert "\n" not in str(caught.value) and len(str(caught.value)) < 300
 
 
+@pytest.mark.parametrize(
+    ("name", "text", "least"),
+    [
+        ("MAX_REPEATED", "a: &a [x, x]\nb: [*a, *a]", 6),
+        ("MAX_REPEATED", "a: &a x\nb: [*a, *a, *a]", 3),
+        ("MAX_DEPTH", "a: {b: [c]}", 3),
+    ],
+)
+def test_the_last_value_within_a_bound_is_allowed(
+    monkeypatch: pytest.MonkeyPatch, name: str, text: str, least: int
+) -> None:
+    """A list that is repeated counts with its values."""
+    monkeypatch.setattr(bounded, name, least)
+    assert bounded.load_yaml(text)
+    monkeypatch.setattr(bounded, name, least - 1)
+    with pytest.raises(yaml.YAMLError):
+        bounded.load_yaml(text)
+
+
+@pytest.mark.parametrize("size", [8, 9])
+def test_the_last_byte_within_the_bound_is_read(tmp_path: Path, size: int) -> None:
+    file = tmp_path / "file"
+    file.write_bytes(b"x" * size)
+    if size == 8:
+        assert bounded.read_bytes(str(file), 8) == b"x" * 8
+        return
+    with pytest.raises(OSError, match="over the limit of 8 bytes"):
+        bounded.read_bytes(str(file), 8)
+
+
 @pytest.mark.sample(7)
 @pytest.mark.parametrize(
     "text",

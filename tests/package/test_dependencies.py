@@ -8,7 +8,6 @@ import subprocess
 import sys
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -121,10 +120,11 @@ def test_the_first_python_reads_every_file() -> None:
     [pytest.param(FIRST, id="first"), pytest.param(LAST, id="last", marks=pytest.mark.deep)],
 )
 def test_mypy_finds_nothing_for_the_first_and_the_last_python(
-    version: tuple[int, int], tmp_path: Path
+    version: tuple[int, int], pytestconfig: pytest.Config
 ) -> None:
     """It knows from which Python to which a name of the standard library is there."""
-    about = ["--python-version", "{}.{}".format(*version), "--cache-dir", str(tmp_path)]
+    kept = pytestconfig.cache.mkdir("mypy")
+    about = ["--python-version", "{}.{}".format(*version), "--cache-dir", str(kept)]
     command = [sys.executable, "-m", "mypy", *about]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr

@@ -37,8 +37,18 @@ def test_the_readme_shows_commands() -> None:
     assert {line.split()[0] for line in COMMANDS} == set(PROGRAMS)
 
 
+# The pages of the examples have it too, and it is rehearsed with them.
+AGAIN = "multibot rehearse examples/"
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("line", [*COMMANDS, START])
+@pytest.mark.parametrize(
+    "line",
+    [
+        pytest.param(it, marks=[pytest.mark.deep] if it.startswith(AGAIN) else [])
+        for it in (*COMMANDS, START)
+    ],
+)
 def test_a_command_of_the_readme_runs(line: str, tmp_path: Path) -> None:
     if line.startswith(page_commands.LIVE) and not page_commands.has_ros():
         pytest.skip("no rclpy: pip install '.[ros]'")

@@ -76,6 +76,24 @@ def test_a_robot_of_gazebo_classic_has_no_gz_topics(
     assert {it.robot for it in bridged} == {""}
 
 
+OWN_PLUGIN = """<robot name="r"><link name="base"/><gazebo reference="base"><sensor name="i" type="imu">
+<topic>imu</topic><plugin filename="{}" name="p"/></sensor></gazebo></robot>"""
+
+
+@pytest.mark.parametrize(
+    ("library", "topics"),
+    [
+        ("gz-sim-imu-system", ["/robot1/imu"]),
+        ("libignition-gazebo-imu-system.so", ["/robot1/imu"]),
+        ("ignition-gazebo-imu-system", ["/robot1/imu"]),
+        ("libgazebo_ros_imu_sensor.so", []),
+    ],
+)
+def test_a_system_of_gz_in_its_sensor_is_no_node(library: str, topics: list[str]) -> None:
+    bridged, _ = fleet("L1", OWN_PLUGIN.format(library))
+    assert [it.ros for it in bridged if it.robot == "robot1"] == topics
+
+
 NAMESPACED = """<sdf version="1.12"><model name="rover" namespace="{}"><link name="base"/>
 <plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive">
 <odom_topic>odom</odom_topic><tf_topic>/tf</tf_topic></plugin></model></sdf>"""

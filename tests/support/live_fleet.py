@@ -23,6 +23,8 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 
+from waiting import PATIENCE
+
 READY = "ready"
 _MODULES = {
     "TFMessage": "tf2_msgs.msg",
@@ -67,7 +69,7 @@ def _child(
     finally:
         child.stdin.close()
         try:
-            child.wait(10)
+            child.wait(PATIENCE)
         finally:
             child.kill()
             child.wait()

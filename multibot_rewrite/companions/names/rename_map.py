@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from multibot_rewrite.base.naming import NOT_PLAIN, Naming, spelled
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.rewriters.forms import Declared
+from multibot_rewrite.description.rewriters.made_topics import NO_WORDS, Stems
 from multibot_rewrite.description.rewriters.spelling import resolve
 
 # Kinds of names in a description that a kind of value may refer to, tried in order.
@@ -29,13 +30,15 @@ NO_OWN: Mapping[tuple[str, str], str] = {}
 class CompanionNames(NamedTuple):
     """The names that a description declares (not rewritten), the naming, and the robot.
 
-    ``own`` are names (kind and text) that arguments of the xacro make another for the robot.
+    ``own`` are names (kind and text) that arguments of the xacro make another for the robot; ``words``
+    are those that its systems make topics of.
     """
 
     declared: Declared
     naming: Naming
     robot: str
     own: Mapping[tuple[str, str], str] = NO_OWN
+    words: Stems = NO_WORDS
 
 
 def spell(names: CompanionNames, word: str, value: str, namespaced: bool = True) -> str:
@@ -63,7 +66,11 @@ def with_srdf(declared: Declared, semantics: Declared) -> Declared:
 
 
 def companion_names(
-    declared: Declared, naming: Naming, robot: str, own: Mapping[tuple[str, str], str]
+    declared: Declared,
+    naming: Naming,
+    robot: str,
+    own: Mapping[tuple[str, str], str],
+    words: Stems = NO_WORDS,
 ) -> CompanionNames:
     """The names of a robot; ``own`` are declared by either of their texts."""
     # Without its argument a name may begin with the slash behind it: /imu.
@@ -72,7 +79,7 @@ def companion_names(
     for (kind, plain), text in own.items():
         if text in both.get(kind, ()):
             both[kind].setdefault(plain, both[kind][text])
-    return CompanionNames(both, naming, robot, own)
+    return CompanionNames(both, naming, robot, own, words)
 
 
 def is_declared(names: CompanionNames, word: str, value: str) -> bool:

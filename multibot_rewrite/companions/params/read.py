@@ -64,10 +64,12 @@ def _own_frames(pages: Iterable[Page]) -> frozenset[str]:
 
 
 def _keys(section: ParamSection, own: Collection[str]) -> Iterator[Site]:
-    """The keys above a section, without what its path has not: the robot that the file is for."""
+    """The keys above a section, without what its path has not: the robot that the file is for. A
+    namespace that is the root's or the robot's alone is no name of a node."""
     first, *rest = section.keys
-    if first.value != "/" or not rest:
-        yield site_at(first, SECTION, without_robot(_without(first.value, own)))
+    name = _without(first.value, own)
+    if not rest or not first.value or name not in ("", "/"):
+        yield site_at(first, SECTION, without_robot(name or first.value))
     yield from (site_at(it, SECTION, without_robot(it.value), in_key=True) for it in rest)
 
 

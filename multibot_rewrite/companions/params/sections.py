@@ -11,7 +11,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 import yaml
 
-from multibot_rewrite.base.conventions import PLACEHOLDER
+from multibot_rewrite.base.conventions import PLACEHOLDER, WORLD_NODES
 from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.base.model import InputError
@@ -39,7 +39,7 @@ _TO_DO = f"put each node's parameters below {PARAMETERS}:"
 _PATTERN = re.compile(r"/[A-Za-z0-9_/*]+")
 _MARK = re.compile(r"[&*][^\s*\[\]{},/:]")
 # Helper nodes of old releases: they have sections, but no names of their own.
-_INNER = ("_rclcpp_node", "_client")
+INNER = ("_rclcpp_node", "_client")
 # A key that only one kind of file has -> what that file is.
 _OTHER_FILES = {
     "Visualization Manager": "it is an RViz config; list it under rviz",
@@ -181,13 +181,14 @@ def _section(
     name = it.path.rpartition("/")[2]
     filled = bool(PLACEHOLDER.search(it.path))
     wild = filled or any(token in ANY for token in it.path.split("/"))
-    place = context.nodes.get(name if wild else it.path, "")
+    everybodys = f"/{it.path}" if it.path in WORLD_NODES else ""
+    place = context.nodes.get(name if wild else it.path, everybodys)
     shared = bool(place) and NAMESPACE_SLOT not in place
     if filled:
         full = it.path
     else:
         full = _full_wild(it.path, name, context) if wild else place or _full(it.path, context)
-    inner = name.endswith(_INNER)
+    inner = name.endswith(INNER)
     node = None if name in ANY else identify_node(name, it.body, known, types)
     return ParamSection(it.keys, it.path, it.body, full, node, wild, shared, inner)
 

@@ -17,6 +17,8 @@ from multibot_rewrite.companions.names.by_kind import SPELLERS, is_component, is
 from multibot_rewrite.companions.names.node_topics import Facts, TopicText
 from multibot_rewrite.companions.names.placeholders import filled, is_robot
 from multibot_rewrite.companions.names.rename_map import KINDS, is_declared
+from multibot_rewrite.companions.params.guessed import in_doubt
+from multibot_rewrite.companions.params.guessed import stays as guessed_stays
 from multibot_rewrite.companions.params.name_sites import SectionNames
 from multibot_rewrite.companions.params.sections import ParamSection
 from multibot_rewrite.companions.sites import Site, found_in
@@ -68,7 +70,9 @@ def name_splices(
 ) -> Iterator[Splice | Finding]:
     """A splice for every name of a section that changes, and a finding where that is not possible."""
     stay = frames_stay(job, section)
-    sites = [it for it in names.sites if it.in_key or is_filled(it) or it.kind in _SPELLED]
+    doubt = in_doubt(job.context, section, names)
+    found = [it for it in names.sites if not guessed_stays(it, doubt)]
+    sites = [it for it in found if it.in_key or is_filled(it) or it.kind in _SPELLED]
     made = [(it, _spelled(job, it, stay)) for it in sites]
     document = job.document
     yield from splices_of(document.text, document.file, ((it, new.text) for it, new in made))

@@ -12,6 +12,7 @@ from multibot_rewrite.companions.rviz.display_groups import Robots, for_one_proc
 from multibot_rewrite.companions.rviz.read_config import ABSOLUTE, PROCESS, RvizConfig, value
 from multibot_rewrite.companions.rviz.values import frame_of
 from multibot_rewrite.companions.yaml_text import found_at
+from multibot_rewrite.spelling.plan import tf_topic
 
 
 def window_findings(
@@ -52,7 +53,7 @@ def _tf_topic(config: RvizConfig, robots: Robots, together: bool) -> Iterator[Fi
     layout = robots[0].names.naming.layout
     if together and not layout.tf_per_robot:
         return
-    first = f"/{robots[0].topics.robot}/tf" if layout.namespaced else "the robot's tf topic"
+    first = tf_topic(robots[0].topics.robot, robots[0].topics.naming)
     if together:
         message = "one window shows all robots only if each robot's tf is relayed to /tf"
         hint = f"ros2 run topic_tools relay {first} /tf, and the same for tf_static"

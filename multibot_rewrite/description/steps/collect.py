@@ -7,9 +7,10 @@ from lxml import etree
 
 from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.model import Claim, InputError, Site
-from multibot_rewrite.base.naming import DECLARED_KINDS
+from multibot_rewrite.base.naming import DECLARED_KINDS, DEFAULT_LAYOUT, Layout, find_layout
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.rewriters.forms import Declared
+from multibot_rewrite.description.rewriters.made_topics import names_in_topics
 from multibot_rewrite.description.rewriters.model_namespaces import below_models
 from multibot_rewrite.description.rewriters.remap_rules import names_in_rules
 from multibot_rewrite.description.rewriters.spelling import (
@@ -24,6 +25,7 @@ from multibot_rewrite.description.steps.document import Document, read_document
 
 NOTHING: Declared = {}
 SRDF = "srdf.robot"
+USUAL_LAYOUT = find_layout(DEFAULT_LAYOUT)
 
 
 class Host(NamedTuple):
@@ -54,12 +56,15 @@ class Inventory(NamedTuple):
 
 
 def collect(
-    document: Document, tree: Tree, urdf_declarations: Declared = NOTHING, apart: bool = False
+    document: Document,
+    tree: Tree,
+    urdf_declarations: Declared = NOTHING,
+    layout: Layout = USUAL_LAYOUT,
 ) -> Inventory:
     """Walk the document in order along the tree of rewriters.
 
-    ``urdf_declarations`` is what the URDF beside an SRDF declares; ``apart`` says that frames are not
-    spelled as links are.
+    ``urdf_declarations`` is what the URDF beside an SRDF declares. In a ``layout`` that names frames at
+    run time these are not spelled as links are, and in one that keeps the names of models no topic is.
     """
     format_ = _format(document, tree, SRDF if urdf_declarations else "")
     claims, hosts = _walk(document, tree, format_)
@@ -68,6 +73,8 @@ def collect(
     declared = _declared(claims, urdf_declarations)
     inventory = Inventory(document, claims, hosts, declared, format_, [], release)
     rules = names_in_rules(claims, inventory.served)
+    rules = {**rules, **names_in_topics(claims, declared, layout.renames_models)}
+    apart = layout.at_run_time
     return inventory._replace(names=resolved_names(claims, declared, apart, rules))
 
 

@@ -86,7 +86,7 @@ def verify(
     beside = spelled_names(urdf_declarations, naming, robot)
     try:
         read = read_document(output, f"{file} for {robot}", _asks_places(plan, output, naming))
-        result = collect(read, tree, beside, naming.layout.at_run_time)
+        result = collect(read, tree, beside, naming.layout)
         mine = [marker for marker in markers(result.document) if marker.robot == robot]
         inserted = removals(result.document, robot)
     except InputError as error:

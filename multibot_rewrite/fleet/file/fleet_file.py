@@ -35,6 +35,7 @@ POLICY = tuple(Policy.__annotations__)
 Sources = tuple[str, str, tuple[tuple[str, str], ...], str, str]
 # What ``simulator`` says of a real robot.
 REAL = "none"
+WORLD_LINK = "world"
 # What ``params_style`` says of parameter files for nav2_bringup.
 BRINGUP = "bringup"
 
@@ -178,7 +179,14 @@ def read_fleet(
 def _policy(data: Mapping[str, Any]) -> Policy:
     given = {key: data[key] for key in POLICY if key in data}
     lists = {key: tuple(listed(given[key])) for key in LISTS if key in given}
+    if "shared_frames" in lists and any(_is_simulated(data, own) for own in data["robots"]):
+        # sdformat fixes a robot to the link of this name and to no other (parser_urdf.cc).
+        lists["shared_frames"] = tuple(dict.fromkeys((*lists["shared_frames"], WORLD_LINK)))
     return cast(Policy, given | lists)
+
+
+def _is_simulated(data: Mapping[str, Any], own: Mapping[str, Any]) -> bool:
+    return bool(own.get("simulator", data.get("simulator", REAL)) != REAL)
 
 
 def _files(read: FleetData) -> Iterator[str]:
@@ -251,8 +259,8 @@ def _robot(read: FleetData, naming: Naming, at: int, release: str) -> RobotSpec:
 
 def _simulated(data: Mapping[str, Any], own: Mapping[str, Any]) -> str:
     """What the simulator gets instead of the description; a real robot has none."""
-    real = own.get("simulator", data.get("simulator", "")) == REAL
-    return "" if real else str(own.get("simulated", data.get("simulated", "")))
+    given = own.get("simulator", data.get("simulator", ""))
+    return "" if given == REAL else str(own.get("simulated", data.get("simulated", "")))
 
 
 def _launch(data: Mapping[str, Any], own: Mapping[str, Any], place: str) -> Iterator[LaunchOrder]:

@@ -12,7 +12,7 @@ from typing import Any
 
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.file.cell_file import MOVE_GROUP
-from multibot_rewrite.fleet.file.fleet_file import BRINGUP, REAL
+from multibot_rewrite.fleet.file.fleet_file import BRINGUP
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.starts import Component, File, RobotStarts, Start, Text
 from multibot_rewrite.fleet.outputs import moveit_parameters, spawn
@@ -23,6 +23,7 @@ from multibot_rewrite.fleet.outputs.rviz_outputs import RvizOutput, window_path
 from multibot_rewrite.fleet.robots import start_poses
 from multibot_rewrite.fleet.robots.node_names import NodeNames, names_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+from multibot_rewrite.knowledge.conditions import said
 from multibot_rewrite.knowledge.programs import (
     LIFECYCLE_MANAGER,
     NAV2,
@@ -106,7 +107,7 @@ def _left(given: _Given) -> Iterator[tuple[str, str]]:
         elif it is None:
             yield name, "nothing is known of its program"
         elif it.when and not _is_needed(given, it):
-            yield name, it.when
+            yield name, said(it.when)
         elif given.plan.file.params_style == BRINGUP and name != STATE:
             yield name, "parameter files are in the form of nav2_bringup, which starts it"
         elif not given.names.is_controller(name) and program_of(it, given.release) is None:
@@ -251,12 +252,6 @@ def _relays(given: _Given) -> tuple[tuple[Start, ...], tuple[Start, ...]]:
     made = relays(given.robot.spec.namespace, naming, file)
     starts = tuple(it.start for it in made)
     return (starts, ()) if naming.layout.frames else ((), starts)
-
-
-def simulators(plan: FleetPlan) -> list[str]:
-    """The simulators of the robots: ``classic``, ``gz``, none."""
-    simulated = [it for it in plan.robots if spawn.is_simulated(it) and it.spec.simulator != REAL]
-    return sorted({"classic" if spawn.is_classic(it) else "gz" for it in simulated})
 
 
 def of_all(plan: FleetPlan, files: Collection[str]) -> tuple[Start, ...]:

@@ -18,6 +18,7 @@ from multibot_rewrite.fleet.outputs.relays import relays
 from multibot_rewrite.fleet.outputs.shape_outputs import vendor_commands
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.start_poses import InitialPose, start_poses
+from multibot_rewrite.knowledge.conditions import said
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 from multibot_rewrite.spelling.ways import SPAWN, SPAWNER, spawner_arguments, started
 
@@ -80,7 +81,7 @@ def with_clock(line: str, use_sim_time: bool | None) -> str:
 
 def _controllers(plan: FleetPlan) -> Iterator[str]:
     """The command that loads each controller, with the condition under which the robot has it."""
-    when = {it.name: it.when for it in plan.fleet.facts if it.when}
+    when = {it.name: said(it.when) for it in plan.fleet.facts if it.when}
     for it in started(plan.fleet.table):
         if it.way == SPAWNER:
             condition = when.get(it.node.node, "")

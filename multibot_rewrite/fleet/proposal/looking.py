@@ -3,14 +3,11 @@ these that launch files have where nobody gave any."""
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from functools import lru_cache
 
 from lxml import etree
 
-from multibot_rewrite.base.bounded import read_bytes
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
@@ -18,17 +15,15 @@ from multibot_rewrite.description.reports.xacro_arguments import find_arguments,
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.expand import expand
-from multibot_rewrite.description.sources.own_names import filled
+from multibot_rewrite.description.sources.own_names import ROBOT, filled
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.fleet.file.simulator_switch import suits_real, suits_simulator, switch_for
+from multibot_rewrite.fleet.proposal.searching import text_of
 
 GZ, CLASSIC, NO_SIMULATOR = "gz", "classic", "none"
 # How the file names of plugins for Gazebo Classic begin.
 _CLASSIC = ("libgazebo_", "libhector_gazebo")
-# What descriptions of a part alone are called.
-_PART = lazy_compile(
-    r"gripper|hand|finger|camera|sensor|lidar|tool|effector|mount|wheel|dock|geometr"
-)
 # The end of the message about an argument that a xacro needs.
 _NEEDED = lazy_compile(r"give it as (\w+):=VALUE$")
 MOST_ARGUMENTS = 20
@@ -43,8 +38,10 @@ class Looked(NamedTuple):
     has ``<ros2_control>``, for a simulator with the plugin that makes its controller manager.
 
     ``arguments`` give each robot its own names (``{robot}`` is its name) or are needed to expand it;
-    ``needed`` are those of them that were not given. ``own_tf`` is whether its plugins send tf
-    on a topic of each robot. ``fault`` is why it cannot be read; the rest is empty then.
+    ``needed`` are those of them that were not given, ``switch`` is the one that makes it the simulated
+    or the real robot. ``own_tf`` is whether its plugins send tf on a topic of each robot. ``model`` is
+    the file that the simulator gets, where that is another one. ``fault`` is why it cannot be read; the
+    rest is empty then.
     """
 
     path: str
@@ -55,8 +52,10 @@ class Looked(NamedTuple):
     control: bool = False
     arguments: tuple[tuple[str, str], ...] = ()
     needed: tuple[str, ...] = ()
+    switch: str = ""
     own_tf: bool = False
     root: etree._Element | None = None
+    model: str = ""
     fault: str = ""
 
 
@@ -99,6 +98,41 @@ def with_own_arguments(it: Looked, tree: Tree, reach: Reach) -> Looked:
     return it._replace(arguments=tuple({**kept, **own}.items()))
 
 
+def without_names(it: Looked, given: Mapping[str, str]) -> Looked:
+    """The same with the arguments that name robots empty, but for those that were ``given`` or that it
+    cannot do without."""
+    kept = {*given, *it.needed}
+    values = {
+        name: value if name in kept or ROBOT not in value else "" for name, value in it.arguments
+    }
+    return it._replace(arguments=tuple(values.items()))
+
+
+def in_its_world(it: Looked, simulated: bool, reach: Reach) -> Looked:
+    """The same with the argument that makes it the simulated robot, or the real one, if it has one."""
+    suits = _suits_simulator if simulated else suits_real
+    given = dict(it.arguments)
+    if it.model:
+        return it
+    found = switch_for(it.path, filled(given, _ANY), suits, reach)
+    if not found:
+        return it
+    name, value = found
+    other = _look(it.path, {**given, name: value}, reach)
+    return it if other.fault else other._replace(needed=it.needed, switch=name)
+
+
+def with_model(it: Looked, sdf: Looked) -> Looked:
+    """A URDF for robot_state_publisher, and the SDF of the same robot for the simulator."""
+    return it._replace(
+        model=sdf.path, simulator=sdf.simulator, control=sdf.control, own_tf=sdf.own_tf
+    )
+
+
+def _suits_simulator(root: etree._Element) -> bool:
+    return _simulator(root) != NO_SIMULATOR and suits_simulator(root)
+
+
 def _looked(path: str, text: bytes, arguments: tuple[tuple[str, str], ...]) -> Looked:
     root = read_document(text, path).root
     model = root if root.tag != "sdf" else next(root.iter("model"), root)
@@ -110,9 +144,8 @@ def _looked(path: str, text: bytes, arguments: tuple[tuple[str, str], ...]) -> L
         _simulator(root),
         _is_controlled(root),
         arguments,
-        (),
-        any(_moves_tf(it) for it in root.iter("remapping", "argument")),
-        root,
+        own_tf=any(_moves_tf(it) for it in root.iter("remapping", "argument")),
+        root=root,
     )
 
 
@@ -152,25 +185,6 @@ def holds_the_world(it: Looked) -> bool:
     return any(link.get("name") == WORLD for link in links)
 
 
-def ranked(found: Sequence[Looked]) -> list[Looked]:
-    """Those first that have several links, are no part by their name, can move, have something for a
-    simulator, ``<ros2_control>``, the shortest path."""
-
-    def rank(it: Looked) -> tuple[bool, bool, bool, bool, bool, int, str]:
-        part = _PART.search(os.path.basename(it.path).lower()) is not None
-        without = it.simulator == NO_SIMULATOR, not it.control
-        return it.links < 2, part, not _moves(it), *without, len(it.path), it.path
-
-    return sorted(found, key=rank)
-
-
-def _moves(it: Looked) -> bool:
-    """Has it a joint that is not fixed? A house or a shelf has none."""
-    joints = it.root.iter("joint") if it.root is not None else ()
-    return any(joint.get("type", "fixed") != "fixed" for joint in joints)
-
-
-MOST_BYTES = 1_000_000
 # What gives each robot its own names.
 _PREFIX, _NAME = ("prefix", "tf_prefix"), ("name", "robot_name", "namespace", "ns")
 # A declaration in Python or XML: its default, or the first of its choices.
@@ -202,7 +216,7 @@ class NeededValues(NamedTuple):
     def of_mandatory(self, path: str) -> dict[str, str]:
         """The arguments of a xacro that every launch has to choose a value for, with the first of them:
         the xacro's own default may be no value at all. Raises nothing."""
-        names = dict.fromkeys(_ARGUMENT.findall(_text(path)))
+        names = dict.fromkeys(_ARGUMENT.findall(text_of(path)))
         return {name: value for name in names if (value := self._choice(name))}
 
     def _choice(self, name: str) -> str:
@@ -213,14 +227,6 @@ class NeededValues(NamedTuple):
     def _found(self, patterns: Sequence[str]) -> Iterator[str]:
         for pattern in patterns:
             for path in self.launch:
-                found = re.search(pattern, _text(path))
+                found = re.search(pattern, text_of(path))
                 if found:
                     yield found[1]
-
-
-@lru_cache(maxsize=256)
-def _text(path: str) -> str:
-    try:
-        return read_bytes(path, MOST_BYTES).decode("utf-8", "replace")
-    except OSError:
-        return ""

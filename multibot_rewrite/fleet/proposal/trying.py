@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from multibot_rewrite.base.findings.finding import ERROR, Finding
-from multibot_rewrite.base.model import MultibotError
+from multibot_rewrite.base.model import MultibotError, UsageError
 from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.fleet.checks.read_back import read_back
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.fleet.proposal.fleet_text import data_of
-from multibot_rewrite.fleet.proposal.looking import Looked
+from multibot_rewrite.fleet.proposal.looking import Looked, without_names
 from multibot_rewrite.fleet.proposal.propose import (
     Choice,
     Proposal,
+    Seen,
     Wanted,
     affix_of,
     propose,
@@ -26,36 +28,71 @@ from multibot_rewrite.fleet.proposal.searching import Found
 
 # Builds without files that turned out not to go with a robot, and descriptions that are tried.
 MOST_ROUNDS, MOST_TRIED = 10, 5
+# Descriptions that are shown where nothing says which is meant.
+MOST_SHOWN = 6
 
 
-def first_that_builds(robots: Sequence[Looked], found: Found, wanted: Wanted) -> Proposal:
-    """The fleet of the first description of which one builds; that of the first where none does."""
-    tried = (that_builds([it], found, wanted) for it in robots[:MOST_TRIED])
-    first = next(tried)
-    return first if not first.notes else next((it for it in tried if not it.notes), first)
+def first_that_builds(seen: Seen, wanted: Wanted) -> Proposal:
+    """The fleet of the likeliest description of which one builds; that of the first where none does.
+
+    Raises UsageError where another one that builds may be meant as well.
+    """
+    likely = [seen.robots[0], *seen.rivals]
+    if len(likely) > MOST_TRIED:
+        _refuse_to_choose(likely)
+    tried: list[Proposal] = []
+    for it in likely:
+        tried.append(that_builds([it], seen.found, wanted))
+        if sum(not one.notes for one in tried) > 1:
+            _refuse_to_choose(likely)
+    for it in seen.alike[:MOST_TRIED] if all(one.notes for one in tried) else ():
+        tried.append(that_builds([it], seen.found, wanted))
+    return next((it for it in tried if not it.notes), tried[0])
+
+
+def _refuse_to_choose(likely: Sequence[Looked]) -> None:
+    paths = [it.path for it in likely]
+    more = f" and {len(paths) - MOST_SHOWN} more" if paths[MOST_SHOWN:] else ""
+    shown = ", ".join(paths[:MOST_SHOWN])
+    what = f"{len(paths)} descriptions are as likely to be the robot"
+    raise UsageError(f"{what}: {shown}{more}; name one: multibot init {paths[0]}")
 
 
 def that_builds(
     robots: Sequence[Looked], found: Found, wanted: Wanted, refused: Mapping[str, str] | None = None
 ) -> Proposal:
     """The fleet of these robots without the files that do not go with them (``refused`` are left out,
-    too), in its own layout or the first one that builds."""
-    own = with_arguments(robots, wanted)
-    out = dict(refused or {})
+    too), in its own layout or the first one that builds; the arguments that name robots stay empty
+    where it builds so alone."""
+    own = with_arguments(robots, wanted, found)
+    made, errors = _without_blamed(own, found, wanted, refused or {})
+    bare = [without_names(it, wanted.arguments) for it in own] if errors else own
+    if bare != own:
+        other, wrong = _without_blamed(bare, found, wanted, refused or {})
+        made, errors = (made, errors) if wrong else (other, wrong)
+    return in_a_layout_that_builds(made, errors, wanted.trust)
+
+
+def _without_blamed(
+    own: Sequence[Looked], found: Found, wanted: Wanted, refused: Mapping[str, str]
+) -> tuple[Proposal, list[tuple[str, str]]]:
+    """The proposal without the files that have an error, and the errors that are left."""
+    out = dict(refused)
     for _ in range(MOST_ROUNDS):
         made = propose(own, found, wanted, out)
-        blamed = dict(_blamed(made, wanted.trust))
+        errors = errors_of(data_of(made, os.curdir), wanted.trust)
+        blamed = dict(_blamed(made, errors))
         if not blamed:
             break
         out |= blamed
-    return in_a_layout_that_builds(made, wanted.trust)
+    return made, errors
 
 
-def _blamed(it: Proposal, trust: bool) -> Iterator[tuple[str, str]]:
-    """The files that were found beside a description and have an error, and which."""
+def _blamed(it: Proposal, errors: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
+    """The files that were found beside a description and have one of the errors, and which."""
     paths = (path for member in it.members for path in member.companions.paths)
     files = {os.path.abspath(path): path for path in paths}
-    for file, line in errors_of(data_of(it, os.curdir), trust):
+    for file, line in errors:
         place, _, why = line.partition(": ")
         own = file or os.path.abspath(place.partition(":")[0])
         if own in files:
@@ -64,13 +101,16 @@ def _blamed(it: Proposal, trust: bool) -> Iterator[tuple[str, str]]:
 
 def errors_of(data: Mapping[str, Any], trust: bool = False) -> list[tuple[str, str]]:
     """Why a fleet does not build: the file, if one is at fault, and a line each; paths are relative to
-    the working directory."""
+    the working directory. What else is right is read back, as a build does."""
+    folder = os.path.abspath("out")
     try:
         plan = plan_fleet(read_fleet(data, "", os.environ), trust=trust)
-        made = make_outputs(plan, os.path.abspath("out"))
+        made = make_outputs(plan, folder)
+        found = {*made.findings, *plan.fleet.table.problems}
+        if not any(it.level == ERROR for it in found):
+            found |= {*read_back(plan, made, folder)}
     except MultibotError as error:
         return [("", str(error))]
-    found = {*made.findings, *plan.fleet.table.problems}
     errors = (it for it in found if it.level == ERROR)
     return [(_file(it), f"{it.code} {it.message}") for it in sorted(errors, key=lambda it: it.code)]
 
@@ -79,13 +119,14 @@ def _file(it: Finding) -> str:
     return os.path.abspath(it.file) if it.file else ""
 
 
-def in_a_layout_that_builds(it: Proposal, trust: bool = False) -> Proposal:
-    """The proposal in its own layout if it builds so, else in the first one that does.
+def in_a_layout_that_builds(
+    it: Proposal, own: Sequence[tuple[str, str]], trust: bool = False
+) -> Proposal:
+    """The proposal in its own layout if it has no errors (``own``) so, else in the first that builds.
 
     Where none does it is left as it is, and its first errors are notes.
     """
     first = it.keys["layout"].value
-    own = errors_of(data_of(it, os.curdir), trust)
     if not own:
         return it
     for layout in (one.name for one in LAYOUTS if one.name != first):

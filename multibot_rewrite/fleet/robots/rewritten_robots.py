@@ -22,6 +22,7 @@ from multibot_rewrite.description.checks.twice import CARRYING
 from multibot_rewrite.description.library import Rewrite, rewrite_job
 from multibot_rewrite.description.readback.meeting import SHARED_CODES
 from multibot_rewrite.description.rewriters.forms import Declared
+from multibot_rewrite.description.rewriters.made_topics import words_of
 from multibot_rewrite.description.sources.job import Job, Reader, job_for, joined_reads, reader
 from multibot_rewrite.description.sources.own_names import ROBOT, Arguments, common_to
 from multibot_rewrite.description.sources.read import is_xacro
@@ -184,7 +185,8 @@ def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobo
             simulated = _final(model, robot, jobs.simulated.naming)
             found = (*found, *model.findings)
             made = member(model, simulated, robot.tag, described=made.inventory)
-        names = companion_names(declared, naming, robot.tag, own)
+        model_claims = (model or text).template.inventory.claims
+        names = companion_names(declared, naming, robot.tag, own, words_of(model_claims))
         yield RewrittenRobot(
             robot,
             data,

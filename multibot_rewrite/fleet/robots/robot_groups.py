@@ -43,8 +43,8 @@ def group_robots(plan: FleetPlan) -> Iterator[RobotGroup]:
         spec = robots[0].spec
         nodes = plan.evidence_of(robots[0]).nodes
         facts = tuple(companion_nodes(nodes, stack_nodes(spec, plan.file)))
-        declared, naming, _, own = robots[0].names
-        context = make_context(declared, naming, facts, plan.file.distro, own)
+        declared, naming, _, own, words = robots[0].names
+        context = make_context(declared, naming, facts, plan.file.distro, own, words)
         yield RobotGroup(tuple(robots), facts, context)
 
 

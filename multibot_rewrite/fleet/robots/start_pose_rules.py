@@ -57,9 +57,10 @@ POSE_ON_WORLD = declare(
     what="A robot has a pose, and a joint of its description holds it on the world already.",
     why="The joint's origin is where tf has the robot, so the pose moves it in the simulator alone: "
     "two arms of one description are at the same place in tf, and plan through each other.",
-    fix="Let each robot have a world of its own: write shared_frames: [map], and the pose is that of "
-    "robot1/world in map. Or make the joint's origin an argument of the xacro, give it with "
-    "`arguments`, and remove the pose.",
+    fix="Make the joint's origin an argument of the xacro, give it with `arguments`, and remove the "
+    "pose. Or let each real robot have a world of its own: write shared_frames: [map], and the pose is "
+    "that of robot1/world in map. A simulator fixes robots to a link that is called world and to no "
+    "other, so there this is a warning.",
     bad="""\
 # arm.urdf has a joint from the link "world" to "base_link"
 robots:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 
-from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.base.record import NamedTuple
@@ -16,7 +16,7 @@ from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.companions.rviz.rewrite import world_frame
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.description.steps.collect import Inventory
-from multibot_rewrite.fleet.file.fleet_file import FleetFile, Pose
+from multibot_rewrite.fleet.file.fleet_file import REAL, FleetFile, Pose
 from multibot_rewrite.fleet.fleet import Fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.starts import Start
@@ -215,15 +215,16 @@ def _holds(edge: Edge, naming: Naming) -> bool:
 
 
 def _on_world(robot: RewrittenRobot, held: Edge) -> Finding:
+    """A simulator puts the robot at its pose, and needs the one world: only tf is not right then."""
+    simulated = robot.spec.simulator not in ("", REAL)
     what = (
         f"its pose is not used in tf: its description fixes {held.child!r} to {held.parent!r}, at the "
         "origin of that joint"
     )
-    hint = (
-        f"let each robot have its own {held.parent!r} (shared_frames: [map]), or set the joint's "
-        "origin by an argument of the xacro and remove the pose"
-    )
-    return _finding(POSE_ON_WORLD, robot, what, hint)
+    way = "set the joint's origin by an argument of the xacro and remove the pose"
+    own = f"let each robot have its own {held.parent!r} (shared_frames: [map]), or "
+    hint, level = (way, WARNING) if simulated else (own + way, "")
+    return at_robot(POSE_ON_WORLD, robot, f"robot {robot.spec.name!r}: {what}", hint, level)
 
 
 def _roots(sent: Mapping[str, list[Edge]], naming: Naming) -> list[str]:

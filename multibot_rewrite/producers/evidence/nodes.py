@@ -184,11 +184,13 @@ def _of_stack(
     either: Mapping[str, str],
     spawned: Mapping[str, str],
 ) -> NodeFacts:
-    """A node of a stack as the files have it."""
+    """A node of a stack as the files have it: a controller that the robot declares is its own, whatever
+    a stack asks for it."""
     if section is None:
         return node
     made = filled(node, section, known.get(node.known))
-    when = spawned.get(section.name, node.when or either.get(section.name, ""))
+    asked = "" if section.manager else node.when
+    when = spawned.get(section.name, asked or either.get(section.name, ""))
     return made._replace(name=node.name, when=when)
 
 

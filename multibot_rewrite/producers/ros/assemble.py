@@ -49,7 +49,7 @@ NO_TRANSFORMS: Mapping[ReceivedTransform, tuple[float, ...]] = {}
 
 
 class LastChange(NamedTuple):
-    """When the graph last changed, all of it and its expected nodes; in seconds."""
+    """When the graph last changed, all of it and what is expected of it; in seconds."""
 
     all: float
     expected: float
@@ -91,18 +91,11 @@ def cut_short() -> Iterator[Caveat]:
     yield Caveat("cut-short", True, text)
 
 
-def why_settled(
-    now: float,
-    changed: LastChange,
-    seen: Collection[str],
-    expected: Collection[str],
-    timeout: float,
-) -> str:
+def why_settled(now: float, changed: LastChange, complete: bool, timeout: float) -> str:
     """Why the observation can end, or an empty string; times are seconds since its start.
 
-    ``seen`` are the nodes with endpoints.
+    ``complete``: all that is expected is there.
     """
-    complete = expected and set(expected) <= set(seen)
     if complete and now - changed.expected >= BURST_SECONDS:
         return EXPECTED
     if now - changed.all >= QUIET_SECONDS:

@@ -9,7 +9,7 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import partial
 from typing import Any
@@ -195,16 +195,15 @@ def _wait_until_settled(
         clock = clock.after(session.now(), pause + spent)
         now, began = clock.observed, time.thread_time()
         view = _overview(session)
-        changed = times.update(now, view, request.expected)
+        changed = times.update(now, view, request)
         # While it changes the moment of the last change is wanted.
         factor = PAUSE_FACTOR if changed.all == now else LONG_PAUSE_FACTOR
         pause = _pause_after(time.thread_time() - began, factor)
         # Not later than the moment at which it is quiet.
         pause = min(pause, max(POLL_SECONDS, changed.all + assemble.QUIET_SECONDS - now))
-        seen = {end.node for end in view[1]}
         # Its timeout is of real time.
         timeout = request.timeout - (session.now() - now)
-        why = assemble.why_settled(now, changed, seen, request.expected, timeout)
+        why = assemble.why_settled(now, changed, request.is_met(view[1]), timeout)
         if why:
             return why, clock
         idle = now - changed.all >= IDLE_SECONDS or now >= timeout - TF_SECONDS[1]
@@ -216,17 +215,17 @@ def _wait_until_settled(
 
 
 class _ChangeTimes:
-    """When the graph last changed, all of it and its expected nodes."""
+    """When the graph last changed, all of it and what is expected of it."""
 
     def __init__(self) -> None:
         self._before: tuple[object, object] = (None, None)
         self._changed = assemble.LastChange(0.0, 0.0)
 
     def update(
-        self, now: float, view: tuple[list[str], list[End]], expected: Collection[str]
+        self, now: float, view: tuple[list[str], list[End]], request: Request
     ) -> assemble.LastChange:
         """The times after a poll at ``now``."""
-        parts = (view, [end for end in view[1] if end.node in expected])
+        parts = (view, [end for end in view[1] if request.expects(end)])
         times = zip(self._changed, self._before, parts, strict=True)
         self._changed = assemble.LastChange(
             *(old if was == is_ else now for old, was, is_ in times)

@@ -7,6 +7,7 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.system.records import End
 
 # The child's exit codes besides 0; rcl itself ends a process with 102.
 NO_RCLPY, ENDED = 4, 130
@@ -17,8 +18,9 @@ _LINE = b"\n"
 class Request(NamedTuple):
     """What a snapshot is asked for.
 
-    The observation ends when the nodes of ``expected`` (full names) are in the graph, and after
-    ``timeout`` seconds at the latest. The snapshot has QoS and process of ``topics``. With
+    The observation ends when the nodes of ``expected`` (full names) are in the graph and with them
+    ``topics``, and after ``timeout`` seconds at the latest. The snapshot has QoS and process of
+    ``topics``. With
     ``watch`` it does not end, and there is a snapshot after each change. With ``substitutes``
     transforms are also read from the messages that a rehearsal has without tf2_msgs. With
     ``headers`` one message a sensor topic is received, for its frame; not when watching. With
@@ -32,6 +34,15 @@ class Request(NamedTuple):
     substitutes: bool = False
     headers: bool = False
     asks: Mapping[str, Collection[str]] | None = None
+
+    def expects(self, end: End) -> bool:
+        """Whether an end is of what is waited for."""
+        return end.node in self.expected or end.name in self.topics
+
+    def is_met(self, ends: Collection[End]) -> bool:
+        """Whether nodes are expected, and all of them and the topics have ends."""
+        nodes, names = {it.node for it in ends}, {it.name for it in ends}
+        return bool(self.expected) and nodes >= {*self.expected} and names >= {*self.topics}
 
 
 def to_text(order: tuple[Any, ...]) -> str:

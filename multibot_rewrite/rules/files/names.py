@@ -14,8 +14,10 @@ from multibot_rewrite.companions.kinds import BRIDGE, EVERY, LUA, MOVEIT, PARAMS
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.names.by_kind import is_component, is_plain, is_shared_frame
 from multibot_rewrite.companions.names.rename_map import KINDS, is_declared, spell
+from multibot_rewrite.companions.params.guessed import in_doubt, is_guessed, stays
 from multibot_rewrite.companions.params.values import renamed
 from multibot_rewrite.companions.sites import Site
+from multibot_rewrite.companions.yaml_text import line_of
 from multibot_rewrite.description.checks.mentions import mentioned
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.rules.files.declared import unknown_parameters
@@ -34,6 +36,7 @@ _REMEDIES = {
 }
 # Fewer names are mistakes in a file that is meant for the robot.
 _FEWEST = 3
+WORLD = "world"
 
 
 def _drive(left: str) -> str:
@@ -226,16 +229,27 @@ def unknown_uses(file: NamedFile) -> Iterator[Remark]:
 @of_robots
 def _guessed(file: NamedFile) -> Iterator[Remark]:
     """Parameters of a node that is not known, taken for names by their own: one remark a section."""
-    for section, names in file.pages:
-        if section.node is not None or section.wild:
-            continue
-        guessed = [it for it in names.sites if not it.is_sure and _is_taken(file, it)]
+    for section, names in (it for it in file.pages if is_guessed(it[0])):
+        taken = [it for it in names.sites if _is_taken(file, it)]
+        doubt = in_doubt(file.context, section, names)
+        left = [it for it in taken if stays(it, doubt)]
+        guessed = [it for it in taken if not it.is_sure and it not in left]
         if guessed:
-            words = ", ".join(dict.fromkeys(it.key for it in guessed))
-            told = (
-                f"node {section.path} is not known; parameters that hold names are guessed: {words}"
-            )
-            yield remark(guessed[0], told, "describe the node in a file under nodes:")
+            told = f"parameters that hold names are guessed: {_keys(guessed)}"
+            yield _unknown(guessed[0], section.path, told)
+        if left:
+            other = doubt[left[0].kind]
+            told = f"{other.value!r} in line {line_of(other)} may be a name, too: "
+            yield _unknown(left[0], section.path, f"{told}{_keys(left)} stay as they are")
+
+
+def _keys(sites: Iterable[Site]) -> str:
+    return ", ".join(dict.fromkeys(it.key for it in sites))
+
+
+def _unknown(site: Site, node: str, told: str) -> Remark:
+    hint = "describe the node in a file under nodes:"
+    return remark(site, f"node {node} is not known; {told}", hint)
 
 
 def _is_taken(file: NamedFile, site: Site) -> bool:
@@ -267,8 +281,21 @@ def _said(file: NamedFile, site: Site, known: Mapping[str, str], renamed: frozen
         return f"{text!r} is a name" if topic or held else ""
     if text in known and (known[text] in ("link", "joint") or not site.in_key):
         return f"{text!r} is a {known[text]}"
+    if file.kind == PARAMS and not site.in_key and _begins_all(file, text):
+        return f"{text!r} begins the names"
     is_parameter = file.kind == PARAMS and not site.in_key
     return f"{text!r} is an interface" if is_parameter and _is_interface(file, text) else ""
+
+
+def _begins_all(file: NamedFile, text: str) -> bool:
+    """Do most links begin so? Code that puts it before names makes other ones than the description."""
+    links = [it for it in file.declared.get("link", ()) if it != WORLD]
+    return len(links) >= _FEWEST and 2 * len(_begun(text, links)) > len(links)
+
+
+def _begun(text: str, names: Iterable[str]) -> list[str]:
+    starts = tuple(f"{text.rstrip('_/')}{it}" for it in "_/")
+    return [it for it in names if text and it.startswith(starts)]
 
 
 def _robots_names(file: NamedFile) -> dict[str, str]:

@@ -77,7 +77,7 @@ def outcome(text: str | bytes, robot: str, way: dict[str, object]) -> str:
     return ", ".join(words(made.data, robot))
 
 
-@pytest.mark.slow
+@pytest.mark.deep
 @pytest.mark.parametrize("robot", NAMES)
 def test_every_way_after_every_way_is_refused(robot: str) -> None:
     """1,600 pairs a robot: layout, side and separators of the first rewrite and of the second."""

@@ -51,6 +51,7 @@ select: plugin
 [block frames]
 frame uses frame link
 [plugin drive]
+opens: nothing
 with: frames
 wheel[@side=left] uses joint
 label keep a label
@@ -163,7 +164,7 @@ def test_another_thread_comes_when_a_line_first_runs() -> None:
     assert missed(lambda _: range(1, 2)) == []
 
 
-@pytest.mark.slow
+@pytest.mark.deep
 def test_another_thread_comes_whenever_a_line_runs() -> None:
     assert missed(lambda times: range(2, times + 1)) == []
 

@@ -256,6 +256,37 @@ DECLARED = [
 ]
 
 
+# A name that is a link here and a joint there.
+TWO_KINDS = b"""<sdf version="1.9">
+  <model name="m">
+    <model name="a"><link name="x"/><frame name="on_link" attached_to="x"/></model>
+    <model name="b">
+      <link name="k"/><link name="l"/>
+      <joint name="x" type="fixed"><parent>k</parent><child>l</child></joint>
+      <frame name="on_joint" attached_to="x"/>
+    </model>
+    <frame name="on_a" attached_to="a::x"/>
+    <frame name="on_b" attached_to="b::x"/>
+    <frame name="on_none" attached_to="c::x"/>
+  </model>
+</sdf>
+"""
+
+
+def test_a_scope_decides_what_a_name_is_of() -> None:
+    """Of a model that is not there nothing is known, and nothing is changed."""
+    options = {"layout": "L2", "separators": {"link": "/", "joint": "_"}}
+    made = etree.fromstring(rewrite(TWO_KINDS, "r1", **options).data)  # type: ignore[arg-type]
+    found = {it.get("name"): it.get("attached_to") for it in made.iter("frame")}
+    assert found == {
+        "on_link/r1": "x/r1",
+        "on_joint/r1": "x_r1",
+        "on_a/r1": "a_r1::x/r1",
+        "on_b/r1": "b_r1::x_r1",
+        "on_none/r1": "c::x",
+    }
+
+
 FLAT = b"""<sdf version="1.7">
   <model name="rover">
     <link name="base"/>

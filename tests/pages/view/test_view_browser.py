@@ -9,14 +9,16 @@ from pathlib import Path
 import pytest
 from graph_cases import healthy
 from paths import ROBOTS
-from selenium import webdriver
-from selenium.webdriver.common.by import By
-from selenium.webdriver.support.select import Select
-from selenium.webdriver.support.wait import WebDriverWait
 from view_pages import with_places
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.system.json import to_json
+
+pytest.importorskip("selenium", reason="no selenium: pip install '.[test]'")
+from selenium import webdriver
+from selenium.webdriver.common.by import By
+from selenium.webdriver.support.select import Select
+from selenium.webdriver.support.wait import WebDriverWait
 
 BROWSER = shutil.which("chromium") or shutil.which("google-chrome")
 DRIVER = shutil.which("chromedriver")

@@ -1,0 +1,144 @@
+"""Which of several descriptions is the robot: what launch files load, and whose names the files beside
+them have. Where nothing says it, the likeliest has rivals.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator, Sequence
+
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.sources.packages import package_of
+from multibot_rewrite.fleet.proposal.looking import NO_SIMULATOR, Looked
+from multibot_rewrite.fleet.proposal.owners import names_of_files
+from multibot_rewrite.fleet.proposal.searching import Found, data_of_file, text_of
+
+# What descriptions of a part alone are called.
+_PART = lazy_compile(
+    r"gripper|hand|finger|camera|sensor|lidar|tool|effector|mount|wheel|dock|geometr"
+)
+# With a share of its names that is so many times as large, files are for this description.
+_MORE = 2
+
+
+class Candidate(NamedTuple):
+    """A description and what speaks for it: how many launch files load it, how many of its names the
+    files beside it have; ``part`` is whether it is called like a part."""
+
+    robot: Looked
+    launched: int
+    named: int
+    part: bool
+    links: frozenset[str]
+    moving: frozenset[str]
+
+    @property
+    def kind(self) -> tuple[bool, bool, bool]:
+        """The first of these are robots: several links, no part, something that moves."""
+        return self.robot.links < 2, self.part, not self.moving
+
+    @property
+    def share(self) -> float:
+        """How many of a hundred of its names are known to the files beside it."""
+        return self.named / max(1, len(self.links) + len(self.moving))
+
+
+class Chosen(NamedTuple):
+    """The likeliest robot first; ``rivals`` may be meant as well, ``alike`` are other files of it."""
+
+    order: list[Candidate]
+    rivals: list[Candidate]
+    alike: list[Candidate]
+
+
+def chosen(robots: Sequence[Looked], found: Found) -> Chosen:
+    """The descriptions by how likely each is the robot; a house or a shelf is none."""
+    said = names_of_files(found)
+    order = sorted((_candidate(it, said, found) for it in robots), key=_rank)
+    alike = [it for it in order[1:] if _same_robot(it, order[0])]
+    rivals = [it for it in order[1:] if it not in alike and not _is_behind(it, order[0])]
+    return Chosen(order, rivals, alike)
+
+
+def acts(it: Looked) -> bool:
+    """Can it move, or does it sense? A model of a thing has at most a plugin of its own."""
+    if it.tag != "sdf" or it.links > 1 or any(_moving(it)):
+        return True
+    return it.root is not None and next(it.root.iter("sensor"), None) is not None
+
+
+def _candidate(it: Looked, said: frozenset[str], found: Found) -> Candidate:
+    links, moving = frozenset(_links(it)), frozenset(_moving(it))
+    part = _PART.search(_stem(it.path).lower()) is not None
+    return Candidate(
+        it, launches_of(it.path, found), len(said & (links | moving)), part, links, moving
+    )
+
+
+def _rank(it: Candidate) -> tuple[object, ...]:
+    """By kind, launched, named; then what is for a simulator, has ``<ros2_control>``, a short path."""
+    robot = it.robot
+    more = robot.simulator == NO_SIMULATOR, not robot.control, len(robot.path), robot.path
+    return *it.kind, not it.launched, -it.named, *more
+
+
+def _is_behind(it: Candidate, best: Candidate) -> bool:
+    if it.kind != best.kind or (it.moving < best.moving and not it.launched):
+        return True
+    if best.launched and not it.launched:
+        return True
+    return best.launched >= it.launched and best.share > _MORE * it.share
+
+
+def _same_robot(it: Candidate, best: Candidate) -> bool:
+    """Two files of one robot: as URDF, xacro and SDF, or for a simulator and for real, or a copy. Other
+    files of one name in two folders are variants."""
+    if data_of_file(it.robot.path) == data_of_file(best.robot.path):
+        return True
+    names = {it.robot.name, _stem(it.robot.path)} & {best.robot.name, _stem(best.robot.path)}
+    bases = {os.path.basename(each.robot.path) for each in (it, best)}
+    within = it.links <= best.links or best.links <= it.links
+    return bool(names) and (it.links == best.links or (within and len(bases) > 1))
+
+
+def launches_of(path: str, found: Found) -> int:
+    """How many launch files load this description, or worlds have this model. Of files of one base name
+    it is that of the package that the launch file names or is in, of models that of the folder."""
+    base = os.path.basename(path)
+    alike = [it for it in found.every if os.path.basename(it) == base]
+    # A model is called by its folder.
+    own = os.path.basename(os.path.dirname(path)) if base.endswith(".sdf") else _package(path)
+    pattern = re.compile(rf"""(?<![\w.-]){re.escape(base)}(?![\w.-])""")
+    worlds = (f"model://{own}" in text_of(it) for it in found.worlds if base.endswith(".sdf"))
+    return sum(_loads(it, pattern, own, len(alike) > 1) for it in found.launch) + sum(worlds)
+
+
+def _loads(launch: str, pattern: re.Pattern[str], own: str, several: bool) -> bool:
+    text = text_of(launch)
+    if pattern.search(text) is None:
+        return False
+    return not several or (bool(own) and (own in text or own == _package(launch)))
+
+
+def _package(path: str) -> str:
+    package = package_of(path)
+    return package[0] if package else ""
+
+
+def _stem(path: str) -> str:
+    """What a description is called: by its file, a model by its folder."""
+    stem = os.path.basename(path).partition(".")[0]
+    return os.path.basename(os.path.dirname(path)) if stem == "model" else stem
+
+
+def _links(it: Looked) -> Iterator[str]:
+    for link in it.root.iter("link") if it.root is not None else ():
+        yield link.get("name", "")
+
+
+def _moving(it: Looked) -> Iterator[str]:
+    for joint in it.root.iter("joint") if it.root is not None else ():
+        if joint.get("type", "fixed") != "fixed" and joint.get("name"):
+            yield joint.get("name", "")

@@ -1,0 +1,140 @@
+"""Which files beside a description belong to another one, by place and by what they name."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable, Iterator, Mapping
+
+from multibot_rewrite.base.conventions import SENT_FRAMES
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.fleet.proposal.looking import Looked
+from multibot_rewrite.fleet.proposal.searching import Found, data_of_file, home_of
+
+# Descriptions whose names are looked at.
+MOST = 60
+_NAMED = re.compile(rb"""<(?:link|joint)\b[^>]*?\bname\s*=\s*["']([^"']+)["']""")
+_FILLED_IN = re.compile(r"\$[({][^)}]*[)}]")
+_KEY = re.compile(rb"^[ \t-]*[\w./-]+:", re.MULTILINE)
+_WORD = re.compile(r"[\w.-]+")
+# How many names of a file another description has to have for each that is the robot's own: the files
+# of a robot name more than a variant of it has.
+_MORE = 2
+
+
+class _Words(NamedTuple):
+    """The words of a file, and those of its values alone."""
+
+    all: frozenset[str]
+    values: frozenset[str]
+
+
+def of_others(robot: Looked, found: Found) -> dict[str, str]:
+    """The files that belong to another description than the robot's, each with what says so."""
+    near = dict(_nearer_to_others(robot.path, found))
+    rest = [path for path in _companions(found) if path not in near]
+    return {**near, **dict(_naming_others(robot, found, rest))}
+
+
+def _companions(found: Found) -> Iterator[str]:
+    for kind in ("params", "rviz", "bridge", "moveit", "behavior_trees", "srdf"):
+        yield from getattr(found, kind)
+
+
+def _near(folder: str, file: str) -> int:
+    return len(os.path.commonpath((os.path.abspath(folder), os.path.abspath(file))))
+
+
+def _nearer_to_others(robot: str, found: Found) -> Iterator[tuple[str, str]]:
+    """Files of the description's package that are nearer to another one: a folder of examples has files
+    of several robots."""
+    others = {os.path.dirname(it): it for it in reversed(found.every)}
+    own, base = os.path.dirname(robot), home_of(robot)
+    for file in _companions(found):
+        if _near(base, file) == len(os.path.abspath(base)):
+            at = max(others, key=lambda it: _near(it, file), default=own)
+            if _near(at, file) > _near(own, file):
+                yield file, f"it is beside {os.path.basename(others[at])}"
+
+
+def _naming_others(robot: Looked, found: Found, files: Iterable[str]) -> Iterator[tuple[str, str]]:
+    """Files that are not nearer to the robot, and name links and joints of another description."""
+    own = frozenset(_expanded(robot)) | _names_in(robot.path)
+    names = {it: _names_in(it) for it in found.every[:MOST] if it != robot.path}
+    others = {path: its for path, its in names.items() if not its <= own}
+    for file in files if others else ():
+        words = _words(file)
+        mine = _known(words, own)
+        rivals = {path: _known(words, its) for path, its in others.items()}
+        best = max(rivals, key=lambda it: (len(rivals[it]), it))
+        theirs = rivals[best]
+        at = _near(os.path.dirname(best), file)
+        if at >= _near(os.path.dirname(robot.path), file) and (
+            len(theirs) > max(1, _MORE * len(mine))
+        ):
+            named = ", ".join(sorted(theirs - mine)[:3])
+            yield file, f"it is for {os.path.basename(best)}, which has {named}"
+
+
+def _known(words: _Words, names: frozenset[str]) -> frozenset[str]:
+    """The names that a file has: a plain word such as camera only as a value."""
+    return frozenset(it for it in names & words.all if it in words.values or _is_specific(it))
+
+
+def _is_specific(name: str) -> bool:
+    return "_" in name or any(map(str.isdigit, name))
+
+
+_SHOWN = re.compile(rb"^[ \t]+([\w./-]+):[ \t]*\n[ \t]+Alpha:", re.MULTILINE)
+# Of fewer of a hundred of its names being the robot's, a file is another robot's.
+LEAST = 50
+
+
+def hundredths_known(robot: Looked, path: str) -> int:
+    """How many of a hundred links and joints that an SRDF names, or an RViz config shows, are the
+    robot's; all of a file that names none."""
+    named = names_shown(path) if path.endswith(".rviz") else _names_in(path)
+    own = frozenset(_expanded(robot)) | _names_in(robot.path)
+    return 100 * len(named & own) // len(named) if named else 100
+
+
+def names_shown(path: str) -> frozenset[str]:
+    """The links in the trees of an RViz config."""
+    found = (it.decode("utf-8", "replace") for it in _SHOWN.findall(data_of_file(path)))
+    return frozenset(found) - {*SENT_FRAMES}
+
+
+def _expanded(robot: Looked) -> Iterator[str]:
+    for it in robot.root.iter("link", "joint") if robot.root is not None else ():
+        yield it.get("name", "")
+
+
+def _names_in(path: str) -> frozenset[str]:
+    """The links and joints of a description as they are written, without what a xacro fills in."""
+    written = (it.decode("utf-8", "replace") for it in _NAMED.findall(data_of_file(path)))
+    names = (_FILLED_IN.sub("", it).strip("_/ ") for it in written)
+    return frozenset(it for it in names if it) - {*SENT_FRAMES}
+
+
+def names_of_files(found: Found) -> frozenset[str]:
+    """The words that the files beside descriptions have as values, and specific ones as keys."""
+    words = [_words(it) for it in _companions(found)]
+    keys = (name for it in words for name in it.all if _is_specific(name))
+    return frozenset(keys).union(*(it.values for it in words)) - {*SENT_FRAMES}
+
+
+def _words(path: str) -> _Words:
+    data = data_of_file(path)
+    texts = data, _KEY.sub(b"", data)
+    found = (frozenset(_WORD.findall(it.decode("utf-8", "replace"))) for it in texts)
+    return _Words(*found)
+
+
+def moveit_of_others(srdf: str, found: Found) -> Mapping[str, str]:
+    """MoveIt's files that are nearer to another SRDF than to the one that is taken."""
+    left = {}
+    for file in found.moveit:
+        best = max(found.srdf, key=lambda it: _near(os.path.dirname(it), file))
+        if _near(os.path.dirname(best), file) > _near(os.path.dirname(srdf), file):
+            left[file] = f"it is beside {os.path.basename(best)}"
+    return left

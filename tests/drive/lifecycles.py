@@ -1,0 +1,49 @@
+"""Lifecycle nodes: each is asked for by a manager that starts by itself, or by its launch file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+CONFIGURE, ACTIVATE = 1, 3
+
+
+def faults(given: Any, nodes: list[Any]) -> Iterator[tuple[str, str]]:
+    """Managers that wait for nodes, and nodes that wait for a manager."""
+    there = {it.fqn for it in nodes}
+    asked = {(it.fqn, name) for it in nodes for name in managed(it)}
+    for it in nodes:
+        for name in sorted(name for manager, name in asked if manager == it.fqn):
+            if name not in there:
+                short = name.rpartition("/")[2]
+                yield it.robot, f"{it.fqn} waits for {short}, which is not started"
+        if it.what == "lifecycle_manager" and it.values.get("autostart") is not True:
+            yield it.robot, f"{it.fqn} starts nothing by itself: autostart is not true"
+    names = {name for _, name in asked}
+    for it in nodes:
+        if is_managed(it) and it.fqn not in names and changed(given, it) != {CONFIGURE, ACTIVATE}:
+            yield it.robot, f"{it.fqn} waits for a lifecycle manager: none asks for it"
+
+
+def managed(node: Any) -> list[str]:
+    """The full names that a manager asks for (nav2_lifecycle_manager: relative to its namespace)."""
+    if node.what != "lifecycle_manager":
+        return []
+    names = [str(it) for it in node.values.get("node_names", ())]
+    return [it if it.startswith("/") else f"{node.namespace.rstrip('/')}/{it}" for it in names]
+
+
+def is_managed(node: Any) -> bool:
+    """A node with a bond to its manager; the costmaps inside a server are the server's to change."""
+    bonds = any(it.type == "bond/msg/Status" and it.role == "publishes" for it in node.ends)
+    return bonds and node.what != "lifecycle_manager" and not node.inside
+
+
+def changed(given: Any, node: Any) -> set[int]:
+    """The transitions that the launch file itself asks for."""
+    return {
+        int(it["change"])
+        for _, it in given.starts
+        if "change" in it
+        and f"/{it['namespace'].strip('/')}/{it['node']}".replace("//", "/") == node.fqn
+    }
