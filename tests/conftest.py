@@ -76,7 +76,10 @@ def pytest_collection_finish() -> None:
 
 
 # Files whose tests start nodes.
-LIVE_FILES = ("test_live_", "rcl", "test_docs", "test_examples", "test_recipes", "test_scripts")
+LIVE_FILES = (
+    *("test_live_", "rcl", "test_docs", "test_examples", "test_recipes", "test_scripts"),
+    *("test_tutorials", "test_walk"),
+)
 
 
 @pytest.hookimpl(optionalhook=True)

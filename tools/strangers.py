@@ -10,21 +10,27 @@ from __future__ import annotations
 import argparse
 import json
 import os
-import resource
+import re
 import subprocess
 import sys
 import tempfile
+import threading
 from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import NamedTuple
+from typing import IO, NamedTuple
 
 LIST = Path(__file__).with_name("strangers.tsv")
 DRIVE = Path(__file__).parents[1] / "tests" / "drive"
 MULTIBOT = (sys.executable, "-m", "multibot_rewrite.cli.multibot")
 # What stands for a release that is no longer kept, or where the repository names none.
 RELEASE = {"foxy": "humble", "galactic": "humble", "iron": "humble", "-": "jazzy"}
+# How a question which description is meant ends: a user names the one that is meant.
+_NAMED = re.compile(r"name one: multibot init (\S+)")
 # Seconds after which a command is ended.
 PATIENCE = 300
+# Letters of a reason in the table.
+LONGEST = 200
 
 
 class Stranger(NamedTuple):
@@ -64,41 +70,55 @@ def strangers(path: Path = LIST) -> list[Stranger]:
 
 
 def tried(it: Stranger, checkout: Path, folder: Path) -> Row:
-    """Init, build and drive one repository; everything is written below ``folder``."""
+    """Init, build and drive one repository; everything is written below ``folder``. Where init asks
+    which robot is meant, the first that it names is."""
     folder.mkdir(parents=True, exist_ok=True)
-    fleet, out = folder / "fleet.yaml", folder / "out"
-    release = RELEASE.get(it.release, it.release)
-    made = run(
-        [*MULTIBOT, "init", str(checkout), "-n", "2", "--yes", "--force", "-o", str(fleet)], release
-    )
+    fleet, release = folder / "fleet.yaml", RELEASE.get(it.release, it.release)
+    words = ["-n", "2", "--yes", "--force", "-o", str(fleet)]
+    made = run([*MULTIBOT, "init", str(checkout), *words], release)
+    if named := _NAMED.search(made.err):
+        row = _built(it, run([*MULTIBOT, "init", named[1], *words], release), fleet, release)
+        return row._replace(word=f"asks which robot; the first: {row.word}", init=made.seconds)
+    return _built(it, made, fleet, release)
+
+
+def _built(it: Stranger, made: Ran, fleet: Path, release: str) -> Row:
+    """Build what init has written, and drive it."""
     if made.code:
         return Row(it, _word(made, "init"), _first(made), made.seconds, 0.0)
+    out = fleet.parent / "out"
     built = run([*MULTIBOT, "build", str(fleet), "-o", str(out), "--force"], release)
     if built.code:
         return Row(it, _word(built, "build"), _first(built), made.seconds, built.seconds)
     driven = run([sys.executable, str(DRIVE), str(out), "--json"], release)
-    return Row(it, *_driven(driven), made.seconds, built.seconds)
+    return Row(it, *_driven(driven, built.err + built.out), made.seconds, built.seconds)
 
 
 def run(command: Sequence[str], release: str) -> Ran:
     """Run a command without a terminal."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
     environ = {**os.environ, "ROS_DISTRO": release}
-    try:
-        done = subprocess.run(
-            command, capture_output=True, text=True, timeout=PATIENCE, stdin=subprocess.DEVNULL,
-            check=False, env=environ,
-        )  # fmt: skip
-    except subprocess.TimeoutExpired:
-        return Ran(-1, "", f"it took more than {PATIENCE} seconds", PATIENCE)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    spent = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    return Ran(done.returncode, done.stdout, done.stderr, spent)
+    with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as err:
+        child = subprocess.Popen(
+            command, stdin=subprocess.DEVNULL, stdout=out, stderr=err, env=environ
+        )
+        end = threading.Timer(PATIENCE, child.kill)
+        end.start()
+        # The time of this process alone, whatever else runs.
+        _, status, spent = os.wait4(child.pid, 0)
+        child.returncode = os.waitstatus_to_exitcode(status)
+        end.cancel()
+        said, faults = (_text(it) for it in (out, err))
+    return Ran(child.returncode, said, faults, spent.ru_utime + spent.ru_stime)
+
+
+def _text(file: IO[str]) -> str:
+    file.seek(0)
+    return file.read()
 
 
 def _word(it: Ran, command: str) -> str:
     """Exit code 2 is an answer, 1 a fleet that does not build; anything else is a fault of ours."""
-    words = {1: f"{command}: does not build", 2: f"{command}: asks"}
+    words = {1: f"{command}: does not build", 2: f"{command}: says what is missing"}
     return words.get(it.code, f"{command}: broke")
 
 
@@ -109,27 +129,51 @@ def _first(it: Ran) -> str:
     return next(errors, lines[-1] if lines else "")
 
 
-def _driven(it: Ran) -> tuple[str, str]:
+def _driven(it: Ran, told: str) -> tuple[str, str]:
+    """The word and why: what is wrong was told by the build (``told``), or it is silent."""
     try:
         found = json.loads(it.out)
     except json.JSONDecodeError:
         return "drive: not judged", _first(it)
     does: dict[str, str] = next(iter(found["robots"].values()), {})
-    why = "; ".join(f"{each['robot']} {each['what']}: {each['why']}" for each in found["wrong"][:2])
-    unknown = "; ".join(f"{what} {said}" for what, said in does.items() if "unknown" in said)
-    yes = ", ".join(what for what, said in does.items() if said == "yes")
+    silent = [each for each in found["wrong"] if not _is_told(each["why"], told)]
     if found["wrong"]:
-        return "drive: wrong", why
+        shown = (silent or found["wrong"])[:2]
+        why = "; ".join(f"{each['robot']} {each['what']}: {each['why']}" for each in shown)
+        return ("drive: wrong in silence" if silent else "drive: the build says what is wrong"), why
+    unknown = next((said for said in does.values() if "unknown" in said), "")
+    yes = ", ".join(what for what, said in does.items() if said == "yes")
     return ("drive: unknown", unknown) if unknown else (f"yes: {yes}", "")
+
+
+def _is_told(why: str, told: str) -> bool:
+    """Does the build name the topic, node or frame that this is about, as a whole word?"""
+    names = re.findall(r"/?[\w/]*[/_]\w+", why)
+    bare = {re.sub(r"^/?robot\d+/", "", name).lstrip("/") for name in names}
+    words = {word.strip("/") for word in re.findall(r"[\w/]+", told)}
+    said = {re.sub(r"^robot\d+/", "", word) for word in words}
+    return not said.isdisjoint(bare - {"", "robot1", "robot2"})
+
+
+def short(why: str, it: Stranger) -> str:
+    """A reason without the place of the checkout, and no longer than a table takes."""
+    place = re.sub(rf"\S*/{re.escape(it.name.replace('/', '+'))}/", "", why)
+    plain = place.removeprefix("multibot: ")
+    return plain if len(plain) <= LONGEST else f"{plain[: LONGEST - 3]}..."
 
 
 def _table(rows: Sequence[Row]) -> Iterator[str]:
     yield "| repository | kind | happened | why | init, build (s) |"
     yield "|---|---|---|---|--:|"
     for it in rows:
-        why = it.why.replace("|", "\\|")
+        why = short(it.why, it.stranger).replace("|", "\\|")
         times = f"{it.init:.1f}, {it.build:.1f}"
         yield f"| {it.stranger.name} | {it.stranger.kind} | {it.word} | {why} | {times} |"
+
+
+def _noted(it: Row) -> Row:
+    print(it.word, it.why, it.stranger.name, sep="\t", file=sys.stderr, flush=True)
+    return it
 
 
 def main(words: Sequence[str]) -> int:
@@ -138,17 +182,16 @@ def main(words: Sequence[str]) -> int:
     parser.add_argument("folder", type=Path)
     parser.add_argument("--half", choices=("work", "last"), default="work")
     parser.add_argument("--only", default="", help="a part of the names")
+    parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--keep", type=Path, help="where to write fleets and folders")
     given = parser.parse_args(words)
     chosen = [it for it in strangers() if it.half == given.half and given.only in it.name]
     with tempfile.TemporaryDirectory() as scratch:
         kept = given.keep or Path(scratch)
         places = [it.name.replace("/", "+") for it in chosen]
-        pairs = zip(chosen, places, strict=True)
-        rows = []
-        for it, place in pairs:
-            rows.append(tried(it, given.folder / place, (kept / place).resolve()))
-            print(*rows[-1][1:3], it.name, sep="\t", file=sys.stderr, flush=True)
+        folders = [(given.folder / it, (kept / it).resolve()) for it in places]
+        with ThreadPoolExecutor(given.jobs) as pool:
+            rows = list(pool.map(lambda it, two: _noted(tried(it, *two)), chosen, folders))
     print(*_table(rows), sep=os.linesep)
     return 0
 

@@ -28,6 +28,7 @@ SEPARATORS = {
     "gpio": "_",
     "model": "_",
     "group": "_",
+    "shape": "_",
     "node": "_",
     "stem": "_",
     "topic": "/",
@@ -50,7 +51,7 @@ ROS_KINDS = frozenset({*TOPIC_KINDS, "stem", "namespace"})
 # A use of one of these must be declared in the same file.
 CLOSED_KINDS = frozenset({"link", "joint", "model", "group"})
 # Declarations of these are looked up by name.
-DECLARED_KINDS = (*sorted(CLOSED_KINDS), "frame", "sensor", "light")
+DECLARED_KINDS = (*sorted(CLOSED_KINDS), "frame", "sensor", "light", "shape")
 # Stands for a robot in a text that is made to see what is the same for all. Letters alone are taken by
 # every file that takes a name.
 TWIN = "qzrobotzq"
@@ -253,6 +254,15 @@ def spelled(naming: Naming, robot: str, kind: str, text: str, namespaced: bool =
     return there.spell(text, robot) if there else text
 
 
+def is_of_world(topic: str) -> bool:
+    """Is it a topic or service of the world, as ``/world/w/set_pose``, and not of a model in it?
+
+    Source: gazebosim/gz-sim src/SimulationRunner.cc, systems/user_commands/UserCommands.cc,
+    systems/scene_broadcaster/SceneBroadcaster.cc."""
+    parts = topic.split("/")
+    return parts[:2] == ["", "world"] and len(parts) > 3 and parts[3] != "model"
+
+
 def is_keyword(text: str) -> bool:
     """SDF reserves ``__model__`` and the like (sdformat Utils.cc isReservedName)."""
     return len(text) >= 4 and text.startswith("__") and text.endswith("__")
@@ -267,7 +277,12 @@ def _name_affix(side: str, separator: str, text: str) -> Affix:
 def _topic_affix(naming: Naming, separator: str, text: str, below: bool) -> Affix | None:
     """``below`` tells that a relative name is put under something that is the robot's already."""
     bare = text.strip("/")
-    if not bare or bare in naming.shared_topics or text.startswith(("~", "__")):
+    if (
+        not bare
+        or bare in naming.shared_topics
+        or text.startswith(("~", "__"))
+        or is_of_world(text)
+    ):
         return None
     if text.endswith("/") or not NOT_PLAIN.isdisjoint(text):
         return None

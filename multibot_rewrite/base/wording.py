@@ -1,8 +1,8 @@
-"""Names and values as part of a sentence or a table."""
+"""Names and values as part of a sentence or a table, or each once."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 FEW, SEVERAL = 3, 5
 _LONGEST = 60
@@ -19,3 +19,18 @@ def clip(text: str) -> str:
     """A value on one line and not longer than a line can show."""
     line = " ".join(text.split())
     return line if len(line) <= _LONGEST else f"{line[: _LONGEST - 1]}…"
+
+
+def and_then(words: Sequence[str]) -> str:
+    """``a``, ``a and b``, ``a, b and c``."""
+    return " and ".join(filter(None, (", ".join(words[:-1]), *words[-1:])))
+
+
+def unique(names: Iterable[str]) -> tuple[str, ...]:
+    """Each name once, in their order."""
+    return tuple(dict.fromkeys(names))
+
+
+def only(names: Sequence[str]) -> str:
+    """The one name; empty where there are several, or none."""
+    return names[0] if len(names) == 1 else ""

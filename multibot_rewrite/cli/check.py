@@ -158,10 +158,10 @@ def plan_name(options: argparse.Namespace) -> str:
 
 
 def _outcome(options: argparse.Namespace, verdict: Verdict, gaps: Sequence[Finding]) -> Outcome:
-    """A graph may be as planned, and the plan not close."""
+    """A graph may be as planned, and the plan have faults."""
     is_open = any(it.level != NOTE for it in gaps)
     word = "but" if verdict == Verdict.PLANNED else "and"
-    but = f", {word} the plan does not close" if is_open else ""
+    but = f", {word} the plan has faults" if is_open else ""
     return Outcome(verdict, f"{WORDS[verdict]}{but}", f"{options.program} {options.command}")
 
 

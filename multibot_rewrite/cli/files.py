@@ -136,7 +136,8 @@ def write_new(path: str, data: bytes, mode: int) -> None:
         while view:
             view = view[os.write(handle, view) :]
         # The advice says that nobody will read it soon, and Linux begins to write it out.
-        os.posix_fadvise(handle, 0, 0, os.POSIX_FADV_DONTNEED)
+        if hasattr(os, "posix_fadvise"):  # macOS has none
+            os.posix_fadvise(handle, 0, 0, os.POSIX_FADV_DONTNEED)
     finally:
         os.close(handle)
 

@@ -20,6 +20,7 @@ from multibot_rewrite.cli.usage import plain_words, xacro_args
 from multibot_rewrite.fleet.proposal.fleet_text import text_of
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.propose import (
+    MEANT,
     Choice,
     Proposal,
     Seen,
@@ -29,9 +30,9 @@ from multibot_rewrite.fleet.proposal.propose import (
     see,
     with_arguments,
 )
+from multibot_rewrite.fleet.proposal.searching import Found
 from multibot_rewrite.fleet.proposal.trying import first_that_builds, in_layout, that_builds
 
-MEANT = "as it was asked for"
 SIMULATORS = ("gazebo", "none")
 LEFT_OUT = "it was left out"
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
@@ -48,16 +49,13 @@ def run(options: argparse.Namespace) -> int:
     if wanted.names and seen.named and len(seen.robots) > 1:
         raise UsageError("--robots is for one description; give --count for several")
     if not options.yes and sys.stdin.isatty() and sys.stderr.isatty():
-        made = ask_for_fleet(seen, wanted, options.simulator)
+        made = ask_for_fleet(seen, wanted)
     else:
         wanted = wanted._replace(each=wanted.each or 2)
         if seen.named:
             made = that_builds(seen.robots, seen.found, wanted)
         else:
             made = first_that_builds(seen, wanted)
-    if options.simulator:
-        simulator = Choice(options.simulator, MEANT)
-        made = made._replace(keys={**made.keys, "simulator": simulator})
     return _deliver(options, made)
 
 
@@ -72,6 +70,7 @@ def _wanted(options: argparse.Namespace) -> Wanted:
         find_layout(options.layout).name if options.layout else "",
         options.trust,
         tuple(options.robots),
+        simulator=options.simulator or "",
     )
 
 
@@ -110,22 +109,29 @@ def _deliver(options: argparse.Namespace, made: Proposal) -> int:
     return STOPPED if made.notes else DONE
 
 
-def ask_for_fleet(seen: Seen, wanted: Wanted, simulator: str) -> Proposal:
-    """The fleet that the user describes; what ``wanted`` or ``simulator`` says is not asked."""
+def ask_for_fleet(seen: Seen, wanted: Wanted) -> Proposal:
+    """The fleet that the user describes; what ``wanted`` says is not asked."""
     robots = seen.robots if seen.named else _chosen([seen.robots[0], *seen.rivals])
     wanted = _with_names(wanted) if len(robots) == 1 else _with_count(wanted)
     if not wanted.named:
         release = release_of(robots, wanted)
         word = _one_of("ROS release", release.why, RELEASES, release)
         wanted = wanted._replace(release=word, named=True)
-    robots = [_with_arguments(it, wanted) for it in robots]
+    robots = [_with_arguments(it, wanted, seen.found) for it in robots]
     made = that_builds(robots, seen.found, wanted)
     refused = dict(made.refused) | dict.fromkeys(_left_out(made), LEFT_OUT)
     wanted = wanted._replace(apart=_apart(made))
     made = that_builds(robots, seen.found, wanted, refused)
     if not wanted.layout:
         made = _in_layout(made)
-    return made if simulator else _with_simulator(made)
+    if wanted.simulator:
+        return made
+    simulator = made.keys["simulator"]
+    word = _one_of("Simulator", simulator.why, SIMULATORS, simulator)
+    if word == simulator.value:
+        return made
+    wanted = wanted._replace(simulator=word, layout=str(made.keys["layout"].value))
+    return that_builds(robots, seen.found, wanted, refused)
 
 
 def _chosen(found: Sequence[Looked]) -> Sequence[Looked]:
@@ -156,9 +162,9 @@ def _with_names(wanted: Wanted) -> Wanted:
     return wanted._replace(each=len(names), names=names)
 
 
-def _with_arguments(robot: Looked, wanted: Wanted) -> Looked:
+def _with_arguments(robot: Looked, wanted: Wanted, found: Found) -> Looked:
     """The arguments of a xacro that name the robot, or that it needs and nobody gave."""
-    (it,) = with_arguments([robot], wanted)
+    (it,) = with_arguments([robot], wanted, found)
     asked = [(name, value) for name, value in it.arguments if name not in wanted.arguments]
     if asked:
         say("  {robot} stands for the name of each robot", PROGRAM)
@@ -200,13 +206,6 @@ def _in_layout(made: Proposal) -> Proposal:
         say(f"  {it.name}: {it.about}", PROGRAM)
     word = _one_of("Layout", layout.why, [it.name for it in LAYOUTS], layout)
     return made if word == layout.value else in_layout(made, Choice(word, MEANT))
-
-
-def _with_simulator(made: Proposal) -> Proposal:
-    simulator = made.keys["simulator"]
-    word = _one_of("Simulator", simulator.why, SIMULATORS, simulator)
-    chosen = simulator if word == simulator.value else Choice(word, MEANT)
-    return made._replace(keys={**made.keys, "simulator": chosen})
 
 
 def _words(text: str) -> list[str]:

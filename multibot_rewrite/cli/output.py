@@ -12,7 +12,7 @@ from typing import TextIO, TypeVar
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.printable import for_terminal, one_line
-from multibot_rewrite.cli.walk import check_target
+from multibot_rewrite.cli.walk import check_link, check_target
 
 AUTO, ALWAYS, NEVER = "auto", "always", "never"
 MANY = 20
@@ -44,6 +44,7 @@ def deliver(options: argparse.Namespace, data: bytes) -> None:
         print_bytes(data)
     else:
         check_target(options.output, _given(options))
+        check_link(options.output)
         write_files(options, [(options.output, data)])
 
 

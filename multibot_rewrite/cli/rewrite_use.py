@@ -22,7 +22,7 @@ from multibot_rewrite.cli.output import (
 )
 from multibot_rewrite.cli.report import About, by_themselves, check_report, chosen, report_beside
 from multibot_rewrite.cli.usage import xacro_args
-from multibot_rewrite.cli.walk import check_target
+from multibot_rewrite.cli.walk import check_link, check_target
 from multibot_rewrite.description.sources.read import is_xacro
 
 PLACEHOLDER = "{robot}"
@@ -145,7 +145,8 @@ def deliver(
     target = options.input if options.in_place else options.output
     if target:
         files = ((target_path(target, robot), data) for robot, _, data in results)
-        write_files(options, watched(chain(more, files), total, "writing"))
+        every = chain(more, files if options.in_place else map(_no_link, files))
+        write_files(options, watched(every, total, "writing"))
         return
     write_files(options, more)
     colour = prints_colour(options)
@@ -153,3 +154,8 @@ def deliver(
         name = input_name(options)
         text = diff(before, data, name, f"{name} for {robot}", colour) if options.diff else data
         print_bytes(text)
+
+
+def _no_link(item: tuple[str, bytes]) -> tuple[str, bytes]:
+    check_link(item[0])
+    return item

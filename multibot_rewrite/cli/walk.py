@@ -80,6 +80,15 @@ def check_target(target: str, inputs: Iterable[str], option: str = "--output") -
         raise UsageError(f"{target} is a file that is read; choose another one for {option}")
 
 
+def check_link(target: str) -> None:
+    """Raise UsageError where ``target`` is a link to a file of another folder: a result would replace
+    what nobody named."""
+    if os.path.islink(target):
+        real = os.path.realpath(target)
+        if os.path.dirname(real) != os.path.realpath(os.path.dirname(target) or "."):
+            raise UsageError(f"{target} is a link to {real}; name that file, if it is meant")
+
+
 def is_same_file(path: str, other: str) -> bool:
     """Do two paths lead to one file, by links of either kind or not?"""
     if os.path.realpath(path) == os.path.realpath(other):

@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Iterator
 from contextlib import suppress
 
+from multibot_rewrite.base.file_kinds import refuse_others
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
@@ -40,6 +41,7 @@ def kind_alone(data: bytes, file: str) -> str:
             return MOVEIT
     if not data.strip():
         raise InputError(f"{file}: the file is empty; a robot description starts with <robot>")
+    refuse_others(data, file)
     hint = "name a description, parameters, a tree, or a file of RViz, MoveIt, ros_gz_bridge or Lua"
     raise InputError(f"{file}:1:1: it is none of the files that are rewritten; {hint}")
 

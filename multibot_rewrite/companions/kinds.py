@@ -3,35 +3,12 @@
 from __future__ import annotations
 
 from multibot_rewrite.base.bounded import MAX_BYTES
-from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.file_kinds import BESIDE, BRIDGE, LUA, MOVEIT, PARAMS, RVIZ, TREE
 
 SUFFIXES = (".yaml", ".yml", ".rviz", ".lua", ".xml")
-PARAMS, RVIZ, BRIDGE, MOVEIT, TREE, LUA = "params", "rviz", "bridge", "moveit", "tree", "lua"
 EVERY = (PARAMS, RVIZ, MOVEIT, BRIDGE, TREE, LUA)
 _XML = ".xml"
-_IS_TREE = lazy_compile(
-    rb"<BehaviorTree\b|<root\b[^>]*\b(?:BTCPP_format|main_tree_to_execute)\b", 0
-)
-# What only files of one kind have at the start of a line or an item. A file of one node's sections may
-# be MoveIt's as well: that is a parameter file for its reader.
-_MARKS = (
-    (PARAMS, lazy_compile(rb"^\s+[\"']?ros__parameters[\"']?\s*:", 8)),
-    (RVIZ, lazy_compile(rb"^Visualization Manager\s*:", 8)),
-    (
-        BRIDGE,
-        lazy_compile(rb"^-\s*\{?\s*[\"']?(?:(?:ros_|gz_)?topic_name|service_name)[\"']?\s*:", 8),
-    ),
-    (
-        MOVEIT,
-        lazy_compile(
-            rb"^(?:joint_limits|moveit_simple_controller_manager|controller_names|controller_list"
-            rb"|\w+:\s*\n\s+kinematics_solver)\b",
-            8,
-        ),
-    ),
-    (TREE, _IS_TREE),
-    (LUA, lazy_compile(rb"^\s*(?:tracking_frame|published_frame|map_frame)\s*=", 8)),
-)
+_IS_TREE = dict(BESIDE)[TREE]
 
 
 def is_named_beside(path: str) -> bool:
@@ -69,4 +46,7 @@ def _text_of(path: str) -> bytes | None:
 
 def kind_of(data: bytes) -> str:
     """The kind of a file by its text; empty for all others."""
-    return next((kind for kind, mark in _MARKS if mark.search(data)), "")
+    return next((kind for kind, mark in BESIDE if mark.search(data)), "")
+
+
+__all__ = ["BRIDGE", "EVERY", "LUA", "MOVEIT", "PARAMS", "RVIZ", "SUFFIXES", "TREE"]

@@ -13,7 +13,7 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.yaml_text import quoted
 from multibot_rewrite.description.sources.read import is_xacro
-from multibot_rewrite.fleet.checks.closed_plan import bridged_by, demanded, gaps_of
+from multibot_rewrite.fleet.checks.closed_plan import bridged_by, demanded, gaps_of, sorted_out
 from multibot_rewrite.fleet.checks.for_another_robot import for_another_robot
 from multibot_rewrite.fleet.file.fleet_file import input_files
 from multibot_rewrite.fleet.fleet import Fleet, expected, possible
@@ -41,7 +41,9 @@ from multibot_rewrite.fleet.outputs.yarp_files import yarp_files
 from multibot_rewrite.fleet.outputs.zenoh_configuration import ZENOH, configurations
 from multibot_rewrite.fleet.robots.apart import too_near
 from multibot_rewrite.fleet.robots.devices import one_device_each
+from multibot_rewrite.fleet.robots.named_twice import named_twice
 from multibot_rewrite.fleet.robots.robot_groups import said_once, split_per_robot
+from multibot_rewrite.fleet.robots.simulators import other_hardware
 from multibot_rewrite.fleet.robots.start_poses import with_start_pose_nodes
 from multibot_rewrite.fleet.robots.two_descriptions import differences
 from multibot_rewrite.spelling.enclaves import to_policy
@@ -76,19 +78,21 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
     with gc_paused():
         fleet, each = with_start_pose_nodes(plan), list(split_per_robot(plan))
         configs = list(rviz_outputs(plan, each))
-        files, findings = _sorted_out(
-            *_descriptions(plan, plan.file.installed or folder),
-            *companion_files(plan),
-            *rviz_files(configs),
-            *bridge_outputs(plan),
-            *commands_file(plan, each, rviz_commands(plan, configs)),
+        made = [*companion_files(plan), *bridge_outputs(plan)]
+        files, findings = sorted_out(
+            [
+                *_descriptions(plan, plan.file.installed or folder),
+                *made,
+                *rviz_files(configs),
+                *commands_file(plan, each, rviz_commands(plan, configs)),
+            ]
         )
         findings += _of_robots(plan)
-        gaps = gaps_of(plan, fleet, files, findings)
+        gaps = gaps_of(plan, fleet, made)
         findings += gaps
         fleet = fleet._replace(gaps=gaps, bridged=bridged_by(demanded(plan, files)))
-        kept, told = _sorted_out(
-            *in_style(plan, files), *cell_outputs(plan, files), *yarp_files(plan.robots)
+        kept, told = sorted_out(
+            [*in_style(plan, files), *cell_outputs(plan, files), *yarp_files(plan.robots)]
         )
         planned = _portable_plan(plan, fleet)
         tables = _tables(plan, fleet, planned)
@@ -102,15 +106,12 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
         return Outputs(tuple(files), said, started(starts), planned)
 
 
-def _sorted_out(*made: OutputFile | Finding) -> tuple[list[OutputFile], list[Finding]]:
-    files = sorted(it for it in made if isinstance(it, OutputFile))
-    return files, [it for it in made if isinstance(it, Finding)]
-
-
 def _of_robots(plan: FleetPlan) -> Iterator[Finding]:
     """What is wrong with the robots themselves, whatever files go with them."""
     for robot in plan.robots:
         yield from robot.findings
+    yield from other_hardware(plan.robots)
+    yield from named_twice(plan.robots)
     yield from one_device_each(plan.robots)
     for found in plan.evidence.values():
         yield from found.findings

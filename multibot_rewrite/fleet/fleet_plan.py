@@ -31,7 +31,7 @@ from multibot_rewrite.fleet.robots.robot_nodes import (
     node_sources,
     robot_nodes,
 )
-from multibot_rewrite.fleet.robots.simulators import may_be_real, note
+from multibot_rewrite.fleet.robots.simulators import is_chosen, may_be_real, note
 
 
 class FleetPlan(NamedTuple):
@@ -125,6 +125,7 @@ def _fleet(
     fleet = merge(fleets)
     members = [it.member for it in robots]
     table = with_meetings(fleet.table, members, naming)
-    told = (*declared_twice(robots, naming, table), *left_out(members))
+    chosen = [it.member for it in robots if is_chosen(it)]
+    told = (*declared_twice(robots, naming, table), *left_out(members, chosen))
     problems = tuple(dict.fromkeys((*table.problems, *told, *notes)))
     return fleet._replace(table=table._replace(problems=problems))

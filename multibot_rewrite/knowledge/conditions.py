@@ -6,7 +6,7 @@ Alternatives are joined by ``or``, what must hold together by ``and``. A term as
     PARAMETER = VALUE          it has this value, or one of ``VALUE | VALUE``; ``$other`` is that of
                                another parameter; the class of a plugin may lack its namespace
     PARAMETER != VALUE         it has none of them; so has one that is not set
-    PARAMETER has VALUE        it is a list that holds one of them
+    PARAMETER has VALUE        it is a list, or a text of several words, that holds one of them
     PARAMETER set, unset       it has a value that is not empty, or none
 
 or it is ``KIND: WORDS``, for what no parameter says (``KINDS``); ``unknown: TEXT`` is what nobody could
@@ -30,9 +30,7 @@ RELEASE, VERSION, UNKNOWN = "release", "version", "unknown"
 KINDS = {
     "argument": "an argument of the command line that starts it",
     "bridge": "an entry of its bridge's file: a direction or a topic",
-    "capability": "a capability of move_group that is loaded",
     "display": "a display of the RViz config",
-    "dock": "a parameter of a dock or of its plugin",
     "given": "a parameter that whoever starts it passes",
     "goal": "what a goal of an action is, or names",
     "hardware": "what the robot has",
@@ -42,7 +40,6 @@ KINDS = {
     "nodl": "no: its NoDL file does not have it",
     "panel": "a panel of the RViz config",
     "phase": "what it is doing",
-    "plugin": "a plugin of its own that is loaded",
     "program": "the executable that runs it",
     RELEASE: "releases of ROS, for the type of an endpoint",
     "run": "simulated or real",
@@ -96,13 +93,19 @@ def said(text: str) -> str:
 
 def of_release(text: str, release: str) -> str | None:
     """The condition without what it says of releases; None where it never holds in this one."""
-    asked = f"{RELEASE}: "
+    return of_kind(text, RELEASE, lambda words: has_release(words, release))
+
+
+def of_kind(text: str, kind: str, is_so: Callable[[str], bool]) -> str | None:
+    """The condition without what it says of one kind; None where it never holds. Where one alternative
+    holds, nothing is left to ask."""
+    asked = f"{kind}: "
     left = [
         AND.join(it for it in terms if not it.startswith(asked))
         for terms in (it.split(AND) for it in text.split(OR))
-        if all(has_release(it.removeprefix(asked), release) for it in terms if it.startswith(asked))
+        if all(is_so(it.removeprefix(asked)) for it in terms if it.startswith(asked))
     ]
-    return OR.join(left) if left else None
+    return None if not left else "" if "" in left else OR.join(left)
 
 
 def _said(term: str) -> str:
@@ -155,16 +158,30 @@ def _all(terms: tuple[Condition, ...], value_of: Values) -> bool | None:
 
 def _is_true(it: Condition, value_of: Values) -> bool | None:
     # A word in <> that nothing was put in place of is no parameter.
-    if it.how == ":" or "<" in it.parameter:
+    if "<" in it.parameter:
         return None
+    if it.how == ":":
+        return _is_told(it, value_of)
     given = [value_of(name) for name in it.parameter.split(ALSO)]
     if it.how in ("set", "unset"):
         return any(one not in (None, "", []) for one in given) == (it.how == "set")
     wanted = {word for value in it.values for word in _wanted(value, value_of)}
     if it.how == "has":
-        lists = (one for one in given if isinstance(one, list))
+        # MoveIt splits a text (moveit2 move_group.cpp configureCapabilities).
+        texts = (one.split() if isinstance(one, str) else one for one in given)
+        lists = (one for one in texts if isinstance(one, list))
         return any(wanted & _spellings(one) for its in lists for one in its)
     return any(wanted & _spellings(one) for one in given) == (it.how == "=")
+
+
+def _is_told(it: Condition, value_of: Values) -> bool | None:
+    """What a parameter says of a condition that is no parameter's: what a file does not pass, whoever
+    starts the node may."""
+    if it.parameter == "run":
+        simulated = value_of("use_sim_time")
+        return simulated == (it.values == ("simulated",)) if isinstance(simulated, bool) else None
+    passed = any(value_of(name) not in (None, "", False) for name in it.values)
+    return {"given": True, "missing": False}.get(it.parameter) if passed else None
 
 
 def _wanted(value: str, value_of: Values) -> Iterator[str]:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from codecs import BOM_UTF8
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, NoReturn, TypeAlias, TypeVar
 
 from multibot_rewrite.base.bounded import compose_own_yaml, compose_yaml
-from multibot_rewrite.base.model import InputError, UsageError
+from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.record import NamedTuple
 
@@ -26,15 +25,6 @@ class YamlItem(NamedTuple):
 
     where: str
     value: Value
-
-
-def refuse_xml(data: bytes, file: str) -> None:
-    """Raises InputError that says what to do with a description or launch file given for YAML."""
-    if not data.removeprefix(BOM_UTF8).lstrip().startswith(b"<"):
-        return
-    if b"<launch" in data:
-        raise InputError(f"{file}: a launch file; use multibot check-launch, or multibot plan")
-    raise InputError(f"{file}: a description; use multibot init, which makes a fleet file of it")
 
 
 def read_yaml_with_lines(text: str, file: str, own: bool = False) -> YamlItem:

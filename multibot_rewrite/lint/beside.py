@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Sequence
 
+from multibot_rewrite.base.file_kinds import refuse_others
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.findings.selection import is_on, level_of
 from multibot_rewrite.base.model import Claim, InputError
@@ -109,6 +110,7 @@ def beside_findings(path: str, data: bytes, settings: Settings) -> Iterator[Find
     """What the active rules find in a file; raises InputError for one that is of no known kind."""
     kind = kind_of(data)
     if not kind:
+        refuse_others(data, f"{path}:1:1")
         hint = (
             "name a description, or a file of parameters, RViz, MoveIt, ros_gz_bridge, Nav2 or Lua"
         )

@@ -6,10 +6,10 @@ from collections.abc import Iterable, Iterator
 
 from multibot_rewrite.base.conventions import EVERYBODYS, SENT_BY_EVERY_NODE, WORLD_FRAMES
 from multibot_rewrite.base.naming import DEFAULT_LAYOUT, TF_TOPICS
+from multibot_rewrite.base.wording import unique
 from multibot_rewrite.live.diagnose import Diagnosis
 from multibot_rewrite.spelling.plan import planned_end
 from multibot_rewrite.system.guess import GuessedRobot
-from multibot_rewrite.system.index import unique
 from multibot_rewrite.system.records import End, Node, Robot, System
 from multibot_rewrite.system.tf_copies import tree_topic
 from multibot_rewrite.system.tool_nodes import is_tool

@@ -81,17 +81,9 @@ def expect(
         tag = word if word != name else ""
         return Robot(name, own, tf_topic(name, naming), _further(others, own, naming), tag)
 
-    own = _own_nodes(table, facts, maybe_real)
-    made = _private_nodes(table.names)
-    always = _private_nodes(it for it in table.names if not it.endpoint.when)
+    own, made = _own_nodes(table, facts, maybe_real), _private_nodes(table.names)
     names = dict.fromkeys((*frames, *filter(None, own)))
-    nodes = (
-        Node(full, robot=name, sure=sure)
-        for name in (*names, "")
-        for full, sure in _with_made(
-            own.get(name, {}), made.get(name, ()) if name else (), always.get(name, ())
-        )
-    )
+    nodes = _by_robot(table, own, made, (*names, ""))
     return System(
         nodes=tuple(_placed(nodes, table, sources)),
         ends=tuple(dict.fromkeys(_planned(table.names))),
@@ -102,6 +94,20 @@ def expect(
         # What nodes for all robots make for themselves.
         ignored_nodes=made.get("", ()),
     )
+
+
+def _by_robot(
+    table: Table,
+    own: Mapping[str, Mapping[str, Sure]],
+    made: Mapping[str, Sequence[str]],
+    robots: Iterable[str],
+) -> Iterator[Node]:
+    """The nodes of each robot, with those that they make for themselves."""
+    always = _private_nodes(it for it in table.names if not it.endpoint.when)
+    for name in robots:
+        private = made.get(name, ()) if name else ()
+        for full, sure in _with_made(own.get(name, {}), private, always.get(name, ())):
+            yield Node(full, robot=name, sure=sure)
 
 
 def _own_nodes(

@@ -13,9 +13,9 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
 
 from multibot_rewrite.base.bounded import load_json, load_yaml
+from multibot_rewrite.base.file_kinds import PLAN, refuse_others
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.knowledge.yaml_with_lines import refuse_xml
 from multibot_rewrite.spelling.plan_value import REMEDY, from_value, value_of
 from multibot_rewrite.system.records import System
 
@@ -98,7 +98,7 @@ def _quoted(value: str) -> str:
 def read_plan(data: bytes, file: str) -> System:
     """Read what ``to_yaml`` or ``to_json`` wrote; raises InputError with file, place and what to write
     there."""
-    refuse_xml(data, file)
+    refuse_others(data, file, PLAN)
     with gc_paused():
         return from_json(data, file) if is_json(data) else from_yaml(data, file)
 

@@ -10,7 +10,7 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.system.parameters import parameter_text, parameter_value
-from multibot_rewrite.system.records import Node, Parameter
+from multibot_rewrite.system.records import Node, Parameter, Place, place_of
 
 KEYS = ("lifecycle", "host", "parameters")
 # lifecycle_msgs/msg/State, the primary ones.
@@ -74,8 +74,8 @@ GAP_KEYS = ("code", "level", "at", "message", "hint")
 
 def gap_value(gap: Finding) -> dict[str, str]:
     """A finding as a row; ``at`` is the place in a file, empty for none."""
-    at = f"{gap.file}:{gap.line}" if gap.file else ""
-    return dict(zip(GAP_KEYS, (gap.code, gap.level, at, gap.message, gap.hint), strict=True))
+    at = Place(gap.file, gap.line, gap.column if gap.column > 1 else 0)
+    return dict(zip(GAP_KEYS, (gap.code, gap.level, f"{at}", gap.message, gap.hint), strict=True))
 
 
 def read_gaps(value: object, place: str) -> Iterator[Finding]:
@@ -93,8 +93,8 @@ def _gap(row: object, place: str) -> Finding:
         raise InputError(f"{place}: write texts")
     if row["level"] not in LEVELS:
         raise InputError(f"{place}: {row['level']!r} is not one of {', '.join(LEVELS)}")
-    file, _, line = row["at"].rpartition(":")
-    if row["at"] and not (file and line.isascii() and line.isdigit()):
+    at = place_of(row["at"])
+    if at.file and not at.line:
         raise InputError(f"{place}: at: write file:line, or nothing")
     found = Finding(row["code"], row["level"], row["message"], row["hint"])
-    return found._replace(file=file, line=int(line), column=1) if file else found
+    return found._replace(file=at.file, line=at.line, column=at.column or 1) if at.file else found

@@ -4,13 +4,20 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Set
-from sys import intern
 from typing import Any
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.knowledge.yaml_with_lines import unknown
-from multibot_rewrite.spelling.plan import STACK, from_text, planned_end, vacuous
+from multibot_rewrite.spelling.plan import STACK, from_text, vacuous
+from multibot_rewrite.spelling.plan_rows import (
+    OR,
+    check_keys,
+    full_name,
+    mapping,
+    read_endpoints,
+    texts,
+)
 from multibot_rewrite.spelling.plan_states import (
     NodeDemand,
     gap_value,
@@ -19,10 +26,8 @@ from multibot_rewrite.spelling.plan_states import (
     state_value,
 )
 from multibot_rewrite.system.records import (
-    KINDS,
     MAY,
     PUBLISHES,
-    ROLES,
     RUNS,
     SUBSCRIBES,
     Edge,
@@ -48,11 +53,6 @@ SOURCES, FROM, WAYS = "sources", "from", "ways"
 BY_NODE = (SOURCES, FROM, WAYS, SENDS)
 OPTIONAL_KEYS = ("distro", "ignored_nodes", "topics", "one_of", STATES, *BY_NODE, OPEN)
 OPTIONAL_ROBOT_KEYS = ("other_frames", "optional", "spelled")
-FIELDS = 5
-_TEXTS = {str}
-_ROLE_WORDS, _KIND_WORDS = frozenset(ROLES), frozenset(KINDS)
-# Between several types of an endpoint.
-OR = " | "
 REMEDY = "use the file that multibot plan wrote"
 # The endpoints of a node, a row each.
 Rows = Mapping[str, list[list[str]]]
@@ -130,12 +130,12 @@ def _topic_value(topic: Topic) -> dict[str, object]:
 
 def from_value(value: object, file: str) -> System:
     """The plan that a value of YAML or JSON holds; raises InputError."""
-    top = _mapping(value, KEYS, file, "the plan", OPTIONAL_KEYS)
+    top = mapping(value, KEYS, file, "the plan", OPTIONAL_KEYS)
     names, ends = _read_nodes(_named(top["shared_nodes"]), f"{file}: shared_nodes")
-    topics, frames = (_texts(top[key], f"{file}: {key}") for key in KEYS[2:4])
+    topics, frames = (texts(top[key], f"{file}: {key}") for key in KEYS[2:4])
     robots: list[Robot] = []
     nodes: list[Node] = []
-    for name, given in _mapping(top["robots"], (), file, "robots").items():
+    for name, given in mapping(top["robots"], (), file, "robots").items():
         robot, own, its_ends = _read_robot(str(name), given, file)
         robots.append(robot)
         nodes += own
@@ -155,7 +155,7 @@ def from_value(value: object, file: str) -> System:
         release=_release(top.get("distro", ""), file),
         shared_topics=topics,
         shared_frames=frames,
-        ignored_nodes=_texts(top.get("ignored_nodes", []), f"{file}: ignored_nodes"),
+        ignored_nodes=texts(top.get("ignored_nodes", []), f"{file}: ignored_nodes"),
         gaps=tuple(read_gaps(top.get(OPEN), f"{file}: {OPEN}")),
     )
     nothing = vacuous(plan)
@@ -215,13 +215,11 @@ def _release(value: object, file: str) -> str:
 
 def _read_robot(name: str, given: object, file: str) -> tuple[Robot, list[Node], list[End]]:
     place = f"robots.{name}"
-    robot = _mapping(given, ROBOT_KEYS, file, place, OPTIONAL_ROBOT_KEYS)
+    robot = mapping(given, ROBOT_KEYS, file, place, OPTIONAL_ROBOT_KEYS)
     keys = ("frames", "other_frames", "optional")
-    frames, others, optional = (
-        _texts(robot.get(key, []), f"{file}: {place}.{key}") for key in keys
-    )
+    frames, others, optional = (texts(robot.get(key, []), f"{file}: {place}.{key}") for key in keys)
     names, ends = _read_nodes(robot["nodes"] or {}, f"{file}: {place}.nodes")
-    tf = _full_name(robot["tf"], f"{file}: {place}.tf")
+    tf = full_name(robot["tf"], f"{file}: {place}.tf")
     tag = robot.get("spelled", "")
     if not isinstance(tag, str):
         raise InputError(f"{file}: {place}.spelled: write one word")
@@ -239,25 +237,25 @@ def _read_nodes(given: object, place: str) -> tuple[tuple[str, ...], list[End]]:
     """The names of nodes and their endpoints."""
     file, _, what = place.rpartition(": ")
     endpoints: list[End] = []
-    nodes = _mapping(given, (), file, what)
+    nodes = mapping(given, (), file, what)
     for node, rows in nodes.items():
-        endpoints += _read_endpoints(_full_name(node, place), rows, f"{place}.{node}")
+        endpoints += read_endpoints(full_name(node, place), rows, f"{place}.{node}")
     return tuple(nodes), endpoints
 
 
 def _read_topics(given: object, file: str) -> Iterator[Topic]:
-    for name, value in _mapping(given or {}, (), file, "topics").items():
+    for name, value in mapping(given or {}, (), file, "topics").items():
         place = f"{file}: topics.{name}"
-        topic = _mapping(value, (), file, f"topics.{name}")
-        _known(topic, TOPIC_KEYS, place)
+        topic = mapping(value, (), file, f"topics.{name}")
+        check_keys(topic, TOPIC_KEYS, place)
         qos = topic.get("qos", {})
         for key, right in _RIGHT.items():
             if key in topic and not right(topic[key]):
                 raise InputError(f"{place}.{key}: write {_FORMS[key]}")
-        _known(qos, QOS_KEYS, f"{place}.qos")
+        check_keys(qos, QOS_KEYS, f"{place}.qos")
         yield Topic(
-            _full_name(name, f"{file}: topics"),
-            _texts(topic.get("senders", []), f"{place}.senders"),
+            full_name(name, f"{file}: topics"),
+            texts(topic.get("senders", []), f"{place}.senders"),
             topic.get("one_sender", False),
             tuple((policy, word.upper()) for policy, word in qos.items()),
             tuple(topic.get("bridge", ())),
@@ -280,12 +278,6 @@ _FORMS = {
 }
 
 
-def _known(given: Mapping[str, Any], keys: tuple[str, ...], place: str) -> None:
-    for key in given:
-        if key not in keys:
-            raise InputError(f"{place}: {unknown('key', str(key), keys)}")
-
-
 def _in_groups(given: object, file: str) -> Iterator[tuple[str, tuple[str, ...]]]:
     """Each node of a group with its group."""
     if not isinstance(given, list):
@@ -293,74 +285,17 @@ def _in_groups(given: object, file: str) -> Iterator[tuple[str, tuple[str, ...]]
     seen: dict[str, int] = {}
     for at, group in enumerate(given):
         place = f"{file}: one_of[{at}]"
-        names = tuple(_full_name(node, place) for node in _texts(group, place))
+        names = tuple(full_name(node, place) for node in texts(group, place))
         for node in names:
             if seen.setdefault(node, at) != at:
                 raise InputError(f"{place}: {node} is in one_of[{seen[node]}] too; join the two")
             yield node, names
 
 
-def _full_name(value: object, place: str) -> str:
-    if not isinstance(value, str) or not value.startswith("/"):
-        raise InputError(f"{place}: {_not_full(value)}")
-    return intern(value)
-
-
-def _not_full(value: object) -> str:
-    return f"{value!r} is not a full name; write it with a / in front"
-
-
 def _by_node(value: object, file: str, key: str) -> Iterator[tuple[str, str]]:
-    for node, place in _mapping(value or {}, (), file, key).items():
+    for node, place in mapping(value or {}, (), file, key).items():
         if not isinstance(place, str):
             raise InputError(f"{file}: {key}.{node}: write a text")
         if key == SENDS and not all(" -> " in it for it in place.split(", ")):
             raise InputError(f"{file}: {key}.{node}: write parent -> child, not {place!r}")
         yield str(node), place
-
-
-def _mapping(
-    value: object, keys: tuple[str, ...], file: str, what: str, more: tuple[str, ...] = ()
-) -> Mapping[str, Any]:
-    """``value``, checked to have all of ``keys`` and otherwise only ``more``; any without ``keys``."""
-    if not isinstance(value, dict):
-        raise InputError(f"{file}: {what} is not a mapping; write it as multibot plan does")
-    missing = [key for key in keys if key not in value]
-    unknown = [key for key in value if keys and key not in (*keys, *more)]
-    if missing or unknown:
-        wrong = f"key {missing[0]!r} is missing" if missing else f"unknown key {unknown[0]!r}"
-        raise InputError(f"{file}: {what}: {wrong}; the keys are {', '.join((*keys, *more))}")
-    return value
-
-
-def _texts(value: object, place: str) -> tuple[str, ...]:
-    if not isinstance(value, list) or not all(isinstance(item, str) for item in value):
-        raise InputError(f"{place} is not a list of names")
-    return tuple(value)
-
-
-def _read_endpoints(node: str, rows: object, place: str) -> Iterator[End]:
-    if rows is not None and not isinstance(rows, list):
-        raise InputError(f"{place} is not a list; write [] for a node without planned endpoints")
-    for at, row in enumerate(rows or ()):
-        wrong = _wrong_row(row)
-        if wrong:
-            raise InputError(f"{place}[{at}]: {wrong}")
-        # Many nodes have the same names, types and words.
-        role, kind, name, types, code_name = map(intern, row)
-        also: tuple[str, ...] = ()
-        if OR in types:
-            types, *others = types.split(OR)
-            also = (*others,)
-        yield planned_end(node, kind, role, name, types, code_name, also)
-
-
-def _wrong_row(row: object) -> str:
-    """What is wrong with a row of the plan; empty for an endpoint."""
-    if type(row) is not list or len(row) != FIELDS or {*map(type, row)} != _TEXTS:
-        return "write [role, kind, name, type, name in the node's code]"
-    role, kind, name, _, _ = row
-    if role not in _ROLE_WORDS or kind not in _KIND_WORDS:
-        allowed = f"a role ({', '.join(ROLES)}) and a kind ({', '.join(KINDS)})"
-        return f"{role!r}, {kind!r}: write {allowed}"
-    return "" if name.startswith("/") else _not_full(name)

@@ -7,8 +7,9 @@ from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Se
 from functools import wraps
 from typing import Any, TypeVar, cast
 
-from multibot_rewrite.base.conventions import EVERYBODYS, only_looks
+from multibot_rewrite.base.conventions import EVERYBODYS
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.wording import unique
 from multibot_rewrite.system import words
 from multibot_rewrite.system.ownership import NameOwnership, Whose
 from multibot_rewrite.system.records import (
@@ -29,7 +30,7 @@ from multibot_rewrite.system.records import (
     nodes_by_robot,
 )
 from multibot_rewrite.system.tf_copies import copying_nodes, tree_topic
-from multibot_rewrite.system.tool_nodes import is_tool
+from multibot_rewrite.system.tool_nodes import is_tool, is_viewer
 
 # In the order of the fields of Ends.
 _PLACE = {role: at for at, role in enumerate((PUBLISHES, SUBSCRIBES, SERVES, CALLS))}
@@ -323,39 +324,14 @@ def _without_slash(frame: Edge) -> Edge:
     return frame._replace(child=child, parent=parent)
 
 
-def unique(names: Iterable[str]) -> tuple[str, ...]:
-    """Each name once, in their order."""
-    return tuple(dict.fromkeys(names))
-
-
 def nodes_of(ends: Iterable[End]) -> tuple[str, ...]:
     """The nodes of some endpoints, each once, in the order of their names."""
     return tuple(sorted({end.node for end in ends}))
 
 
-def is_viewer(node: str) -> bool:
-    """Does the node only look, or pass on what a person asks for?"""
-    return only_looks(last_word(node))
-
-
-def is_hidden(node: str) -> bool:
-    """Is it a node of the ``ros2`` command, or another that hides itself?"""
-    return last_word(node).startswith("_")
-
-
-def is_spawner(node: str) -> bool:
-    """Does the node load controllers, and wait for a manager until then?"""
-    return last_word(node).startswith("spawner_")
-
-
 def at_work(ends: Iterable[End]) -> list[End]:
     """The endpoints of nodes that do more than look."""
     return [end for end in ends if not is_viewer(end.node)]
-
-
-def last_word(name: str) -> str:
-    """The last segment of a name."""
-    return name.rpartition("/")[2]
 
 
 def robots_of(it: Index, nodes: Iterable[str]) -> tuple[str, ...]:
@@ -368,23 +344,3 @@ def robots_of(it: Index, nodes: Iterable[str]) -> tuple[str, ...]:
     theirs = {it.plain(node) for node in known if it.robot(node)}
     twins = any(node in theirs for node in known if not it.robot(node))
     return (*robots, NO_NAMESPACE) if twins else robots
-
-
-def in_namespaces_above(node: str, name: str) -> Iterator[str]:
-    """A name directly in a node's namespace, moved to each of the namespaces above."""
-    namespace = node.rpartition("/")[0]
-    while namespace and name.startswith(f"{namespace}/"):
-        rest = name.removeprefix(namespace)
-        namespace = namespace.rpartition("/")[0]
-        yield namespace + rest
-        name = namespace + rest
-
-
-def and_then(words: Sequence[str]) -> str:
-    """``a``, ``a and b``, ``a, b and c``."""
-    return " and ".join(filter(None, (", ".join(words[:-1]), *words[-1:])))
-
-
-def only(robots: Sequence[str]) -> str:
-    """The one robot; empty where there are several, or none."""
-    return robots[0] if len(robots) == 1 else ""

@@ -14,6 +14,7 @@ from types import NoneType
 from typing import Any, cast, get_args, get_origin, get_type_hints
 
 from multibot_rewrite.base.bounded import load_json
+from multibot_rewrite.base.file_kinds import PLAN, SNAPSHOT, refuse_others
 from multibot_rewrite.base.findings.finding import LEVELS, Finding
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.model import InputError
@@ -137,6 +138,7 @@ def from_json(data: bytes, file: str) -> System:
 def json_value(data: bytes, file: str) -> object:
     """The value of a JSON file, with the records of a snapshot that are as they have to be; raises
     InputError with file, what is wrong, what to do."""
+    refuse_others(data, file, SNAPSHOT, PLAN)
     try:
         with gc_paused():
             return load_json(data, _record_or_object)

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from fnmatch import translate
 from functools import lru_cache
 
-from multibot_rewrite.base.conventions import is_tool_word
+from multibot_rewrite.base.conventions import is_tool_word, only_looks
 
 
 def is_tool(node: str, more: tuple[str, ...] = ()) -> bool:
@@ -25,3 +26,33 @@ def _patterns(more: tuple[str, ...]) -> tuple[re.Pattern[str], re.Pattern[str]]:
     sides = ([p for p in more if "/" in p], [p for p in more if "/" not in p])
     full, last = (re.compile("|".join(map(translate, side)) or "(?!)") for side in sides)
     return full, last
+
+
+def is_viewer(node: str) -> bool:
+    """Does the node only look, or pass on what a person asks for?"""
+    return only_looks(last_word(node))
+
+
+def is_hidden(node: str) -> bool:
+    """Is it a node of the ``ros2`` command, or another that hides itself?"""
+    return last_word(node).startswith("_")
+
+
+def is_spawner(node: str) -> bool:
+    """Does the node load controllers, and wait for a manager until then?"""
+    return last_word(node).startswith("spawner_")
+
+
+def last_word(name: str) -> str:
+    """The last segment of a name."""
+    return name.rpartition("/")[2]
+
+
+def in_namespaces_above(node: str, name: str) -> Iterator[str]:
+    """A name directly in a node's namespace, moved to each of the namespaces above."""
+    namespace = node.rpartition("/")[0]
+    while namespace and name.startswith(f"{namespace}/"):
+        rest = name.removeprefix(namespace)
+        namespace = namespace.rpartition("/")[0]
+        yield namespace + rest
+        name = namespace + rest

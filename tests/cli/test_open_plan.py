@@ -69,7 +69,7 @@ def test_a_graph_as_planned_of_a_plan_that_does_not_close(
     assert open_.check(vars(open_)[of]) == 0
     out, err = capsys.readouterr()
     assert SAID in out
-    assert "2 robots, 1 finding: as planned, but the plan does not close" in err
+    assert "2 robots, 1 finding: as planned, but the plan has faults" in err
     assert open_.check(vars(open_)[of], "--fail-on", "warning") == 1
     assert open_.check(vars(open_)[of], "--fail-on", "warning", "--ignore", "MG303") == 0
     assert "0 findings: as planned (" in capsys.readouterr().err
@@ -82,7 +82,7 @@ def test_a_graph_that_is_not_as_planned_either(
     fewer = as_planned(plan)
     Path(open_.graph).write_bytes(to_json(fewer._replace(nodes=fewer.nodes[1:])))
     assert open_.check(open_.plan) == 1
-    assert "not as planned, and the plan does not close" in capsys.readouterr().err
+    assert "not as planned, and the plan has faults" in capsys.readouterr().err
 
 
 @pytest.mark.slow
@@ -148,3 +148,65 @@ def test_rows_that_cannot_be_meant(rows: str, told: str, tmp_path: Path) -> None
         from_yaml(f"{text}open: {rows}\n".encode(), "plan.yaml")
     assert str(error.value).startswith("plan.yaml: open")
     assert told in str(error.value)
+
+
+ROVER = """\
+<robot name="rover">
+  <link name="base_link">
+    <inertial>
+      <mass value="1"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/>
+    </inertial>
+  </link>
+  <link name="laser"/>
+  <joint name="laser_joint" type="fixed"><parent link="base_link"/><child link="laser"/></joint>
+</robot>
+"""
+FAULTY = """\
+ekf_filter_node:
+  ros__parameters:
+    frequncy: 30.0
+    odom0: 1odom
+    base_link_frame: base_lnk
+"""
+FLEET = """\
+description: rover.urdf
+simulator: gazebo
+stack: [robot_state, robot_localization]
+companions: {params: ekf.yaml}
+robots: [{name: robot1}, {name: robot2}]
+"""
+
+
+def test_each_command_says_the_same_of_a_parameter_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Expected by robot_localization (parameters), rcl (names of topics) and the links of the robot."""
+    for name, text in (("rover.urdf", ROVER), ("ekf.yaml", FAULTY), ("fleet.yaml", FLEET)):
+        (tmp_path / name).write_text(text)
+    monkeypatch.chdir(tmp_path)
+    commands = [
+        ["build", "fleet.yaml", "-o", "out"],
+        ["plan", "fleet.yaml", "-o", "plan.yaml"],
+        ["check", "plan.yaml", "--snapshot", "graph.json"],
+        ["check", "out/plan.yaml", "--snapshot", "graph.json"],
+    ]
+    said = []
+    for words in commands:
+        if words[0] == "check":
+            plan = from_yaml((tmp_path / words[1]).read_bytes(), words[1])
+            (tmp_path / "graph.json").write_bytes(to_json(as_planned(plan)))
+        assert main(words) == 0
+        lines = "".join(capsys.readouterr()).splitlines()
+        said.append([it.partition(":")[2] for it in lines if "ekf.yaml:" in it])
+    assert said[0] == said[1] == said[2] == said[3]
+    codes = [(it.split(":")[0], it.split()[2]) for it in said[0]]
+    assert codes == [("3", "MB110"), ("4", "MB312"), ("5", "MB853")]
+
+
+def test_a_robot_in_gazebo_without_a_sensor_has_its_clock(tmp_path: Path) -> None:
+    """All nodes of the launch file wait for /clock, which gz-sim has on a gz topic alone."""
+    for name, text in (("rover.urdf", ROVER), ("fleet.yaml", FLEET)):
+        (tmp_path / name).write_text(text.replace("companions: {params: ekf.yaml}\n", ""))
+    assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out")]) == 0
+    assert "gz.msgs.Clock" in (tmp_path / "out" / "bridge.yaml").read_text()
+    assert main(["check-launch", str(tmp_path / "out" / "fleet.launch.py")]) == 0

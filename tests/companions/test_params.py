@@ -30,7 +30,7 @@ from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.companions.context import make_context
 from multibot_rewrite.companions.params.rewrite import nodes_without_section, rewrite_params
-from multibot_rewrite.companions.params.sections import raw_sections
+from multibot_rewrite.companions.params.sections import pattern_of, raw_sections
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, fill_template
 from multibot_rewrite.companions.yaml_text import quoted, read_yaml
 from multibot_rewrite.knowledge.node_library import extend, stack_of
@@ -65,6 +65,10 @@ def value(node: str, line: str, policy: tuple[str, str] = L2, distro: str = "jaz
         (L4, "/**/planner_server", "/**/planner_server"),
         (L4, "/**/local_costmap", "/**/local_costmap"),
         (L4, "/**/smoother_server", "/**/smoother_server_robot1"),
+        (L2, "/*", "/*"),
+        (L2, "/*/planner_server", "/*/planner_server"),
+        (L2, "/*/front/driver", "/*/front/driver"),
+        (L4, "/*/smoother_server", "/*/smoother_server_robot1"),
         (L2, "front/driver", "/robot1/front/driver"),
         (L4, "front/driver", "/front/driver_robot1"),
         (L2, "<robot_namespace>/amcl_x", "/robot1/amcl_x"),
@@ -592,11 +596,30 @@ def test_a_node_without_any_section_is_reported() -> None:
     assert "amcl" not in told.split()
     wild = read_yaml(section("/**/collision_monitor", "x: 1").encode(), "q.yaml")
     assert "collision_monitor" not in str(nodes_without_section([document, wild], setting(L2)))
+    every = read_yaml(section("/**", "x: 1").encode(), "r.yaml")
+    assert nodes_without_section([document, every], setting(L2)) == found
     assert nodes_without_section([document], setting(L1)) == tuple(
         it
         for it in nodes_without_section([document], setting(L1))
         if "tf_frame_prefix" in it.message
     )
+
+
+@pytest.mark.parametrize(
+    ("pattern", "full", "matches"),
+    [
+        ("/**/amcl", "/amcl", True),
+        ("/**/amcl", "/a/b/amcl", True),
+        ("/**", "/a/b/amcl", True),
+        ("/*/amcl", "/a/amcl", True),
+        ("/*/amcl", "/amcl", False),
+        ("/*/amcl", "/a/b/amcl", False),
+        ("/a.b", "/axb", False),
+    ],
+)
+def test_what_a_wildcard_stands_for(pattern: str, full: str, matches: bool) -> None:
+    """One star is one word, two are any number of them, none too (rcl_yaml_param_parser)."""
+    assert (re.fullmatch(pattern_of(pattern), full) is not None) == matches
 
 
 # ---------------------------------------------------------------- what is told

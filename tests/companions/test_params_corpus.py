@@ -32,6 +32,7 @@ def corpus_params() -> dict[str, Path]:
     return found
 
 
+@pytest.mark.slow
 def test_a_sample_of_real_files(corpus_params: dict[str, Path]) -> None:
     wrong, refused, _ = run(spread(corpus_params, 120))
     on_record = json.loads(REFUSALS.read_text())

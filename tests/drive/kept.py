@@ -109,6 +109,9 @@ def of_urdf(root: etree._Element, old: bool = False) -> Kept:
             made += [own.name] if own else []
         queue += [it.child for it in joints if it.parent == name]
     sensors = tuple(sensors_of(root, body, {*links, *made}))
+    added = [it for block in root.iterfind("gazebo") if not block.get("reference") for it in block]
+    links += [it.get("name", "") for it in added if it.tag == "link"]
+    made += [it.get("name", "") for it in added if it.tag == "joint"]
     plugins = [it for block in root.iterfind("gazebo") for it in plugins_of(block)]
     return Kept(tuple(links), tuple(made), sensors, tuple(plugins))
 

@@ -95,6 +95,8 @@ def opened(node: str, values: Mapping[str, Any], release: str) -> Iterator[Opene
 
 def led_by(node: str, row: Mapping[str, str], values: Mapping[str, Any]) -> str:
     """The name that a parameter gives, or that of the code."""
+    if row["name"] == "<either>joint_states":  # joint_state_broadcaster.cpp
+        return f"{'~/' if values.get('use_local_topics') is True else ''}joint_states"
     parameter, default = GIVEN.get((node, row["name"]), (row["parameter"], row["name"]))
     parameter = PARAMETERS.get((node, row["name"]), parameter)
     return str(values.get(parameter) or default) if parameter else default

@@ -10,13 +10,13 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
-from typing import NamedTuple
 
 import fleet
 import pytest
 import rcl_names
 import verdict
 from paths import ROOT
+from planted import FAULTS, Spoiled
 
 pytestmark = [
     pytest.mark.live,
@@ -34,63 +34,6 @@ EXAMPLES = {
     "two_robots_nav2": {"robot1": ALL, "robot2": ALL},
     "two_robots_postfix": {"robot1": "starts, drives, sees", "robot2": "starts, drives, sees"},
 }
-
-
-class Spoiled(NamedTuple):
-    """A text of a built file that was changed, and what a robot does not do then."""
-
-    example: str
-    file: str
-    old: str
-    new: str
-    robot: str
-    what: str
-    why: str
-
-
-FAULTS = [
-    Spoiled("two_robots_nav2", "robot1/bridge.yaml", 'ros_topic_name: "/robot1/cmd_vel"',
-            'ros_topic_name: "/cmd_vel"', "robot1", "drives", "/robot1/cmd_vel: that moves []"),
-    Spoiled("two_robots_nav2", "robot2/bridge.yaml", 'gz_topic_name: "/robot2/cmd_vel"',
-            'gz_topic_name: "/robot1/cmd_vel"', "robot2", "drives", "no topic of ROS reaches"),
-    Spoiled("two_robots_nav2", "robot2/hexbase.urdf", "<topic>robot2/cmd_vel", "<topic>robot1/cmd_vel",
-            "robot1", "drives", "/robot1/cmd_vel moves robot2, too"),
-    Spoiled("two_robots_nav2", "robot2/hexbase.urdf", "<topic>robot2/scan", "<topic>scan",
-            "robot2", "sees", "/robot2/scan, which nobody sends"),
-    Spoiled("two_robots_nav2", "robot2/bridge.yaml", '"/robot2/scan"', '"/robot1/scan"',
-            "robot2", "sees", "/robot2/scan, which nobody sends"),
-    Spoiled("two_robots_nav2", "robot1/nav2_params.yaml", "odom_topic: odom",
-            "odom_topic: /robot2/odom", "robot1", "sees", "which robot2 sends"),
-    Spoiled("two_robots_nav2", "robot1/nav2_params.yaml", "robot_base_frame: base_link",
-            "robot_base_frame: robot1/base_link", "robot1", "plans", "robot1/base_link on /robot1/tf"),
-    Spoiled("two_robots_nav2", "fleet.launch.py", '("/tf", "tf")', '("/tf_", "tf")',
-            "robot1", "plans", "on /tf, where it is not"),
-    Spoiled("two_robots_nav2", "fleet.launch.py", 'namespace="/robot2"', 'namespace="/robot1"',
-            "robot2", "starts", "two nodes are called /robot1/"),
-    Spoiled("two_robots_nav2", "fleet.launch.py", '"route_server", ', '"router", ',
-            "robot1", "starts", "waits for router"),
-    Spoiled("two_robots_nav2", "fleet.launch.py", '"-topic", "/robot1/robot_description"',
-            '"-topic", "robot_description"', "robot1", "starts", "waits for /robot_description"),
-    Spoiled("two_robots_nav2", "fleet.launch.py", 'file("robot1/nav2_params.yaml")',
-            'file("robot1/params.yaml")', "robot1", "starts", "params.yaml, which is not there"),
-    Spoiled("two_robots_nav2", "fleet.launch.py", 'text("robot1/hexbase.urdf")',
-            'text("robot1/hexbase")', "", "starts", "the launch file raises"),
-    Spoiled("two_robots_nav2", "fleet.launch.py", "cmd_vel:=/robot1/cmd_vel",
-            "cmd_vel:=/robot2/cmd_vel", "robot1", "drives",
-            "to /robot2/cmd_vel: that moves ['robot2']"),
-    Spoiled("mixed_fleet", "base1/nav2_params.yaml", "scan_topic: scan", "scan_topic: laser",
-            "base1", "sees", "/base1/laser, which nobody sends"),
-    Spoiled("two_arms_moveit", "left/controllers.yaml", "arm_controller:\n", "hand:\n",
-            "left", "starts", "arm_controller has no joints"),
-    Spoiled("two_arms_moveit", "left/arm.urdf", 'command_interface name="position"',
-            'command_interface name="effort"', "left", "starts", "the description does not export"),
-    Spoiled("two_arms_moveit", "fleet.launch.py",
-            'namespace="/right",\n            name="controller_manager"',
-            'namespace="/",\n            name="controller_manager"', "right", "starts",
-            "a spawner waits for /right/controller_manager"),
-    Spoiled("two_robots_postfix", "robot2/scout.urdf", "cmd_vel/robot2", "cmd_vel/robot1",
-            "robot1", "drives", "/cmd_vel/robot1 moves robot2, too"),
-]  # fmt: skip
 
 
 @pytest.fixture(scope="module")

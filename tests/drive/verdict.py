@@ -8,12 +8,12 @@ its nodes look up is in one tree with its own links.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
 
 from fleet import End, Fleet
 from nodes import Node
 from programs import MAP
 from trees import LOOKED_UP, TF, Edge, connected, whole
+from twins import Fault, models_twice, twins
 
 COMMANDS = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 # They pass a command on: what they read is sent again.
@@ -37,18 +37,10 @@ DRIVING = (
 )
 
 
-class Fault(NamedTuple):
-    """What a robot does not do ("starts", "drives", "sees", "plans"), and why."""
-
-    robot: str
-    what: str
-    why: str
-
-
 def judged(fleet: Fleet) -> tuple[Fault, ...]:
     """Every fault of a fleet."""
     found = [Fault(*it) for it in fleet.faults]
-    found += twins(fleet)
+    found += [*twins(fleet), *models_twice(fleet)]
     for robot in fleet.robots:
         found += drives(fleet, robot)
         found += sees(fleet, robot)
@@ -86,15 +78,6 @@ def said(found: dict[str, str]) -> str:
     return ", ".join(
         {"yes": word, "no": f"no {word}"}.get(it, f"{word} {it}") for word, it in found.items()
     )
-
-
-def twins(fleet: Fleet) -> Iterator[Fault]:
-    """Nodes of one name: the second takes the services of the first. Bridges and windows have none."""
-    seen: dict[str, str] = {}
-    for it in fleet.nodes:
-        if it.what not in ("parameter_bridge", "rviz2") and it.fqn in seen:
-            yield Fault(it.robot, "starts", f"two nodes are called {it.fqn}")
-        seen[it.fqn] = it.robot
 
 
 def heard(fleet: Fleet) -> Iterator[tuple[str, str, str]]:
@@ -279,6 +262,21 @@ def plans(fleet: Fleet, robot: str) -> Iterator[Fault]:
         near = [e for e in fleet.edges if e.topic in (topic, f"{topic}_static")]
         yield from unknown_frames(fleet, robot, it, topic, near)
     yield from two_parents(fleet, robot)
+    yield from one_start(fleet, robot)
+
+
+def one_start(fleet: Fleet, robot: str) -> Iterator[Fault]:
+    """Odometry that begins at a frame where another robot's begins: the two are laid on each other."""
+    plain = {it.fqn: it.what for it in fleet.nodes}
+    names = {model: who for who, model in fleet.models.items()}
+    begins = {
+        (names.get(it.robot, it.robot), it.topic, it.parent)
+        for it in fleet.edges
+        if it.node.startswith("gz ") or plain.get(it.node) in DRIVING
+    }
+    for who, topic, frame in sorted(begins):
+        if who != robot and (robot, topic, frame) in begins:
+            yield Fault(robot, "plans", f"{frame} on {topic} is where {who} begins, too")
 
 
 def mapless(fleet: Fleet, robot: str) -> Iterator[Fault]:

@@ -575,8 +575,11 @@ def until_killed(out: Path, number: int, runs: int, seed: int) -> int:
     return hit
 
 
+# What kills at once is tried around each step below.
 @pytest.mark.slow
-@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM])
+@pytest.mark.parametrize(
+    "number", [signal.SIGTERM, pytest.param(signal.SIGKILL, marks=pytest.mark.deep)]
+)
 def test_a_killed_build_leaves_old_or_new(number: int, out: Path) -> None:
     until_killed(out, number, 4, seed=number)
 

@@ -15,6 +15,7 @@ from paths import FIXTURES
 from multibot_rewrite import InputError, load_fleet
 from multibot_rewrite.base.findings.finding import NOTE, Finding
 from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.sources import job
 from multibot_rewrite.description.sources.read import SourceText, read_whole
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
@@ -122,7 +123,7 @@ def test_a_name_of_its_own_beside_another_prefix_or_namespace(tmp_path: Path, ke
     srdf = made.text("left/arm.srdf")
     assert 'base_link="left_base_link" tip_link="left_tool0"' in srdf
     assert f'link2="{camera}"' in srdf
-    assert worth_a_look((*made.findings, *made.made.findings)) == []
+    assert worth_a_look((*made.findings, *made.made.findings)) == ["MB610"]
 
 
 def test_a_namespace_argument(tmp_path: Path) -> None:
@@ -149,7 +150,7 @@ robots:
     made = load_fleet(fleet(tmp_path, text))
     root = etree.fromstring(made.robot("two").description.encode())
     assert [it.text for it in root.iter("namespace")] == ["fleet_b", "/fleet_b"]
-    assert worth_a_look((*made.findings, *made.made.findings)) == []
+    assert worth_a_look((*made.findings, *made.made.findings)) == ["MB610"]
     assert [it.shared for robot in made.plan.robots for it in [robot.member]] == [(), ()]
 
 
@@ -193,3 +194,31 @@ def test_a_fleet_with_own_arguments_can_be_pickled(tmp_path: Path) -> None:
     made = load_fleet(fleet(tmp_path, FLEET + BY_PLACEHOLDER))
     copy = pickle.loads(pickle.dumps(made))
     assert copy.text("left/controllers.yaml") == made.text("left/controllers.yaml")
+
+
+def test_two_arguments_of_which_one_has_no_default(tmp_path: Path) -> None:
+    """As UR's macro, which needs ``name`` and ``tf_prefix``: the companions' names follow both."""
+    text = (
+        '<robot name="$(arg name)" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+        '<xacro:arg name="tf_prefix" default=""/>'
+        '<link name="$(arg tf_prefix)base"/><link name="$(arg tf_prefix)hand"/>'
+        '<joint name="$(arg tf_prefix)elbow" type="continuous"><parent link="$(arg tf_prefix)base"/>'
+        '<child link="$(arg tf_prefix)hand"/></joint>'
+        '<ros2_control name="$(arg name)" type="system"><hardware><plugin>a/B</plugin></hardware>'
+        '<joint name="$(arg tf_prefix)elbow"><command_interface name="position"/>'
+        '<state_interface name="position"/></joint></ros2_control></robot>'
+    )
+    (tmp_path / "arm.urdf.xacro").write_text(text)
+    (tmp_path / "controllers.yaml").write_text(PARAMETERS)
+    fleet = {
+        "layout": "frames-per-robot", "affix": "prefix", "distro": "jazzy",
+        "description": "arm.urdf.xacro",
+        "arguments": {"name": "{robot}", "tf_prefix": "{robot}_"},
+        "companions": {"params": ["controllers.yaml"]},
+        "robots": [{"name": "left"}, {"name": "right"}],
+    }  # fmt: skip
+    file = tmp_path / "fleet.yaml"
+    file.write_text(yaml.safe_dump(fleet))
+    assert main(["build", str(file), "-o", str(tmp_path / "out"), "-q"]) == 0
+    written = yaml.safe_load((tmp_path / "out/left/controllers.yaml").read_text())
+    assert written["/left/arm_controller"]["ros__parameters"]["joints"] == ["left_elbow"]

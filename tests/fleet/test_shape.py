@@ -26,7 +26,7 @@ from multibot_rewrite.fleet.file.shape import shapes
 from multibot_rewrite.launch import missing as without_launch
 
 ROBOT = """\
-<robot name="r"><link name="base_link"/>
+<robot name="r"><link name="base_link"><inertial><mass value="1"/></inertial></link>
   <gazebo><plugin name="p" filename="gz-sim-imu-system"/></gazebo></robot>
 """
 PARAMS = "{}: {{ros__parameters: {{frame: base_link}}}}\n"

@@ -8,6 +8,7 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.knowledge.conditions import (
     holds,
     joined,
+    of_kind,
     of_release,
     parse_condition,
     said,
@@ -117,6 +118,44 @@ def test_what_a_condition_says_of_releases_is_settled(
     text: str, release: str, left: str | None
 ) -> None:
     assert of_release(text, release) == left
+
+
+@pytest.mark.parametrize(
+    ("text", "known"),
+    [
+        ("words has one", True),
+        ("words has ne", False),
+        ("run: simulated", True),
+        ("run: real", False),
+        ("given: words", True),
+        ("given: absent", None),
+        ("missing: words", False),
+        ("missing: absent", None),
+    ],
+)
+def test_what_a_parameter_says_of_how_it_is_started(text: str, known: bool | None) -> None:
+    """MoveIt's capabilities are words of one text. What a file does not pass, a launch file may."""
+    values = {"words": "a/one two", "use_sim_time": True}
+    assert verdict(text, values.get) is known
+
+
+def test_without_use_sim_time_nothing_says_how_it_runs() -> None:
+    assert verdict("run: simulated", {}.get) is None
+
+
+@pytest.mark.parametrize(
+    ("text", "left"),
+    [
+        ("program: one", ""),
+        ("program: other", None),
+        ("on and program: one", "on"),
+        ("program: other or on", "on"),
+        ("program: one or on", ""),
+        ("", ""),
+    ],
+)
+def test_what_is_known_of_a_kind_is_asked_no_more(text: str, left: str | None) -> None:
+    assert of_kind(text, "program", "one".__eq__) == left
 
 
 @pytest.mark.parametrize(

@@ -377,9 +377,14 @@ def test_a_spawner_and_a_place(fleet: str, context: Any) -> None:
     (classic,) = run(context, launch.spawn("classic", "robot1", fleet))
     (place,) = run(context, launch.place("robot1", fleet))
     assert gz.options["arguments"] == robot.spawn_arguments
-    assert gz.options["package"] == "ros_gz_sim"
     assert classic.options["arguments"] == robot.classic_arguments
     assert place.options["arguments"] == robot.transform_arguments
+    # As the packages install them.
+    assert [(it.options["package"], it.options["executable"]) for it in (gz, classic, place)] == [
+        ("ros_gz_sim", "create"),
+        ("gazebo_ros", "spawn_entity.py"),
+        ("tf2_ros", "static_transform_publisher"),
+    ]
     assert run(context, launch.place("robot2", fleet)) == []
 
 

@@ -39,8 +39,11 @@ LINK = '<link name="gripper"/>\n'
             [("MB902", "note", 2, 9)],
         ),
         ('<gazebo><plugin name="p" filename="libgazebo_ros_camera.so"/></gazebo>', []),
-        # Who has no parameter has no name in one.
-        ("<ros2_control><hardware><plugin>un/Heard</plugin></hardware></ros2_control>", []),
+        # Without a parameter it opens what it opens.
+        (
+            "<ros2_control><hardware><plugin>un/Heard</plugin></hardware></ros2_control>",
+            [("MB903", "note", 2, 1)],
+        ),
         (
             '<ros2_control><hardware><plugin>un/Heard</plugin><param name="a">b</param></hardware>'
             "</ros2_control>",
@@ -102,7 +105,7 @@ def test_a_row_of_another_release(
 
 def test_a_plugin_that_only_another_release_has(tmp_path: Path) -> None:
     vocabulary = tmp_path / "my.vocab"
-    vocabulary.write_text("[plugin lamp]\nreleases: <=jazzy\nlink uses link\n")
+    vocabulary.write_text("[plugin lamp]\nopens: nothing\nreleases: <=jazzy\nlink uses link\n")
     file = tmp_path / "r.urdf"
     plugin = "<gazebo><plugin name='l' filename='liblamp.so'><link>a</link></plugin></gazebo>"
     file.write_text(f"<robot name='r'><link name='a'/>{plugin}</robot>")

@@ -216,6 +216,26 @@ def test_what_is_found_and_what_is_not(body: str, expected: str, tmp_path: Path)
     assert " ".join(sorted(f"{it.code}:{it.line}" for it in found(body, tmp_path))) == expected
 
 
+@pytest.mark.parametrize(
+    ("ends", "lines"),
+    [
+        (("ab", "ab"), [3]),
+        (("ac", "bc"), [3]),
+        (("ad", "bd", "cd"), [3, 4]),
+        # Its own parent, which is another finding.
+        (("ab", "bb"), []),
+    ],
+)
+def test_each_joint_but_the_first_is_told_of_a_child(
+    ends: tuple[str, ...], lines: list[int], tmp_path: Path
+) -> None:
+    names = "".join(sorted({*"".join(ends)}))
+    body = links(names) + "".join(joint(f"j{at}", it) for at, it in enumerate(ends))
+    told = [it for it in found(body, tmp_path) if it.code == "MB504"]
+    assert [it.line for it in told] == lines
+    assert all(f"of 'j{at}' and of 'j0'" in it.message for at, it in enumerate(told, 1))
+
+
 def test_the_message_names_the_loop_and_the_way(tmp_path: Path) -> None:
     body = links("abcd") + joint("j", "bc") + joint("k", "cd") + joint("l", "db")
     (finding,) = found(body, tmp_path)
@@ -320,7 +340,7 @@ def test_vectors() -> None:
 
 def test_every_rule_of_the_group_is_in_a_case() -> None:
     reported = {it for case in CASES for it in str(case.values[1]).split() if it[:3] == "MB5"}
-    examples = {"MB532", "MB534", "MB509"}  # their examples say all there is
+    examples = {"MB532", "MB534", "MB509", "MB538"}  # their examples say all there is
     geometry = {"MB536", "MB537"}  # test_lint_geometry.py
     known = {it[:5] for it in reported} | examples | geometry
     assert known == {it for it in RULES if it.startswith("MB5")}

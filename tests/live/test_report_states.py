@@ -65,7 +65,7 @@ def test_only_a_fleet_without_findings_is_green() -> None:
     assert head(report_pages.spoiled()) == ("bad", "not as planned")
     doubt = ("unsure", "inconclusive, the view may be incomplete")
     assert head(report_pages.inconclusive()) == doubt
-    open_plan = ("unsure", "as planned, but the plan does not close")
+    open_plan = ("unsure", "as planned, but the plan has faults")
     assert head(report_pages.not_closed()) == open_plan
 
 
@@ -277,7 +277,7 @@ def test_the_open_ends_of_a_plan_are_on_the_page(
     plan.write_text(to_yaml(made._replace(gaps=(report_pages.OPEN_END,))))
     graph.write_bytes(to_json(nav2_graphs.healthy(made)))
     code, tree = drawn(tmp_path, "check", str(plan), "--snapshot", str(graph))
-    words = "as planned, but the plan does not close"
+    words = "as planned, but the plan has faults"
     assert (code, tree.find(".//h1").text) == (0, words)
     assert f": {words} (" in capsys.readouterr().err
     assert [it.get("data-robot") for it in tree.find_class("finding")] == ["1"]

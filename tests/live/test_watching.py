@@ -5,38 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import pytest
-from graph_cases import environment, moved, without_node
-from small_fleet import healthy, plan
+from graph_cases import environment, moved
+from small_fleet import clash, half, healthy, moving, plan
 
 from multibot_rewrite.live.watching import Progress, Verdict, WatchState, final, with_found
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.system.records import CHANGING, PUBLISHES, TOPIC, Caveat, End, Node, System
-
-ROBOT2 = ("/robot2/driver", "/robot2/robot_state_publisher")
-
-
-def moving(graph: System) -> System:
-    """The graph while it changes."""
-    around = environment(Caveat("not-settled", True, "the graph is still changing"))
-    return graph._replace(environment=around._replace(settled=CHANGING))
-
-
-def half() -> System:
-    """robot2 is not there."""
-    graph = healthy()
-    for node in ROBOT2:
-        graph = without_node(graph, node)
-    frames = tuple(frame for frame in graph.edges if "robot2" not in frame.child)
-    return graph._replace(edges=frames)
-
-
-def clash() -> System:
-    """Somebody publishes another type on a robot's topic."""
-    graph = healthy()
-    end = End(
-        TOPIC, PUBLISHES, "/robot1/cmd_vel", "std_msgs/msg/Empty", "", "/robot1/driver", None, ""
-    )
-    return graph._replace(ends=(*graph.ends, end))
+from multibot_rewrite.system.records import Caveat, Node, System
 
 
 def watched(graphs: Iterable[System]) -> list[WatchState]:

@@ -12,6 +12,7 @@ from expected_names import (
     ROBOT,
     Names,
     Options,
+    Slot,
     bare,
     changed_slots,
     graph_problems,
@@ -81,39 +82,29 @@ def dangling_meets(root: etree._Element, table: Names) -> bool:
     return any(slot.value in come for slot in slots(root))
 
 
-@given(random_robots(), options)
-@settings(max_examples=200)
-def test_it_is_the_same_robot_under_new_names(robot: Robot, words: Options) -> None:
-    result = attempt(robot, words)
-    if result:
-        assert graph_problems(robot.text, result.data, words) == []
-
-
 @given(random_robots(), options, robot_names)
-@settings(max_examples=150)
-def test_strip_gives_the_input_back(robot: Robot, words: Options, name: str) -> None:
+@settings(max_examples=200)
+def test_the_laws_of_a_rewrite(robot: Robot, words: Options, name: str) -> None:
+    """The same robot under new names, and back; what is told of is changed, and names alone."""
     result = attempt(robot, words, name)
     if result:
+        assert graph_problems(robot.text, result.data, words, name) == []
         assert strip(result.data, name, **words) == robot.text  # type: ignore[arg-type]
+        found = changed_slots(robot.text, result.data, name)
+        assert_told(result, found)
+        assert_names_alone(found, name)
 
 
-@given(random_robots(), options)
-@settings(max_examples=150)
-def test_changes_are_the_difference(robot: Robot, words: Options) -> None:
-    result = attempt(robot, words)
-    if result:
-        listed = [c for c in result.changes if c.rule != "inserted"]
-        found = changed_slots(robot.text, result.data)
-        wanted = Counter((" ".join(c.old.split()), " ".join(c.new.split())) for c in listed)
-        assert Counter((old.value, new) for old, new in found) == wanted
+def assert_told(result: Rewrite, found: list[tuple[Slot, str]]) -> None:
+    """The changes are the difference."""
+    listed = [c for c in result.changes if c.rule != "inserted"]
+    wanted = Counter((" ".join(c.old.split()), " ".join(c.new.split())) for c in listed)
+    assert Counter((old.value, new) for old, new in found) == wanted
 
 
-@given(random_robots(), options)
-@settings(max_examples=150)
-def test_names_are_the_only_thing_that_changes(robot: Robot, words: Options) -> None:
-    result = attempt(robot, words)
-    for (tag, attribute, old), new in changed_slots(robot.text, result.data) if result else ():
-        assert is_insertion(old, new)
+def assert_names_alone(found: list[tuple[Slot, str]], name: str) -> None:
+    for (tag, attribute, old), new in found:
+        assert is_insertion(old, new, name)
         assert attribute in RENAMED_ATTRIBUTES if attribute else tag in PARAMETERS
         assert tag != "note"
 
@@ -183,7 +174,7 @@ def verdict(robot: Robot, fleet: Sequence[str], words: Options) -> object:
     st.lists(odd_names, min_size=2, max_size=3, unique=True),
     st.booleans(),
 )
-@settings(max_examples=300)
+@settings(max_examples=120)
 def test_a_robots_place_in_the_call_does_not_matter(
     robot: Robot, words: Options, fleet: list[str], again: bool
 ) -> None:

@@ -19,7 +19,7 @@ from lxml import etree
 from paths import FIXTURES
 from real_robots import corpus_files, spread, wheel_files
 
-from multibot_rewrite import MultibotError, rewrite
+from multibot_rewrite import MultibotError, rewrite, rewrite_all, strip
 
 pytestmark = pytest.mark.slow
 
@@ -382,3 +382,27 @@ def test_the_warning_is_true_for_real_files(corpus: dict[str, Path]) -> None:
             continue
         if new != [f"{joint}_{ROBOT}" for joint in old]:
             assert "MB405" in {finding.code for finding in result.findings}, name
+
+
+@needs_mujoco
+@pytest.mark.parametrize("options", OPTIONS)
+def test_two_robots_are_in_one_scene_of_mujoco(options: dict[str, str]) -> None:
+    """All names of a kind are in one list there: mjCModel::CheckRepeat."""
+    import mujoco
+
+    shapes = '<{0} name="hull"><geometry><box size="1 1 1"/></geometry></{0}>'
+    inertial = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
+    robot = (
+        f'<robot name="r"><link name="base">{inertial}{shapes.format("collision")}</link>'
+        f'<link name="arm">{inertial}{shapes.format("collision").replace("hull", "plate")}</link>'
+        '<joint name="j" type="continuous"><parent link="base"/><child link="arm"/></joint></robot>'
+    )
+    scene = mujoco.MjSpec()
+    for one in rewrite_all(robot, ["robot1", "robot2"], **options):
+        part = mujoco.MjSpec.from_string(one.data.decode())
+        scene.attach(part, frame=scene.worldbody.add_frame(), prefix="")
+        assert strip(one.data, one.robot, **options) == robot.encode()
+    model = scene.compile()
+    names = {model.geom(at).name for at in range(model.ngeom)}
+    assert len(names) == 4
+    assert all("robot1" in it or "robot2" in it for it in names)

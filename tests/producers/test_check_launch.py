@@ -94,9 +94,28 @@ def test_a_prefix_of_frames_counts(run: Graph) -> None:
 
 def test_two_robots_on_one_tf_collide_before_anything_starts(run: Graph) -> None:
     assert "MG402" in codes(run(publisher("/robot1"), publisher("/robot2")))
-    assert codes(run(publisher("/robot1", TF), publisher("/robot2", TF))) == set()
+    joints = [
+        node("joint_state_publisher/joint_state_publisher", "joints", it)
+        for it in ("/robot1", "/robot2")
+    ]
+    assert codes(run(publisher("/robot1", TF), publisher("/robot2", TF), *joints)) == set()
     prefixed = [publisher(f"/{it}", frame_prefix=f"{it}/") for it in ("robot1", "robot2")]
-    assert codes(run(*prefixed)) == set()
+    assert codes(run(*prefixed, *joints)) == set()
+
+
+def test_what_nothing_in_the_launch_sends_is_told_as_in_a_build(run: Graph) -> None:
+    (found,) = diagnose(run(publisher("/robot1"))).findings
+    assert (found.code, found.level, found.names) == ("MG316", "note", ("/robot1/joint_states",))
+
+
+@pytest.mark.parametrize(
+    ("program", "hears"), [("localization", True), ("async", False), ("sync", False)]
+)
+def test_a_program_has_its_own_topics(run: Graph, program: str, hears: bool) -> None:
+    """slam_toolbox: only the localization node subscribes to initialpose
+    (src/slam_toolbox_localization.cpp)."""
+    made = run(node(f"slam_toolbox/{program}_slam_toolbox_node", "slam_toolbox"))
+    assert (("subscribes", "/robot1/initialpose") in names(made, "/robot1/slam_toolbox")) is hears
 
 
 def test_a_component_has_its_own_rules_and_its_helper_those_of_the_container(run: Graph) -> None:

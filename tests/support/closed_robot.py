@@ -5,12 +5,12 @@ from __future__ import annotations
 FILES = {
     "rover.urdf": """\
 <robot name="rover">
-  <link name="base_link"/>
-  <link name="left_wheel_link"/>
-  <link name="right_wheel_link"/>
+  <link name="base_link"><inertial><mass value="1"/></inertial></link>
+  <link name="left_wheel_link"><inertial><mass value="1"/></inertial></link>
+  <link name="right_wheel_link"><inertial><mass value="1"/></inertial></link>
   <link name="imu_link"/>
   <link name="lidar_link"/>
-  <link name="finger_link"/>
+  <link name="finger_link"><inertial><mass value="1"/></inertial></link>
   <joint name="left_wheel_joint" type="continuous">
     <parent link="base_link"/><child link="left_wheel_link"/><axis xyz="0 1 0"/>
   </joint>

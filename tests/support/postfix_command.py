@@ -13,7 +13,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 COMMAND = (sys.executable, "-m", "multibot_rewrite.cli.urdf_postfix")
-PATIENCE = 30
+# For a busy machine.
+PATIENCE = 120
 TEN = tuple(f"r{number}" for number in range(1, 11))
 
 

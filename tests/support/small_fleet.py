@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from graph_cases import (
-    as_planned,
-    sent,
-)
+from graph_cases import as_planned, environment, sent, without_node
 
 from multibot_rewrite.base.naming import make_naming, spelled
 from multibot_rewrite.base.releases import NEWEST_LTS
@@ -13,12 +10,15 @@ from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.spelling.plan import expect
 from multibot_rewrite.spelling.table import build_table
 from multibot_rewrite.system.records import (
+    CHANGING,
     PUBLISHES,
     SERVES,
     SERVICE,
     SUBSCRIBES,
     TOPIC,
+    Caveat,
     Edge,
+    End,
     System,
 )
 
@@ -68,3 +68,30 @@ def healthy(layout: str = "L2") -> System:
         for robot in plan(layout).robots
     )
     return sent(graph._replace(edges=(*graph.edges, *odometry)))
+
+
+ROBOT2 = ("/robot2/driver", "/robot2/robot_state_publisher")
+
+
+def moving(graph: System) -> System:
+    """The graph while it changes."""
+    around = environment(Caveat("not-settled", True, "the graph is still changing"))
+    return graph._replace(environment=around._replace(settled=CHANGING))
+
+
+def half() -> System:
+    """robot2 is not there."""
+    graph = healthy()
+    for node in ROBOT2:
+        graph = without_node(graph, node)
+    frames = tuple(frame for frame in graph.edges if "robot2" not in frame.child)
+    return graph._replace(edges=frames)
+
+
+def clash() -> System:
+    """Somebody publishes another type on a robot's topic."""
+    graph = healthy()
+    end = End(
+        TOPIC, PUBLISHES, "/robot1/cmd_vel", "std_msgs/msg/Empty", "", "/robot1/driver", None, ""
+    )
+    return graph._replace(ends=(*graph.ends, end))

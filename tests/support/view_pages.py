@@ -8,12 +8,15 @@ from math import cos, sin
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.system.records import System
 
 
 def page(folder: Path, *words: object, code: int = 0) -> dict[str, Any]:
     """The data of the page for these words."""
+    pytest.importorskip("yourdfpy", reason="no yourdfpy: pip install '.[view]'")
     out = folder / "view.html"
     assert main(["view", *map(str, words), "-o", str(out), "-q"]) == code
     text = out.read_text()

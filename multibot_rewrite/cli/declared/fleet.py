@@ -141,7 +141,8 @@ INIT = Command(
         ),
         GENERAL,
     ),
-    "0 done, and it builds; 1 written, but it does not build yet; 2 wrong use or unreadable input",
+    "0 done, and it builds; 1 written, but it does not build yet; 2 wrong use, unreadable input, or "
+    "several robots and nothing that says which is meant",
     more="Every key comes with its reason. The fleet is built once in memory; where a layout does not"
     " work, the first one that does is taken.",
 )

@@ -39,7 +39,7 @@ _TO_DO = f"put each node's parameters below {PARAMETERS}:"
 _PATTERN = re.compile(r"/[A-Za-z0-9_/*]+")
 _MARK = re.compile(r"[&*][^\s*\[\]{},/:]")
 # Helper nodes of old releases: they have sections, but no names of their own.
-_INNER = ("_rclcpp_node", "_client")
+INNER = ("_rclcpp_node", "_client")
 # A key that only one kind of file has -> what that file is.
 _OTHER_FILES = {
     "Visualization Manager": "it is an RViz config; list it under rviz",
@@ -188,7 +188,7 @@ def _section(
         full = it.path
     else:
         full = _full_wild(it.path, name, context) if wild else place or _full(it.path, context)
-    inner = name.endswith(_INNER)
+    inner = name.endswith(INNER)
     node = None if name in ANY else identify_node(name, it.body, known, types)
     return ParamSection(it.keys, it.path, it.body, full, node, wild, shared, inner)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from itertools import chain, islice
 from typing import TYPE_CHECKING
 
@@ -11,7 +11,6 @@ from lxml.etree import _Element
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.naming import Naming
-from multibot_rewrite.base.nearest import Guesses
 from multibot_rewrite.base.releases import releases_with
 from multibot_rewrite.description.checks.hazards import hazards
 from multibot_rewrite.description.checks.model_namespaces import ignored_namespaces, used_namespaces
@@ -23,9 +22,8 @@ from multibot_rewrite.description.checks.references import (
     loose_ends,
     undeclared_names,
 )
-from multibot_rewrite.description.rewriters.text import text_at
-from multibot_rewrite.description.rewriters.tree import ANY_WITH_ROS, Tree, library_key
-from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
+from multibot_rewrite.description.checks.unknown import ANOTHER_RELEASE, not_here, unknown_parts
+from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.rewriters.vocabulary.grammar import split_path
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.description.steps.document import Document, without_comments
@@ -33,9 +31,6 @@ from multibot_rewrite.description.steps.document import Document, without_commen
 if TYPE_CHECKING:
     from multibot_rewrite.description.steps.renames import RenameMap
 
-ANOTHER_RELEASE = (
-    "name the release that the description is for with --distro, or distro: in a fleet file"
-)
 # A step of a path that asks for an attribute.
 _STEP = lazy_compile(r"\[@(\w+)=(.*)\]")
 
@@ -47,9 +42,7 @@ def audit(inventory: Inventory, renames: RenameMap, tree: Tree) -> list[Finding]
     warnings = chain(
         undeclared(inventory, renames.naming),
         ambiguous(inventory),
-        unknown_plugins(inventory, tree),
-        unknown_hardware(inventory, tree),
-        included_models(inventory),
+        unknown_parts(inventory, tree),
         ignored_namespaces(inventory, tree),
         used_namespaces(inventory, tree),
         hazards(inventory, renames),
@@ -118,45 +111,6 @@ def undeclared(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
         yield it._replace(message=f"{it.message}: it is not renamed")
 
 
-def is_unknown(section: VocabularySection) -> bool:
-    """Is the plugin in no section? Then the element's own is used, or the one for any ROS node."""
-    return section.select == "plugin" or section.names[0] == ANY_WITH_ROS
-
-
-def included_models(inventory: Inventory, tree: Tree | None = None) -> Iterator[Problem]:
-    """Models of an SDF that are in other files: nobody reads what these start."""
-    # A world has models of its own, too: only what a robot is made of counts.
-    for model in inventory.document.root.iter("model"):
-        for include in model.iterchildren("include"):
-            uri = text_at(include, "uri")
-            if uri:
-                message = (
-                    f"the included {uri!r} is not read: its topics and frames stay as they are"
-                )
-                hint = "rewrite its model.sdf for each robot, and write the result here"
-                yield Problem(include, message, None, hint, (), "MB906")
-
-
-def unknown_plugins(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
-    """Plugins no section knows: what their parameters name can only be guessed."""
-    guesses = Guesses()
-    for host in inventory.hosts:
-        section = host.node.section
-        if section is None or not is_unknown(section):
-            continue
-        name = host.element.get("filename") or host.element.get("name") or ""
-        others = tree.vocabulary.releases_elsewhere("plugin", library_key(name))
-        where = _not_here(tree, others) if others else "is not in the vocabulary"
-        message = f"plugin {name!r} {where}: its own parameters are not renamed"
-        known = tree.vocabulary.names("plugin")
-        hint = ANOTHER_RELEASE if others else guesses.hint(library_key(name), known)
-        yield Problem(host.element, message, None, hint, (), "MB902")
-
-
-def _not_here(tree: Tree, releases: Iterable[str]) -> str:
-    return f"is not in {tree.vocabulary.release}, only in {', '.join(releases)}"
-
-
 def other_releases(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
     """Values that hold names in other releases only: nothing in them is renamed."""
     for host in inventory.hosts:
@@ -166,7 +120,7 @@ def other_releases(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
         for site in tree.vocabulary.rows_elsewhere(section.type, section.names[0]):
             if site.path in {it.path for it in section.sites} or site.role == "keep":
                 continue
-            where = _not_here(tree, releases_with(site.releases))
+            where = not_here(tree.vocabulary, releases_with(site.releases))
             for element in _elements_at(host.element, site.path):
                 message = f"{site.path} of {section.name} {where}: nothing in it is renamed"
                 yield Problem(element, message, None, ANOTHER_RELEASE, (), "MB905")
@@ -198,21 +152,3 @@ def other_ros(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
             message = f"{section.names[0]} does not read {tags} in ROS 2: nothing in it is renamed"
             hint = "delete what ROS 1 needed, or say it with <ros> and the names of ROS 2"
             yield Problem(host.element, message, None, hint, (), "MB904")
-
-
-def unknown_hardware(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
-    """Hardware classes no section knows that have parameters: one may be a name, or a prefix."""
-    guesses = Guesses()
-    for host in inventory.hosts:
-        section = host.node.section
-        if section is None or section.select != "hardware":
-            continue
-        name = text_at(host.element, "hardware/plugin")
-        if not name or host.element.find("hardware/param") is None:
-            continue
-        others = tree.vocabulary.releases_elsewhere("hardware", name)
-        where = _not_here(tree, others) if others else "is not in the vocabulary"
-        message = f"hardware class {name!r} {where}: its own parameters are not renamed"
-        known = tree.vocabulary.names("hardware")
-        hint = ANOTHER_RELEASE if others else guesses.hint(name, known)
-        yield Problem(host.element, message, None, hint, (), "MB903")

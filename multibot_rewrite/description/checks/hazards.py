@@ -19,19 +19,9 @@ from multibot_rewrite.description.steps.collect import SRDF, Host, Inventory
 if TYPE_CHECKING:
     from multibot_rewrite.description.steps.renames import RenameMap
 
-# gz systems that serve every entity of the world, whoever loads them (gz-sim src/systems).
-WORLD_SYSTEMS = {
-    "gz-sim-sensors-system": "Gazebo crashes when rendering is set up twice",
-    "gz-sim-imu-system": "every IMU of the world is published again for each copy",
-    "gz-sim-physics-system": "two physics engines move the same links",
-    "gz-sim-contact-system": "every contact sensor is published again for each copy",
-    "gz-sim-forcetorque-system": "every force sensor is published again for each copy",
-    "gz-sim-navsat-system": "every GPS of the world is published again for each copy",
-    "gz-sim-magnetometer-system": "every magnetometer is published again for each copy",
-    "gz-sim-altimeter-system": "every altimeter is published again for each copy",
-    "gz-sim-air-pressure-system": "every barometer is published again for each copy",
-    "gz-sim-scene-broadcaster-system": "every state of the world is sent again for each copy",
-}
+# Of a plugin that opens what is the world's, and the elements that it belongs in.
+WORLD = "world"
+WITH_WORLD = (WORLD, "gui")
 # What a plugin reads the description from: names that no other robot's plugin may read.
 DESCRIPTION_NODE = "robot_param_node"
 DESCRIPTIONS = ("robot_param", "robotParam", DESCRIPTION_NODE)
@@ -133,14 +123,15 @@ def one_description(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
 
 def world_systems(inventory: Inventory) -> Iterator[Problem]:
     """Systems of the whole world that each robot loads again; in a world they are where they belong."""
-    for host in inventory.hosts:
+    for section, host in _known_hosts(inventory):
         above = host.element.getparent()
-        key = library_key(host.element.get("filename", ""))
-        if host.element.tag != "plugin" or key not in WORLD_SYSTEMS:
+        if WORLD not in section.opens or (above is not None and above.tag in WITH_WORLD):
             continue
-        if above is None or above.tag != "world":
-            message = f"{key} is loaded again with every robot: {WORLD_SYSTEMS[key]}"
-            yield Problem(host.element, message, "filename", "load it in the world", (), "MB416")
+        file = host.element.get("filename", "").rpartition("/")[2]
+        key = library_key(file) or host.element.get("name", "")
+        why = section.about or "what it opens is the world's"
+        message = f"{key} is loaded again with every robot: {why}"
+        yield Problem(host.element, message, "filename", "load it in the world", (), "MB416")
 
 
 def hardwired(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:

@@ -9,6 +9,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.numbers import number, value_of
+from multibot_rewrite.description.rewriters.text import kept_joints
 
 MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 WORLD = "world"
@@ -54,7 +55,7 @@ class Robot(NamedTuple):
     ``link`` and ``joint`` hold the first of each name. ``above`` and ``below`` map a link's name to
     the joints whose child (parent) it is, declared or not. ``body`` maps each link below a
     root to the link that a simulator merges it into, or to itself: links on fixed joints become a
-    part of their parent, except where that is ``world``, as in sdformat.
+    part of their parent, except where that is ``world`` or a block keeps the joint, as in sdformat.
     """
 
     links: tuple[Link, ...]
@@ -74,7 +75,8 @@ def read_robot(root: _Element) -> Robot:
     above = _by_name((it.child, it) for it in joints)
     below = _by_name((it.parent, it) for it in joints)
     return Robot(
-        links, joints, _firsts(links), _firsts(joints), above, below, _bodies(links, above, below)
+        *(links, joints, _firsts(links), _firsts(joints), above, below),
+        _bodies(links, above, below, kept_joints(root)),
     )
 
 
@@ -129,6 +131,7 @@ def _bodies(
     links: Iterable[Link],
     above: Mapping[str, tuple[Joint, ...]],
     below: Mapping[str, tuple[Joint, ...]],
+    kept: frozenset[str],
 ) -> dict[str, str]:
     body = {it.name: it.name for it in links if it.name not in above}
     todo = list(body)
@@ -136,7 +139,7 @@ def _bodies(
         name = todo.pop()
         for joint in below.get(name, ()):
             if joint.child and joint.child not in body:
-                merged = joint.type == "fixed" and name != WORLD
+                merged = joint.type == "fixed" and name != WORLD and joint.name not in kept
                 body[joint.child] = body[name] if merged else joint.child
                 todo.append(joint.child)
     return body

@@ -10,6 +10,7 @@ from lxml.etree import _Element
 from multibot_rewrite.base.model import InputError, ProofError
 from multibot_rewrite.base.naming import NAMESPACE, TWIN, Naming, spelled
 from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.description.readback.active import active_parts
 from multibot_rewrite.description.readback.meeting import (
     NOT_TAKEN,
     advice,
@@ -19,12 +20,14 @@ from multibot_rewrite.description.readback.meeting import (
     said,
     same_for_all,
 )
+from multibot_rewrite.description.readback.pairs import parted
 from multibot_rewrite.description.readback.reading import Reading, RuntimeName, read
 from multibot_rewrite.description.rewriters.vocabulary import Vocabulary
 from multibot_rewrite.description.steps.apply import fill
 from multibot_rewrite.description.steps.document import Document
+from multibot_rewrite.system.records import KINDS
 
-LOST_RULE = "MB436"
+LOST_RULE, SAME_TEXT, PARTED, NO_LINK = "MB436", "MB437", "MB438", "MB502"
 ALL = "all robots would"
 # Stands for the name of a robot in a hint.
 ROBOT = "ROBOT"
@@ -82,7 +85,18 @@ def shared_with(
         raise ProofError(
             f"{document.file}: {it.name!r} ({it.path}) is a frame that tf does not have"
         )
-    yield from _lost(document, reading, naming, vocabulary)
+    found = [*_would_share(document, reading, robot, naming, vocabulary)]
+    yield from found
+    if not found and robot.encode() not in text:
+        yield from _same_text(document, naming, vocabulary)
+    if next(document.root.iter("link"), None) is None:
+        yield Problem(document.root, "the robot has no link", None, "", (), NO_LINK)
+
+
+def _would_share(
+    document: Document, reading: Reading, robot: str, naming: Naming, vocabulary: Vocabulary
+) -> Iterator[Problem]:
+    yield from _changed(document, reading, robot, naming, vocabulary)
     of_plugins: dict[int, list[RuntimeName]] = {}
     for it in same_for_all(reading.names, robot, naming):
         if it.of_controllers:
@@ -94,13 +108,48 @@ def shared_with(
         yield _of_controllers(_element(document, names[0]), names, naming, vocabulary.release)
 
 
+def _same_text(document: Document, naming: Naming, vocabulary: Vocabulary) -> Iterator[Problem]:
+    """A description that all robots get as it is, though something runs in it that no namespace keeps
+    apart."""
+    for part in active_parts(document.root, vocabulary):
+        if part.opens_something and not (naming.topics == NAMESPACE and part.is_apart):
+            message = f"all robots get the same text, and {part.kind} {part.name!r} runs in it"
+            hint = "use a layout that gives each robot names of its own, as --layout both"
+            yield Problem(part.element, message, None, hint, (), SAME_TEXT)
+            return
+
+
+def _changed(
+    document: Document, reading: Reading, robot: str, naming: Naming, vocabulary: Vocabulary
+) -> Iterator[Problem]:
+    """What met or matched before the rewrite, and does not after it."""
+    has_rules = b":=" in document.source
+    if not has_rules and not _alike(reading, robot):
+        return
+    before = read(document.source, document.file, vocabulary)
+    if has_rules:
+        yield from _lost(document, before, reading, naming)
+    for it, other in parted(before, reading):
+        one, two = (name.name.replace(robot, ROBOT) for name in (it, other))
+        message = (
+            f"{it.path} is {one!r} after the rewrite and {other.path} is {two!r}: "
+            "they were the same topic"
+        )
+        hint = "write both the same way"
+        yield Problem(_element(document, it), message, None, hint, (), PARTED)
+
+
+def _alike(reading: Reading, robot: str) -> bool:
+    """Are there topics that differ in the place of the robot's name alone?"""
+    topics = {it.name for it in reading.names if it.kind in KINDS}
+    bare = {it.replace(robot, "").replace("/", "").replace("_", "") for it in topics}
+    return len(bare) < len(topics)
+
+
 def _lost(
-    document: Document, reading: Reading, naming: Naming, vocabulary: Vocabulary
+    document: Document, before: Reading, reading: Reading, naming: Naming
 ) -> Iterator[Problem]:
     """Rules of the file that match no name any more."""
-    before = (
-        read(document.source, document.file, vocabulary) if b":=" in document.source else reading
-    )
     for it in lost_rules(before, reading):
         if it.name.strip("/") not in naming.shared_topics:
             plugin = next(islice(document.root.iter("plugin"), it.number, None), document.root)

@@ -22,8 +22,8 @@ from multibot_rewrite.description.steps.inserted import markers
 
 # What a rewrite may put between a name and the robot's; "__" begins and ends like "_".
 BETWEEN = ("/", "_", "-", ".")
-# A model may well be called like its robot without any rewrite.
-CARRYING = frozenset(SEPARATORS) - {"model"}
+# A model may well be called like its robot without any rewrite, and a shape like a part of it.
+CARRYING = frozenset(SEPARATORS) - {"model", "shape"}
 # What parts of robots are called: names of most descriptions hold such a word by chance.
 _PARTS = """
 ankle arm arms back base body bottom cam camera caster center centre chassis chest elbow finger flange

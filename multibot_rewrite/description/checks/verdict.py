@@ -7,12 +7,14 @@ from collections.abc import Iterable
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.plural import plural
+from multibot_rewrite.description.checks.meeting import NO_LINK, PARTED, SAME_TEXT
 from multibot_rewrite.description.readback.meeting import (
     COMMAND,
     DATA,
     FRAMES,
     LOOKUP,
     NOT_TAKEN,
+    OPENED,
     TWO_NODES,
     TWO_SERVERS,
 )
@@ -31,6 +33,10 @@ REASONS = {
     TWO_NODES: ("node", SHARED),
     NOT_TAKEN: ("plugin", "whose controllers take rules of their spawner alone"),
     FRAMES: ("frame", SHARED),
+    OPENED: ("resource", SHARED),
+    SAME_TEXT: ("description", "the same for all robots"),
+    PARTED: ("topic", "whose ends no longer meet"),
+    NO_LINK: ("robot", "without a link"),
     LOOKUP: ("name", "looked up in the whole world"),
     "MB410": ("description name", SHARED),
     "MB416": ("world system", "in every robot"),

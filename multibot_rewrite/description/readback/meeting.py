@@ -9,9 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from multibot_rewrite.base.naming import TOPIC_KINDS, Naming, is_keyword
+from multibot_rewrite.base.naming import NAMESPACE, TOPIC_KINDS, Naming, is_keyword, is_of_world
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import expand
+from multibot_rewrite.description.readback.active import ADDRESS, FILE, RELATIVE
 from multibot_rewrite.description.readback.nodes import ReadEndpoint, ReadNode, full_name, itself
 from multibot_rewrite.description.readback.reading import FRAME, NODE, Reading, RuntimeName
 from multibot_rewrite.system.records import ACTION, KINDS, SERVICE
@@ -19,7 +20,8 @@ from multibot_rewrite.system.words import is_order
 
 TWO_NODES, TWO_SERVERS, COMMAND, DATA = "MG301", "MG305", "MG310", "MG320"
 FRAMES, LOOKUP, NOT_TAKEN = "MG402", "MB425", "MR105"
-SHARED_CODES = frozenset({TWO_NODES, TWO_SERVERS, COMMAND, DATA, FRAMES, LOOKUP, NOT_TAKEN})
+OPENED = "MB412"
+SHARED_CODES = frozenset({TWO_NODES, TWO_SERVERS, COMMAND, DATA, FRAMES, LOOKUP, NOT_TAKEN, OPENED})
 # The type of a topic called as one that moves a robot, where it is not known.
 _USUAL = "geometry_msgs/msg/Twist"
 _ALLOW = "rename it for each robot, or allow it with --shared-topics"
@@ -28,6 +30,7 @@ _ADVICE = {
     TWO_SERVERS: _ALLOW,
     COMMAND: _ALLOW,
     DATA: _ALLOW,
+    OPENED: "give each robot a value of its own",
     FRAMES: "set the frame for each robot, or allow it with --shared-frames",
 }
 
@@ -76,9 +79,9 @@ def _own(names: Iterable[RuntimeName], naming: Naming) -> Iterator[RuntimeName]:
             shared = at_run_time or not naming.layout.frames or bare in naming.shared_frames
         elif it.kind in KINDS:
             # __default_topic__ is no topic: the simulator makes one from the model's name.
-            shared = bare in naming.shared_topics or is_keyword(bare)
+            shared = bare in naming.shared_topics or is_keyword(bare) or is_of_world(it.name)
         else:
-            shared = False
+            shared = it.kind == RELATIVE and naming.topics == NAMESPACE
         if not shared:
             yield it
 
@@ -91,7 +94,8 @@ def code_of(name: RuntimeName) -> str:
         return TWO_SERVERS
     if name.kind in TOPIC_KINDS:
         return COMMAND if is_order(name.name, name.type or _USUAL) else DATA
-    return {NODE: TWO_NODES, FRAME: FRAMES}.get(name.kind, LOOKUP)
+    others = {NODE: TWO_NODES, FRAME: FRAMES, ADDRESS: OPENED, FILE: OPENED, RELATIVE: TWO_NODES}
+    return others.get(name.kind, LOOKUP)
 
 
 def said(who: str, *names: RuntimeName) -> str:
@@ -107,6 +111,8 @@ def said(who: str, *names: RuntimeName) -> str:
 
 def advice(name: RuntimeName) -> str:
     """What to do about a shared name, but for those of controllers."""
+    if name.kind == RELATIVE:
+        return "give each robot a namespace: use --layout tf-per-robot or both"
     of_all = f"use --layout both, which renames {name.kind}s for each robot"
     return _ADVICE.get(code_of(name), of_all)
 

@@ -10,6 +10,7 @@ from collections.abc import Container, Iterable, Iterator
 
 from lxml.etree import _Element
 
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import Site, UsageError
 from multibot_rewrite.base.naming import TOPIC_KINDS
 from multibot_rewrite.base.record import NamedTuple
@@ -24,11 +25,15 @@ from multibot_rewrite.base.rosnames import (
 from multibot_rewrite.description.readback.model_namespaces import reads_it, scoped_namespace
 from multibot_rewrite.description.readback.parameters import sends_odometry, switched_off, values_of
 from multibot_rewrite.description.readback.wired import wired_of
-from multibot_rewrite.description.readback.xml import child_text, text_of
+from multibot_rewrite.description.readback.xml import child_text, text_of, values_at
 from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
 from multibot_rewrite.knowledge.controller_ways import controller_way
 
 TOPIC, SERVICE = "topic", "service"
+_NOT_VALID = lazy_compile("@|~|//|:=")
+# Elements whose topics are those of Gazebo's transport.
+OF_GZ = frozenset({"sensor", "particle_emitter"})
+TF_TOPICS = ("/tf", "/tf_static")
 REMAP_FLAGS = ("-r", "--remap")
 PUBLISHES, SERVES = "publishes", "serves"
 
@@ -101,17 +106,35 @@ def node_of(
     rules = tuple(() if home is None else _rules(home))
     bound = _bound(name, namespace, [it.rule for it in rules])
     frames = tuple(frames_of(plugin, section))
-    endpoints = _endpoints(plugin, section, bound, rules)
+    endpoints, bare = _endpoints(plugin, section, bound, rules), _bound(name, namespace, ())
     return ReadNode(
         section,
         number,
         name,
         namespace,
         rules,
-        tuple(_by_themselves(endpoints, section, _bound(name, namespace, ()), release)),
+        tuple(_by_themselves(endpoints, section, bare, release, wheels_in(plugin))),
         tuple(_stems(plugin, section, bound)),
         frames,
         tuple(_sends(plugin, section, frames, links)),
+    )
+
+
+def wheels_in(plugin: _Element) -> bool:
+    """May one of its controllers send odometry, and so /tf? Those that do command velocities of joints
+    that turn (ros2_controllers: diff_drive_controller, tricycle_controller, mecanum_drive_controller,
+    omni_wheel_drive_controller and steering_controllers_library, command_interface_configuration)."""
+    root = plugin.getroottree().getroot()
+    types = {it.get("name"): it.get("type") for it in root.iter("joint") if it.get("type")}
+    systems = list(root.iter("ros2_control"))
+    turned = (
+        joint
+        for system in systems
+        for joint in system.iterchildren("joint")
+        if any(it.get("name") == "velocity" for it in joint.iterchildren("command_interface"))
+    )
+    return not systems or any(
+        types.get(it.get("name")) not in ("prismatic", "fixed") for it in turned
     )
 
 
@@ -201,12 +224,18 @@ def _endpoints(
 
 
 def _by_themselves(
-    endpoints: Iterable[ReadEndpoint], section: VocabularySection, bare: BoundNode, release: str
+    endpoints: Iterable[ReadEndpoint],
+    section: VocabularySection,
+    bare: BoundNode,
+    release: str,
+    may_drive: bool,
 ) -> Iterator[ReadEndpoint]:
     """The endpoints with what controllers publish under the names they have without any rule, in a
     release in which they take none of the plugin that loads them."""
     apart = section.process_wide and not controller_way(release).of_manager
     for it in endpoints:
+        if section.process_wide and it.name in TF_TOPICS and not may_drive:
+            continue
         if apart and it.role == PUBLISHES:
             yield it._replace(full=full_name(it.name, it.kind, bare), of_controllers=True)
         else:
@@ -266,24 +295,49 @@ def resolved(
     words = [(site.path, value) for site in stems for value in values_of(host, site)]
     if above is not None:
         yield from ((TOPIC, _joined(above, word), path) for path, word in words)
+    of_gz = section.names[0].startswith("gz") or host.tag in OF_GZ
     for site in filter(_holds_topic, section.sites):
         kind = SERVICE if site.kinds[0] == SERVICE else TOPIC
         below = above
         if site.kinds[0] == "subtopic" and stems and above is not None:
             below = _joined(above, words[0][1]) if words else None
-        for name in values_of(host, site):
+        names = values_of(host, site)
+        for name in map(as_valid_topic, names) if of_gz else names:
             if name.startswith("/"):
                 yield kind, name, site.path
             elif name.startswith("~"):
                 continue  # below a node that the simulator names
             elif below is not None:
                 yield kind, _joined(below, name), site.path
+    yield from _coded(host, section, above)
+
+
+def as_valid_topic(name: str) -> str:
+    """The topic that gz-transport makes of a text: it has no ``~``, and takes out what it does not know
+    (gz-transport TopicUtils.cc AsValidTopic, which gz-sim's validTopic and gz-sensors call)."""
+    return _NOT_VALID.sub("", name.replace(" ", "_"))
+
+
+def _coded(
+    host: _Element, section: VocabularySection, above: str | None
+) -> Iterator[tuple[str, str, str]]:
+    """The names in the code of what is no ROS 2 node, as those of ROS 1: roscpp puts the namespace in
+    front of relative ones (names.cpp), and tf's broadcaster has an absolute one
+    (tf2_ros transform_broadcaster.cpp)."""
+    off = switched_off(host, section)
+    for wired, path in wired_of(host, section):
+        if wired.name not in off and (above is not None or wired.name.startswith("/")):
+            kind = SERVICE if wired.role == SERVES else TOPIC
+            name = wired.name if wired.name.startswith("/") else _joined(above or "", wired.name)
+            yield kind, name, path or wired.name
 
 
 def _namespace(host: _Element, section: VocabularySection) -> str | None:
     """What the plugin puts in front of relative names; None where that is the model's name."""
     sites = [it for it in section.sites if it.kinds[:1] == ("namespace",) and it.form == "whole"]
     values = [value for site in sites for value in values_of(host, site)]
+    if not values and any(it.empty == "itself" and [*values_at(host, it.path)] for it in sites):
+        return "/"
     return values[0] if values else None if sites else "/"
 
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterator, Sequence
+from collections.abc import Container, Iterator
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import Site
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.readback.active import opened
 from multibot_rewrite.description.readback.nodes import (
     TOPIC,
     ReadNode,
@@ -23,7 +23,12 @@ from multibot_rewrite.description.readback.parameters import (
     is_nested,
     values_of,
 )
-from multibot_rewrite.description.readback.xml import child_text, read_xml, values_at
+from multibot_rewrite.description.readback.sections import (
+    hardware_section,
+    plugin_section,
+    sensor_sections,
+)
+from multibot_rewrite.description.readback.xml import read_xml, values_at
 from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, VocabularySection
 
 NODE, FRAME = "node", "frame"
@@ -33,13 +38,6 @@ WITH_TOPICS = (
     ("sdf.link", "particle_emitter"),
     ("webots", "webots"),
 )
-# gz-sim's loader takes a library with or without lib and .so, versions, and the old name
-# (gazebosim/gz-sim src/SystemLoader.cc).
-_LIBRARY = lazy_compile(r"(?:.*/)?(?:lib)?(.*?)(?:\.so|\.dylib|\.dll)?")
-_SYSTEM = lazy_compile(r"(?:ignition-gazebo|gz-sim)\d*-?(.*)")
-ROS_1, ROS_2 = "1", "2"
-# Every plugin that is not known and has a <ros> is a node.
-WITH_ROS = "any_with_ros"
 
 
 class RuntimeName(NamedTuple):
@@ -154,21 +152,25 @@ def _of_plugins(
             yield from _topics(*host, "plugin", vocabulary.release)
         yield from _frames(host, "plugin")
         yield from _lookups(root, host, vocabulary)
+        yield from _opened(host, "plugin")
 
 
 def _of_hardware(root: _Element, vocabulary: Vocabulary) -> Iterator[RuntimeName]:
     for number, system in enumerate(root.iter("ros2_control")):
         section = hardware_section(system, vocabulary)
         if section is not None:
-            yield from _topics(system, number, section, "ros2_control", vocabulary.release)
-            yield from _frames(_Host(system, number, section), "ros2_control")
-            yield from _lookups(root, _Host(system, number, section), vocabulary)
+            host = _Host(system, number, section)
+            yield from _topics(*host, "ros2_control", vocabulary.release)
+            yield from _frames(host, "ros2_control")
+            yield from _lookups(root, host, vocabulary)
+            yield from _opened(host, "ros2_control")
 
 
 def _of_sensors(root: _Element, vocabulary: Vocabulary) -> Iterator[RuntimeName]:
     for number, sensor in enumerate(root.iter("sensor")):
         for section in sensor_sections(sensor, vocabulary):
             yield from _topics(sensor, number, section, "sensor", vocabulary.release)
+            yield from _opened(_Host(sensor, number, section), "sensor")
 
 
 def _of_elements(root: _Element, vocabulary: Vocabulary) -> Iterator[RuntimeName]:
@@ -201,6 +203,11 @@ def _frames(host: _Host, tag: str) -> Iterator[RuntimeName]:
         yield RuntimeName(FRAME, value, tag, host.number, path)
 
 
+def _opened(host: _Host, tag: str) -> Iterator[RuntimeName]:
+    for kind, value, path in opened(host.element, host.section):
+        yield RuntimeName(kind, value, tag, host.number, path)
+
+
 def _lookups(root: _Element, host: _Host, vocabulary: Vocabulary) -> Iterator[RuntimeName]:
     """Names that a plugin or system looks up in the whole world, of things that this file has."""
     kind, tag = host.section.unique, str(host.element.tag)
@@ -215,52 +222,3 @@ def _lookups(root: _Element, host: _Host, vocabulary: Vocabulary) -> Iterator[Ru
             for value in dict.fromkeys(values_of(host.element, site)):
                 if value in there:
                     yield RuntimeName(kind, value, tag, host.number, site.path)
-
-
-def plugin_section(
-    plugin: _Element, vocabulary: Vocabulary
-) -> tuple[VocabularySection | None, bool]:
-    """The section of a plugin, None where it has none, and whether the plugin itself is known."""
-    with_ros = plugin.find("ros") is not None
-    for key in _keys(plugin):
-        found = vocabulary.find("plugin", key)
-        # Nothing in ROS 1 reads a <ros>.
-        if found and not (with_ros and all(it.ros == ROS_1 for it in found)):
-            return _of_release(found, plugin), True
-    if not with_ros:
-        return None, False
-    return vocabulary.find("plugin", WITH_ROS)[0], False
-
-
-def _keys(plugin: _Element) -> Iterator[str]:
-    library = _LIBRARY.fullmatch(plugin.get("filename", "").strip())
-    name = library[1] if library else ""
-    system = _SYSTEM.fullmatch(name)
-    yield f"gz-sim-{system[1]}" if system else name
-    class_ = plugin.get("name", "").strip()
-    if "::" in class_:
-        yield class_.replace("ignition::gazebo::", "gz::sim::")
-
-
-def _of_release(found: Sequence[VocabularySection], plugin: _Element) -> VocabularySection:
-    """ROS 1 and ROS 2 have plugins of one name. Only ROS 2 reads <ros>; without it the release that
-    reads more of its parameters counts, ROS 2 if both do."""
-    by_release = {section.ros: section for section in found}
-    new, old = by_release.get(ROS_2, found[0]), by_release.get(ROS_1)
-    if old is None or plugin.find("ros") is not None:
-        return new
-    tags = {child.tag for child in plugin}
-    return old if len(tags & old.tags) > len(tags & new.tags) else new
-
-
-def hardware_section(system: _Element, vocabulary: Vocabulary) -> VocabularySection | None:
-    """The section of the class that a ros2_control system loads."""
-    hardware = system.find("hardware")
-    class_ = child_text(hardware, "plugin") if hardware is not None else None
-    return next(iter(vocabulary.find("hardware", class_ or "")), None)
-
-
-def sensor_sections(sensor: _Element, vocabulary: Vocabulary) -> list[VocabularySection]:
-    """What is known about every sensor, and about those of this type."""
-    type_ = sensor.get("type", "").strip()
-    return [*vocabulary.find("element", "sensor"), *vocabulary.find("sensor", type_)]

@@ -10,8 +10,8 @@ from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.model import Claim
 from multibot_rewrite.base.naming import DECLARED_KINDS
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.description.checks.audit import is_unknown
 from multibot_rewrite.description.checks.mentions import MENTIONED, unclaimed_mentions
+from multibot_rewrite.description.checks.unknown import is_unknown
 from multibot_rewrite.description.reports.paths import plugin_name, tag_path
 from multibot_rewrite.description.rewriters.spelling import ResolvedName
 from multibot_rewrite.description.rewriters.text import text_at

@@ -15,7 +15,7 @@ from lxml import etree
 
 from multibot_rewrite.base.model import Claim
 from multibot_rewrite.description.rewriters.forms import Declared, is_included
-from multibot_rewrite.description.rewriters.text import text_at
+from multibot_rewrite.description.rewriters.text import kept_joints
 
 Respell = Callable[[str, str], str]
 Links = dict[str, etree._Element]
@@ -28,7 +28,7 @@ def respell_collisions(
 ) -> list[tuple[Claim, str]]:
     """Each contact collision whose name changes, with its new text.
 
-    ``respell(kind, name)`` is the new spelling of a link or joint.
+    ``respell(kind, name)`` is the new spelling of a link, joint or shape.
     """
     contacts = [claim for claim in claims if claim.site.form == "collision"]
     if not contacts:
@@ -75,18 +75,14 @@ def _named(
     left: str, collisions: list[tuple[str, int, str]], spell: Respell
 ) -> Iterator[tuple[tuple[str, int], str]]:
     for number, (link, place, own) in enumerate(collisions):
-        name = f"{own or spell('link', link)}_collision" + (f"_{number}" if number else "")
+        start = spell("shape", own) if own else spell("link", link)
+        name = f"{start}_collision" + (f"_{number}" if number else "")
         yield (link, place), name if name.startswith(left) else f"{left}{LUMP}{name}"
 
 
 def _lumped(root: etree._Element) -> Lumped:
     """Parent link -> (joint, child link) of the fixed joints that are merged."""
-    kept = {
-        block.get("reference")
-        for block in root.iterchildren("gazebo")
-        for tag in ("preserveFixedJoint", "disableFixedJointLumping")
-        if text_at(block, tag).lower() in ("true", "yes", "1")
-    }
+    kept = kept_joints(root)
     lumped = defaultdict(list)
     for joint in root.iterchildren("joint"):
         if joint.get("type") != "fixed" or joint.get("name") in kept:

@@ -29,3 +29,13 @@ def text_at(element: etree._Element, path: str) -> str:
     # For a single tag this takes a third of the time of find, which reads its path anew.
     found = element.find(path) if "/" in path else next(element.iterchildren(path), None)
     return "" if found is None else text_of(found)
+
+
+def kept_joints(root: etree._Element) -> frozenset[str]:
+    """The fixed joints that a block keeps from being merged (sdformat, parser_urdf.cc)."""
+    return frozenset(
+        block.get("reference", "")
+        for block in root.iterchildren("gazebo")
+        for tag in ("preserveFixedJoint", "disableFixedJointLumping")
+        if text_at(block, tag).lower() in ("true", "yes", "1")
+    )

@@ -24,6 +24,8 @@ VARIABLES = (
 )  # fmt: skip
 # Folders above a file in which its package and its repository are looked for.
 HIGHEST = 8
+# What a repository has at its top, in copies without ``.git`` too.
+_OF_REPOSITORY = (".gitignore", ".github", ".gitmodules", "LICENSE", "README.md")
 # Files that one pattern is compared with.
 MOST_FILES = 20_000
 SECONDS = 60.0
@@ -86,7 +88,7 @@ class Access:
 
     def _beside(self, name: str) -> str:
         """A package of the same repository, or beside the file's own: no ROS has to be sourced."""
-        repository = _marked(os.path.dirname(_real(self.path)[0]), ".git")
+        repository = _repository(os.path.dirname(_real(self.path)[0]))
         # A workspace has its repositories side by side in src.
         above = os.path.dirname(repository)
         workspace = above if os.path.basename(above) == "src" else ""
@@ -180,7 +182,7 @@ def _homes(path: str) -> tuple[str, ...]:
     found: list[str] = []
     for file in _real(path):
         folder = os.path.dirname(file)
-        marked = (_marked(folder, mark) for mark in ("package.xml", ".git"))
+        marked = (_marked(folder, "package.xml"), _repository(folder))
         found += (it for it in (folder, *marked) if it and not _below(home, it))
     return tuple(found)
 
@@ -188,6 +190,19 @@ def _homes(path: str) -> tuple[str, ...]:
 def _marked(folder: str, mark: str) -> str:
     """The nearest folder above that holds ``mark``; empty if there is none."""
     return next((it for it in _above(folder) if os.path.lexists(os.path.join(it, mark))), "")
+
+
+def _repository(folder: str) -> str:
+    """The repository that a folder is in; in a copy without ``.git`` the nearest folder above the
+    package that has what only a repository has, else one that is called src. Empty if there is none."""
+    known = _marked(folder, ".git")
+    if known:
+        return known
+    package = _marked(folder, "package.xml")
+    above = list(_above(os.path.dirname(package))) if package else []
+    marks = (os.path.join(it, mark) for it in above for mark in _OF_REPOSITORY)
+    found = next((os.path.dirname(it) for it in marks if os.path.lexists(it)), "")
+    return found or next((it for it in above if os.path.basename(it) == "src"), "")
 
 
 def _above(folder: str) -> Iterator[str]:

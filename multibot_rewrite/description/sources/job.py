@@ -193,11 +193,8 @@ def job_for(
     _check_links(job, own, given, words)
     twin = as_twin(other.data) if has_mark(other.data) else b""
     job = job._replace(naming=job.naming._replace(own=own), own=OwnSource(words[0], twin=twin))
-    try:
-        kept = (it for it in given.items() if not name_robot(dict([it]), words, common))
-        plain = read(dict(kept))
-    except InputError:
-        # An argument without a default: nothing is known of names without it.
+    plain = _plain(read, given, words, common)
+    if plain is None:
         return job
     if twin and job.urdf and _misses(job, plain):
         # The arguments make an SRDF of it that is not the URDF's: the one without them follows that.
@@ -211,6 +208,19 @@ def job_for(
         return job
     follow = _of_plain if len(set(words)) == 1 else _followed
     return follow(job, plain, affixes)
+
+
+def _plain(
+    read: Reader, given: Arguments, words: Sequence[str], common: Collection[str]
+) -> Job | None:
+    """The sources without the arguments that name the robot: those that have no default are empty.
+    None where nothing is known of names without them."""
+    named = [name for name, text in given.items() if name_robot({name: text}, words, common)]
+    kept = {name: text for name, text in given.items() if name not in named}
+    for empty in ([], *([it] for it in named), named):
+        with suppress(InputError):
+            return read({**kept, **dict.fromkeys(empty, "")})
+    return None
 
 
 def _check_links(job: Job, own: OwnNames, given: Arguments, words: Sequence[str]) -> None:

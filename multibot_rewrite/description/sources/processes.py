@@ -5,7 +5,6 @@ A server, started once for each process and ended when it is idle, forks a child
 
 from __future__ import annotations
 
-import json
 import os
 import socket
 import subprocess
@@ -17,12 +16,12 @@ from contextlib import contextmanager, suppress
 from functools import lru_cache
 from time import monotonic
 
+from multibot_rewrite.base.child import isolated
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.description.sources.child.frames import COMMAND, END, ENDED, REPLY, START
 
 _MODULE = "multibot_rewrite.description.sources.child.serve"
 # Python finds what this process finds, and nothing by the variables of the environment.
-_RUN = "import json, sys; sys.path[:] = json.loads(sys.argv[1]); from {} import main; main()"
 # For the start of a process that is to answer within a time.
 SLACK_SECONDS = 5.0
 # The libraries of an installation; without the other, wheels of rclpy would start Python twice.
@@ -39,8 +38,7 @@ class Server:
     def __init__(self) -> None:
         self.control, theirs = socket.socketpair()
         self.lock = threading.Lock()
-        paths = json.dumps([os.path.abspath(it) for it in sys.path])
-        command = [sys.executable, "-I", "-X", "utf8", "-c", _RUN.format(_MODULE), paths]
+        command = isolated(_MODULE)
         kept = {it: os.environ[it] for it in _KEPT_VARIABLES if it in os.environ}
         nothing = subprocess.DEVNULL
         with theirs:

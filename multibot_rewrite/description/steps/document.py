@@ -15,6 +15,7 @@ from operator import sub
 from lxml import etree
 
 from multibot_rewrite.base.bounded import MAX_BYTES
+from multibot_rewrite.base.file_kinds import DESCRIPTIONS, SRDF, refuse_others
 from multibot_rewrite.base.findings.finding import Finding, locate
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import Edit, InputError
@@ -74,6 +75,7 @@ def read_document(source: bytes, file: str, placed: bool = True) -> Document:
     try:
         root = etree.fromstring(source, _PARSER)
     except etree.XMLSyntaxError as error:
+        _refuse_other_kinds(source, file)
         raise InputError(_syntax_message(error, file)) from None
     elements = list(root.iter("*"))
     starts = start_offsets(source) if placed else range(len(elements))
@@ -99,6 +101,13 @@ def _refuse_bytes(source: bytes, file: str) -> None:
     if at >= 0 and source[:at].strip():
         line, column = locate(source, at)
         raise InputError(f"{file}:{line}:{column}: not well-formed XML: a NUL byte; {CORRECT}")
+
+
+def _refuse_other_kinds(source: bytes, file: str) -> None:
+    """What is no XML at all is told by what it is."""
+    text = source[:1000].removeprefix(b"\xef\xbb\xbf").lstrip()
+    if text and not text.startswith(b"<"):
+        refuse_others(source, file, *DESCRIPTIONS, SRDF)
 
 
 def _syntax_message(error: etree.XMLSyntaxError, file: str) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 
-from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.finding import NOTE, Finding
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.fleet.checks.judged import (
     apart,
@@ -27,13 +27,9 @@ from multibot_rewrite.fleet.robots.start_poses import with_start_pose_nodes
 from multibot_rewrite.fleet.robots.systems import system_after, system_before
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.producers.ends import BRIDGE_FILE, bridge_ends
+from multibot_rewrite.rules.files.judge import codes
 from multibot_rewrite.spelling.bridged_topics import BOTH, once
 from multibot_rewrite.system.records import Topic
-
-# Rules about a file that names what the robot does not have.
-NAMES_NOTHING = frozenset(
-    "MB803 MB804 MB805 MB810 MB853 MB854 MB857 MB874 MB877 MB878 MB885".split()  # noqa: SIM905
-)
 
 
 def closed_plan(plan: FleetPlan) -> Fleet:
@@ -44,10 +40,7 @@ def closed_plan(plan: FleetPlan) -> Fleet:
     with gc_paused():
         fleet, few = with_start_pose_nodes(plan), _one_of_each(plan)
         made = [*companion_files(few), *bridge_outputs(few)]
-        texts = [it for it in made if isinstance(it, OutputFile)]
-        found = [it for it in made if isinstance(it, Finding)]
-        found += (it for robot in few.robots for it in robot.findings)
-        gaps = gaps_of(plan, fleet, texts, found)
+        gaps = gaps_of(plan, fleet, made)
         rows = [it for it in bridge_outputs(plan) if isinstance(it, OutputFile)]
         return fleet._replace(gaps=gaps, bridged=bridged_by(demanded(plan, rows)))
 
@@ -72,13 +65,25 @@ def demanded(plan: FleetPlan, texts: Iterable[OutputFile]) -> Iterator[OutputFil
 
 
 def gaps_of(
-    plan: FleetPlan, fleet: Fleet, texts: Sequence[OutputFile], of_files: Iterable[Finding]
+    plan: FleetPlan, fleet: Fleet, made: Iterable[OutputFile | Finding]
 ) -> tuple[Finding, ...]:
-    """What is open in the robots of a fleet, by place; ``of_files`` is what was found as ``texts`` were
-    made."""
-    named = [it for it in of_files if it.code in NAMES_NOTHING]
-    found = {*named, *_gaps(plan, fleet, texts, named)}
-    return tuple(sorted(found, key=lambda it: (it.file, it.line, it.column, it.code, it.message)))
+    """What is open in the robots of a fleet, by place; ``made`` are the files of the robots, and what
+    was found as they were made."""
+    texts, found = sorted_out(made)
+    known = {it for it in found if it.code in codes() and it.level != NOTE}
+    for robot in (group.robots[0] for group in group_robots(plan)):
+        known |= {it for it in robot.findings if it.file == robot.spec.srdf and it.level != NOTE}
+    known |= {*_gaps(plan, fleet, texts, known)}
+    return tuple(sorted(known, key=lambda it: (it.file, it.line, it.column, it.code, it.message)))
+
+
+def sorted_out(
+    made: Iterable[OutputFile | Finding],
+) -> tuple[list[OutputFile], list[Finding]]:
+    """The files, and the findings."""
+    both = [*made]
+    files = sorted(it for it in both if isinstance(it, OutputFile))
+    return files, [it for it in both if isinstance(it, Finding)]
 
 
 def _gaps(

@@ -8,11 +8,11 @@ from typing import Any
 import yaml
 
 from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.file_kinds import FLEET, refuse_others
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.yaml_text import line_of, pairs, read_yaml, refuse_anchors
-from multibot_rewrite.knowledge.yaml_with_lines import refuse_xml
 
 Path = tuple[Any, ...]
 # JSON Schema's types in plain words.
@@ -37,7 +37,7 @@ class CheckedYaml(NamedTuple):
 def text_checked(text: bytes, path: str, schema: Mapping[str, Any], hint: str) -> CheckedYaml:
     """The data of a file; InputError with its line, the key and what is allowed. ``hint`` says what to
     write into an empty file."""
-    refuse_xml(text, path)
+    refuse_others(text, path, FLEET)
     document = read_yaml(text, path)
     if document.root is None:
         raise InputError(f"{path}: the file is empty; {hint}")
@@ -72,7 +72,8 @@ def _lines(node: yaml.Node, file: str, path: Path) -> Iterator[tuple[Path, int]]
             yield below, line_of(key) if below == (*path, key.value) else line
 
 
-def _first_error(data: Any, schema: Mapping[str, Any]) -> Any:
+def _errors(data: Any, schema: Mapping[str, Any]) -> list[Any]:
+    """Every fault, the deepest reason of each."""
     try:
         import jsonschema
         from jsonschema.exceptions import best_match
@@ -83,32 +84,38 @@ def _first_error(data: Any, schema: Mapping[str, Any]) -> Any:
         what = "jsonschema 3.2 or newer is needed to read a fleet file"
         hint = "install it: pip install 'jsonschema>=3.2'"
         raise UsageError(f"{what}; {hint} ({error})") from None
-    return best_match(newest(schema).iter_errors(data))
+    return [best_match([it]) for it in newest(schema).iter_errors(data)]
 
 
 def _validate(data: Any, schema: Mapping[str, Any], file: str, lines: Mapping[Path, int]) -> None:
-    error = _first_error(data, schema)
-    if error is None:
+    found = [it for error in _errors(data, schema) for it in _faults(error, lines)]
+    if not found:
         return
+    (line, words), *others = dict.fromkeys(sorted(found, key=lambda it: it[0]))
+    also = "".join(f"; line {at}: {text}" for at, text in others)
+    raise InputError(f"{file}:{line}: {words}{also}")
+
+
+def _faults(error: Any, lines: Mapping[Path, int]) -> Iterator[tuple[int, str]]:
+    """The lines of an error, and it in words."""
     path = tuple(error.absolute_path)
     line = next(lines[path[:end]] for end in range(len(path), -1, -1) if path[:end] in lines)
-    if error.validator == "additionalProperties":
-        line = lines.get((*path, _unknown(error)), line)
-    raise InputError(f"{file}:{line}: {_where(path)}{_in_words(error)}")
-
-
-def _unknown(error: Any) -> Any:
-    return next(key for key in error.instance if key not in error.schema["properties"])
+    where = _where(path)
+    if error.validator != "additionalProperties":
+        yield line, f"{where}{_in_words(error)}"
+        return
+    known = error.schema["properties"]
+    for key in (it for it in error.instance if it not in known):
+        words = f"{where}unknown key {_shown(key)}; {_known(key, known)}"
+        yield lines.get((*path, key), line), words
 
 
 def _in_words(error: Any) -> str:
     """A validation error in plain words, with what is allowed."""
     given, wanted = error.instance, error.validator_value
-    if error.validator == "additionalProperties":
-        known = error.schema["properties"]
-        return f"unknown key {_shown(_unknown(error))}; {_known(_unknown(error), known)}"
     if error.validator == "required":
-        missing = next(key for key in wanted if key not in given)
+        # There is an error for each key that is missing.
+        missing = next(key for key in wanted if repr(key) in error.message and key not in given)
         return f"the key {missing!r} is missing; add it"
     if given is None:
         return "the value is missing; write one, or remove the key"

@@ -12,7 +12,7 @@ from typing import Any
 
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.file.cell_file import MOVE_GROUP
-from multibot_rewrite.fleet.file.fleet_file import BRINGUP, REAL
+from multibot_rewrite.fleet.file.fleet_file import BRINGUP
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.starts import Component, File, RobotStarts, Start, Text
 from multibot_rewrite.fleet.outputs import moveit_parameters, spawn
@@ -252,12 +252,6 @@ def _relays(given: _Given) -> tuple[tuple[Start, ...], tuple[Start, ...]]:
     made = relays(given.robot.spec.namespace, naming, file)
     starts = tuple(it.start for it in made)
     return (starts, ()) if naming.layout.frames else ((), starts)
-
-
-def simulators(plan: FleetPlan) -> list[str]:
-    """The simulators of the robots: ``classic``, ``gz``, none."""
-    simulated = [it for it in plan.robots if spawn.is_simulated(it) and it.spec.simulator != REAL]
-    return sorted({"classic" if spawn.is_classic(it) else "gz" for it in simulated})
 
 
 def of_all(plan: FleetPlan, files: Collection[str]) -> tuple[Start, ...]:

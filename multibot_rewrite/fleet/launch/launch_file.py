@@ -11,7 +11,7 @@ from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch import launch_actions
 from multibot_rewrite.fleet.launch.launch_python import to_python
 from multibot_rewrite.fleet.launch.starts import GZ, File, FleetStarts, RobotStarts, Start
-from multibot_rewrite.fleet.outputs import teleop, world_file
+from multibot_rewrite.fleet.outputs import spawn, teleop, world_file
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
 from multibot_rewrite.fleet.outputs.rviz_outputs import RvizOutput
 
@@ -40,7 +40,7 @@ def fleet_starts(
     windows of RViz, ``files`` what else is built, ``bridged`` the topics that bridges bring."""
     paths = frozenset(it.path for it in files)
     robots = [launch_actions.of_robot(one, paths, bridged) for one in each]
-    simulators = launch_actions.simulators(plan)
+    simulators = spawn.simulators(plan)
     clocks = {it.spec.use_sim_time for it in plan.robots}
     clock = clocks.pop() if len(clocks) == 1 else None
     source = os.path.basename(plan.file.file) or "a fleet"

@@ -26,6 +26,7 @@ from multibot_rewrite.fleet.outputs.output_file import (
     path_for,
     yaml_of,
 )
+from multibot_rewrite.fleet.outputs.spawn import simulators
 from multibot_rewrite.fleet.robots.member import line_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_groups import RobotGroup, group_robots
@@ -69,7 +70,7 @@ def bridge_outputs(plan: FleetPlan) -> FilesAndFindings:
             given = plan.evidence_of(robot).arguments
             open_ = (it for it in own if not _is_launched(it, given))
             yield from (_unbridged(robot, it) for it in open_ if not _is_carried(it, texts, topics))
-    yield from _for_all(groups, topics)
+    yield from _for_all(groups, topics, simulators(plan) == ["gz"])
 
 
 def _read(group: RobotGroup) -> GroupBridges:
@@ -97,12 +98,15 @@ def _for_robot(
         yield OutputFile(path_for(robot, BRIDGE), text.encode(), tuple(files))
 
 
-def _for_all(groups: Iterable[GroupBridges], topics: Sequence[BridgedTopic]) -> FilesAndFindings:
-    """The bridge of what all robots share, where there is anything to bridge."""
+def _for_all(
+    groups: Iterable[GroupBridges], topics: Sequence[BridgedTopic], is_timed: bool
+) -> FilesAndFindings:
+    """The bridge of what all robots share, where there is anything to bridge; ``is_timed`` is whether
+    their clock is that of Gazebo."""
     shared = dict.fromkeys(
         (path, file.shared) for it in groups for path, file in it.files.items() if file.shared
     )
-    if not shared and not any(it.robot for it in topics):
+    if not shared and not is_timed and not any(it.robot for it in topics):
         return
     text, findings = merge_bridges(shared, [it for it in topics if not it.robot])
     yield from findings

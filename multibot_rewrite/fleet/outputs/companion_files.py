@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.naming import Naming
+from multibot_rewrite.base.nearest import meant_name
 from multibot_rewrite.companions.companion import Companion
 from multibot_rewrite.companions.formats import made_for_any
 from multibot_rewrite.companions.kinds import LUA, MOVEIT, PARAMS, TREE
@@ -24,6 +25,7 @@ from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_groups import RobotGroup, group_robots
 from multibot_rewrite.knowledge.parameter_entries import RUN_TIME
 from multibot_rewrite.knowledge.parameters import KnownNodes, load_known_nodes
+from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.evidence.nodes import children_of
 from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.rules.files.given import Beside
@@ -84,7 +86,7 @@ def _params(plan: FleetPlan, group: RobotGroup, path: str) -> Companion:
     evidence = plan.evidence_of(group.robots[0])
     nodes = evidence.nodes
     bare = _at_run_time(plan.fleet.naming, evidence.given, known)
-    known = known._replace(sent=known.sent | {it for node in nodes for it in children_of(node)})
+    known = known._replace(sent=known.sent | {*_sent(nodes, group.context.names.declared["link"])})
     own = group.robots[0].spec.words if len(group.robots) == 1 else ()
     made = rewrite_params(
         read[path],
@@ -100,6 +102,12 @@ def _params(plan: FleetPlan, group: RobotGroup, path: str) -> Companion:
         return made
     more = nodes_without_section(list(read.values()), group.context, known, own)
     return made._replace(findings=(*made.findings, *more))
+
+
+def _sent(nodes: Iterable[NodeFacts], links: Iterable[str]) -> Iterator[str]:
+    """The frames that nodes send, but for one that is a link with a typing mistake."""
+    sent = (it for node in nodes for it in children_of(node))
+    return (it for it in sent if not meant_name(it, links))
 
 
 def _at_run_time(naming: Naming, given: Iterable[GivenNode], known: KnownNodes) -> frozenset[str]:

@@ -81,6 +81,12 @@ def is_classic(robot: RewrittenRobot) -> bool:
     return CLASSIC_PLUGIN.encode() in (robot.simulated or robot.description)
 
 
+def simulators(plan: FleetPlan) -> list[str]:
+    """The simulators of the robots: ``classic``, ``gz``, none."""
+    simulated = [it for it in plan.robots if is_simulated(it) and it.spec.simulator != REAL]
+    return sorted({"classic" if is_classic(it) else "gz" for it in simulated})
+
+
 def spawn(robot: RewrittenRobot, topic: str = "") -> Spawn:
     """How one robot is spawned; ``topic`` is that of its description if it is not the usual one."""
     spec = robot.spec

@@ -13,7 +13,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.fleet.proposal.looking import NO_SIMULATOR, Looked
 from multibot_rewrite.fleet.proposal.owners import names_of_files
-from multibot_rewrite.fleet.proposal.searching import Found, text_of
+from multibot_rewrite.fleet.proposal.searching import Found, data_of_file, text_of
 
 # What descriptions of a part alone are called.
 _PART = lazy_compile(
@@ -63,10 +63,10 @@ def chosen(robots: Sequence[Looked], found: Found) -> Chosen:
 
 
 def acts(it: Looked) -> bool:
-    """Can it move, or is it more than a model of a thing?"""
-    if it.tag != "sdf" or any(_moving(it)):
+    """Can it move, or does it sense? A model of a thing has at most a plugin of its own."""
+    if it.tag != "sdf" or it.links > 1 or any(_moving(it)):
         return True
-    return it.root is not None and next(it.root.iter("plugin", "sensor"), None) is not None
+    return it.root is not None and next(it.root.iter("sensor"), None) is not None
 
 
 def _candidate(it: Looked, said: frozenset[str], found: Found) -> Candidate:
@@ -89,12 +89,14 @@ def _is_behind(it: Candidate, best: Candidate) -> bool:
         return True
     if best.launched and not it.launched:
         return True
-    return bool(best.launched) == bool(it.launched) and best.share > _MORE * it.share
+    return best.launched >= it.launched and best.share > _MORE * it.share
 
 
 def _same_robot(it: Candidate, best: Candidate) -> bool:
-    """Two files of one robot: as URDF, xacro and SDF, or for a simulator and for real. Files of one
-    name in two folders are variants."""
+    """Two files of one robot: as URDF, xacro and SDF, or for a simulator and for real, or a copy. Other
+    files of one name in two folders are variants."""
+    if data_of_file(it.robot.path) == data_of_file(best.robot.path):
+        return True
     names = {it.robot.name, _stem(it.robot.path)} & {best.robot.name, _stem(best.robot.path)}
     bases = {os.path.basename(each.robot.path) for each in (it, best)}
     within = it.links <= best.links or best.links <= it.links
@@ -102,14 +104,15 @@ def _same_robot(it: Candidate, best: Candidate) -> bool:
 
 
 def launches_of(path: str, found: Found) -> int:
-    """How many launch files load this description. Of files of one base name it is that of the package
-    that the launch file names or is in, of models that of the folder."""
+    """How many launch files load this description, or worlds have this model. Of files of one base name
+    it is that of the package that the launch file names or is in, of models that of the folder."""
     base = os.path.basename(path)
     alike = [it for it in found.every if os.path.basename(it) == base]
     # A model is called by its folder.
     own = os.path.basename(os.path.dirname(path)) if base.endswith(".sdf") else _package(path)
     pattern = re.compile(rf"""(?<![\w.-]){re.escape(base)}(?![\w.-])""")
-    return sum(_loads(launch, pattern, own, len(alike) > 1) for launch in found.launch)
+    worlds = (f"model://{own}" in text_of(it) for it in found.worlds if base.endswith(".sdf"))
+    return sum(_loads(it, pattern, own, len(alike) > 1) for it in found.launch) + sum(worlds)
 
 
 def _loads(launch: str, pattern: re.Pattern[str], own: str, several: bool) -> bool:

@@ -15,8 +15,13 @@ from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.fleet.proposal.looking import CLASSIC, GZ, NO_SIMULATOR, Looked
-from multibot_rewrite.fleet.proposal.owners import moveit_of_others, of_others
-from multibot_rewrite.fleet.proposal.searching import Found, without
+from multibot_rewrite.fleet.proposal.owners import (
+    LEAST,
+    hundredths_known,
+    moveit_of_others,
+    of_others,
+)
+from multibot_rewrite.fleet.proposal.searching import Found, text_of, without
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 
@@ -64,16 +69,19 @@ class Companions(NamedTuple):
 def companions_of(robot: Looked, found: Found, release: str) -> Companions:
     """What goes with a description of these files."""
     left = of_others(robot, found)
-    found = without(found, left)
+    every = without(found, left)
+    left |= _with_others_names(robot, every)
+    found = without(every, left)
     files = {kind: tuple(_of_kind(kind, robot, found, left)) for kind in KINDS if kind != "params"}
-    sections = dict(_sections(_nearest(robot, found.params), release, left))
+    sections = dict(_sections(_nearest(robot, found.params, found.launch), release, left))
     idle = _controllers_of_others(robot, sections)
-    left |= idle
+    left |= idle | _bridges_of_others(robot, found)
+    files |= {"bridge": tuple(it for it in files["bridge"] if it not in left)}
     sections = {path: names for path, names in sections.items() if path not in idle}
     files["params"] = tuple(sections)
-    srdf = _nearest(robot, found.srdf)[:1]
+    srdf = _best_known(robot, found.srdf)[:1]
     left |= {it: "another SRDF was taken" for it in found.srdf if it not in srdf}
-    others = moveit_of_others(srdf[0], found) if srdf else {}
+    others = moveit_of_others(srdf[0], every) if srdf else {}
     left |= others
     files["moveit"] = tuple(it for it in files["moveit"] if srdf and it not in others)
     nodes = {name: path for path, names in sections.items() for name in names}
@@ -82,17 +90,28 @@ def companions_of(robot: Looked, found: Found, release: str) -> Companions:
 
 
 def _controllers_of_others(robot: Looked, sections: Mapping[str, frozenset[str]]) -> dict[str, str]:
-    """The files of controllers of the real robot, whose simulated one is driven by other plugins."""
-    if robot.control or robot.simulator == NO_SIMULATOR:
+    """The files of controllers of the real robot, whose simulated one is driven by other plugins, and
+    those beside a description that has nothing for them to move."""
+    if robot.control:
         return {}
     reason = "no plugin of the simulated robot makes a controller manager"
+    if robot.simulator == NO_SIMULATOR:
+        reason = "the description has no <ros2_control>"
     return {path: reason for path, names in sections.items() if _MANAGER in names}
+
+
+def _bridges_of_others(robot: Looked, found: Found) -> dict[str, str]:
+    """Bridges to a simulator, beside a description that has nothing for one."""
+    if robot.simulator != NO_SIMULATOR:
+        return {}
+    return dict.fromkeys(found.bridge, "the description has nothing for a simulator")
 
 
 def _of_kind(kind: str, robot: Looked, found: Found, left: dict[str, str]) -> Iterator[str]:
     """The files of a kind, nearest first; of equal base names, or where one is enough, only one."""
     taken: dict[str, str] = {}
-    for path in _nearest(robot, getattr(found, kind)):
+    every = getattr(found, kind)
+    for path in _best_known(robot, every) if kind == "rviz" else _nearest(robot, every):
         key = kind if kind in ONE else os.path.basename(path)
         if key in taken:
             left[path] = f"{os.path.basename(taken[key])} of another folder was taken"
@@ -123,14 +142,37 @@ def _sections(
         yield path, names
 
 
-def _nearest(robot: Looked, paths: Sequence[str]) -> list[str]:
-    """The files of the description's own package first, then by how like its own their paths are."""
-    words, home = set(_WORD.findall(robot.path.lower())), package_of(robot.path)
+def _with_others_names(robot: Looked, found: Found) -> dict[str, str]:
+    """SRDFs and RViz configs of which most names are not the robot's."""
+    known = {it: hundredths_known(robot, it) for it in (*found.srdf, *found.rviz)}
+    reason = "of its links and joints {} in a hundred are the robot's"
+    return {it: reason.format(share) for it, share in known.items() if share < LEAST}
 
-    def distance(path: str) -> tuple[bool, int, str]:
-        return package_of(path) != home, -len(words & set(_WORD.findall(path.lower()))), path
+
+def _best_known(robot: Looked, paths: Sequence[str]) -> list[str]:
+    """Those first of whose names most are the robot's, then the nearest."""
+    return sorted(_nearest(robot, paths), key=lambda it: -hundredths_known(robot, it))
+
+
+def _nearest(robot: Looked, paths: Sequence[str], launch: Sequence[str] = ()) -> list[str]:
+    """What the description itself loads first, then the files of its own package, those that a launch
+    file names, and by how like its own their paths are."""
+    words, home = set(_WORD.findall(robot.path.lower())), package_of(robot.path)
+    loaded = set(_loaded(robot))
+
+    def distance(path: str) -> tuple[bool, bool, bool, int, str]:
+        base = os.path.basename(path)
+        named = any(base in text_of(it) for it in launch)
+        like = len(words & set(_WORD.findall(path.lower())))
+        return os.path.abspath(path) not in loaded, package_of(path) != home, not named, -like, path
 
     return sorted(paths, key=distance)
+
+
+def _loaded(robot: Looked) -> Iterator[str]:
+    """The files of parameters that plugins of the description load."""
+    for it in robot.root.iter("parameters") if robot.root is not None else ():
+        yield os.path.abspath((it.text or "").strip())
 
 
 def _stacks(robot: Looked, nodes: Mapping[str, str], srdf: str) -> Iterator[tuple[str, str]]:

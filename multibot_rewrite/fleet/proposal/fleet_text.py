@@ -107,6 +107,8 @@ def _of_member(member: Member, folder: str) -> Iterator[tuple[str, tuple[Any, tu
 
     looked, beside = member.looked, member.companions
     yield "description", (here(looked.path), (f"It has {looked.links} links",))
+    if looked.model:
+        yield "simulated", (here(looked.model), ("The same robot as the simulator gets it",))
     if looked.arguments:
         why = "Arguments of the xacro: {robot} stands for the robot's name"
         yield "arguments", (dict(looked.arguments), (why, *_needed(looked)))
@@ -122,8 +124,10 @@ def _of_member(member: Member, folder: str) -> Iterator[tuple[str, tuple[Any, tu
 
 
 def _needed(it: Looked) -> Iterator[str]:
-    """What nobody gave and the xacro cannot do without."""
+    """What nobody gave and the xacro cannot do without, and what makes it simulated or real."""
     arguments = dict(it.arguments)
+    if it.switch:
+        yield f"{it.switch} is the switch between the simulated and the real robot"
     found = [name for name in it.needed if name in arguments]
     if found:
         yield f"It needs {', '.join(found)}, which nobody gave: is that right?"

@@ -15,9 +15,10 @@ from multibot_rewrite.description.reports.xacro_arguments import find_arguments,
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.expand import expand
-from multibot_rewrite.description.sources.own_names import filled
+from multibot_rewrite.description.sources.own_names import ROBOT, filled
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.fleet.file.simulator_switch import suits_real, suits_simulator, switch_for
 from multibot_rewrite.fleet.proposal.searching import text_of
 
 GZ, CLASSIC, NO_SIMULATOR = "gz", "classic", "none"
@@ -37,8 +38,10 @@ class Looked(NamedTuple):
     has ``<ros2_control>``, for a simulator with the plugin that makes its controller manager.
 
     ``arguments`` give each robot its own names (``{robot}`` is its name) or are needed to expand it;
-    ``needed`` are those of them that were not given. ``own_tf`` is whether its plugins send tf
-    on a topic of each robot. ``fault`` is why it cannot be read; the rest is empty then.
+    ``needed`` are those of them that were not given, ``switch`` is the one that makes it the simulated
+    or the real robot. ``own_tf`` is whether its plugins send tf on a topic of each robot. ``model`` is
+    the file that the simulator gets, where that is another one. ``fault`` is why it cannot be read; the
+    rest is empty then.
     """
 
     path: str
@@ -49,8 +52,10 @@ class Looked(NamedTuple):
     control: bool = False
     arguments: tuple[tuple[str, str], ...] = ()
     needed: tuple[str, ...] = ()
+    switch: str = ""
     own_tf: bool = False
     root: etree._Element | None = None
+    model: str = ""
     fault: str = ""
 
 
@@ -93,6 +98,41 @@ def with_own_arguments(it: Looked, tree: Tree, reach: Reach) -> Looked:
     return it._replace(arguments=tuple({**kept, **own}.items()))
 
 
+def without_names(it: Looked, given: Mapping[str, str]) -> Looked:
+    """The same with the arguments that name robots empty, but for those that were ``given`` or that it
+    cannot do without."""
+    kept = {*given, *it.needed}
+    values = {
+        name: value if name in kept or ROBOT not in value else "" for name, value in it.arguments
+    }
+    return it._replace(arguments=tuple(values.items()))
+
+
+def in_its_world(it: Looked, simulated: bool, reach: Reach) -> Looked:
+    """The same with the argument that makes it the simulated robot, or the real one, if it has one."""
+    suits = _suits_simulator if simulated else suits_real
+    given = dict(it.arguments)
+    if it.model:
+        return it
+    found = switch_for(it.path, filled(given, _ANY), suits, reach)
+    if not found:
+        return it
+    name, value = found
+    other = _look(it.path, {**given, name: value}, reach)
+    return it if other.fault else other._replace(needed=it.needed, switch=name)
+
+
+def with_model(it: Looked, sdf: Looked) -> Looked:
+    """A URDF for robot_state_publisher, and the SDF of the same robot for the simulator."""
+    return it._replace(
+        model=sdf.path, simulator=sdf.simulator, control=sdf.control, own_tf=sdf.own_tf
+    )
+
+
+def _suits_simulator(root: etree._Element) -> bool:
+    return _simulator(root) != NO_SIMULATOR and suits_simulator(root)
+
+
 def _looked(path: str, text: bytes, arguments: tuple[tuple[str, str], ...]) -> Looked:
     root = read_document(text, path).root
     model = root if root.tag != "sdf" else next(root.iter("model"), root)
@@ -104,9 +144,8 @@ def _looked(path: str, text: bytes, arguments: tuple[tuple[str, str], ...]) -> L
         _simulator(root),
         _is_controlled(root),
         arguments,
-        (),
-        any(_moves_tf(it) for it in root.iter("remapping", "argument")),
-        root,
+        own_tf=any(_moves_tf(it) for it in root.iter("remapping", "argument")),
+        root=root,
     )
 
 

@@ -85,6 +85,25 @@ def _is_specific(name: str) -> bool:
     return "_" in name or any(map(str.isdigit, name))
 
 
+_SHOWN = re.compile(rb"^[ \t]+([\w./-]+):[ \t]*\n[ \t]+Alpha:", re.MULTILINE)
+# Of fewer of a hundred of its names being the robot's, a file is another robot's.
+LEAST = 50
+
+
+def hundredths_known(robot: Looked, path: str) -> int:
+    """How many of a hundred links and joints that an SRDF names, or an RViz config shows, are the
+    robot's; all of a file that names none."""
+    named = names_shown(path) if path.endswith(".rviz") else _names_in(path)
+    own = frozenset(_expanded(robot)) | _names_in(robot.path)
+    return 100 * len(named & own) // len(named) if named else 100
+
+
+def names_shown(path: str) -> frozenset[str]:
+    """The links in the trees of an RViz config."""
+    found = (it.decode("utf-8", "replace") for it in _SHOWN.findall(data_of_file(path)))
+    return frozenset(found) - {*SENT_FRAMES}
+
+
 def _expanded(robot: Looked) -> Iterator[str]:
     for it in robot.root.iter("link", "joint") if robot.root is not None else ():
         yield it.get("name", "")

@@ -12,6 +12,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.footprint import reach_of
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.sources.access import Reach
+from multibot_rewrite.fleet.file.fleet_file import REAL
 from multibot_rewrite.fleet.proposal.choosing import Chosen, acts, chosen, launches_of
 from multibot_rewrite.fleet.proposal.companions import Companions, companions_of
 from multibot_rewrite.fleet.proposal.looking import (
@@ -20,11 +21,14 @@ from multibot_rewrite.fleet.proposal.looking import (
     Looked,
     NeededValues,
     holds_the_world,
+    in_its_world,
     look,
+    with_model,
     with_own_arguments,
 )
-from multibot_rewrite.fleet.proposal.searching import Found, search, without
+from multibot_rewrite.fleet.proposal.searching import Found, search, text_of, without
 
+MEANT = "as it was asked for"
 PER_ROBOT, FRAMES = "tf-per-robot", "frames-per-robot"
 # Metres between the outlines of two robots, and the step to which distances are rounded.
 _GAP, _STEP = 0.5, 0.5
@@ -141,6 +145,8 @@ def unlike(words: Iterable[str]) -> list[str]:
 MOST = 60
 # Metres, for a robot without a shape whose size is known.
 UNKNOWN_RADIUS = 0.5
+# Packages that start a simulator.
+_SIMULATORS = ("ros_gz_sim", "ros_ign_gazebo", "gazebo_ros")
 # The last release that has packages of its plugins (rosdistro).
 OF_CLASSIC = "humble"
 
@@ -148,7 +154,8 @@ OF_CLASSIC = "humble"
 class Wanted(NamedTuple):
     """What is asked for: files and folders, robots of each description or their names, values of xacro
     arguments, the release and whether somebody named it, a layout if not the one that the files are
-    made for, metres from robot to robot if not as they are wide, whether xacros may do anything."""
+    made for, metres from robot to robot if not as they are wide, whether xacros may do anything, a
+    simulator or "none" if not what the files are for."""
 
     paths: tuple[str, ...]
     each: int
@@ -159,6 +166,7 @@ class Wanted(NamedTuple):
     trust: bool = False
     names: tuple[str, ...] = ()
     apart: float = 0.0
+    simulator: str = ""
 
 
 class Seen(NamedTuple):
@@ -182,7 +190,9 @@ def see(wanted: Wanted) -> Seen:
     found = search(wanted.paths)
     reach = Reach(trust=wanted.trust)
     values = NeededValues(found.launch)
-    every = found.descriptions[:MOST]
+    every = found.descriptions
+    if len(every) > MOST:
+        every = tuple(sorted(every, key=lambda it: -launches_of(it, found)))[:MOST]
     looked = [look(it, wanted.arguments, reach, values) for it in every]
     named = [it for it in looked if it.path in map(os.path.normpath, wanted.paths)]
     if named:
@@ -199,6 +209,10 @@ def see(wanted: Wanted) -> Seen:
         _rather(best, looked, found), "; the launch files load it, name another one if you mean it"
     )
     order, rivals, alike = ([it.robot for it in its] for its in best)
+    # A robot_state_publisher takes no SDF: the URDF of the same robot is for it.
+    urdf = next((it for it in alike if order[0].tag == "sdf" and it.tag == "robot"), None)
+    if urdf and wanted.simulator != REAL:
+        order[0] = with_model(urdf, order[0])
     return Seen(found, order, False, rivals, alike)
 
 
@@ -217,14 +231,27 @@ def _by_launches(looked: Iterable[Looked], found: Found) -> list[Looked]:
 
 def _refuse(which: Sequence[Looked], more: str) -> None:
     for it in which[:1]:
-        fault = it.fault or f"{it.path}: it has no link; give the file that has the robot"
+        why = "nothing in it moves or senses" if it.links else "it has no link"
+        fault = it.fault or f"{it.path}: {why}; give the file that has the robot"
         raise UsageError(f"{fault}{more}")
 
 
-def with_arguments(robots: Sequence[Looked], wanted: Wanted) -> list[Looked]:
-    """The robots with the arguments of their xacros that give each its own names."""
+def with_arguments(robots: Sequence[Looked], wanted: Wanted, found: Found) -> list[Looked]:
+    """The robots with the arguments of their xacros that give each its own names, and with the one that
+    makes them simulated or real: as it was asked for, or as the files are."""
     tree = builtin_tree((), wanted.release)
-    return [with_own_arguments(it, tree, Reach(trust=wanted.trust)) for it in robots]
+    reach = Reach(trust=wanted.trust)
+    own = [with_own_arguments(it, tree, reach) for it in robots]
+    launched = any(it in text_of(path) for path in found.launch for it in _SIMULATORS)
+    return [
+        in_its_world(it, _is_simulated(it, wanted) or (launched and not wanted.simulator), reach)
+        for it in own
+    ]
+
+
+def _is_simulated(it: Looked, wanted: Wanted) -> bool:
+    has = it.simulator != NO_SIMULATOR
+    return wanted.simulator != REAL if wanted.simulator else has
 
 
 def release_of(robots: Sequence[Looked], wanted: Wanted) -> Choice:
@@ -252,13 +279,13 @@ def propose(
     ]
     layout = layout_of(members)
     if wanted.layout:
-        layout = Choice(wanted.layout, "as it was asked for")
+        layout = Choice(wanted.layout, MEANT)
     affix = affix_of(layout.value)
     keys: dict[str, Choice] = {
         "layout": layout,
         **({"affix": affix} if affix else {}),
         "distro": release,
-        "simulator": simulator_of(members),
+        "simulator": Choice(wanted.simulator, MEANT) if wanted.simulator else simulator_of(members),
         **worlds_of(members),
     }
     poses = poses_of(members, wanted.apart)
@@ -266,7 +293,7 @@ def propose(
 
 
 def _others(found: Found, robots: Sequence[Looked]) -> tuple[str, ...]:
-    taken = {it.path for it in robots}
+    taken = {path for it in robots for path in (it.path, it.model)}
     return tuple(it for it in found.descriptions if it not in taken)
 
 

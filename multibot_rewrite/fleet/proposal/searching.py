@@ -18,7 +18,7 @@ from multibot_rewrite.description.sources.packages import package_of
 # Files that are looked at; of a larger one nothing is read.
 MOST_FILES, MOST_BYTES = 20_000, 4_000_000
 _SKIPPED = frozenset(("build", "install", "log", "node_modules", "test", "tests", "__pycache__"))
-_ENDS = (".urdf", ".sdf", ".xacro", ".srdf", ".yaml", ".yml", ".rviz", ".xml", ".py")
+_ENDS = (".urdf", ".sdf", ".world", ".xacro", ".srdf", ".yaml", ".yml", ".rviz", ".xml", ".py")
 _ROBOT = re.compile(rb"<robot\b[^>]*\sname\s*=")
 _INCLUDED = re.compile(rb"""<(?:\w+:)?include\b[^>]*\bfilename\s*=\s*["']([^"']+)["']""")
 _FIND = re.compile(r"\$\(find(?:-pkg-share)?\s+([\w.-]+)\)/*")
@@ -51,6 +51,7 @@ class Found(NamedTuple):
     behavior_trees: tuple[str, ...] = ()
     srdf: tuple[str, ...] = ()
     launch: tuple[str, ...] = ()
+    worlds: tuple[str, ...] = ()
     folders: tuple[str, ...] = ()
     every: tuple[str, ...] = ()
 
@@ -164,8 +165,9 @@ def _of_urdf(_: str, data: bytes) -> str:
 
 
 def _of_sdf(_: str, data: bytes) -> str:
-    alone = b"<model" in data and b"<world" not in data
-    return "descriptions" if alone and not _STATIC.search(data) else ""
+    if b"<world" in data:
+        return "worlds"
+    return "descriptions" if b"<model" in data and not _STATIC.search(data) else ""
 
 
 def _of_xml(_: str, data: bytes) -> str:
@@ -188,6 +190,6 @@ def _of_yaml(stem: str, data: bytes) -> str:
 
 _BY_NAME = {".srdf": "srdf", ".rviz": "rviz"}
 _BY_TEXT = {
-    ".urdf": _of_urdf, ".sdf": _of_sdf, ".xacro": _of_xacro,
+    ".urdf": _of_urdf, ".sdf": _of_sdf, ".world": _of_sdf, ".xacro": _of_xacro,
     ".yaml": _of_yaml, ".yml": _of_yaml, ".xml": _of_xml,
 }  # fmt: skip

@@ -10,10 +10,11 @@ from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.model import MultibotError, UsageError
 from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.fleet.checks.read_back import read_back
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.fleet.proposal.fleet_text import data_of
-from multibot_rewrite.fleet.proposal.looking import Looked
+from multibot_rewrite.fleet.proposal.looking import Looked, without_names
 from multibot_rewrite.fleet.proposal.propose import (
     Choice,
     Proposal,
@@ -37,8 +38,10 @@ def first_that_builds(seen: Seen, wanted: Wanted) -> Proposal:
     Raises UsageError where another one that builds may be meant as well.
     """
     likely = [seen.robots[0], *seen.rivals]
+    if len(likely) > MOST_TRIED:
+        _refuse_to_choose(likely)
     tried: list[Proposal] = []
-    for it in likely[:MOST_TRIED]:
+    for it in likely:
         tried.append(that_builds([it], seen.found, wanted))
         if sum(not one.notes for one in tried) > 1:
             _refuse_to_choose(likely)
@@ -59,9 +62,22 @@ def that_builds(
     robots: Sequence[Looked], found: Found, wanted: Wanted, refused: Mapping[str, str] | None = None
 ) -> Proposal:
     """The fleet of these robots without the files that do not go with them (``refused`` are left out,
-    too), in its own layout or the first one that builds."""
-    own = with_arguments(robots, wanted)
-    out = dict(refused or {})
+    too), in its own layout or the first one that builds; the arguments that name robots stay empty
+    where it builds so alone."""
+    own = with_arguments(robots, wanted, found)
+    made, errors = _without_blamed(own, found, wanted, refused or {})
+    bare = [without_names(it, wanted.arguments) for it in own] if errors else own
+    if bare != own:
+        other, wrong = _without_blamed(bare, found, wanted, refused or {})
+        made, errors = (made, errors) if wrong else (other, wrong)
+    return in_a_layout_that_builds(made, errors, wanted.trust)
+
+
+def _without_blamed(
+    own: Sequence[Looked], found: Found, wanted: Wanted, refused: Mapping[str, str]
+) -> tuple[Proposal, list[tuple[str, str]]]:
+    """The proposal without the files that have an error, and the errors that are left."""
+    out = dict(refused)
     for _ in range(MOST_ROUNDS):
         made = propose(own, found, wanted, out)
         errors = errors_of(data_of(made, os.curdir), wanted.trust)
@@ -69,7 +85,7 @@ def that_builds(
         if not blamed:
             break
         out |= blamed
-    return in_a_layout_that_builds(made, errors, wanted.trust)
+    return made, errors
 
 
 def _blamed(it: Proposal, errors: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
@@ -85,13 +101,16 @@ def _blamed(it: Proposal, errors: Iterable[tuple[str, str]]) -> Iterator[tuple[s
 
 def errors_of(data: Mapping[str, Any], trust: bool = False) -> list[tuple[str, str]]:
     """Why a fleet does not build: the file, if one is at fault, and a line each; paths are relative to
-    the working directory."""
+    the working directory. What else is right is read back, as a build does."""
+    folder = os.path.abspath("out")
     try:
         plan = plan_fleet(read_fleet(data, "", os.environ), trust=trust)
-        made = make_outputs(plan, os.path.abspath("out"))
+        made = make_outputs(plan, folder)
+        found = {*made.findings, *plan.fleet.table.problems}
+        if not any(it.level == ERROR for it in found):
+            found |= {*read_back(plan, made, folder)}
     except MultibotError as error:
         return [("", str(error))]
-    found = {*made.findings, *plan.fleet.table.problems}
     errors = (it for it in found if it.level == ERROR)
     return [(_file(it), f"{it.code} {it.message}") for it in sorted(errors, key=lambda it: it.code)]
 

@@ -1,4 +1,4 @@
-"""Is a robot simulated? The fleet file says so, or its launch files do.
+"""Is a robot simulated? The fleet file says so, or its launch files do; is its hardware, too?
 
 What a description has for a simulator does nothing on a real robot: plugins start no node, sensors and
 drives need no bridge.
@@ -6,10 +6,24 @@ drives need no bridge.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+
 from lxml import etree
 
-from multibot_rewrite.base.findings.finding import NOTE, Finding
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.description.sources.access import BOUNDED
+from multibot_rewrite.description.sources.own_names import filled
+from multibot_rewrite.fleet.file.fleet_file import REAL
+from multibot_rewrite.fleet.file.simulator_switch import (
+    hardware_classes,
+    loads_hardware,
+    may_be_simulated,
+    of_simulator,
+    suits_real,
+    suits_simulator,
+    switch_for,
+)
 from multibot_rewrite.fleet.robots.member import Member
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence
@@ -44,12 +58,85 @@ SIMULATED_OR_REAL = declare(
     formats=("fleet",),
     beside={"system_model.yaml": _AMCL, "robot.urdf": _DRIVE},
 )
+# The stack whose ros2_control_node loads the hardware of a real robot.
+_LOADING = "ros2_control"
+_CONTROLLED = """\
+<robot name="rover">
+  <link name="base_link"/>
+  <ros2_control name="drive" type="system">
+    <hardware><plugin>{}</plugin></hardware>
+  </ros2_control>
+  <gazebo><plugin name="control" filename="gz_ros2_control-system"/></gazebo>
+</robot>
+"""
+OTHER_HARDWARE = declare(
+    "MF843",
+    "hardware-of-real-robot-simulated",
+    ERROR,
+    what="The robots are simulated, and the hardware class of their `<ros2_control>` is a real robot's "
+    "driver; or they are real, and the class is a simulator's.",
+    why="The simulator's plugin looks for its own classes, ros2_control_node for drivers: neither "
+    "finds the other's, and no controller comes up.",
+    fix="Give the xacro the argument that switches it, often `use_sim` or `sim_gazebo`; the hint has "
+    "it where there is one. Or write another `simulator`.",
+    bad="simulator: gazebo\ndescription: robot.urdf\nrobots:\n  - {name: robot1}\n",
+    good="simulator: none\ndescription: robot.urdf\nrobots:\n  - {name: robot1}\n",
+    line=4,
+    formats=("fleet",),
+    beside={"robot.urdf": _CONTROLLED.format("acme_hardware/AcmeSystem")},
+)
+
+
+def other_hardware(robots: Sequence[RewrittenRobot]) -> Iterator[Finding]:
+    """Hardware that is not of the world that the robots are in, once for each description."""
+    told = set()
+    for it in robots:
+        wrong = _of_other_world(it)
+        if wrong and it.spec.sources not in told:
+            told.add(it.spec.sources)
+            yield _other(it, wrong)
+
+
+def _of_other_world(robot: RewrittenRobot) -> str:
+    """The first hardware class of a robot that is not of its world."""
+    root: etree._Element = robot.member.inventory.document.root
+    classes = hardware_classes(root)
+    if robot.spec.simulator == REAL:
+        loaded = _LOADING in robot.spec.stacks
+        return next(filter(of_simulator, classes), "") if loaded else ""
+    if robot.spec.simulator and loads_hardware(root):
+        return next((it for it in classes if not may_be_simulated(it)), "")
+    return ""
+
+
+def _other(robot: RewrittenRobot, wrong: str) -> Finding:
+    real = robot.spec.simulator == REAL
+    suits = suits_real if real else suits_simulator
+    spec = robot.spec
+    given = filled(spec.arguments, spec.name)
+    switch = switch_for(spec.simulated or spec.description, given, suits, BOUNDED)
+    message = f"{wrong} is a simulator's, and robot {spec.name!r} is real"
+    if not real:
+        message = f"{wrong} is a real robot's driver, and robot {spec.name!r} is simulated"
+    other = "gazebo" if real else "none"
+    hint = f"write simulator: {other}, or give it hardware of its world"
+    if switch:
+        hint = f"give the argument {switch[0]}: {switch[1]!r}, or write simulator: {other}"
+    return at_robot(OTHER_HARDWARE, robot, message, hint)
 
 
 def may_be_real(robot: RewrittenRobot, evidence: RobotEvidence) -> bool:
     """Has its description something for a simulator, and does nothing say that it runs in one?"""
-    said = robot.spec.simulator or robot.spec.companions.get("bridge")
-    return evidence.unsimulated and not said and _for_simulator(robot.member)
+    return evidence.unsimulated and not _said(robot) and _for_simulator(robot.member)
+
+
+def is_chosen(robot: RewrittenRobot) -> bool:
+    """Does its fleet file say that it runs in a simulator?"""
+    return bool(_said(robot)) and robot.spec.simulator != REAL
+
+
+def _said(robot: RewrittenRobot) -> object:
+    return robot.spec.simulator or robot.spec.companions.get("bridge")
 
 
 def note(robot: RewrittenRobot) -> Finding:

@@ -9,6 +9,7 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 
 from multibot_rewrite.base.bounded import read_bytes
+from multibot_rewrite.base.child import git
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 
@@ -81,13 +82,12 @@ def _base(rev: str) -> str:
 
 def _git(where: Sequence[str], *words: str) -> bytes:
     try:
-        done = subprocess.run(["git", *where, *words], capture_output=True, check=True)
+        return git(*where, *words)
     except OSError as error:
         raise UsageError(f"git cannot be run: {error.strerror}; install it") from None
     except subprocess.CalledProcessError as error:
         lines = error.stderr.decode("utf-8", "replace").strip().splitlines() or ["it failed"]
         raise UsageError(f"git reports: {lines[0].removeprefix('fatal: ')}") from None
-    return done.stdout
 
 
 def _names(listed: bytes) -> frozenset[str]:

@@ -8,6 +8,8 @@ from __future__ import annotations
 import io
 import os
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from importlib import import_module
 from typing import Any
 
 from multibot_rewrite.base.model import InputError, Unusable
@@ -139,6 +141,12 @@ def find_mesh(name: str, source: str) -> str:
     return path if path and os.path.isfile(path) else ""
 
 
+def prepare_meshes() -> None:
+    """Load the reader once, for the workers that are forked from this process."""
+    with suppress(ImportError):  # the view says what to install
+        import_module("trimesh")
+
+
 def load_mesh(path: str) -> Mesh | str:
     """A mesh file, or why it cannot be shown."""
     import numpy as np
@@ -147,7 +155,7 @@ def load_mesh(path: str) -> Mesh | str:
     try:
         made: Any = trimesh.load(path, force="mesh", process=False)
     except Exception as error:  # each format has errors of its own
-        return f"{os.path.basename(path)}: {error}"
+        return f"{os.path.basename(path)}: {error or type(error).__name__}"
     if not len(getattr(made, "faces", ())):
         return f"{os.path.basename(path)} has no triangles"
     if len(made.faces) > MOST_FACES:

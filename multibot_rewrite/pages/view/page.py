@@ -11,19 +11,33 @@ from typing import Any
 
 from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.printable import one_line
+from multibot_rewrite.lint.workers import limit_time, worker_pool
 from multibot_rewrite.pages.page import Framed, source_hash
 from multibot_rewrite.pages.view.heard import DEGREES, METRES
-from multibot_rewrite.pages.view.models import Mesh, Shape, load_mesh, three
+from multibot_rewrite.pages.view.models import Mesh, Shape, load_mesh, prepare_meshes, three
 from multibot_rewrite.pages.view.scene import Scene, ViewedRobot
 
+MESH_SECONDS = 10.0
 # Meshes by their files, or why one cannot be shown.
 Meshes = Mapping[str, Mesh | str]
 
 
 def meshes_of(scene: Scene) -> Meshes:
-    """The meshes of all robots, each read once."""
+    """The meshes of all robots, each read once, by a worker with bounds: a small file may stand for
+    more than memory holds, or take for ever."""
     shapes = (it for robot in scene.robots for its in robot.model.links.values() for it in its)
-    return {path: load_mesh(path) for path in dict.fromkeys(it.mesh for it in shapes) if path}
+    paths = [path for path in dict.fromkeys(it.mesh for it in shapes) if path]
+    prepare_meshes()
+
+    def within(path: str) -> Mesh | str:
+        limit_time(MESH_SECONDS)
+        return load_mesh(path)
+
+    def lost(path: str, _: int) -> str:
+        return f"{path}: reading it takes more than {MESH_SECONDS:g} s, or too much memory"
+
+    with worker_pool(within, paths, lost, min(2, len(paths))) as workers:
+        return dict(zip(paths, workers.results(), strict=True))
 
 
 def to_html(scene: Scene, meshes: Meshes, title: str) -> bytes:

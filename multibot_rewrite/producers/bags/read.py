@@ -9,6 +9,7 @@ import os
 import re
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator
+from importlib import import_module
 from itertools import islice
 from math import inf
 from typing import TYPE_CHECKING, Any
@@ -41,6 +42,9 @@ _HEADED = frozenset(
     }.items()
     for name in names.split()
 )
+# What a file of a bag is unpacked to, at most: messages pack to a twentieth, images to less.
+LEAST_UNPACKED, MOST_PACKED, _PART = 2**30, 40, 2**20
+_PACKED = (".zst", ".zstd")
 _NO_LIMIT_SECONDS = 9_223_372_036
 
 
@@ -65,8 +69,25 @@ def read_bag(path: str) -> Recording:
 
 def _check_metadata(path: str) -> None:
     """Raises yaml.YAMLError for a file that the reader's own parser might not survive."""
-    if os.path.isdir(path) and os.path.exists(os.path.join(path, METADATA)):
+    if not os.path.isdir(path):
+        return
+    if os.path.exists(os.path.join(path, METADATA)):
         load_yaml(read_text(os.path.join(path, METADATA)))
+    for name in sorted(os.listdir(path)):
+        if name.endswith(_PACKED):
+            _check_packed(os.path.join(path, name))
+
+
+def _check_packed(path: str) -> None:
+    """Raises InputError for a file that its reader would unpack to far more than messages pack to."""
+    most = max(LEAST_UNPACKED, MOST_PACKED * os.path.getsize(path))
+    zstd: Any = import_module("rosbags.rosbag2.reader").zstd
+    with zstd.open(path, "rb") as file:
+        size = 0
+        while part := file.read(_PART):
+            size += len(part)
+            if size > most:
+                raise InputError(f"{os.path.basename(path)} unpacks to more than {most:,} bytes")
 
 
 def _recording(reader: Reader) -> Recording:

@@ -90,7 +90,7 @@ def _endpoint(node: NodeFacts, raw: Endpoint, values: Mapping[str, Given]) -> It
         bound = _bound(raw._replace(remapped=remapped), binding)
         is_bound = verdict(bound.when, lookup(node, values)) if bound.when and binding else is_there
         if is_bound is not False and holds(bound.condition, lookup(node, values)):
-            decided = bool(binding or bound.condition or is_bound)
+            decided = is_bound if bound.when else bool(binding or bound.condition)
             typed = _typed(_sure(bound, decided), lookup(node, values))
             words = [it for it in _ID.findall(raw.name) if it in ids]
             listed = values.get(_put(ids[words[-1]], binding)) if words else None

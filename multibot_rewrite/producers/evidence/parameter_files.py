@@ -23,6 +23,7 @@ from multibot_rewrite.companions.names.placeholders import of_one_robot, without
 from multibot_rewrite.companions.params.rcl_parameters import Value, value_of
 from multibot_rewrite.companions.params.sections import (
     ANY,
+    INNER,
     MANAGER,
     RawSection,
     identify_node,
@@ -69,7 +70,9 @@ def given_nodes(
     controllers = {**dict(_typed(sections, known)), **dict(_controllers(sections))}
     for name, it in controllers.items():
         _check_name(name.rpartition("/")[2], it.type.place)
-    names = dict.fromkeys((*(it.name for it in sections if it.name), *controllers))
+    # A node of Nav2 makes helpers that have its parameters, and none of its topics and actions.
+    own = (it.name for it in sections if it.name and not it.name.endswith(INNER))
+    names = dict.fromkeys((*own, *controllers))
     wanted = (it for it in names if it in only) if only else names
     return [_node(name, sections, controllers.get(name), known) for name in wanted]
 
@@ -155,7 +158,12 @@ def _typed(sections: Sequence[_Section], known: KnownNodes) -> Iterator[tuple[st
 def _node(
     name: str, sections: Sequence[_Section], controller: _Controller | None, known: KnownNodes
 ) -> GivenNode:
-    own = [it for it in sections if re.fullmatch(pattern_of(it.raw.path), f"/{name}")]
+    # A section such as /*/NODE is for the node in whatever namespace it is.
+    own = [
+        it
+        for it in sections
+        if it.name == name or re.fullmatch(pattern_of(it.raw.path), f"/{name}")
+    ]
     values = {key: given for it in own for key, given in it.values.items()}
     named = [it for it in own if it.name]
     last = name.rpartition("/")[2]

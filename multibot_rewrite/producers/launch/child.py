@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import os
 import subprocess
-import sys
 from functools import lru_cache
 
+from multibot_rewrite.base.bounded import read_bytes
+from multibot_rewrite.base.child import python, variables
+from multibot_rewrite.base.file_kinds import LAUNCH, refuse_others
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder, graph_of, to_json
 from multibot_rewrite.producers.launch.system_model import is_system_model, read_system_model
@@ -25,6 +27,7 @@ def launch_graph(order: LaunchOrder) -> LaunchGraph:
     """
     if not os.path.isfile(order.file):
         raise InputError(f"{order.file}: the launch file does not exist; correct the path")
+    refuse_others(read_bytes(order.file), order.file, LAUNCH)
     if is_system_model(order.file):
         return read_system_model(order.file)
     if not order.trusted:
@@ -39,8 +42,8 @@ def launch_graph(order: LaunchOrder) -> LaunchGraph:
 
 
 def _asked(order: LaunchOrder) -> LaunchGraph:
-    environ = {**os.environ, _INSIDE: "1"}
-    command = [sys.executable, "-m", _MODULE]
+    environ = {**variables(), _INSIDE: "1"}
+    command = python(_MODULE)
     try:
         done = subprocess.run(
             command,

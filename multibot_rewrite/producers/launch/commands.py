@@ -10,12 +10,12 @@ from __future__ import annotations
 import os
 import shlex
 import subprocess
-import sys
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from types import MappingProxyType
 from typing import Any
 
+from multibot_rewrite.base.child import python, variables
 from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.access import SECONDS
@@ -24,7 +24,7 @@ from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.producers.launch.describe import text
 from multibot_rewrite.producers.launch.door import of_launch
 
-_POSTFIX = (sys.executable, "-m", "multibot_rewrite.cli.urdf_postfix")
+_POSTFIX = "multibot_rewrite.cli.urdf_postfix"
 _FAULTS = "multibot_command_faults"
 # Its options that write no other file; each has a value.
 _OPTIONS = frozenset(
@@ -84,8 +84,10 @@ def _cat(words: Sequence[str]) -> str:
 def _postfix(words: Sequence[str]) -> str:
     if any(it.startswith("-") and it.partition("=")[0] not in _OPTIONS for it in words):
         return ""
-    line = [*_POSTFIX, *words]
-    done = subprocess.run(line, capture_output=True, text=True, timeout=SECONDS, check=False)
+    line = python(_POSTFIX, *words)
+    done = subprocess.run(
+        line, env=variables(), capture_output=True, text=True, timeout=SECONDS, check=False
+    )
     if done.returncode:
         raise ValueError(done.stderr)
     return done.stdout

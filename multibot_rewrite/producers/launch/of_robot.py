@@ -7,7 +7,6 @@ starts is left out, if all of the launch files is known.
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import Any
@@ -20,7 +19,6 @@ from multibot_rewrite.companions.params.sections import raw_sections
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.knowledge.parameters import KnownNodes
-from multibot_rewrite.knowledge.programs import runs
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.producers.evidence.nodes import MANAGER
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
@@ -28,6 +26,7 @@ from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.producers.evidence.remapped import remapped
 from multibot_rewrite.producers.launch.bridges import bridge_rows
 from multibot_rewrite.producers.launch.findings import launch_findings
+from multibot_rewrite.producers.launch.known_node import known_node, last_word, own_name
 from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, ParameterText
 from multibot_rewrite.producers.launch.spawner_managers import under_managers
@@ -35,7 +34,6 @@ from multibot_rewrite.producers.launch.spawners import Spawned, is_spawner, spaw
 from multibot_rewrite.producers.launch.static_transforms import with_static_transform
 from multibot_rewrite.system.records import Place
 
-_CAMEL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
 # The name of a file for what a launch file gives itself.
 _OWN = "parameters of a launch file"
 NO_NAME = "the launch file gives it no name"
@@ -78,9 +76,7 @@ def with_launched(
     left = [it for it in stack if _is_left(it, nodes)] if graph.whole else []
     gone = {it.name for it in left}
     # A node that every robot has, such as robot_state_publisher, may be launched under another name.
-    gone |= {it.known for it in nodes.values() if it.known} - {
-        it.name for it in stack if _is_named(it)
-    }
+    gone |= {it.known for it in nodes.values() if it.known} - {it.name for it in stack if it.origin}
     kept = [it for it in stack if it.name not in nodes and not {it.name, it.host} & gone]
     hosted = list(_hosted(pairs, known, {it.name for it in kept}))
     inside = [*hosted, *(it for it in kept if it.host)]
@@ -166,33 +162,9 @@ def _pair(
     return _Pair(it, found, base is not None or bool(rows))
 
 
-def own_name(it: LaunchedNode, facts: NodeFacts | None) -> str:
-    """The name that a node has by its code; empty where it is not known."""
-    return programs().names.get(f"{it.package}/{it.executable}") or (facts.name if facts else "")
-
-
-def last_word(it: LaunchedNode) -> str:
-    """The program, or the class of a component, without its namespace."""
-    return it.executable.rpartition(":")[2]
-
-
 def _unmapped(facts: NodeFacts) -> tuple[Endpoint, ...]:
     """Its endpoints without the rules of a stack: those of the launch count."""
     return tuple(end._replace(remapped="") for end in facts.endpoints)
-
-
-def known_node(
-    it: LaunchedNode, stack: Sequence[NodeFacts], known: Mapping[str, NodeFacts]
-) -> NodeFacts | None:
-    """What is known of a node: by its name in a stack, else by its package and executable."""
-    executable = _CAMEL.sub("_", last_word(it)).lower()
-    program = f"{it.package}/{it.executable}"
-    of_stack = (node for node in stack if node.name == it.name and node.package == it.package)
-    wanted = {it.name, it.executable, executable, executable.removesuffix("_node")}
-    of_package = [node for node in known.values() if node.package == it.package and not node.host]
-    by_word = (node for node in of_package if node.name in wanted)
-    chosen = (node for node in known.values() if runs(node, program))
-    return next(of_stack, None) or next(chosen, None) or next(by_word, None)
 
 
 def _is_of_robot(namespace: str, words: Collection[str]) -> bool:
@@ -214,11 +186,7 @@ def _is_left(node: NodeFacts, launched: Mapping[str, NodeFacts]) -> bool:
     """Should a launch file have started it? What has no process of its own is not launched, and what
     no stack is named for is added to every robot."""
     own = not node.host and not node.plugin and node.name != MANAGER
-    return own and node.name not in launched and _is_named(node)
-
-
-def _is_named(node: NodeFacts) -> bool:
-    return node.origin.startswith("stack ")
+    return own and node.name not in launched and bool(node.origin)
 
 
 def _hosted(

@@ -28,6 +28,7 @@ from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
 from multibot_rewrite.producers.evidence.filling import filled
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 from multibot_rewrite.producers.evidence.records import GivenNode
+from multibot_rewrite.producers.launch.known_node import known_node, last_word, own_name
 from multibot_rewrite.producers.launch.models import (
     Model,
     Models,
@@ -37,14 +38,7 @@ from multibot_rewrite.producers.launch.models import (
     models_of,
     rules_of,
 )
-from multibot_rewrite.producers.launch.of_robot import (
-    document_of,
-    has_sections,
-    known_node,
-    last_word,
-    own_name,
-    passes,
-)
+from multibot_rewrite.producers.launch.of_robot import document_of, has_sections, passes
 from multibot_rewrite.producers.launch.records import (
     LaunchedNode,
     LaunchGraph,

@@ -203,7 +203,10 @@ def _endpoints(it: RunningNode, name: str, bound: BoundNode, helper: BoundNode) 
             own = end._replace(name=_below_namespace_above(it, end))
             full = _resolved(own, helper if end.helper else bound)
             type_ = chosen_type(end.types, partial(_value, it)) or end.type
-            yield End(end.kind, end.role, full, type_, "", f"{name}{end.by}", None, it.process)
+            who = f"{name}{end.by}"
+            yield End(
+                end.kind, end.role, full, type_, "", who, None, it.process, code_name=end.name
+            )
 
 
 def _below_namespace_above(it: RunningNode, end: Endpoint) -> str:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import json
 import subprocess
-import sys
 import tempfile
 import threading
 import time
@@ -15,6 +14,7 @@ from collections.abc import Generator, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from typing import IO, cast
 
+from multibot_rewrite.base.child import python, variables
 from multibot_rewrite.base.model import Unusable
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.ros.request import ENDED, NO_RCLPY, RMW_MISMATCH, Request, to_text
@@ -130,7 +130,7 @@ def running(
     module: str, order: str, environ: Mapping[str, str], seconds: float | None = None
 ) -> Iterator[RosProcess]:
     """Run the child with its order; it ends with the block, and after ``seconds`` at the latest."""
-    command = [sys.executable, "-m", module]
+    command, environ = python(module), variables(environ)
     pipe = subprocess.PIPE
     with tempfile.TemporaryFile() as errors:
         process = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=errors, env=environ)

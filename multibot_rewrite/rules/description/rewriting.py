@@ -9,11 +9,8 @@ from multibot_rewrite.base.findings.finding import NOTE, WARNING
 from multibot_rewrite.base.findings.rule import SRDF, URDF, rule
 from multibot_rewrite.companions.kinds import EVERY
 from multibot_rewrite.description.checks.audit import (
-    included_models,
     other_releases,
     other_ros,
-    unknown_hardware,
-    unknown_plugins,
 )
 from multibot_rewrite.description.checks.mentions import (
     MENTIONED,
@@ -22,6 +19,7 @@ from multibot_rewrite.description.checks.mentions import (
     usual_names,
 )
 from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.description.checks.unknown import unknown_parts
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.description.steps.document import slot_values
@@ -62,26 +60,35 @@ def _audit(audit: Audit, subject: Subject) -> Iterator[Problem]:
     return audit(subject.inventory, subject.tree)
 
 
+def _unknown(code: str, subject: Subject) -> Iterator[Problem]:
+    """What runs in a document and is not known, of one code."""
+    return (it for it in unknown_parts(subject.inventory, subject.tree) if it.code == code)
+
+
 unknown_plugin = rule(
     "MB902",
     "unknown-plugin",
     NOTE,
-    what="A plugin is not in the vocabulary.",
+    what="A plugin or a type of sensor is not in the vocabulary, or its section does not say what it "
+    "opens: topics, services, files, network addresses.",
     why="Its parameters that name links, joints, frames or topics stay as they are for every "
-    "robot, unless other plugins have parameters with the same names.",
-    fix="Add a section for it to a vocabulary file.",
+    "robot, unless other plugins have parameters with the same names; and what it opens may be the "
+    "same for all robots.",
+    fix="Add a section for it to a vocabulary file, with a line for each topic and service; where it "
+    "opens none, `opens: nothing`.",
     bad='<gazebo><plugin name="p" filename="libmy_company_thing.so"/></gazebo>',
     good='<gazebo><plugin name="p" filename="libgazebo_ros_p3d.so"/></gazebo>',
-)(partial(_audit, unknown_plugins))
+)(partial(_unknown, "MB902"))
 
 unknown_hardware_class = rule(
     "MB903",
     "unknown-hardware",
     NOTE,
-    what="A ros2_control hardware class with parameters is not in the vocabulary.",
+    what="A ros2_control hardware class is not in the vocabulary, or its section does not say what it "
+    "opens.",
     why="One of its parameters may be a name, or a prefix that the driver puts in front of names: "
-    "it stays as it is for every robot.",
-    fix="Add a section for it to a vocabulary file.",
+    "it stays as it is for every robot; and its code may open topics that are the same for all.",
+    fix="Add a section for it to a vocabulary file; where it opens nothing, `opens: nothing`.",
     bad='<ros2_control name="h" type="system">\n'
     "  <hardware>\n"
     "    <plugin>my_company/Arm</plugin>\n"
@@ -89,9 +96,9 @@ unknown_hardware_class = rule(
     "  </hardware>\n"
     "</ros2_control>\n",
     good='<ros2_control name="h" type="system">\n'
-    "  <hardware><plugin>my_company/Arm</plugin></hardware>\n"
+    "  <hardware><plugin>mock_components/GenericSystem</plugin></hardware>\n"
     "</ros2_control>\n",
-)(partial(_audit, unknown_hardware))
+)(partial(_unknown, "MB903"))
 
 parameter_of_ros_1 = rule(
     "MB904",
@@ -137,7 +144,7 @@ included_model = rule(
     "MB906",
     "included-model",
     NOTE,
-    what="A model of an SDF includes a model of another file.",
+    what="A model of an SDF, or a <gazebo>, includes a model of another file.",
     why="That file is not read with this one: its sensors and plugins have the same topics, nodes and "
     "frames for all robots, unless they are made of the model's name.",
     fix="Rewrite its model.sdf for each robot, and write the model in place of its <include>.",
@@ -150,4 +157,4 @@ included_model = rule(
     '  <model name="front"><link name="l"/></model>\n'
     "</model></sdf>\n",
     line=3,
-)(partial(_audit, included_models))
+)(partial(_unknown, "MB906"))

@@ -38,7 +38,8 @@ def demands(file: NamedFile, *checks: str) -> Iterator[Demand]:
     for section in sections(file):
         for it, known in section.known:
             facts = [fact for fact in known if fact.how == DEMANDED] if it.value is not None else []
-            for fact in of_release(facts, file.context.distro):
+            exact = [fact for fact in facts if fact.path == it.name]
+            for fact in of_release(exact or facts, file.context.distro):
                 put = stands_for(fact.path, it.name)
                 for check, text in fact.checks if put or fact.path == it.name else ():
                     if check in checks:

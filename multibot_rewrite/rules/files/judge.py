@@ -102,9 +102,18 @@ _COMMENT = lazy_compile(r"(?:#|--)\s*urdf-lint:\s*ignore\s+((?:MB\d+[,\s]*)+)(?:
 @cache
 def rules_for(kind: str) -> tuple[Rule, ...]:
     """The rules for files of a kind, by their codes."""
-    themes = (it for theme in THEMES for it in vars(theme).values() if isinstance(it, Rule))
-    every = (it for it in (*themes, *SHARED) if kind in it.formats)
-    return tuple(sorted(every, key=lambda it: it.code))
+    return tuple(sorted((it for it in _every() if kind in it.formats), key=lambda it: it.code))
+
+
+@cache
+def codes() -> frozenset[str]:
+    """The codes of all rules for files."""
+    return frozenset(it.code for it in _every())
+
+
+def _every() -> Iterator[Rule]:
+    yield from (it for theme in THEMES for it in vars(theme).values() if isinstance(it, Rule))
+    yield from SHARED
 
 
 def judged(file: NamedFile, rules: Iterable[Rule]) -> Iterator[Finding]:

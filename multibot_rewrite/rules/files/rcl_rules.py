@@ -15,9 +15,10 @@ import yaml
 from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.findings.finding import ERROR
 from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.rcl_parameters import typed, value_of
-from multibot_rewrite.companions.params.sections import ANY, PARAMETERS, scalars
+from multibot_rewrite.companions.params.sections import ANY, PARAMETERS, ParamSection, scalars
 from multibot_rewrite.companions.yaml_text import pairs
 from multibot_rewrite.rules.files.records import Remark, remark_at
 
@@ -33,7 +34,7 @@ def rejected_values(file: NamedFile) -> Iterator[Remark]:
     if document is None:
         return
     for section, _ in file.pages:
-        for node in _lists(section.body):
+        for node in filter(_is_read, _lists(section.body)):
             if PLACEHOLDER.search(document.text[node.start_mark.index : node.end_mark.index]):
                 continue
             try:
@@ -49,6 +50,12 @@ def _lists(node: yaml.Node) -> Iterator[yaml.Node]:
             yield value
         else:
             yield from _lists(value)
+
+
+def _is_read(node: yaml.Node) -> bool:
+    """Is it one of values? rcl 9.2 takes ``- key: [a]``, and rejects maps of two keys."""
+    maps = [it for it in node.value if isinstance(it, yaml.MappingNode)]
+    return not maps or any(len(it.value) > 1 for it in maps)
 
 
 def misspelt_marks(file: NamedFile) -> Iterator[Remark]:
@@ -73,23 +80,25 @@ def mixed_clocks(file: NamedFile) -> Iterator[Remark]:
     for section, _ in file.pages:
         for key, value in scalars(section.body):
             given = typed(value.value) if not value.style else ""
-            if key.value == _TIME and isinstance(given, bool) and not _is_wild(section.path):
+            if key.value == _TIME and isinstance(given, bool) and not _is_left_out(section):
                 found.append((section.path, value, given))
     counted = Counter(given for *_, given in found)
     if len(counted) < 2:
         return
     most = counted.most_common(1)[0][0]
-    for path, node, given in found:
-        if given != most:
-            other = next(it for it, _, value in found if value == most)
-            message = f"{path} has {_TIME}: {_word(given)}, and {other} {_word(most)}"
-            yield remark_at(
-                node, message, "set it alike in all nodes of a robot: tf compares times"
-            )
+    others = [(path, node) for path, node, given in found if given != most]
+    first = next(path for path, _, value in found if value == most)
+    names = shorten(path for path, _ in others)
+    message = f"{_TIME} is {_word(not most)} for {names}, and {_word(most)} for {first}"
+    yield remark_at(
+        others[0][1], message, "set it alike in all nodes of a robot: tf compares times"
+    )
 
 
-def _is_wild(path: str) -> bool:
-    return bool(PLACEHOLDER.search(path)) or any(it in ANY for it in path.split("/"))
+def _is_left_out(section: ParamSection) -> bool:
+    """Is it for no one node, or for a helper node of old releases?"""
+    wild = any(it in ANY for it in section.path.split("/"))
+    return wild or section.inner or PLACEHOLDER.search(section.path) is not None
 
 
 def _word(value: bool) -> str:

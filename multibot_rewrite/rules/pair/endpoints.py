@@ -19,7 +19,7 @@ from multibot_rewrite.rules.pair.causes import (
 )
 from multibot_rewrite.rules.pair.meeting import missing
 from multibot_rewrite.rules.pair.similar_names import similar
-from multibot_rewrite.system.index import Index, in_namespaces_above
+from multibot_rewrite.system.index import Index
 from multibot_rewrite.system.records import (
     CALLS,
     PUBLISHES,
@@ -29,6 +29,7 @@ from multibot_rewrite.system.records import (
     TOPIC,
     End,
 )
+from multibot_rewrite.system.tool_nodes import in_namespaces_above
 
 TO_DO = {
     PUBLISHES: "publish",

@@ -9,8 +9,9 @@ from multibot_rewrite.rules.declaration import found_by_plan
 from multibot_rewrite.rules.pair.causes import use_absolute
 from multibot_rewrite.rules.pair.meeting import unplanned_ends, unplanned_nodes
 from multibot_rewrite.rules.system.names import topic_names_miss
-from multibot_rewrite.system.index import Index, in_namespaces_above
+from multibot_rewrite.system.index import Index
 from multibot_rewrite.system.records import SUBSCRIBES, TOPIC, End
+from multibot_rewrite.system.tool_nodes import in_namespaces_above
 
 # In the names of Nav2's costmap nodes.
 COSTMAP = "costmap"

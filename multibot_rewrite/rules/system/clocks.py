@@ -9,11 +9,11 @@ from fnmatch import translate
 
 from multibot_rewrite.base.conventions import CLOCK
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.base.wording import shorten
+from multibot_rewrite.base.wording import and_then, shorten
 from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.system.index import Index, and_then, is_viewer, last_word, nodes_of
+from multibot_rewrite.system.index import Index, nodes_of
 from multibot_rewrite.system.records import TOPIC
-from multibot_rewrite.system.tool_nodes import is_tool
+from multibot_rewrite.system.tool_nodes import is_tool, is_viewer, last_word
 
 # They compare the time of messages with their own clock, and subscribe to /clock with use_sim_time.
 _TIMED = (

@@ -7,25 +7,14 @@ from collections.abc import Iterable, Iterator
 
 from multibot_rewrite.base.conventions import EVERYBODYS, OF_EVERY_NODE, chooses, team
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
-from multibot_rewrite.base.wording import shorten
+from multibot_rewrite.base.wording import and_then, shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.system.names import ABSENT, alike, nobody_in
 from multibot_rewrite.rules.system.sharing import own_namespace
 from multibot_rewrite.system import words
-from multibot_rewrite.system.index import (
-    TF,
-    Ends,
-    Index,
-    and_then,
-    at_work,
-    is_hidden,
-    is_viewer,
-    last_word,
-    nodes_of,
-    robots_of,
-)
+from multibot_rewrite.system.index import TF, Ends, Index, at_work, nodes_of, robots_of
 from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SUBSCRIBES, TOPIC, End
-from multibot_rewrite.system.tool_nodes import is_tool
+from multibot_rewrite.system.tool_nodes import is_hidden, is_tool, is_viewer, last_word
 
 
 @system_rule(

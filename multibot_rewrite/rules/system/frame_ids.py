@@ -9,17 +9,9 @@ from functools import cache
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.base.wording import SEVERAL, shorten
+from multibot_rewrite.base.wording import SEVERAL, and_then, only, shorten
 from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.system.index import (
-    Index,
-    Tree,
-    and_then,
-    at_work,
-    nodes_of,
-    only,
-    robots_of,
-)
+from multibot_rewrite.system.index import Index, Tree, at_work, nodes_of, robots_of
 from multibot_rewrite.system.records import TOPIC, Edge
 
 # What a robot measures is in its own frames. A pose, a path or a marker may be in another robot's.

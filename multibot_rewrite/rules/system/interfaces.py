@@ -16,8 +16,9 @@ from multibot_rewrite.base.nearest import Guesses
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.rules import of_both
 from multibot_rewrite.rules.places import see, where
-from multibot_rewrite.system.index import Index, last_word
+from multibot_rewrite.system.index import Index
 from multibot_rewrite.system.records import CLAIMS, COMMAND, EXPORTS, JOINT, Interface, Place
+from multibot_rewrite.system.tool_nodes import last_word
 
 # What is done with it, what it is called besides its kind, and who does not give it.
 _OF_HARDWARE = ("claims", " interface", "no ros2_control exports")

@@ -12,8 +12,9 @@ from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import see, where
-from multibot_rewrite.system.index import TF, Ends, Index, is_viewer, nodes_of
+from multibot_rewrite.system.index import TF, Ends, Index, nodes_of
 from multibot_rewrite.system.records import TOPIC, ZENOH, End, Qos
+from multibot_rewrite.system.tool_nodes import is_viewer
 from multibot_rewrite.system.words import DESCRIPTION, MAP
 
 # The words of each policy, the weakest first; any other word does not say what is in force.

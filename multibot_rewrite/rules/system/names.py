@@ -11,24 +11,13 @@ from itertools import islice, zip_longest
 from multibot_rewrite.base.conventions import EVERYBODYS, chooses
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.nearest import CHOICE, COMPARED, MISTYPED, nearest
+from multibot_rewrite.base.wording import and_then
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import see, where
 from multibot_rewrite.rules.system.unsent import meant
-from multibot_rewrite.system.index import (
-    TF,
-    Ends,
-    Index,
-    and_then,
-    at_work,
-    in_namespaces_above,
-    is_spawner,
-    is_viewer,
-    last_word,
-    nodes_of,
-    once,
-    robots_of,
-)
+from multibot_rewrite.system.index import TF, Ends, Index, at_work, nodes_of, once, robots_of
 from multibot_rewrite.system.records import ACTION, SERVES, SERVICE, TOPIC, End
+from multibot_rewrite.system.tool_nodes import in_namespaces_above, is_spawner, is_viewer, last_word
 
 ABSENT = "is that robot started, and is its name right?"
 _DIGITS = re.compile(r"_?\d+")
@@ -62,7 +51,8 @@ running: /joystick publishes /robot1/cmd_vel geometry_msgs/msg/Twist
 """,
 )
 def topic_names_miss(seen: Index) -> Iterator[Finding]:
-    """What a person may click in RViz, and what only tools read, is a note."""
+    """What a person may click in RViz, and what only tools read, is a note; what has the type alone in
+    common, a warning: something else may send it."""
     published = {
         name: it for (kind, name), it in seen.by_name.items() if kind == TOPIC and it.publishers
     }
@@ -75,10 +65,9 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
                 continue
             # What chooses between several inputs seldom has all of them.
             offered = unheard if chooses(end.node) else published
-            other = published.get(_published_instead(seen, end, offered, unheard))
-            other = other or meant(seen, end)
-            if other:
-                yield _missed_topic(seen, end, other)
+            near = published.get(_published_instead(seen, end, offered, unheard))
+            if other := near or meant(seen, end):
+                yield _missed_topic(seen, end, other, ERROR if near else WARNING)
 
 
 def _each_node(ends: Iterable[End]) -> Iterator[End]:
@@ -200,7 +189,7 @@ def _same_but_number(one: str, other: str) -> bool:
     return _DIGITS.sub("", one) == _DIGITS.sub("", other)
 
 
-def _missed_topic(seen: Index, end: End, other: Ends) -> Finding:
+def _missed_topic(seen: Index, end: End, other: Ends, level: str) -> Finding:
     sender = nodes_of(other.publishers)[0]
     message = f"subscribes to {end.name}, which nobody publishes; {sender} publishes {other.name}"
     # The side in the wrong place is the one whose name has no robot, or is below the node.
@@ -210,8 +199,7 @@ def _missed_topic(seen: Index, end: End, other: Ends) -> Finding:
         cause = f"pass the rule {other.name}:={end.name} to {sender}, or start it in the namespace"
     else:
         cause = f"pass the rule {end.name}:={other.name}, or write {other.name} in its parameters"
-    clicked = is_viewer(sender)
-    level = NOTE if clicked else ERROR
+    level = NOTE if is_viewer(sender) else level
     robot = seen.robot(end.node) or seen.robot(end.name)
     return topic_names_miss.finding(
         message, cause + see((other.publishers[0], end)),
@@ -249,8 +237,8 @@ def server_names_miss(seen: Index) -> Iterator[Finding]:
             continue
         for end in _each_node(ends.clients):
             by_type = meant(seen, end)
-            other = _served_instead(seen, end, served[kind, end.type])
-            other = other or (by_type.name if by_type else "")
+            near = _served_instead(seen, end, served[kind, end.type])
+            other = near or (by_type.name if by_type else "")
             does = "sends goals to" if kind == ACTION else "calls"
             absent = (
                 not other
@@ -268,7 +256,8 @@ def server_names_miss(seen: Index) -> Iterator[Finding]:
             message = f"{does} {name}, which nobody serves; {server} serves {other}"
             cause = f"pass the rule {name}:={other}, or start it in the namespace of the robot"
             robot = seen.robot(end.node) or seen.robot(other)
-            level = NOTE if is_viewer(end.node) and not is_spawner(end.node) else ERROR
+            clicked = is_viewer(end.node) and not is_spawner(end.node)
+            level = NOTE if clicked else ERROR if near else WARNING
             yield server_names_miss.finding(
                 message, cause + see((seen.by_name[kind, other].servers[0], end)),
                 level=level, robot=robot, node=end.node, names=(name, other), **where([end]),

@@ -6,11 +6,11 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 
 from multibot_rewrite.base.findings.finding import ERROR, Finding
-from multibot_rewrite.base.wording import SEVERAL, shorten
+from multibot_rewrite.base.wording import SEVERAL, and_then, shorten
 from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.system.index import Index, and_then, is_viewer, nodes_of
+from multibot_rewrite.system.index import Index, nodes_of
 from multibot_rewrite.system.records import SERVICE
-from multibot_rewrite.system.tool_nodes import is_tool
+from multibot_rewrite.system.tool_nodes import is_tool, is_viewer
 
 # So many doubled nodes are two robots rather than two nodes.
 MANY = 3

@@ -8,8 +8,9 @@ from multibot_rewrite.base.conventions import chooses
 from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.system import words
-from multibot_rewrite.system.index import Ends, Index, at_work, last_word, nodes_of
+from multibot_rewrite.system.index import Ends, Index, at_work, nodes_of
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.tool_nodes import last_word
 
 # Of Nav2, between its controller and the robot: they limit velocities, and stop before obstacles.
 _LIMITS = ("velocity_smoother", "collision_monitor")

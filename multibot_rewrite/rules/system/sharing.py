@@ -5,19 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.base.wording import shorten
+from multibot_rewrite.base.wording import and_then, shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.system import words
-from multibot_rewrite.system.index import (
-    Ends,
-    Index,
-    and_then,
-    at_work,
-    last_word,
-    nodes_of,
-    robots_of,
-)
+from multibot_rewrite.system.index import Ends, Index, at_work, nodes_of, robots_of
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
+from multibot_rewrite.system.tool_nodes import last_word
 
 
 def own_namespace(seen: Index, name: str, robot: str) -> str:

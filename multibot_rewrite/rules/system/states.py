@@ -10,7 +10,7 @@ from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import see, where
 from multibot_rewrite.rules.system.clocks import mixed_clocks
-from multibot_rewrite.system.index import Index, is_viewer, last_word
+from multibot_rewrite.system.index import Index
 from multibot_rewrite.system.records import (
     CLAIMS,
     COMMAND,
@@ -20,7 +20,7 @@ from multibot_rewrite.system.records import (
     Interface,
     clocks,
 )
-from multibot_rewrite.system.tool_nodes import is_tool
+from multibot_rewrite.system.tool_nodes import is_tool, is_viewer, last_word
 
 ACTIVE = "active"
 

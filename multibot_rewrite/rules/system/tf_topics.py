@@ -7,11 +7,11 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.conventions import BODY_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.base.wording import shorten
+from multibot_rewrite.base.wording import only, shorten, unique
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import see, where
 from multibot_rewrite.rules.system.transforms import collide
-from multibot_rewrite.system.index import Index, Tree, is_viewer, last_word, only, robots_of, unique
+from multibot_rewrite.system.index import Index, Tree, robots_of
 from multibot_rewrite.system.records import (
     NOWHERE,
     OFF,
@@ -21,6 +21,7 @@ from multibot_rewrite.system.records import (
     Edge,
 )
 from multibot_rewrite.system.tf_copies import tree_topic
+from multibot_rewrite.system.tool_nodes import is_viewer, last_word
 
 TF = "tf"
 _REMAP = "/tf:=tf and /tf_static:=tf_static"

@@ -8,19 +8,12 @@ from itertools import pairwise
 
 from multibot_rewrite.base.conventions import WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, Finding
-from multibot_rewrite.base.wording import SEVERAL, shorten
+from multibot_rewrite.base.wording import SEVERAL, and_then, only, shorten, unique
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import see, where
-from multibot_rewrite.system.index import (
-    Index,
-    Tree,
-    and_then,
-    last_word,
-    only,
-    robots_of,
-    unique,
-)
+from multibot_rewrite.system.index import Index, Tree, robots_of
 from multibot_rewrite.system.records import Edge
+from multibot_rewrite.system.tool_nodes import last_word
 
 _STATIC = "static_transform_publisher"
 

@@ -8,11 +8,12 @@ from collections.abc import Iterable, Iterator, Mapping
 from multibot_rewrite.base.conventions import is_from_outside
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.base.nearest import nearest
-from multibot_rewrite.base.wording import shorten
+from multibot_rewrite.base.wording import shorten, unique
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import where
-from multibot_rewrite.system.index import Ends, Index, is_viewer, last_word, once, unique
+from multibot_rewrite.system.index import Ends, Index, once
 from multibot_rewrite.system.records import ACTION, CALLS, RUNS, SUBSCRIBES, TOPIC, End
+from multibot_rewrite.system.tool_nodes import is_viewer, last_word
 
 # The server of an action sends its status.
 _STATUS = "/_action/status"

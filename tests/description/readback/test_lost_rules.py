@@ -11,7 +11,7 @@ from multibot_rewrite.description.readback.reading import read
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 
 PLUGIN = (
-    '<robot name="r"><gazebo><plugin name="{}" filename="libgazebo_ros_{}.so">'
+    '<robot name="r"><link name="a"/><gazebo><plugin name="{}" filename="libgazebo_ros_{}.so">'
     "<ros>{}</ros></plugin></gazebo></robot>"
 )
 

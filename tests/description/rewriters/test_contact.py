@@ -80,15 +80,15 @@ CASES = [
     pytest.param(
         [Link("base", ["foo"])],
         "base_fixed_joint_lump__foo_collision",
-        "base_r1_fixed_joint_lump__foo_collision",
-        "r1_base_fixed_joint_lump__foo_collision",
+        "base_r1_fixed_joint_lump__foo_r1_collision",
+        "r1_base_fixed_joint_lump__r1_foo_collision",
         id="named",
     ),
     pytest.param(
         [Link("base", ["base_col"])],
         "base_col_collision",
-        "base_r1_fixed_joint_lump__base_col_collision",
-        "r1_base_fixed_joint_lump__base_col_collision",
+        "base_r1_fixed_joint_lump__base_col_r1_collision",
+        "r1_base_col_collision",
         id="named-like-the-link",
     ),
     pytest.param([BASE], "base_collision", "base_r1_collision", "r1_base_collision", id="alone"),
@@ -102,8 +102,8 @@ CASES = [
     pytest.param(
         [BASE, Link("mast", ["", ""], "base"), Link("cam", ["lens"], "mast")],
         "base_fixed_joint_lump__lens_collision_3",
-        "base_r1_fixed_joint_lump__lens_collision_3",
-        "r1_base_fixed_joint_lump__lens_collision_3",
+        "base_r1_fixed_joint_lump__lens_r1_collision_3",
+        "r1_base_fixed_joint_lump__r1_lens_collision_3",
         id="chain",
     ),
     pytest.param(

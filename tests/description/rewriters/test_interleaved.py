@@ -51,6 +51,7 @@ select: plugin
 [block frames]
 frame uses frame link
 [plugin drive]
+opens: nothing
 with: frames
 wheel[@side=left] uses joint
 label keep a label

@@ -22,6 +22,7 @@ NEW_PLUGIN = """\
 # of my own
 [plugin my_winch my_hoist]
 about: a winch
+opens: nothing
 @name        declares node
 rope/from    uses link
 cable@joint  uses joint

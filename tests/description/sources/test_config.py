@@ -14,7 +14,7 @@ from multibot_rewrite.base.config import configured_vocabulary
 from multibot_rewrite.cli.urdf_postfix import main
 
 TABLE = '[tool.multibot-rewrite]\nvocabulary = ["data/mine.vocab"]\n'
-SECTION = "[plugin mine]\nmy_frame uses link frame\n"
+SECTION = "[plugin mine]\nopens: nothing\nmy_frame uses link frame\n"
 ROBOT = (
     '<robot name="a">\n<link name="base"/>\n<gazebo><plugin name="p" filename="libmine.so">'
     "<my_frame>base</my_frame></plugin></gazebo>\n</robot>\n"

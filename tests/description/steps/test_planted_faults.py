@@ -84,7 +84,7 @@ def test_a_wrong_plan_of_a_case_is_refused(case: Case) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "part", [*range(3), *(pytest.param(it, marks=pytest.mark.deep) for it in range(3, 20))]
+    "part", [0, *(pytest.param(it, marks=pytest.mark.deep) for it in range(1, 20))]
 )
 def test_a_wrong_text_or_plan_of_any_case_is_refused(part: int) -> None:
     for case in CASES[part::20]:

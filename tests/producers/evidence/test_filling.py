@@ -154,6 +154,14 @@ def test_a_controller_that_a_file_declares_needs_no_hardware_of_a_stack() -> Non
     assert {it.name: it.when for it in found.nodes}["joint_trajectory_controller"] == ""
 
 
+def test_a_helper_of_a_navigator_serves_no_action() -> None:
+    """nav2_util simple_action_server.hpp (Humble): a node for the callbacks of the other's action."""
+    helper = "bt_navigator_navigate_to_pose_rclcpp_node"
+    body = ":\n  ros__parameters: {use_sim_time: true}\n"
+    found = given(f"bt_navigator{body}{helper}{body}")
+    assert [it.name for it in found] == ["bt_navigator"]
+
+
 def test_a_node_of_a_file_may_run_and_then_sends_only_what_no_other_sends() -> None:
     amcl = "amcl:\n  ros__parameters: {base_frame_id: base_link}\n"
     beside = nodes_of(load_stack("slam_toolbox", "jazzy"), given(amcl), load_nodes("jazzy"))
@@ -231,3 +239,64 @@ def test_a_source_whose_topic_no_node_can_have() -> None:
         run("local_costmap/local_costmap", text)
     named = text.replace("{data_type", "{topic: scan, data_type")
     assert "scan" in names(run("local_costmap/local_costmap", named), "subscribes")
+
+
+CAMERA = """\
+camera:
+  ros__parameters:
+    enable_color: false
+    pointcloud.enable: true
+"""
+
+
+def test_a_camera_has_the_streams_that_are_enabled() -> None:
+    """realsense2_camera src/profile_manager.cpp: enable_<stream> of each stream of the device, true by
+    default; filters are off."""
+    node = run("camera", CAMERA)
+    published = {it.name: it.when for it in node.endpoints if it.role == "publishes"}
+    assert published["~/depth/color/points"] == ""
+    assert "stream: depth" in published["~/depth/image_rect_raw"]
+    assert not published.keys() & {"~/color/image_raw", "~/rgbd", "~/imu"}
+
+
+DOCKS = """\
+docking_server:
+  ros__parameters:
+    dock_plugins: [charger, pallet]
+    charger:
+      plugin: opennav_docking::SimpleChargingDock
+      use_external_detection_pose: true
+      subscribe_toggle: true
+    pallet: {plugin: "opennav_docking::SimpleNonChargingDock", use_stall_detection: false}
+"""
+
+
+def test_docks_read_what_their_plugins_are_told_to() -> None:
+    """opennav_docking src/simple_charging_dock.cpp configure(): with subscribe_toggle it subscribes to
+    the dock's pose while it docks."""
+    node = run("docking_server", DOCKS)
+    read = {it.name: bool(it.when) for it in node.endpoints if it.role == "subscribes"}
+    assert (read["battery_state"], read["detected_dock_pose"]) == (False, True)
+    assert "joint_states" not in read
+    assert "battery_state" not in names(
+        run("docking_server", DOCKS.replace("[charger, pallet]", "[pallet]")), "subscribes"
+    )
+
+
+ROUTE = """\
+route_server:
+  ros__parameters:
+    operations: [slow, again]
+    slow: {plugin: "nav2_route::AdjustSpeedLimit", speed_limit_topic: limit}
+    again: {plugin: "nav2_route::ReroutingService"}
+    edge_cost_functions: [DistanceScorer]
+    DistanceScorer: {plugin: "nav2_route::DistanceScorer"}
+"""
+
+
+def test_a_route_server_has_the_names_of_its_plugins() -> None:
+    node = run("route_server", ROUTE, "kilted")
+    assert "limit" in names(node, "publishes")
+    assert "~/again/reroute" in names(node, "serves")
+    assert "~/slow/reroute" not in names(node, "serves")
+    assert not [it.name for it in node.endpoints if "costmap" in it.name]

@@ -156,8 +156,9 @@ BREAKS = [
     # A link with two joints above it: two static transforms.
     (
         "rover.urdf",
-        '<link name="finger_link"/>\n',
-        '<link name="finger_link"/>\n  <joint name="second" type="fixed"><parent link="lidar_link"/>'
+        '<link name="finger_link"><inertial><mass value="1"/></inertial></link>\n',
+        '<link name="finger_link"><inertial><mass value="1"/></inertial></link>\n'
+        '  <joint name="second" type="fixed"><parent link="lidar_link"/>'
         '<child link="imu_link"/></joint>\n',
         "MG401",
         15,

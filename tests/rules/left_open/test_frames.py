@@ -77,7 +77,7 @@ def test_a_tree_that_the_rewrite_has_cut_is_an_error(tmp_path: Path) -> None:
     assert plan.fleet.edges[key]
     for cut, levels in (([pair("x>y")], ["error"]), (plan.fleet.edges[key], [])):
         fleet = plan.fleet._replace(edges={**plan.fleet.edges, key: cut})
-        found = [it.level for it in gaps_of(plan, fleet, [], []) if it.code == "MG406"]
+        found = [it.level for it in gaps_of(plan, fleet, []) if it.code == "MG406"]
         assert found == levels
 
 

@@ -14,8 +14,9 @@ DOOR = (
     "- {ros_topic_name: door, gz_topic_name: /door/open, ros_type_name: std_msgs/msg/Bool, "
     "gz_type_name: gz.msgs.Boolean, direction: ROS_TO_GZ}\n- ros_topic_name: imu/data"
 )
+FINGER = '<link name="finger_link"><inertial><mass value="1"/></inertial></link>\n'
 CASTER = (
-    '<link name="finger_link"/>\n<link name="caster"/><joint name="caster_joint" type="continuous">'
+    f'{FINGER}<link name="caster"/><joint name="caster_joint" type="continuous">'
     '<parent link="base_link"/><child link="caster"/><axis xyz="0 1 0"/></joint>\n'
 )
 SECOND_FILTER = """\
@@ -93,7 +94,7 @@ ODD: dict[str, tuple[dict[str, str], list[Change]]] = {
     ),
     "a wheel that nothing drives": (
         FILES,
-        [("rover.urdf", '<link name="finger_link"/>\n', CASTER)],
+        [("rover.urdf", FINGER, CASTER)],
     ),
     "two controllers of one joint": (
         ARM_FILES,

@@ -91,6 +91,13 @@ A line ``SETTING: TEXT`` is a setting; given twice, the texts are joined.
     insert: yes | no       no where the consumer throws on children it does not know (default: yes)
     unique: KIND           bare names of this kind are looked up in the whole world
     hardwired: KIND:NAME... names it looks for whatever the file says: a rename hides them
+    opens: WORD...         what it opens beside the names of its rows: ``nothing``; ``model``, names
+                           below the one that the spawner gives; ``namespace``, relative names of nodes
+                           of its own, which only a namespace keeps apart; ``world``, what is the
+                           world's, which a second one would open again; ``address:PATH``,
+                           ``file:PATH``: what is written there, ``=DEFAULT`` behind it, conditions and
+                           ``?`` before it; ``unknown``: nobody has looked, as where this and every
+                           topic, service and namespace is missing
     model_namespace: RELEASES  its relative topics stand below the <model namespace> in these (kilted+)
     process_wide: yes | no its remap rules hold for every node of the process (default: no)
     read: REPOSITORY TAG FOLDER  all that its code reads is here, as it is there: what else is written

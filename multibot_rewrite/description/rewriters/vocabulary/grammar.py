@@ -40,6 +40,7 @@ SETTINGS = (
     "unique",
     "process_wide",
     "hardwired",
+    "opens",
     "releases",
     "model_namespace",
 )
@@ -67,6 +68,9 @@ _NAME = r"[A-Za-z_][\w.:-]*"
 _STEP = rf"{_NAME}(?:\[@{_NAME}=[^\[\]]+\])?"
 _ONE_STEP = lazy_compile(_STEP)
 _SWITCH = lazy_compile(rf"{_NAME}=[^\s=]+(?:=on)?")
+_OPENS = lazy_compile(
+    r"nothing|model|namespace|world|unknown|(address|file):(?:([^\s?]+)\?)?((?:[^\s=\[]|\[@[^\]]*\])+)(?:=(\S+))?"
+)
 _PATH = lazy_compile(rf"(?=.)(?:{_STEP}(?:/{_STEP})*)?(?:@{_NAME})?")
 
 
@@ -80,7 +84,8 @@ class VocabularySection(NamedTuple):
     tells that its remap rules hold for every node of the process. ``hardwired`` are names it looks
     for whatever the file says, each as ``kind:name``. ``model_namespace`` are the releases in which
     its relative topics stand below the namespace of the model. ``releases`` are the words for the only
-    releases that have it. ``tags`` are those of the child elements that its rows know.
+    releases that have it. ``tags`` are those of the child elements that its rows know. ``opens`` is
+    what it opens beside names, or that it opens nothing, or that this is not known.
     """
 
     type: str
@@ -103,6 +108,7 @@ class VocabularySection(NamedTuple):
     line: int
     releases: str = ""
     tags: frozenset[str] = frozenset()
+    opens: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:
@@ -197,6 +203,7 @@ def assemble(
         line,
         settings.get("releases", ""),
         _tags(sites),
+        words("opens"),
     )
 
 
@@ -240,6 +247,7 @@ def merge(first: VocabularySection, second: VocabularySection) -> VocabularySect
         inserts=first.inserts and second.inserts,
         process_wide=first.process_wide or second.process_wide,
         tags=first.tags | second.tags,
+        opens=tuple(dict.fromkeys((*first.opens, *second.opens))),
     )
 
 
@@ -271,6 +279,12 @@ def _setting(settings: dict[str, str], place: str, words: list[str]) -> None:
     wrong = [word for word in words[1:] if key == "switches" and not _SWITCH.fullmatch(word)]
     if wrong:
         raise VocabularyError(f"{place}: switches: {wrong[0]!r} is not PARAMETER=TOPIC[=on]")
+    wrong = [word for word in words[1:] if key == "opens" and not _OPENS.fullmatch(word)]
+    if wrong:
+        raise VocabularyError(
+            f"{place}: opens: {wrong[0]!r} is not nothing, model, namespace, world, unknown, "
+            "address:PATH=DEFAULT or file:PATH"
+        )
     tuple(wired_topics(place, {key: value}))
     settings[key] = value
 
@@ -333,6 +347,12 @@ def _check_words(place: str, path: str, kinds: Iterable[str], options: dict[str,
 def is_step(text: str) -> bool:
     """Is this one step of a path, as a vocabulary file may have it?"""
     return _ONE_STEP.fullmatch(text) is not None
+
+
+def split_opens(word: str) -> tuple[str, ...]:
+    """Kind, conditions, path and default of a word of ``opens:``; empty for one without a path."""
+    found = _OPENS.fullmatch(word)
+    return found.groups(default="") if found else ("", "", "", "")
 
 
 @lru_cache(maxsize=PATHS)

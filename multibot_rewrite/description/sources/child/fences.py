@@ -6,6 +6,7 @@ import os
 import resource
 import signal
 from collections.abc import Callable, Collection, Mapping
+from contextlib import suppress
 
 from multibot_rewrite.description.sources.child import audit, landlock, seccomp
 from multibot_rewrite.description.sources.child.frames import (
@@ -39,17 +40,21 @@ def limit(seconds: float, memory: int) -> bool:
     signal.setitimer(signal.ITIMER_REAL, seconds)
     whole = int(seconds) + 1
     bounds = {
-        resource.RLIMIT_CPU: whole,
-        resource.RLIMIT_AS: memory + MOST_MEMORY,
-        resource.RLIMIT_CORE: 0,
-        resource.RLIMIT_FSIZE: 0,
-        resource.RLIMIT_NPROC: 0,
-        resource.RLIMIT_NOFILE: 0,
+        "RLIMIT_CPU": whole,
+        "RLIMIT_AS": memory + MOST_MEMORY,
+        "RLIMIT_CORE": 0,
+        "RLIMIT_FSIZE": 0,
+        "RLIMIT_NPROC": 0,
+        "RLIMIT_NOFILE": 0,
     }
-    for kind, most in bounds.items():
+    for name, most in bounds.items():
+        kind = getattr(resource, name, None)
+        if kind is None:  # a system has what it has
+            continue
         _, hard = resource.getrlimit(kind)
         bound = most if hard == resource.RLIM_INFINITY else min(most, hard)
-        resource.setrlimit(kind, (bound, bound))
+        with suppress(ValueError, OSError):  # macOS takes no bound of addresses
+            resource.setrlimit(kind, (bound, bound))
     return True
 
 

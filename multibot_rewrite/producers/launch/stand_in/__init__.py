@@ -14,11 +14,19 @@ from functools import cache
 from types import ModuleType
 from typing import Any
 
-from multibot_rewrite.producers.launch.stand_in import actions, packages, parse, ros, values
+from multibot_rewrite.producers.launch.stand_in import (
+    actions,
+    packages,
+    parameters,
+    parse,
+    processes,
+    ros,
+    values,
+)
 from multibot_rewrite.producers.launch.stand_in.actions import not_read
 from multibot_rewrite.producers.launch.stand_in.names import INSIDE, NOT_READ, READ
 
-_ROOMS = (values, packages, parse, actions, ros)
+_ROOMS = (values, packages, parse, actions, processes, parameters, ros)
 # A name that two modules have for two things.
 _OTHERWISE = {("launch_ros.substitutions", "Parameter"): packages.ParameterSubstitution}
 _CAMEL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")

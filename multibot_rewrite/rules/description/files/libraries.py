@@ -8,8 +8,8 @@ from collections.abc import Iterable, Iterator
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.nearest import nearest, slip_of
-from multibot_rewrite.description.checks.audit import is_unknown
 from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.description.checks.unknown import is_unknown
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.rules.facts.simulators import library_of, simulator_plugins

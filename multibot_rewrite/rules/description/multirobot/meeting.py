@@ -139,3 +139,40 @@ lost_rule = rule(
     line=2,
     options={"robots": TWO, "naming": IN_FRONT},
 )(partial(_of_code, "MB436"))
+
+same_text = rule(
+    "MB437",
+    "same-text-for-all",
+    WARNING,
+    what="All robots would get the same description, and a plugin, sensor or driver runs in it.",
+    why="Nothing in the text keeps the robots apart: what it opens is apart only if everything that is "
+    "known of it is right.",
+    fix="Use a layout that gives each robot names of its own, as --layout both.",
+    bad='<link name="a"/>\n<gazebo><plugin name="p" filename="libgazebo_ros_control.so"/></gazebo>',
+    good='<link name="a"/>\n<gazebo><plugin name="p" filename="libgazebo_grasp_fix.so"/></gazebo>',
+    line=2,
+    options={"robots": TWO, "naming": AS_WRITTEN},
+)(partial(_of_code, "MB437"))
+
+_HEARD = """\
+<link name="a"/>
+<gazebo reference="a"><sensor name="c" type="contact"><topic>{}</topic></sensor></gazebo>
+<gazebo>
+  <plugin filename="gz-sim-triggered-publisher-system" name="gz::sim::systems::TriggeredPublisher">
+    <input type="gz.msgs.Contacts" topic="hit"/><output type="gz.msgs.Empty" topic="stop"/>
+  </plugin>
+</gazebo>
+"""
+
+parted_topic = rule(
+    "MB438",
+    "parted-topic",
+    WARNING,
+    what="Two parameters that held one topic would hold two after the rewrite.",
+    why="One of them sends what the other listens to: after the rewrite nothing arrives.",
+    fix="Write both the same way, best without a slash in front.",
+    bad=_HEARD.format("~/hit"),
+    good=_HEARD.format("hit"),
+    line=2,
+    options={"robots": TWO, "naming": APART},
+)(partial(_of_code, "MB438"))

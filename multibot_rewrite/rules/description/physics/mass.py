@@ -16,6 +16,7 @@ from multibot_rewrite.rules.description.physics.shared import (
     moving_link,
     one_link,
 )
+from multibot_rewrite.rules.facts.kept import relied_on
 from multibot_rewrite.rules.facts.simulators import simulator_plugins
 from multibot_rewrite.rules.subject import Subject
 
@@ -29,14 +30,17 @@ TINY_MASS = 1e-6
     what="A link has no mass, and neither has any link that is fixed to it, but other links of the "
     "robot have.",
     why="Gazebo leaves out the link and everything below it (sdformat: 'is not modeled in sdf'; "
-    "its joint and child joints are 'ignored'); MuJoCo rejects the file.",
+    "its joint and child joints are 'ignored'), with their sensors; MuJoCo rejects the file. "
+    "Where the fleet file says that the robot is simulated, it is an error if a sensor, a plugin or "
+    "ros2_control relies on what is left out, or if nothing is left.",
     fix="Add <inertial> with mass and inertia, or make the joint above it fixed.",
     bad=moving_link(),
     good=moving_link(an_inertial()),
     line=7,
 )
 def link_without_mass(subject: Subject) -> Iterator[Problem]:
-    """The uppermost bodies without mass, if the robot has several bodies and some mass."""
+    """The uppermost bodies without mass, if the robot has several bodies and some mass: an error of a
+    robot that runs in Gazebo, where what it relies on goes with them."""
     robot = subject.robot
     mass = _masses(robot)
     if len(mass) < 2 or not any(it > 0 for it in mass.values()):
@@ -48,12 +52,15 @@ def link_without_mass(subject: Subject) -> Iterator[Problem]:
             continue
         if name not in robot.above and name not in robot.below:
             continue  # no joint has it: MB501
-        below = len(reached(robot, [name], lost)) - 1
-        tail = f", with {below} links below it" if below else ""
+        gone = reached(robot, [name], lost)
+        used = relied_on(subject, frozenset(gone))
+        tail = f", with {len(gone) - 1} links below it" if gone[1:] else ""
+        tail += f"; {', '.join(used)} {'goes' if len(used) == 1 else 'go'} with it" if used else ""
+        level = ERROR if subject.settings.simulated and (used or name not in robot.above) else ""
         message = (
             f"link {name!r} and the links fixed to it have no mass: Gazebo leaves it out{tail}"
         )
-        yield Problem(link.element, message, "name")
+        yield Problem(link.element, message, "name", level=level)
 
 
 @rule(
@@ -81,7 +88,7 @@ def root_inertia(subject: Subject) -> Iterator[Problem]:
     "no-inertia",
     NOTE,
     what="No link has a mass: the robot cannot be simulated. It is an error where the description has "
-    "plugins or sensors of a simulator.",
+    "plugins or sensors of a simulator, or its fleet file says that it is simulated.",
     why="Gazebo spawns nothing of it; MuJoCo rejects a moving body without mass. RViz and MoveIt "
     "do not need it.",
     fix="Add <inertial> to the links, if the robot is to be simulated.",
@@ -91,12 +98,16 @@ def root_inertia(subject: Subject) -> Iterator[Problem]:
     good=moving_link(an_inertial()),
 )
 def no_inertia(subject: Subject) -> Iterator[Problem]:
-    """A robot with joints that move and without mass."""
-    robot = subject.robot
-    if any(it.inertial for it in robot.links) or not any(it.type != "fixed" for it in robot.joints):
+    """A robot without mass: with joints that move, or one that runs in Gazebo."""
+    robot, chosen = subject.robot, subject.settings.simulated
+    massless = bool(robot.links) and not any(it > 0 for it in _masses(robot).values())
+    unweighed = not any(it.inertial for it in robot.links)
+    moving = any(it.type != "fixed" for it in robot.joints)
+    if not (massless and chosen) and not (unweighed and moving):
         return
-    simulated = subject.elements.every("sensor") or simulator_plugins(subject)
-    message = "no link has an <inertial>: the robot cannot be simulated"
+    simulated = chosen or subject.elements.every("sensor") or simulator_plugins(subject)
+    what = "no link has an <inertial>" if unweighed else "no link has a mass"
+    message = f"{what}: the robot cannot be simulated"
     yield Problem(subject.document.root, message, level=ERROR if simulated else "")
 
 

@@ -102,9 +102,9 @@ def no_controllers_file(subject: Subject) -> Iterator[Problem]:
         for it in given:
             path = text_of(it)
             if "$(" in path:
-                words = "is a substitution of xacro, and the file is none"
-                hint = "name the file .xacro, or write the path out: the plugin takes the text"
-                yield Problem(it, f"<parameters> {path!r} {words}", "", hint)
+                words = "is a substitution of xacro, which the plugin does not know"
+                hint = "expand the file with xacro first, and name it .xacro"
+                yield Problem(it, f"<parameters> {path!r} {words}", "", hint, level=WARNING)
                 continue
             # Where xacro has expanded $(find), the folder of the package is there.
             home = os.path.dirname(os.path.dirname(path))

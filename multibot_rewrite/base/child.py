@@ -1,0 +1,78 @@
+"""Child processes: the only place that says how one is started.
+
+A child of Python finds modules where this process does, but for the current folder; git runs nothing
+that a repository's own configuration names.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Mapping, Sequence
+
+from multibot_rewrite.base.start import module as start
+
+_START = os.path.abspath(start.__file__)
+_ISOLATED = "import json, sys; sys.path[:] = json.loads(sys.argv[1]); from {} import main; main()"
+_PATHS = "PYTHONPATH"
+# What of a repository's configuration would start a program, and what that is set to.
+_QUIET = {
+    "core.fsmonitor": "false",
+    "core.hooksPath": os.devnull,
+    "core.pager": "cat",
+    "core.sshCommand": "false",
+    "diff.external": "",
+}
+_FILTERS = r"^filter\..*\.(clean|smudge|process|required)$"
+_NO_FILTER = {"required": "false"}
+
+
+def python(module: str, *words: str) -> list[str]:
+    """The command that runs a module of this package in a process of its own."""
+    return [sys.executable, _START, module, *words]
+
+
+def isolated(module: str) -> list[str]:
+    """The same for ``main`` of a module in a process that no variable of Python reaches."""
+    paths = json.dumps(search_path())
+    quiet = ["-B"] if sys.dont_write_bytecode else []
+    return [sys.executable, "-I", *quiet, "-X", "utf8", "-c", _ISOLATED.format(module), paths]
+
+
+def search_path() -> list[str]:
+    """Where this process finds modules, without the current folder."""
+    return start.safe_path(sys.path, os.getcwd())
+
+
+def variables(given: Mapping[str, str] = os.environ) -> dict[str, str]:
+    """The environment for a child of Python: a relative part of PYTHONPATH is the current folder's."""
+    found = dict(given)
+    paths = [it for it in found.get(_PATHS, "").split(os.pathsep) if os.path.isabs(it)]
+    if _PATHS in found:
+        found[_PATHS] = os.pathsep.join(paths)
+    return found
+
+
+def git(*words: str) -> bytes:
+    """What git prints; raises OSError, subprocess.CalledProcessError. No hook, monitor, pager, filter
+    or other program of the repository is run."""
+    return _git(_filters(), words)
+
+
+def _filters() -> dict[str, str]:
+    """The filters of a repository, switched off: git would run them on each file that it compares."""
+    try:
+        listed = _git({}, ("config", "--null", "--name-only", "--get-regexp", _FILTERS))
+    except subprocess.CalledProcessError:  # it has none, or is no repository
+        return {}
+    names = os.fsdecode(listed).split("\0")
+    return {it: _NO_FILTER.get(it.rpartition(".")[2], "") for it in names if it}
+
+
+def _git(more: Mapping[str, str], words: Sequence[str]) -> bytes:
+    environ = {**os.environ, "GIT_OPTIONAL_LOCKS": "0", "GIT_TERMINAL_PROMPT": "0"}
+    settings = [part for it in {**_QUIET, **more}.items() for part in ("-c", "=".join(it))]
+    command = ["git", "--no-pager", *settings, *words]
+    return subprocess.run(command, capture_output=True, check=True, env=environ).stdout

@@ -1,0 +1,116 @@
+"""What a file is, by its text: asked before the reader of a command rejects it by its own schema."""
+
+from __future__ import annotations
+
+import re
+from codecs import BOM_UTF8
+from collections.abc import Mapping
+
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.record import NamedTuple
+
+PARAMS, RVIZ, BRIDGE, MOVEIT, TREE, LUA = "params", "rviz", "bridge", "moveit", "tree", "lua"
+URDF, XACRO, SDF, WORLD, SRDF = "urdf", "xacro", "sdf", "world", "srdf"
+FLEET, PLAN, SNAPSHOT, LAUNCH, BAG, MAP = "fleet", "plan", "snapshot", "launch", "bag", "map"
+DESCRIPTIONS = (URDF, XACRO, SDF)
+_LOOKED_AT = 200_000
+
+
+class FileKind(NamedTuple):
+    """What a kind of file is called, and which command takes it."""
+
+    words: str
+    use: str
+
+
+_IN_FLEET = "name it under {} in a fleet file, or give it to urdf-lint"
+_MADE = "use multibot init, which makes a fleet file of it"
+KINDS: Mapping[str, FileKind] = {
+    URDF: FileKind("a description", _MADE),
+    XACRO: FileKind("a description", _MADE),
+    SDF: FileKind("a description", _MADE),
+    SRDF: FileKind("an SRDF", "name it under srdf: in a fleet file, or give it to urdf-lint"),
+    WORLD: FileKind("a world of Gazebo", "name it under world: in a fleet file"),
+    PARAMS: FileKind("a parameter file", _IN_FLEET.format("params:")),
+    RVIZ: FileKind("a config of RViz", _IN_FLEET.format("rviz:")),
+    BRIDGE: FileKind("a file of ros_gz_bridge", _IN_FLEET.format("bridge:")),
+    MOVEIT: FileKind("a file of MoveIt", _IN_FLEET.format("moveit:")),
+    TREE: FileKind("a behavior tree", _IN_FLEET.format("behavior_trees:")),
+    LUA: FileKind("a Lua file of Cartographer", _IN_FLEET.format("lua:")),
+    FLEET: FileKind("a fleet file", "use multibot build, plan or view"),
+    PLAN: FileKind("a plan", "use multibot check"),
+    SNAPSHOT: FileKind("a snapshot", "use multibot check --snapshot"),
+    LAUNCH: FileKind("a launch file", "use multibot check-launch, or multibot plan"),
+    BAG: FileKind("a recording", "use multibot check --bag"),
+    MAP: FileKind("a map for map_server", "it holds no robot's name, leave it out"),
+}
+_XML = (
+    (LAUNCH, lazy_compile(rb"<launch[\s>]", 0)),
+    (
+        TREE,
+        lazy_compile(rb"<BehaviorTree\b|<root\b[^>]*\b(?:BTCPP_format|main_tree_to_execute)\b", 0),
+    ),
+    (WORLD, lazy_compile(rb"<sdf\b[^>]*>\s*(?:<!--.*?-->\s*)*<world\b", re.DOTALL)),
+    (SDF, lazy_compile(rb"<sdf\b", 0)),
+    (XACRO, lazy_compile(rb"<robot\b[^>]*xmlns:xacro", 0)),
+    (SRDF, lazy_compile(rb"<(?:group|group_state|disable_collisions|virtual_joint)\s", 0)),
+    (URDF, lazy_compile(rb"<robot\b", 0)),
+)
+# Of YAML, Python, Lua: what only files of one kind have at the start of a line or an item. A file of
+# one node's sections may be MoveIt's as well: that is a parameter file for its reader.
+BESIDE = (
+    (PARAMS, lazy_compile(rb"^\s+[\"']?ros__parameters[\"']?\s*:", re.MULTILINE)),
+    (RVIZ, lazy_compile(rb"^Visualization Manager\s*:", re.MULTILINE)),
+    (
+        BRIDGE,
+        lazy_compile(
+            rb"^-\s*\{?\s*[\"']?(?:(?:ros_|gz_)?topic_name|service_name)[\"']?\s*:", re.MULTILINE
+        ),
+    ),
+    (
+        MOVEIT,
+        lazy_compile(
+            rb"^(?:joint_limits|moveit_simple_controller_manager|controller_names|controller_list"
+            rb"|\w+:\s*\n\s+kinematics_solver)\b",
+            re.MULTILINE,
+        ),
+    ),
+    (TREE, _XML[1][1]),
+    (LUA, lazy_compile(rb"^\s*(?:tracking_frame|published_frame|map_frame)\s*=", re.MULTILINE)),
+)
+# What follows ``robots:`` in a fleet file is a list, and in a plan a map.
+_ROBOTS = rb"^robots:[ \t]*(?:#[^\n]*)?(?:\s*#[^\n]*\n)*\s*"
+_OTHERS = (
+    (FLEET, lazy_compile(_ROBOTS + rb"[-\[]", re.MULTILINE)),
+    (PLAN, lazy_compile(_ROBOTS + rb"[\w{\"']", re.MULTILINE)),
+    (LAUNCH, lazy_compile(rb"^def generate_launch_description\b|^launch:\s*-", re.MULTILINE)),
+    (BAG, lazy_compile(rb"^rosbag2_bagfile_information:", re.MULTILINE)),
+    (MAP, lazy_compile(rb"^image:[^\n]*\n(?:.*\n)*?resolution:", re.MULTILINE)),
+)
+_SNAPSHOT = lazy_compile(rb'"(?:nodes|ends|endpoints)"\s*:', 0)
+_BAGS = (b"\x89MCAP0\r\n", b"SQLite format 3\0")
+
+
+def recognised(data: bytes) -> str:
+    """The kind of a file; empty for one of no known kind."""
+    if data.startswith(_BAGS):
+        return BAG
+    text = data[:_LOOKED_AT].removeprefix(BOM_UTF8).lstrip()
+    if text.startswith(b"<"):
+        return _first(_XML, text)
+    if text.startswith(b"{"):
+        return PLAN if b'"layout"' in text else SNAPSHOT if _SNAPSHOT.search(text) else ""
+    return _first((*BESIDE, *_OTHERS), text)
+
+
+def _first(marks: tuple[tuple[str, re.Pattern[bytes]], ...], text: bytes) -> str:
+    return next((kind for kind, mark in marks if mark.search(text)), "")
+
+
+def refuse_others(data: bytes, file: str, *wanted: str) -> None:
+    """Raises InputError that says what a file is, and which command takes it, unless it is of a wanted
+    kind, or of none that is known."""
+    kind = recognised(data)
+    if kind and kind not in wanted:
+        raise InputError(f"{file}: {KINDS[kind].words}; {KINDS[kind].use}")

@@ -1,0 +1,1 @@
+"""The file that each child process of Python begins with; nothing else is in this folder."""

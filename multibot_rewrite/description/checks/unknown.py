@@ -1,0 +1,68 @@
+"""What runs in a description and nobody knows what it opens: of these a rewrite is not proved."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from multibot_rewrite.base.nearest import SLIP, Guesses
+from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.description.readback.active import (
+    HARDWARE,
+    INCLUDE,
+    PLUGIN,
+    ActivePart,
+    active_parts,
+)
+from multibot_rewrite.description.rewriters.tree import ANY_WITH_ROS, Tree, library_key
+from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, VocabularySection
+from multibot_rewrite.description.steps.collect import SRDF, Inventory
+
+ANOTHER_RELEASE = (
+    "name the release that the description is for with --distro, or distro: in a fleet file"
+)
+SAY_IT = "say it in a vocabulary file: a line for each topic and service, or opens: nothing"
+CODES = {PLUGIN: "MB902", HARDWARE: "MB903", INCLUDE: "MB906"}
+
+
+def unknown_parts(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
+    """Plugins, hardware classes, sensor types and included models of which it is not known what they
+    open, each at its element."""
+    guesses = Guesses()
+    # An SRDF starts nothing.
+    parts = (
+        () if inventory.format == SRDF else active_parts(inventory.document.root, tree.vocabulary)
+    )
+    for part in parts:
+        if not part.is_known:
+            message, hint = _said(part, tree.vocabulary, guesses)
+            yield Problem(part.element, message, None, hint, (), CODES.get(part.kind, "MB902"))
+
+
+def is_unknown(section: VocabularySection) -> bool:
+    """Is the plugin in no section? Then the element's own is used, or the one for any ROS node."""
+    return section.select == "plugin" or section.names[0] == ANY_WITH_ROS
+
+
+def _said(part: ActivePart, vocabulary: Vocabulary, guesses: Guesses) -> tuple[str, str]:
+    if part.kind == INCLUDE:
+        return (
+            f"the included {part.name!r} is not read: its topics and frames stay as they are",
+            "rewrite its model.sdf for each robot, and write the result here",
+        )
+    who = f"{part.kind} {part.name!r}"
+    if part.section is not None:
+        return f"{who} is known by its parameters alone: what it opens is not known", SAY_IT
+    kind = "hardware" if part.kind == HARDWARE else "plugin" if part.kind == PLUGIN else "sensor"
+    name = library_key(part.name) if part.kind == PLUGIN else part.name
+    others = vocabulary.releases_elsewhere(kind, name)
+    if others:
+        where = not_here(vocabulary, others)
+        return f"{who} {where}: its own parameters are not renamed", ANOTHER_RELEASE
+    near = guesses.hint(name, vocabulary.names(kind), SLIP)
+    message = f"{who} is not in the vocabulary: its own parameters are not renamed"
+    return message, near or SAY_IT
+
+
+def not_here(vocabulary: Vocabulary, releases: Iterable[str]) -> str:
+    """That something is in other releases only."""
+    return f"is not in {vocabulary.release}, only in {', '.join(releases)}"

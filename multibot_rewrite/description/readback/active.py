@@ -1,0 +1,119 @@
+"""Everything in a description that can open a topic, node, service, frame, socket or file, and whether
+it is known what it opens.
+
+One rule: it is known by fields of the vocabulary, that is by a name that its section holds or by the
+section's ``opens:``; else it is not known. Where elements are found: sdformat src/Root.cc, Model.cc and
+parser_urdf.cc (plugins stand anywhere in a ``<gazebo>``), gz-sim SystemManager.cc (a plugin of a plugin
+is its own matter), webots_ros2_driver WebotsNode.cpp, ros2_control component_parser.cpp.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.readback.parameters import given_at, holds
+from multibot_rewrite.description.readback.sections import (
+    hardware_class,
+    hardware_section,
+    plugin_section,
+)
+from multibot_rewrite.description.readback.xml import child_text
+from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, VocabularySection
+from multibot_rewrite.description.rewriters.vocabulary.grammar import split_opens
+
+PLUGIN, HARDWARE, SENSOR, INCLUDE = "plugin", "hardware class", "sensor type", "included model"
+ADDRESS, FILE = "address", "file"
+NOTHING, UNKNOWN, NAMESPACE = "nothing", "unknown", "namespace"
+# The kind of what only a namespace keeps apart.
+RELATIVE = "relative names of"
+# A port that the system gives, and every address of a machine: no two robots meet there.
+ANY_ADDRESS = frozenset({"0", "0.0.0.0"})
+# Kinds of names that something runs by: a section with one of them says what it opens.
+_OPENED = frozenset({"topic", "subtopic", "service", "stem", "namespace"})
+# A <plugin> in these is a class that is loaded by what is around it, or MJCF, which runs nothing.
+_NO_PLUGINS = frozenset({"hardware", "transmission", "raw_inputs", "mujoco_inputs", "extension"})
+
+
+class ActivePart(NamedTuple):
+    """An element that runs something: what ``kind``, by which name, and what is known of it."""
+
+    kind: str
+    element: _Element
+    name: str
+    section: VocabularySection | None
+
+    @property
+    def is_known(self) -> bool:
+        """Is it known what it opens?"""
+        return self.section is not None and says_what_it_opens(self.section)
+
+    @property
+    def opens_something(self) -> bool:
+        """False only where it is known to open nothing."""
+        return self.section is None or NOTHING not in self.section.opens
+
+    @property
+    def is_apart(self) -> bool:
+        """Does a namespace keep apart what it opens?"""
+        return self.section is not None and self.section.opens == (NAMESPACE,)
+
+
+def active_parts(root: _Element, vocabulary: Vocabulary) -> Iterator[ActivePart]:
+    """All of a description, kind by kind."""
+    for plugin in root.iter("plugin"):
+        if not _NO_PLUGINS.intersection(it.tag for it in plugin.iterancestors()):
+            section, known = plugin_section(plugin, vocabulary)
+            yield ActivePart(PLUGIN, plugin, plugin_name(plugin), section if known else None)
+    for system in root.iter("ros2_control"):
+        class_ = hardware_class(system)
+        if class_:
+            yield ActivePart(HARDWARE, system, class_, hardware_section(system, vocabulary))
+    for sensor in root.iter("sensor"):
+        type_ = sensor.get("type", "").strip()
+        if type_ and _is_simulated(sensor):
+            section = next(iter(vocabulary.find("sensor", type_)), None)
+            yield ActivePart(SENSOR, sensor, type_, section)
+    for include in root.iter("include"):
+        uri = child_text(include, "uri")
+        if uri and next(include.iterancestors("model", "gazebo"), None) is not None:
+            yield ActivePart(INCLUDE, include, uri, None)
+
+
+def plugin_name(plugin: _Element) -> str:
+    """What is loaded, as the file says it."""
+    return plugin.get("filename") or plugin.get("type") or plugin.get("name") or ""
+
+
+def _is_simulated(sensor: _Element) -> bool:
+    """Is it Gazebo's? Those of urdfdom and of ros2_control run nothing."""
+    parent = sensor.getparent()
+    if parent is None or parent.tag in ("robot", "ros2_control"):
+        return False
+    # A URDF's <link> holds sensors of other programs; an SDF's and a <gazebo>'s are Gazebo's.
+    return next(sensor.iterancestors("gazebo", "sdf"), None) is not None
+
+
+def says_what_it_opens(section: VocabularySection) -> bool:
+    """Does a section say it by fields?"""
+    if section.opens:
+        return UNKNOWN not in section.opens
+    own = (it for it in section.sites if it.role != "keep" and it.section[:9] != "block ros")
+    return bool(section.wired) or any(not _OPENED.isdisjoint(it.kinds) for it in own)
+
+
+def opened(host: _Element, section: VocabularySection) -> Iterator[tuple[str, str, str]]:
+    """Kind, text and parameter of the addresses and files that a part of the robot opens, and of
+    relative names that no row has."""
+    if NAMESPACE in section.opens:
+        yield RELATIVE, section.names[0], "opens"
+    for word in section.opens:
+        kind, when, path, usual = split_opens(word)
+        if not path or (when and not holds(host, when)):
+            continue
+        values = [it for it in given_at(host, path) if it]
+        for value in values or ([usual] if usual else []):
+            if value not in ANY_ADDRESS:
+                yield kind, value, path

@@ -1,0 +1,93 @@
+"""The argument of a xacro that switches between the simulated and the real robot.
+
+Authors call it ``sim_mode``, ``use_sim``, ``use_gazebo``, ``sim_gazebo``, ``sim_ignition``: it chooses
+the hardware class of ``<ros2_control>``, and often the plugins of the simulator.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.description.sources.access import Reach
+from multibot_rewrite.description.sources.expand import expand, expand_traced
+from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.rules.facts.simulators import SIMULATORS
+
+_NAME = lazy_compile(r"sim|gazebo|ignition|(?:^|_)(?:gz|ign)(?:_|$)")
+_OTHER = {"true": "false", "True": "False", "1": "0"}
+_OTHERS = {**_OTHER, **{off: on for on, off in _OTHER.items()}}
+# A hardware class that is no simulator's known one, and called as if it were a vendor's own.
+_SIMULATED = lazy_compile(r"gazebo|gz|ign|sim|mujoco|isaac")
+# Arguments that are tried.
+MOST = 8
+# Does a description, expanded with some arguments, suit?
+Suits = Callable[[_Element], bool]
+
+
+def hardware_classes(root: _Element) -> list[str]:
+    """The hardware classes of a description's ``<ros2_control>``."""
+    found = (it.text or "" for it in root.iterfind(".//ros2_control/hardware/plugin"))
+    return [it.strip() for it in found if it.strip()]
+
+
+def of_simulator(hardware: str) -> bool:
+    """Is a hardware class surely one of a simulator?"""
+    return any(hardware in it.hardware for it in SIMULATORS)
+
+
+def may_be_simulated(hardware: str) -> bool:
+    """Is it one of a simulator, or called as a vendor's own one is?"""
+    return of_simulator(hardware) or _SIMULATED.search(hardware.lower()) is not None
+
+
+def loads_hardware(root: _Element) -> bool:
+    """Has it a plugin of a simulator that makes a controller manager?"""
+    blocks = [root] if root.tag == "sdf" else root.findall("gazebo")
+    files = (it.get("filename") or "" for block in blocks for it in block.iter("plugin"))
+    return any("ros2_control" in it for it in files)
+
+
+def suits_simulator(root: _Element) -> bool:
+    """Can a simulator's controller manager load its hardware?"""
+    return not loads_hardware(root) or all(map(may_be_simulated, hardware_classes(root)))
+
+
+def suits_real(root: _Element) -> bool:
+    """Is none of its hardware a simulator's?"""
+    return not any(map(of_simulator, hardware_classes(root)))
+
+
+def switch_for(
+    path: str, given: Mapping[str, str], suits: Suits, reach: Reach
+) -> tuple[str, str] | None:
+    """The one argument and its other value with which the description suits; None where it does as it
+    is, or with none."""
+    if not path.endswith(".xacro"):
+        return None
+    with suppress(InputError):
+        read = expand_traced(path, read_file(path), given, None, reach)
+        if suits(read_document(read.data, path).root):
+            return None
+        for name, value in _switches(read.sources, given):
+            with suppress(InputError):
+                data = expand(path, {**given, name: value}, reach=reach)
+                if suits(read_document(data, path).root):
+                    return name, value
+    return None
+
+
+def _switches(sources: Mapping[str, bytes], given: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+    """Arguments that are called so and are true or false, each with its other value."""
+    declared: dict[str, str] = {}
+    for file, data in sources.items():
+        for it in read_document(data, file).root.iter("{*}arg"):
+            declared.setdefault(it.get("name", ""), it.get("default", ""))
+    every = {**declared, **given}
+    named = [it for it in every if _NAME.search(it.lower()) and every[it] in _OTHERS]
+    yield from ((it, _OTHERS[every[it]]) for it in named[:MOST])

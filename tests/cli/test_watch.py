@@ -1,0 +1,88 @@
+"""What ``check --watch`` shows of one view after the other, without nodes: as lines and as a screen."""
+
+from __future__ import annotations
+
+import io
+import sys
+from collections.abc import Generator, Sequence
+
+import pytest
+from small_fleet import clash, half, healthy, moving, plan
+
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
+from multibot_rewrite.cli.watch import follow
+from multibot_rewrite.live.watching import Verdict, WatchState, final
+from multibot_rewrite.rules.check import check
+from multibot_rewrite.system.records import System
+
+MANY = 17
+
+
+def look(graph: System) -> tuple[System, Sequence[Finding]]:
+    return plan(), check(plan(), graph)
+
+
+def views(*graphs: System, ended: bool = False) -> Generator[System, None, None]:
+    """The views, and Ctrl-C after the last."""
+    yield from graphs
+    if ended:
+        raise KeyboardInterrupt
+
+
+def test_lines_tell_what_came_and_went(capsys: pytest.CaptureFixture[str]) -> None:
+    state = follow(look, views(moving(half()), healthy(), clash(), healthy(), ended=True))
+    assert state is not None and final(state) == Verdict.WRONG
+    lines = [it.partition(" s  ")[2] for it in capsys.readouterr().out.splitlines()]
+    assert lines[0].startswith("2/4 nodes, 5/10 names, ") and lines[0].endswith(": still changing")
+    assert lines[1] == "4/4 nodes, 10/10 names, 0 findings: as planned"
+    signs = [it[:2] for it in lines[2:]]
+    assert signs == ["+ ", "4/", "- ", "4/"]
+    assert "MG306" in lines[2] and lines[2].replace("+ ", "- ") == lines[4]
+    assert lines[3].endswith("10/10 names, 1 finding: not as planned")
+
+
+def test_nothing_seen_is_no_state() -> None:
+    assert follow(look, views()) is None
+    assert follow(look, views(ended=True)) is None
+
+
+class Terminal(io.StringIO):
+    """A screen of 200 columns that says that it is one."""
+
+    def isatty(self) -> bool:
+        return True
+
+
+def shown(monkeypatch: pytest.MonkeyPatch, found: Sequence[Finding]) -> list[str]:
+    """The lines of the last screen."""
+    monkeypatch.setenv("COLUMNS", "200")
+    monkeypatch.setenv("LINES", "60")
+    monkeypatch.setenv("TERM", "dumb")
+    monkeypatch.setattr(sys, "stdout", screen := Terminal())
+    state = follow(lambda _: (plan(), found), views(healthy()))
+    assert isinstance(state, WatchState)
+    return [it.rstrip() for it in screen.getvalue().splitlines()]
+
+
+def finding(level: str, at: int, robot: str = "") -> Finding:
+    return Finding("MG306", level, f"message {at}", "hint", robot=robot)
+
+
+def test_a_screen_has_robots_with_findings_and_errors_first(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    notes = [finding(NOTE, at) for at in range(MANY)]
+    lines = shown(monkeypatch, [*notes, finding(ERROR, MANY, "robot2")])
+    assert any("18 findings: not as planned" in it for it in lines)
+    robots = [it.split() for it in lines if it.split()[:1] in (["robot1"], ["robot2"])]
+    assert robots == [["robot2", "2/2", "5/5", "1"], ["robot1", "2/2", "5/5", "0"]]
+    told = [it for it in lines if "MG306" in it]
+    assert len(told) == 15 and "error" in told[0] and f"message {MANY}" in told[0]
+    assert "and 3 more findings" in lines
+    assert not any("more robots" in it for it in lines)
+
+
+def test_as_many_as_a_screen_holds_are_all(monkeypatch: pytest.MonkeyPatch) -> None:
+    lines = shown(monkeypatch, [finding(NOTE, at) for at in range(15)])
+    assert len([it for it in lines if "MG306" in it]) == 15
+    assert not any("more" in it for it in lines)

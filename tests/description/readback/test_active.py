@@ -1,0 +1,239 @@
+"""What runs in a description and whether it is known what it opens, by the sources of the programs."""
+
+from __future__ import annotations
+
+import pytest
+
+from multibot_rewrite import rewrite
+from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.description.readback.active import active_parts, says_what_it_opens
+from multibot_rewrite.description.readback.nodes import as_valid_topic
+from multibot_rewrite.description.readback.xml import read_xml
+from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
+
+ROBOT = (
+    '<robot name="r"><link name="world"/><link name="a"/><joint name="j" type="revolute">'
+    '<parent link="world"/><child link="a"/></joint>{}</robot>'
+)
+
+
+def robot(inside: str) -> str:
+    return ROBOT.format(inside)
+
+
+def plugin(name: str, inside: str = "") -> str:
+    return f'<gazebo><plugin name="p" filename="lib{name}.so">{inside}</plugin></gazebo>'
+
+
+def hardware(class_: str, inside: str = "") -> str:
+    block = f"<hardware><plugin>{class_}</plugin></hardware>"
+    return f'<ros2_control name="h" type="system">{inside or block}<joint name="j"/></ros2_control>'
+
+
+def why(text: str, layout: str = "postfix", distro: str = "jazzy") -> tuple[str, ...]:
+    return rewrite(text, "robot1", layout=layout, distro=distro).not_proved
+
+
+@pytest.mark.parametrize(
+    ("inside", "reason"),
+    [
+        (hardware("my_robot_hardware/MyRobotSystem"), "1 hardware class not known"),
+        ('<webots><plugin type="my_driver.my_driver.MyDriver"/></webots>', "1 plugin not known"),
+        ("<gazebo><include><uri>model://eye</uri></include></gazebo>", "1 included model not read"),
+        (
+            '<gazebo><plugin name="gz::sim::systems::PythonSystemLoader" '
+            'filename="gz-sim-python-system-loader-system"><module_name>m</module_name></plugin></gazebo>',
+            "1 plugin not known",
+        ),
+        (
+            '<gazebo reference="a"><sensor name="s" type="dsros_dvl"/></gazebo>',
+            "1 plugin not known",
+        ),
+        (plugin("AtlasPlugin"), "1 plugin not known"),
+        # A plugin in a plugin (gz-sim SystemManager.cc: it is read by the system around it).
+        (
+            plugin("gazebo_grasp_fix", '<plugin name="q" filename="libunheard.so"/>'),
+            "1 plugin not known",
+        ),
+    ],
+)
+@pytest.mark.parametrize("layout", ["postfix", "tf-per-robot", "frames-per-robot", "both"])
+def test_nothing_active_is_proved_by_silence(inside: str, reason: str, layout: str) -> None:
+    assert reason in why(robot(inside), layout)
+
+
+def test_what_is_known_to_open_nothing_is_proved() -> None:
+    text = robot(hardware("mock_components/GenericSystem") + plugin("gazebo_grasp_fix"))
+    for layout in ("postfix", "tf-per-robot", "frames-per-robot", "both"):
+        assert why(text, layout) == ()
+
+
+def test_a_description_without_a_link_is_not_proved() -> None:
+    assert why('<robot name="r"/>') == ("1 robot without a link",)
+
+
+def test_the_last_hardware_block_counts() -> None:
+    """ros2_control component_parser.cpp parse_resource_from_xml: each <hardware> replaces the one
+    before it."""
+    known, other = "mock_components/GenericSystem", "my/Own"
+    blocks = "<hardware><plugin>{}</plugin></hardware><hardware><plugin>{}</plugin></hardware>"
+    assert why(robot(hardware("", blocks.format(other, known)))) == ()
+    assert why(robot(hardware("", blocks.format(known, other)))) == ("1 hardware class not known",)
+
+
+def test_the_same_text_for_all_with_something_active_is_not_proved() -> None:
+    text = robot(plugin("gazebo_ros_control"))
+    assert why(text, "tf-per-robot") == ("1 description the same for all robots",)
+    assert why(text, "both") == ()
+
+
+# ---------------------------------------------------------------- ROS 1
+
+
+@pytest.mark.parametrize(
+    ("namespace", "services"),
+    [
+        # gazebo_ros_control_plugin.cpp:85 (03d279ae): absent is the name of the model.
+        ("", 0),
+        ("<robotNamespace/>", 4),
+        ("<robotNamespace>/limo</robotNamespace>", 4),
+    ],
+)
+def test_the_namespace_of_gazebo_ros_control(namespace: str, services: int) -> None:
+    found = why(robot(plugin("gazebo_ros_control", namespace)), "postfix")
+    assert found == ((f"{services} services shared by all robots",) if services else ())
+
+
+def test_drives_of_ros_1_send_to_one_tf() -> None:
+    """tf2_ros (noetic) transform_broadcaster.cpp:38: node_.advertise<tf2_msgs::TFMessage>("/tf")."""
+    wheels = "<robotNamespace>/a</robotNamespace><robotBaseFrame>a</robotBaseFrame>"
+    text = robot(plugin("gazebo_ros_planar_move", wheels + "<commandTopic>cmd_vel</commandTopic>"))
+    assert "1 topic shared by all robots" in why(text, "tf-per-robot")
+    assert "1 topic shared by all robots" not in why(text, "frames-per-robot")
+
+
+def test_a_foot_contact_of_unitree() -> None:
+    """unitree_gazebo foot_contact_plugin.cc:24: /visual/ + the sensor's name + /the_force."""
+    sensor = '<sensor name="foot" type="contact">{}</sensor>'
+    inside = plugin("unitreeFootContactPlugin")[8:-9]
+    text = robot(f'<gazebo reference="a">{sensor.format(inside)}</gazebo>')
+    assert why(text, "tf-per-robot") == ("1 topic shared by all robots",)
+    assert why(text, "both") == ()
+
+
+# ---------------------------------------------------------------- addresses
+
+
+def test_a_port_is_one_robots() -> None:
+    """ArduPilotPlugin.cc: fdm_port_in is bound, 9002 where it is absent."""
+    assert why(robot(plugin("ArduPilotPlugin"))) == ("1 resource shared by all robots",)
+    given = plugin("ArduPilotPlugin", "<fdm_port_in>0</fdm_port_in>")
+    assert why(robot(given)) == ()
+
+
+# ---------------------------------------------------------------- gz-transport
+
+
+@pytest.mark.parametrize(
+    ("text", "topic"),
+    [
+        ("~/cmd_vel", "/cmd_vel"),
+        ("a//b", "ab"),
+        ("/a@b", "/ab"),
+        ("/a b", "/a_b"),
+        ("/a:=b", "/ab"),
+    ],
+)
+def test_a_valid_topic(text: str, topic: str) -> None:
+    """gz-transport TopicUtils.cc:173 (04b8a170) AsValidTopic."""
+    assert as_valid_topic(text) == topic
+
+
+def test_a_private_gz_topic_is_everybodys() -> None:
+    inside = "<left_joint>j</left_joint><right_joint>j</right_joint><topic>~/cmd_vel</topic>"
+    text = robot(
+        '<gazebo><plugin name="gz::sim::systems::DiffDrive" filename="gz-sim-diff-drive-system">'
+        f"{inside}</plugin></gazebo>"
+    )
+    assert why(text) == ("1 command shared by all robots",)
+
+
+TRIGGER = (
+    '<gazebo><plugin name="gz::sim::systems::TriggeredPublisher" '
+    'filename="gz-sim-triggered-publisher-system"><input type="gz.msgs.Contacts" topic="{0}"/>'
+    '<output type="gz.msgs.Empty" topic="stop"/><service name="/world/w/set_pose" '
+    'reqType="gz.msgs.Pose" repType="gz.msgs.Boolean"/></plugin></gazebo>'
+    '<gazebo reference="a"><sensor name="s" type="contact"><topic>{1}</topic></sensor></gazebo>'
+)
+
+
+@pytest.mark.parametrize("layout", ["postfix", "tf-per-robot"])
+@pytest.mark.parametrize(("one", "other"), [("hit", "hit"), ("/hit", "hit"), ("hit", "/hit")])
+def test_ends_of_one_topic_stay_together(one: str, other: str, layout: str) -> None:
+    assert why(robot(TRIGGER.format(one, other)), layout) == ()
+
+
+def test_ends_that_part_are_told() -> None:
+    found = rewrite(robot(TRIGGER.format("hit", "~/hit")), "robot1", distro="jazzy").findings
+    assert "MB438" in {it.code for it in found}
+
+
+def test_services_of_the_world_keep_their_names() -> None:
+    """gz-sim UserCommands.cc: /world/<world>/set_pose is served once, by the world."""
+    for layout in ("postfix", "tf-per-robot"):
+        made = rewrite(robot(TRIGGER.format("hit", "hit")), "robot1", layout=layout, distro="jazzy")
+        assert 'name="/world/w/set_pose"' in made.text
+
+
+def test_a_bounding_box_camera_has_an_own_camera_info() -> None:
+    """gz-sensors BoundingBoxCameraSensor.cc:237 calls CameraSensor.cc:597 AdvertiseInfo."""
+    sensor = '<sensor name="s" type="boundingbox_camera"><topic>/boxes/a</topic><camera/></sensor>'
+    made = rewrite(robot(f'<gazebo reference="a">{sensor}</gazebo>'), "robot1", distro="jazzy")
+    assert "<camera_info_topic>/boxes/camera_info/robot1</camera_info_topic>" in made.text
+    assert made.not_proved == ()
+
+
+# ---------------------------------------------------------------- controllers
+
+
+def simulated(command: str) -> str:
+    joint = f'<joint name="j"><command_interface name="{command}"/></joint>'
+    block = "<hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin></hardware>"
+    control = f'<ros2_control name="h" type="system">{block}{joint}</ros2_control>'
+    manager = (
+        '<gazebo><plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" '
+        'filename="gz_ros2_control-system"><parameters>c.yaml</parameters></plugin></gazebo>'
+    )
+    return robot(control + manager)
+
+
+@pytest.mark.parametrize("distro", ["jazzy", "lyrical"])
+def test_an_arm_sends_no_odometry(distro: str) -> None:
+    """ros2_controllers: those that send odometry claim velocity commands of their wheels
+    (diff_drive_controller.cpp, command_interface_configuration)."""
+    assert why(simulated("position"), "tf-per-robot", distro) == ()
+    assert bool(why(simulated("velocity"), "tf-per-robot", distro)) == (distro == "lyrical")
+
+
+# ---------------------------------------------------------------- what is left
+
+
+# Sections of which nobody has looked up what they open, by type: a number that only falls.
+LEFT = {"plugin": 25, "hardware": 11, "sensor": 0}
+
+
+def test_what_is_not_known_is_counted() -> None:
+    vocabulary = load_vocabulary((), NEWEST_LTS)
+    for type_, most in LEFT.items():
+        sections = [
+            it
+            for it in vocabulary.sections(type_)
+            if it.names[0] != "any_with_ros" and not says_what_it_opens(it)
+        ]
+        assert len(sections) <= most, [it.name for it in sections]
+
+
+def test_a_class_of_ros2_control_is_no_plugin_of_gazebo() -> None:
+    root = read_xml(robot(hardware("mock_components/GenericSystem")).encode(), "r.urdf")
+    parts = list(active_parts(root, load_vocabulary((), NEWEST_LTS)))
+    assert [it.kind for it in parts] == ["hardware class"]

@@ -1,0 +1,34 @@
+"""What a robot does not do, and why; the first of it: two things of one name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from fleet import Fleet
+
+
+class Fault(NamedTuple):
+    """What a robot does not do ("starts", "drives", "sees", "plans"), and why."""
+
+    robot: str
+    what: str
+    why: str
+
+
+def twins(fleet: Fleet) -> Iterator[Fault]:
+    """Nodes of one name: the second takes the services of the first. Bridges and windows have none."""
+    seen: dict[str, str] = {}
+    for it in fleet.nodes:
+        if it.what not in ("parameter_bridge", "rviz2") and it.fqn in seen:
+            yield Fault(it.robot, "starts", f"two nodes are called {it.fqn}")
+        seen[it.fqn] = it.robot
+
+
+def models_twice(fleet: Fleet) -> Iterator[Fault]:
+    """Models of one name: the simulator refuses the second (-allow_renaming=false)."""
+    first: dict[str, str] = {}
+    for robot, model in fleet.models.items():
+        if model in first:
+            yield Fault(robot, "starts", f"two models are called {model}")
+        first.setdefault(model, robot)

@@ -1,0 +1,262 @@
+"""Which description ``multibot init`` takes of several, and when it refuses to choose."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+from multibot_rewrite.cli.multibot import main
+
+PACKAGE = "<package><name>{}</name></package>"
+
+
+def robot(name: str, *joints: str, more: str = "") -> str:
+    """A base with a wheel for each joint."""
+    parts = "".join(
+        f'<link name="{it}_wheel"/><joint name="{it}" type="continuous"><parent link="{name}_base"/>'
+        f'<child link="{it}_wheel"/><axis xyz="0 1 0"/></joint>'
+        for it in joints
+    )
+    return f'<robot name="{name}"><link name="{name}_base"/>{parts}{more}</robot>'
+
+
+def init(folder: Path, *words: str) -> int:
+    return main(["init", str(folder), *words, "-n", "2", "--yes", "-o", str(folder / "fleet.yaml")])
+
+
+def taken(folder: Path, *words: str) -> Any:
+    assert init(folder, *words) == 0
+    return yaml.safe_load((folder / "fleet.yaml").read_text())
+
+
+@pytest.fixture
+def two(tmp_path: Path) -> Path:
+    """Two robots that nothing tells apart."""
+    (tmp_path / "digger.urdf").write_text(robot("digger", "dig_left", "dig_right"))
+    (tmp_path / "tractor.urdf").write_text(robot("tractor", "pull_left", "pull_right"))
+    return tmp_path
+
+
+def test_of_two_robots_neither_is_taken(two: Path, capsys: Any) -> None:
+    assert init(two) == 2
+    said = capsys.readouterr().err
+    assert len(said.splitlines()) == 1
+    assert "2 descriptions are as likely to be the robot" in said
+    assert f"{two}/digger.urdf, {two}/tractor.urdf" in said
+    assert f"name one: multibot init {two}/digger.urdf" in said
+    assert not (two / "fleet.yaml").exists()
+
+
+def test_the_one_that_a_launch_file_loads_is_taken(two: Path) -> None:
+    (two / "up.launch.py").write_text("path = os.path.join(share, 'tractor.urdf')\n")
+    assert taken(two)["description"] == "tractor.urdf"
+
+
+def test_the_one_whose_joints_the_files_have_is_taken(two: Path) -> None:
+    values = {"joints": ["pull_left", "pull_right"], "base": "tractor_base"}
+    section = {"wheels": {"ros__parameters": values}}
+    (two / "wheels.yaml").write_text(yaml.safe_dump(section))
+    assert taken(two)["description"] == "tractor.urdf"
+
+
+def test_of_many_robots_some_are_named(tmp_path: Path, capsys: Any) -> None:
+    for at in range(40):
+        (tmp_path / f"kind_{at:02}.urdf").write_text(robot(f"kind_{at}", f"j{at}"))
+    assert init(tmp_path) == 2
+    said = capsys.readouterr().err
+    assert len(said.splitlines()) == 1
+    assert "40 descriptions" in said and "kind_05.urdf and 34 more" in said
+
+
+def test_a_part_and_a_prop_are_no_rivals(two: Path) -> None:
+    (two / "tractor.urdf").unlink()
+    (two / "big_gripper.urdf").write_text(robot("big_gripper", "f1", "f2", "f3"))
+    (two / "tree.sdf").write_text(
+        '<sdf version="1.9"><model name="t"><link name="t"/></model></sdf>'
+    )
+    assert taken(two)["description"] == "digger.urdf"
+
+
+def test_files_of_one_name_in_two_folders_are_variants(tmp_path: Path, capsys: Any) -> None:
+    for name, more in (("one", ()), ("two", ("third",))):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "car.urdf").write_text(robot("car", "a", "b", *more))
+    (tmp_path / "up.launch.py").write_text("urdf = f'{kind}/car.urdf'\n")
+    (tmp_path / "package.xml").write_text(PACKAGE.format("cars"))
+    assert init(tmp_path) == 2
+    assert "2 descriptions" in capsys.readouterr().err
+
+
+def test_a_file_that_includes_another_of_its_name(tmp_path: Path) -> None:
+    """As a MoveIt config that adds ros2_control to the robot: that one is the robot."""
+    wiki = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+    for name in ("car_description", "car_config"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "package.xml").write_text(PACKAGE.format(name))
+    part = robot("car", "a").replace("<robot ", f"<robot {wiki} ")
+    (tmp_path / "car_description" / "car.urdf.xacro").write_text(part)
+    include = '<xacro:include filename="$(find car_description)/car.urdf.xacro"/>'
+    whole = f'<robot name="car" {wiki}>{include}</robot>'
+    (tmp_path / "car_config" / "car.urdf.xacro").write_text(whole)
+    assert taken(tmp_path)["description"] == "car_config/car.urdf.xacro"
+
+
+def test_packages_of_a_copy_without_git_are_found(tmp_path: Path) -> None:
+    """As in an image or an archive: packages are in folders of their own kind."""
+    wiki = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+    for name in ("robots/car", "parts/wheels"):
+        (tmp_path / name).mkdir(parents=True)
+        (tmp_path / name / "package.xml").write_text(PACKAGE.format(Path(name).name))
+    (tmp_path / "LICENSE").write_text("")
+    mast = '<link name="x"/><joint name="y" type="fixed">'
+    mast += '<parent link="car_base"/><child link="x"/></joint>'
+    (tmp_path / "parts/wheels/w.xacro").write_text(f"<robot {wiki}>{mast}</robot>")
+    text = robot("car", "a", more='<xacro:include filename="$(find wheels)/w.xacro"/>')
+    (tmp_path / "robots/car/car.urdf.xacro").write_text(text.replace("<robot ", f"<robot {wiki} "))
+    assert taken(tmp_path)["description"] == "robots/car/car.urdf.xacro"
+
+
+def test_what_is_launched_and_cannot_be_read_is_said(two: Path, capsys: Any) -> None:
+    """Another robot is not taken in its place."""
+    wiki = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+    include = '<xacro:include filename="$(find not_there)/a.xacro"/>'
+    (two / "real.urdf.xacro").write_text(f'<robot name="real" {wiki}>{include}</robot>')
+    (two / "up.launch.py").write_text("xacro = 'real.urdf.xacro'\n")
+    assert init(two) == 2
+    said = capsys.readouterr().err
+    assert len(said.splitlines()) == 1
+    assert "package 'not_there' is not found" in said and "the launch files load it" in said
+    assert not (two / "fleet.yaml").exists()
+
+
+def test_an_sdf_is_for_the_simulator_and_its_urdf_for_the_rest(tmp_path: Path) -> None:
+    (tmp_path / "car.urdf").write_text(robot("car", "a", "b"))
+    drive = (
+        '<plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive">'
+        "<left_joint>a</left_joint><right_joint>b</right_joint></plugin>"
+    )
+    sdf = robot("car", "a", "b", more=drive).replace("robot", "model")
+    sdf = sdf.replace('<parent link="car_base"/>', "<parent>car_base</parent>")
+    for it in ("a", "b"):
+        sdf = sdf.replace(f'<child link="{it}_wheel"/>', f"<child>{it}_wheel</child>")
+    sdf = sdf.replace('<axis xyz="0 1 0"/>', "<axis><xyz>0 1 0</xyz></axis>")
+    (tmp_path / "car.sdf").write_text(
+        f'<sdf version="1.9">{sdf.replace("continuous", "revolute")}</sdf>'
+    )
+    fleet = taken(tmp_path)
+    assert (fleet["description"], fleet["simulated"]) == ("car.urdf", "car.sdf")
+    assert fleet["simulator"] == "gazebo"
+
+
+def test_a_real_robot_has_no_bridge(two: Path) -> None:
+    (two / "tractor.urdf").unlink()
+    (two / "bridge.yaml").write_text(
+        "- {ros_topic_name: scan, gz_topic_name: scan, ros_type_name: sensor_msgs/msg/LaserScan,\n"
+        "   gz_type_name: gz.msgs.LaserScan, direction: GZ_TO_ROS}\n"
+    )
+    fleet = taken(two)
+    assert fleet["simulator"] == "none" and "companions" not in fleet
+
+
+MASS = (
+    '<inertial><mass value="1"/>'
+    '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
+)
+MIR = """\
+<robot name="mir" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="tf_prefix" default=""/>
+  <link name="$(arg tf_prefix)base_link">MASS</link><link name="$(arg tf_prefix)l">MASS</link>
+  <joint name="$(arg tf_prefix)left" type="continuous">
+    <parent link="$(arg tf_prefix)base_link"/><child link="$(arg tf_prefix)l"/>
+    <axis xyz="0 1 0"/>
+  </joint>
+  <gazebo>
+    <plugin name="drive" filename="libgazebo_ros_planar_move.so">
+      <ros><remapping>cmd_vel:=$(arg tf_prefix)cmd_vel</remapping></ros>
+    </plugin>
+  </gazebo>
+</robot>
+"""
+
+
+def test_an_argument_that_would_name_the_robot_twice_stays_empty(
+    tmp_path: Path, capsys: Any
+) -> None:
+    """As MiR's: the namespace names the topics already."""
+    (tmp_path / "mir.urdf.xacro").write_text(MIR.replace("MASS", MASS))
+    fleet = taken(tmp_path, "--distro", "humble")
+    assert fleet["arguments"] == {"tf_prefix": ""}
+    assert fleet["layout"] == "frames-per-robot"
+    file = tmp_path / "fleet.yaml"
+    file.write_text(file.read_text().replace("tf_prefix: ''", "tf_prefix: '{robot}_'"))
+    assert main(["build", str(file), "-o", str(tmp_path / "out")]) == 1
+    said = capsys.readouterr().err
+    assert "MF844 /robot1/robot1_cmd_vel has the name of robot 'robot1' twice" in said
+    assert "write tf_prefix: '' under arguments" in said
+
+
+RVIZ = """\
+Visualization Manager:
+  Class: ""
+  Displays:
+    - Class: rviz_default_plugins/RobotModel
+      Name: RobotModel
+      Links:
+        All Links Enabled: true
+        {}_base:
+          Alpha: 1
+        {}_wheel:
+          Alpha: 1
+"""
+
+
+def test_rviz_and_srdf_of_another_robot_are_not_taken(two: Path) -> None:
+    """Not even where no description of that robot is there: of its names none is known."""
+    (two / "tractor.urdf").unlink()
+    (two / "a.rviz").write_text(RVIZ.format("other", "other"))
+    (two / "z.rviz").write_text(RVIZ.format("digger", "dig_left"))
+    group = '<group name="g"><joint name="{}"/></group>'
+    for name, joint in (("a", "elbow"), ("z", "dig_left")):
+        (two / f"{name}.srdf").write_text(f'<robot name="digger">{group.format(joint)}</robot>')
+    fleet = taken(two)
+    assert (fleet["companions"]["rviz"], fleet["srdf"]) == ("z.rviz", "z.srdf")
+    assert "#   a.rviz: of its links and joints 0 in a hundred" in (two / "fleet.yaml").read_text()
+
+
+def test_the_navigation_that_is_launched_is_taken(two: Path) -> None:
+    (two / "tractor.urdf").unlink()
+    section = {"amcl": {"ros__parameters": {"base_frame_id": "digger_base"}}}
+    for name in ("a_nav.yaml", "z_nav.yaml"):
+        (two / name).write_text(yaml.safe_dump(section))
+    (two / "up.launch.py").write_text("params = 'z_nav.yaml'\n")
+    assert taken(two)["companions"]["params"] == ["z_nav.yaml"]
+
+
+def test_a_model_that_a_world_has_is_launched_too(tmp_path: Path, capsys: Any) -> None:
+    """A launch file loads another one: both may be meant."""
+    for name in ("cart", "dog"):
+        (tmp_path / name).mkdir()
+        joint = (
+            '<joint name="{0}_j" type="revolute"><parent>{0}</parent><child>{0}_w</child></joint>'
+        )
+        parts = f'<link name="{name}"/><link name="{name}_w"/>{joint.format(name)}'
+        model = f'<sdf version="1.9"><model name="{name}">{parts}</model></sdf>'
+        (tmp_path / name / "model.sdf").write_text(model)
+    (tmp_path / "dog.launch.py").write_text("model = 'dog/model.sdf'\n")
+    (tmp_path / "yard.world").write_text(
+        '<sdf version="1.9"><world name="w"><include><uri>model://cart</uri></include></world></sdf>'
+    )
+    assert init(tmp_path, "--simulator", "none") == 2
+    assert "2 descriptions" in capsys.readouterr().err
+
+
+def test_the_robot_is_found_behind_many_things(tmp_path: Path) -> None:
+    for at in range(70):
+        thing = '<sdf version="1.9"><model name="t"><link name="t"/></model></sdf>'
+        (tmp_path / f"a{at}.sdf").write_text(thing)
+    (tmp_path / "zebra.urdf").write_text(robot("zebra", "z1", "z2"))
+    (tmp_path / "up.launch.py").write_text("urdf = 'zebra.urdf'\n")
+    assert taken(tmp_path)["description"] == "zebra.urdf"

@@ -1,0 +1,123 @@
+"""The argument that switches a xacro between the simulated and the real robot."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+from multibot_rewrite.cli.multibot import main
+
+ROVER = """\
+<robot name="rover" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="{switch}" default="{default}"/>
+  <xacro:arg name="simple" default="true"/>
+  <xacro:property name="mass">
+    <inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+  </xacro:property>
+  <link name="base_link"><xacro:insert_block name="mass"/></link>
+  <link name="wheel"><xacro:insert_block name="mass"/></link>
+  <joint name="turn" type="continuous">
+    <parent link="base_link"/><child link="wheel"/><axis xyz="0 1 0"/>
+  </joint>
+  <ros2_control name="drive" type="system">
+    <hardware>
+      <xacro:if value="$(arg {switch})"><plugin>gz_ros2_control/GazeboSimSystem</plugin></xacro:if>
+      <xacro:unless value="$(arg {switch})"><plugin>acme/Driver</plugin></xacro:unless>
+    </hardware>
+    <joint name="turn"><command_interface name="velocity"/><state_interface name="position"/></joint>
+  </ros2_control>
+  <gazebo>
+    <plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" filename="gz_ros2_control-system">
+      <parameters>$(find rover)/control.yaml</parameters>
+    </plugin>
+  </gazebo>
+</robot>
+"""
+CONTROL = """\
+controller_manager:
+  ros__parameters:
+    update_rate: 50
+    joint_state_broadcaster: {type: joint_state_broadcaster/JointStateBroadcaster}
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "package.xml").write_text("<package><name>rover</name></package>")
+    (tmp_path / "control.yaml").write_text(CONTROL)
+    return tmp_path
+
+
+def write(folder: Path, switch: str, default: str) -> None:
+    text = ROVER.format(switch=switch, default=default)
+    (folder / "rover.urdf.xacro").write_text(text)
+
+
+def fleet_of(folder: Path, *words: str) -> Any:
+    file = folder / "fleet.yaml"
+    assert main(["init", str(folder), "-n", "2", "--yes", "--force", "-o", str(file), *words]) == 0
+    return yaml.safe_load(file.read_text())
+
+
+@pytest.mark.parametrize("switch", ["sim_mode", "use_sim", "use_gazebo", "sim_gazebo", "gz"])
+def test_the_simulators_switch_is_set(switch: str, folder: Path) -> None:
+    write(folder, switch, "false")
+    fleet = fleet_of(folder)
+    assert fleet["simulator"] == "gazebo"
+    assert fleet["arguments"] == {switch: "true"}
+    said = f"# {switch} is the switch between the simulated and the real robot"
+    assert said in (folder / "fleet.yaml").read_text()
+
+
+def test_a_real_robot_gets_the_other_value(folder: Path) -> None:
+    write(folder, "use_sim", "true")
+    fleet = fleet_of(folder, "--simulator", "none")
+    assert (fleet["simulator"], fleet["arguments"]) == ("none", {"use_sim": "false"})
+
+
+def test_what_suits_stays(folder: Path) -> None:
+    write(folder, "use_sim", "true")
+    assert "arguments" not in fleet_of(folder)
+
+
+@pytest.mark.parametrize(
+    ("simulator", "value", "says"),
+    [
+        ("gazebo", "false", "MF843 acme/Driver is a real robot's driver, and robot 'robot1' is"),
+        ("none", "true", "MF843 gz_ros2_control/GazeboSimSystem is a simulator's, and robot"),
+    ],
+)
+def test_hardware_of_the_other_world_stops_the_build(
+    simulator: str, value: str, says: str, folder: Path, capsys: Any
+) -> None:
+    write(folder, "use_sim", value)
+    file = folder / "fleet.yaml"
+    stack = "ros2_control" if simulator == "none" else "gz_ros2_control"
+    file.write_text(
+        f"layout: tf-per-robot\ndistro: jazzy\nsimulator: {simulator}\n"
+        f"description: rover.urdf.xacro\nstack: [{stack}]\n"
+        "robots:\n  - {name: robot1}\n  - {name: robot2}\n"
+    )
+    assert main(["build", str(file), "-o", str(folder / "out")]) == 1
+    said = capsys.readouterr().err
+    other = "true" if value == "false" else "false"
+    assert says in said and f"give the argument use_sim: '{other}'" in said
+    assert said.count("MF843") == 1
+    assert not (folder / "out").exists()
+
+
+def test_the_manager_of_another_plugin_loads_no_hardware(folder: Path) -> None:
+    """Where the simulator has no plugin of ros2_control, nothing reads the real robot's block."""
+    write(folder, "use_sim", "false")
+    path = folder / "rover.urdf.xacro"
+    text = path.read_text()
+    path.write_text(text[: text.index("  <gazebo>")] + "</robot>\n")
+    file = folder / "fleet.yaml"
+    file.write_text(
+        "layout: tf-per-robot\ndistro: jazzy\nsimulator: gazebo\ndescription: rover.urdf.xacro\n"
+        "robots:\n  - {name: robot1}\n"
+    )
+    assert main(["build", str(file), "-o", str(folder / "out")]) == 0
