@@ -20,7 +20,7 @@ from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.fleet.manifest import hash_of, inputs_of
 from multibot_rewrite.pages.page import Framed
 from multibot_rewrite.pages.view.heard import moved
-from multibot_rewrite.pages.view.page import Meshes, meshes_of, title_of, to_frame, to_html
+from multibot_rewrite.pages.view.page import Meshes, bare, meshes_of, title_of, to_frame, to_html
 from multibot_rewrite.pages.view.scene import ViewedRobot, scene_of
 from multibot_rewrite.producers.bags.read import read_bag
 from multibot_rewrite.producers.bags.recording import as_snapshot
@@ -57,12 +57,14 @@ def _graph(options: argparse.Namespace) -> System | None:
 
 
 def _notes(robots: Sequence[ViewedRobot], meshes: Meshes) -> Iterator[str]:
-    """Meshes that are not there or cannot be read, and what tf has elsewhere."""
+    """Meshes that are not there or cannot be read, robots without a shape, and what tf has elsewhere."""
     shapes = (it for one in robots for its in one.model.links.values() for it in its)
     unread = (why for why in meshes.values() if isinstance(why, str))
     for missing in sorted({*(it.missing for it in shapes if it.missing), *unread}):
         yield f"{missing}, it is shown as a box"
     for robot in robots:
+        if nothing := bare(robot.model):
+            yield f"{robot.name}: {nothing}"
         off = list(moved(robot.model.joints, robot.transforms))
         if off:
             yield (
