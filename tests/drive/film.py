@@ -1,8 +1,8 @@
 """A short film: two robots of an example in one MuJoCo scene, each driven by its own cmd_vel.
 
 ``python tests/drive/film.py``, with rclpy, mujoco and pillow, writes docs/pictures/two-robots.gif.
-It is the scene of ``test_live_physics.py``: the folder is built by the command, and what moves a robot is a
-message on the topic that is written in the picture.
+It is the scene of ``test_live_physics.py``: the folder is built by the command, and what moves a robot
+is a message on the topic that is written in the picture.
 """
 
 from __future__ import annotations

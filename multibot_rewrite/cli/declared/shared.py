@@ -13,6 +13,7 @@ from multibot_rewrite.cli.options import (
     choice,
     output,
     path_option,
+    rare,
     repeated,
     several,
     switch,
@@ -46,21 +47,27 @@ NAMING = OptionGroup(
             f" description, not for ROS nodes and topics; defaults: {_SEPARATORS}",
             [],
         ),
-        several(
-            "--shared-frames",
-            "A,B",
-            f"frames that all robots share; default: {','.join(WORLD_FRAMES)}",
+        rare(
+            several(
+                "--shared-frames",
+                "A,B",
+                f"frames that all robots share; default: {','.join(WORLD_FRAMES)}",
+            )
         ),
-        several(
-            "--shared-topics",
-            "A,B",
-            f"topics that all robots share; default: {','.join(SHARED_TOPICS)}",
+        rare(
+            several(
+                "--shared-topics",
+                "A,B",
+                f"topics that all robots share; default: {','.join(SHARED_TOPICS)}",
+            )
         ),
-        choice(
-            "--groups",
-            "HOW",
-            ("keep", "rename"),
-            "groups and end effectors of an SRDF: keep (default) or rename",
+        rare(
+            choice(
+                "--groups",
+                "HOW",
+                ("keep", "rename"),
+                "groups and end effectors of an SRDF: keep (default) or rename",
+            )
         ),
     ),
 )
