@@ -75,12 +75,12 @@ ROBOTS = several("--robots", "A,B", "names of robots", [])
 VOCABULARY = several(
     "--vocabulary", "FILE", "what more plugins mean by their parameters (docs/add-a-plugin.md)", []
 )
-URDF = path_option("--urdf", "the URDF that an SRDF or another file belongs to")
+URDF = path_option("--urdf", "the URDF of an SRDF or of another file")
 DISTRO = choice(
     "--distro",
     "NAME",
     RELEASES,
-    f"the ROS 2 release whose facts count: {', '.join(RELEASES)}; default: the fleet file's or"
+    f"the ROS 2 release that the robots run: {', '.join(RELEASES)}; default: the fleet file's or"
     f" configuration's, else {VARIABLE}, else {NEWEST_LTS}",
 )
 TRUST = switch(

@@ -1,9 +1,9 @@
 # Made by share/make.py.
 complete -c urdf-postfix -l version -d 'show the version'
 complete -c urdf-postfix -l robots -r -d 'names of robots'
-complete -c urdf-postfix -l urdf -r -d 'the URDF that an SRDF or another file belongs to'
+complete -c urdf-postfix -l urdf -r -d 'the URDF of an SRDF or of another file'
 complete -c urdf-postfix -l vocabulary -r -d 'what more plugins mean by their parameters (docs/add-a-plugin.md)'
-complete -c urdf-postfix -l distro -r -f -a 'humble jazzy kilted lyrical rolling' -d 'the ROS 2 release whose facts count: humble, jazzy, kilted, lyrical, rolling'
+complete -c urdf-postfix -l distro -r -f -a 'humble jazzy kilted lyrical rolling' -d 'the ROS 2 release that the robots run: humble, jazzy, kilted, lyrical, rolling'
 complete -c urdf-postfix -l trust -d 'let xacro files do anything: else they only compute, and read what is near (SECURITY.md)'
 complete -c urdf-postfix -s o -l output -r -d 'write the result there'
 complete -c urdf-postfix -l in-place -d 'write the result over the input file'
