@@ -94,7 +94,7 @@ def command_to_nobody(seen: Index) -> Iterator[Finding]:
         absent = nobody_in(seen, name, same)
         for node in nodes_of(at_work(ends.publishers)) if absent else ():
             yield command_to_nobody.finding(
-                f"publishes {name}, which nobody reads; {absent}",
+                f"publishes {name}, which no node reads; {absent}",
                 ABSENT,
                 level=WARNING,
                 node=node,
@@ -109,7 +109,7 @@ def _obeyed(ends: Ends) -> bool:
 def _unread(seen: Index, ends: Ends, meant: str, robots: int) -> Finding:
     node = nodes_of(ends.publishers)[0]
     reader = nodes_of(at_work(seen.by_name[TOPIC, meant].subscribers))[0]
-    message = f"publishes {ends.name}, which nobody reads; {reader} reads {meant}"
+    message = f"publishes {ends.name}, which no node reads; {reader} reads {meant}"
     several = f" (or that of another of the {robots} robots)" if robots > 1 else ""
     cause = f"start it in the robot's namespace, or pass the rule {ends.name}:={meant}{several}"
     level = NOTE if is_viewer(node) and not is_hidden(node) else ERROR
@@ -153,7 +153,7 @@ def command_from_another_robot(seen: Index) -> Iterator[Finding]:
             if not _mistaken(seen, node, robot, ends):
                 continue
             does = "publishes" if kind == TOPIC else "sends goals to" if kind == ACTION else "calls"
-            message = f"{does} {name}, which belongs to {owner}"
+            message = f"{does} {name}, a name of {owner}"
             cause = f"a namespace, remap rule or parameter of {robot} names {owner}"
             yield command_from_another_robot.finding(
                 message, cause, robot=robot, node=node, names=(name,)

@@ -36,10 +36,10 @@ _COMMON = (
     "topic-names-miss",
     ERROR,
     absence=True,
-    what="A node subscribes to a topic that nobody publishes, while nearly the same name is published:"
+    what="A node subscribes to a topic that no node publishes, while nearly the same name is published:"
     " with or without the robot's namespace, below another namespace or the node's own name, or"
     " misspelled.",
-    why="The two sides never meet, and there is no error message.",
+    why="The two sides never connect, and there is no error message.",
     fix="Pass the remap rule of the hint, or write the other side's name in the parameters.",
     bad="""\
 running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
@@ -191,7 +191,7 @@ def _same_but_number(one: str, other: str) -> bool:
 
 def _missed_topic(seen: Index, end: End, other: Ends, level: str) -> Finding:
     sender = nodes_of(other.publishers)[0]
-    message = f"subscribes to {end.name}, which nobody publishes; {sender} publishes {other.name}"
+    message = f"subscribes to {end.name}, which no node publishes; {sender} publishes {other.name}"
     # The side in the wrong place is the one whose name has no robot, or is below the node.
     if _is_doubled(other.name, end.name):
         cause = f"its namespace is there twice: name it {last_word(other.name)} in {sender}"
@@ -212,7 +212,7 @@ def _missed_topic(seen: Index, end: End, other: Ends, level: str) -> Finding:
     "server-names-miss",
     ERROR,
     absence=True,
-    what="A node calls a service or action that nobody serves, while nearly the same name is served:"
+    what="A node calls a service or action that no node serves, while nearly the same name is served:"
     " with or without the robot's namespace, or misspelled. In a namespace without any node it is a"
     " warning.",
     why="The client waits for ever: no goal arrives, no node is activated.",
@@ -247,13 +247,13 @@ def server_names_miss(seen: Index) -> Iterator[Finding]:
             )
             if absent:
                 yield server_names_miss.finding(
-                    f"{does} {name}, which nobody serves; {absent}",
+                    f"{does} {name}, which no node serves; {absent}",
                     ABSENT, level=WARNING, node=end.node, names=(name,),
                 )  # fmt: skip
             if not other:
                 continue
             server = nodes_of(seen.by_name[kind, other].servers)[0]
-            message = f"{does} {name}, which nobody serves; {server} serves {other}"
+            message = f"{does} {name}, which no node serves; {server} serves {other}"
             cause = f"pass the rule {name}:={other}, or start it in the namespace of the robot"
             robot = seen.robot(end.node) or seen.robot(other)
             clicked = is_viewer(end.node) and not is_spawner(end.node)
