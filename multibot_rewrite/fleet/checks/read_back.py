@@ -14,6 +14,7 @@ from contextlib import contextmanager
 from tempfile import TemporaryDirectory
 
 from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.fleet.build import Outputs
 from multibot_rewrite.fleet.checks.as_planned import not_as_planned
@@ -38,7 +39,7 @@ def read_back(plan: FleetPlan, made: Outputs, folder: str) -> list[Finding]:
 
     Raises MultibotError where no temporary file can be written.
     """
-    with _temporary_folder() as above:
+    with _temporary_folder() as above, gc_paused():
         home, own = os.path.join(above, "built"), os.path.join(above, "launch")
         os.makedirs(own)
         _write(made.files, plan.file.installed or folder, home)

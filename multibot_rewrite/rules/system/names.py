@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache
 from itertools import islice, zip_longest
 
 from multibot_rewrite.base.conventions import EVERYBODYS, chooses
@@ -178,6 +179,7 @@ def _is_slip(one: str, other: str) -> bool:
     return all(here == there or nearest(here, (there,), CHOICE) for here, there in parts)
 
 
+@lru_cache(maxsize=4096)
 def _letters(name: str) -> str:
     """Its letters, digits and slashes, in lower case."""
     return "".join(it for it in name.lower() if it.isalnum() or it == "/")
