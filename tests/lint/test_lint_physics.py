@@ -139,7 +139,9 @@ CASES = [
     pytest.param(
         robot(reaching("cylinder", 'radius="0.1" length="0.3"', 1.21)), "MB608:1", id="4 cylinders"
     ),
-    pytest.param(robot(reaching("cylinder", 'radius="0.1" length="0.3"', 1.19)), "", id="nearly one"),
+    pytest.param(
+        robot(reaching("cylinder", 'radius="0.1" length="0.3"', 1.19)), "", id="nearly one"
+    ),
     pytest.param(
         robot(reaching("sphere", 'radius="0.1"', 1.61, "0 0.3 0")), "MB608:1", id="off the origin"
     ),

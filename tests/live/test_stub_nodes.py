@@ -150,7 +150,9 @@ def test_a_type_that_is_not_installed_is_replaced_and_told(
 def test_an_action_without_its_type_is_its_services_and_topics(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    found = rows(monkeypatch, Ros(NAVIGATE), stub(StubEndpoint(ACTION, SERVES, "go", NAVIGATE, False)))
+    found = rows(
+        monkeypatch, Ros(NAVIGATE), stub(StubEndpoint(ACTION, SERVES, "go", NAVIGATE, False))
+    )
     assert found[0] == ("replaced", {NAVIGATE: "its services and topics"})
     assert {(it[1], it[2]) for it in found[2:]} == {
         ("serves", "go/_action/send_goal"),

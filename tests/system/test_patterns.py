@@ -45,7 +45,10 @@ def test_two_nodes_of_a_pattern_are_one_and_others_stay() -> None:
     plan = system(("/tf_*", "/a"), end("/tf_*", "/tf", SUBSCRIBES))
     seen = ("/tf_1", "/tf_2", "/a", "/b")
     graph = system(seen, *(end(it, "/tf", SUBSCRIBES) for it in ("/tf_1", "/tf_2", "/b")))
-    assert names(fitted(plan, graph)[1]) == (["/a", "/b", "/tf_*"], [("/tf_*", "/tf"), ("/b", "/tf")])
+    assert names(fitted(plan, graph)[1]) == (
+        ["/a", "/b", "/tf_*"],
+        [("/tf_*", "/tf"), ("/b", "/tf")],
+    )
 
 
 @pytest.mark.parametrize(
