@@ -73,17 +73,19 @@ class LaunchedNode(NamedTuple):
 
 class LaunchNote(NamedTuple):
     """Something of a launch file whose nodes are not known, and why; with ``parameters`` the node is
-    known, and what a parameter file sets for it is not: the ``file``, where that is not there."""
+    known, and what a parameter file sets for it is not: the ``file``, where that is not there.
+    ``fails`` where the launch ends there on every machine."""
 
     place: Place
     message: str
     parameters: bool = False
     file: str = ""
+    fails: bool = False
 
 
 class LaunchGraph(NamedTuple):
     """What launch files start. ``files`` are the parameter files that plugins in descriptions name, by
-    the path that they have there. ``stood_in`` is true where launch is not installed and its stand-in
+    the path that they have there, and the descriptions that the launch files read. ``stood_in`` is true where launch is not installed and its stand-in
     read them."""
 
     nodes: tuple[LaunchedNode, ...] = ()
