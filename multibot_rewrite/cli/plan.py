@@ -68,7 +68,7 @@ def _of_launch(options: argparse.Namespace) -> int:
     if options.output:
         check_target(options.output, [order.file])
         check_folder(options.output)
-    made = check_launch.graph_of(options, order)
+    made = check_launch.launched_by(options, order).system
     seen = diagnose(made)
     if not seen.robots:
         raise UsageError(
