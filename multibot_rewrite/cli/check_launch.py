@@ -19,10 +19,10 @@ from multibot_rewrite.lint.launched import named_findings
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.producers.launch.child import launch_graph
 from multibot_rewrite.producers.launch.launched import Launched
-from multibot_rewrite.producers.launch.records import LaunchOrder, order_in_words
+from multibot_rewrite.producers.launch.records import LaunchOrder, joined, orders_in_words
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import launched
-from multibot_rewrite.rules.launch.judge import judge_launch
+from multibot_rewrite.rules.launch.judge import judge_launch, placed
 from multibot_rewrite.rules.system.interfaces import (
     interface_claimed_twice,
     interface_not_exported,
@@ -31,10 +31,10 @@ from multibot_rewrite.rules.system.interfaces import (
 
 def run(options: argparse.Namespace) -> int:
     """Read the launch file, make the graph that it would start, report; returns the exit code."""
-    order = order_of(options, options.words)
-    _check_use(options, order)
+    orders = orders_of(options, options.words)
+    _check_use(options, orders)
     plan = check.plan_of(options) if options.plan else None
-    made = launched_by(options, order)
+    made = launched_by(options, orders)
     for it in made.system.environment.caveats:
         if not it.incomplete:
             note(options, it.message)
@@ -44,14 +44,14 @@ def run(options: argparse.Namespace) -> int:
     # What a check is told besides: there is no snapshot, and nothing to begin.
     whole = argparse.Namespace(**vars(options), snapshot=[], suggest=None)
     seen = diagnose(made.system)
-    every = (*found, *map(_certain, seen.findings))
+    every = (*found, *(placed(_certain(it), made) for it in seen.findings))
     return unplanned.report_on(whole, seen._replace(findings=every))
 
 
-def order_of(options: argparse.Namespace, words: Sequence[str]) -> LaunchOrder:
-    """The launch file that words name, with its arguments; raises UsageError for other words."""
-    order = order_in_words(words, shlex.join(words), options.roots)
-    return order._replace(trusted=True)
+def orders_of(options: argparse.Namespace, words: Sequence[str]) -> list[LaunchOrder]:
+    """The launch files that words name, with the arguments; raises UsageError for other words."""
+    orders = orders_in_words(words, shlex.join(words), options.roots)
+    return [it._replace(trusted=True) for it in orders]
 
 
 def _certain(it: Finding) -> Finding:
@@ -60,17 +60,17 @@ def _certain(it: Finding) -> Finding:
     return it._replace(level=ERROR) if claims and it.level == WARNING else it
 
 
-def launched_by(options: argparse.Namespace, order: LaunchOrder) -> Launched:
-    """What the launch file would start; raises InputError for one that cannot be read."""
+def launched_by(options: argparse.Namespace, orders: Sequence[LaunchOrder]) -> Launched:
+    """What launch files would start, together; raises InputError for one that cannot be read."""
     release = release_here(options.distro)
     nodes, nodl = own_nodes(options)
     library = known_nodes(nodes, release, nodl).library
     known = Knowledge(library.nodes, load_known_nodes(nodes or "", release), release)
-    return launched(launch_graph(order), known)
+    return launched(joined([launch_graph(it) for it in orders]), known)
 
 
-def _check_use(options: argparse.Namespace, order: LaunchOrder) -> None:
+def _check_use(options: argparse.Namespace, orders: Sequence[LaunchOrder]) -> None:
     check_report(options, printed=False)
     pictures.check(options)
     if options.output:
-        check_target(options.output, [*filter(None, [options.plan]), order.file])
+        check_target(options.output, [*filter(None, [options.plan]), *(it.file for it in orders)])

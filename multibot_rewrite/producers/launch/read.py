@@ -12,11 +12,11 @@ from multibot_rewrite.producers.launch.describe import Visit, failure
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 from multibot_rewrite.producers.launch.made_files import keep_sources
 from multibot_rewrite.producers.launch.places import keep_places
+from multibot_rewrite.producers.launch.read_files import descriptions_in, keep_reads
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder
 from multibot_rewrite.producers.launch.source_packages import add_sources
 from multibot_rewrite.producers.launch.stand_in import standing_in
 from multibot_rewrite.producers.launch.visit import visit_all
-from multibot_rewrite.producers.launch.read_files import descriptions_in, keep_reads
 from multibot_rewrite.system.records import Place
 
 

@@ -14,6 +14,7 @@ _Check = TypeVar("_Check", bound=Callable[..., Any])
 _HEAD = """\
 from pathlib import Path
 from launch import LaunchDescription
+from launch.actions import LogInfo, OpaqueFunction
 from launch_ros.actions import Node
 HERE = Path(__file__).parent
 def generate_launch_description():
@@ -65,9 +66,7 @@ def create_of(robot: str, *words: str, model: str = "") -> str:
     """An action that spawns a robot of ``ROVERS`` in Gazebo."""
     given = ", ".join(f'"{it}"' for it in ("-name", model or robot, *words))
     file = f'str(HERE / "{robot}.urdf")'
-    return (
-        f'Node(package="ros_gz_sim", executable="create", arguments=["-file", {file}, {given}])'
-    )
+    return f'Node(package="ros_gz_sim", executable="create", arguments=["-file", {file}, {given}])'
 
 
 def bridge_of(*rows: str) -> str:

@@ -40,9 +40,7 @@ _INTO_GAZEBO = DIRECTIONS["out"]
     why="Gazebo refuses the second one, or spawns it under another name than its bridge and its topics "
     "have.",
     fix="Give each `-name` of its own.",
-    bad=launch_of(
-        create_of("robot1", "-x", "1"), create_of("robot2", "-x", "3", model="robot1")
-    ),
+    bad=launch_of(create_of("robot1", "-x", "1"), create_of("robot2", "-x", "3", model="robot1")),
     good=launch_of(create_of("robot1", "-x", "1"), create_of("robot2", "-x", "3")),
     line=1,
     beside=ROVERS,
@@ -54,7 +52,9 @@ def name_twice(launched: Launched) -> Iterator[Finding]:
         other = first.setdefault(it.name, it)
         if other is not it and it.words.get(_RENAMES) not in ("true", "1"):
             message = f"spawns a second model {it.name}"
-            yield at(name_twice, it.place, message, f"give it a -name of its own; see {other.place}")
+            yield at(
+                name_twice, it.place, message, f"give it a -name of its own; see {other.place}"
+            )
 
 
 @launch_rule(
@@ -92,9 +92,7 @@ def _is_near(one: InSimulator, other: InSimulator) -> bool:
     what="Two models that a launch file spawns have the same topic in Gazebo.",
     why="One command moves both robots, or the data of both come on one topic.",
     fix="Give each description topics of its own, with the name of its robot.",
-    bad=launch_of(
-        create_of("robot1", "-x", "1"), create_of("robot1", "-x", "3", model="robot2")
-    ),
+    bad=launch_of(create_of("robot1", "-x", "1"), create_of("robot1", "-x", "3", model="robot2")),
     good=launch_of(create_of("robot1", "-x", "1"), create_of("robot2", "-x", "3")),
     line=1,
     beside=ROVERS,
@@ -109,7 +107,7 @@ def shared_topic(launched: Launched) -> Iterator[Finding]:
         if both:
             message = f"{other.name} and {one.name} both have gz topic {shorten(both)}"
             hint = f"give each description topics of its own; see {one.place}"
-            yield at(shared_topic, other.place, message, hint, robot="", names=tuple(both))
+            yield at(shared_topic, other.place, message, hint, names=tuple(both))
 
 
 def _names(model: InSimulator) -> Iterator[str]:
@@ -121,8 +119,8 @@ def _names(model: InSimulator) -> Iterator[str]:
 @launch_rule(
     "MG704",
     "command-not-bridged",
-    what="A model in Gazebo gets no commands: no bridge of the launch file passes anything on to a topic "
-    "that its plugin reads, and one does for another model of the launch file.",
+    what="A model in Gazebo gets no commands: no bridge of the launch file passes anything on to a "
+    "topic that its plugin reads, and one does for another model of the launch file.",
     why="Nothing that is sent in ROS moves the robot.",
     fix="Add the row, with the direction to Gazebo.",
     bad=launch_of(
@@ -153,7 +151,7 @@ def not_bridged(launched: Launched) -> Iterator[Finding]:
             if gz not in told and kind in reached:
                 message = f"{it.name} reads gz topic {gz}, and no bridge passes anything on to it"
                 hint = "add a row to Gazebo for it, as another model has one"
-                yield at(not_bridged, it.place, message, hint, robot="", names=(gz,))
+                yield at(not_bridged, it.place, message, hint, names=(gz,))
 
 
 def _read(model: InSimulator) -> Iterator[tuple[str, str]]:

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.rosnames import resolve_bound
 from multibot_rewrite.producers.launch.bridges import bridged_by
 from multibot_rewrite.producers.launch.launched import Launched, models_in_simulator
 from multibot_rewrite.producers.launch.records import RunningNode
 from multibot_rewrite.producers.launch.running import bound_of
-from multibot_rewrite.base.rosnames import resolve_bound
 from multibot_rewrite.rules.launch.declaration import (
     ROVERS,
     at,
@@ -50,7 +50,7 @@ def into_gazebo(launched: Launched) -> set[str]:
 @launch_rule(
     "MG705",
     "bridge-to-another-robot",
-    what="A bridge connects the topic of one robot in ROS with that of another robot in Gazebo, or with "
+    what="A bridge connects the topic of one robot in ROS with that of another one in Gazebo, or with "
     "one that has no robot's name although the rows of the other robots have theirs.",
     why="A robot obeys the commands of another one, or nobody can tell whose data they are.",
     fix="Name the same robot on both sides of the row.",
@@ -61,9 +61,7 @@ def into_gazebo(launched: Launched) -> set[str]:
         f'arguments=["/robot2/cmd_vel{_TWIST}"])',
         bridge_of(f"/robot1/cmd_vel{_TWIST}"),
     ),
-    good=launch_of(
-        *_BOTH, bridge_of(f"/robot1/cmd_vel{_TWIST}", f"/robot2/cmd_vel{_TWIST}")
-    ),
+    good=launch_of(*_BOTH, bridge_of(f"/robot1/cmd_vel{_TWIST}", f"/robot2/cmd_vel{_TWIST}")),
     line=2,
     beside=ROVERS,
 )
@@ -84,7 +82,7 @@ def to_another_robot(launched: Launched) -> Iterator[Finding]:
         else:
             continue
         hint = f"write the name of {own} on both sides"
-        yield at(to_another_robot, it.node.place, message, hint, node=it.node.full_name, names=(it.ros,))
+        yield at(to_another_robot, it.node.place, message, hint, names=(it.ros,))
 
 
 def _plain(row: _Row, own: str) -> tuple[str, str]:

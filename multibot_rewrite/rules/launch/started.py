@@ -14,6 +14,8 @@ from multibot_rewrite.base.findings.finding import INCONCLUSIVE, WARNING, Findin
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER, NAV2
+from multibot_rewrite.producers.evidence.claims import COMMAND, claims_of
+from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.records import RunningNode
 from multibot_rewrite.rules.launch.declaration import at, launch_of, launch_rule, node_of
@@ -22,13 +24,27 @@ _SPAWNER = node_of("controller_manager", "spawner", ("arm",))
 _MANAGER = node_of("controller_manager", "ros2_control_node")
 _TYPED = '[{"arm.type": "joint_trajectory_controller/JointTrajectoryController"}]'
 _WITH_TYPE = node_of("controller_manager", "ros2_control_node", parameters=_TYPED)
-_CREATE = 'Node(package="ros_gz_sim", executable="create", arguments=["-name", "r", "-topic", "{}"])'
+_WITH_JOINTS = node_of(
+    "controller_manager", "ros2_control_node", parameters='[str(HERE / "arm.yaml")]'
+)
+_CONTROLLER = """\
+/controller_manager:
+  ros__parameters:
+    arm: {{type: joint_trajectory_controller/JointTrajectoryController}}
+/{}:
+  ros__parameters: {{joints: [elbow], command_interfaces: [position]}}
+"""
+_JOINTS = {"arm.yaml": _CONTROLLER.format("arm"), "lost.yaml": _CONTROLLER.format("lost")}
+_CREATE = (
+    'Node(package="ros_gz_sim", executable="create", arguments=["-name", "r", "-topic", "{}"])'
+)
 _STATE = node_of(
     "robot_state_publisher",
     "robot_state_publisher",
     parameters='[{"robot_description": (HERE / "robot1.urdf").read_text()}]',
 )
 _ROBOT = {"robot1.urdf": '<robot name="r"><link name="a"/></robot>\n'}
+_OPENED = 'OpaqueFunction(function=lambda context: [LogInfo(msg=(HERE / "{}").read_text())])'
 _LIST = '[{{"autostart": {}, "node_names": [{}]}}]'
 _AMCL = node_of("nav2_amcl", "amcl", name='"amcl"')
 _UNSURE = "a node that is not known may; see what is incomplete"
@@ -49,8 +65,9 @@ def _managed(names: str, autostart: bool = True) -> str:
     what="A launch file ends with an error when it is run.",
     why="Nothing that stands behind it is started, and what runs is stopped.",
     fix="Correct what the message says, at its line.",
-    bad=launch_of(_STATE),
-    good=launch_of(node_of("joy", "joy_node")),
+    bad=launch_of(_OPENED.format("lost.txt")),
+    good=launch_of(_OPENED.format("robot1.urdf")),
+    beside=_ROBOT,
 )
 def fails(launched: Launched) -> Iterator[Finding]:
     """What the file itself raises, and files of it that are not there."""
@@ -65,7 +82,9 @@ def fails(launched: Launched) -> Iterator[Finding]:
     what="Two spawners load one controller into one controller manager.",
     why="The second one finds it loaded: it was to be another robot's, which has none then.",
     fix="Give the second one the manager of its robot (`-c`, or its namespace).",
-    bad=launch_of(_WITH_TYPE, _SPAWNER, node_of("controller_manager", "spawner", ("arm",), name='"b"')),
+    bad=launch_of(
+        _WITH_TYPE, _SPAWNER, node_of("controller_manager", "spawner", ("arm",), name='"b"')
+    ),
     good=launch_of(_WITH_TYPE, _SPAWNER),
     line=2,
 )
@@ -86,7 +105,9 @@ def spawned_twice(launched: Launched) -> Iterator[Finding]:
     "published description makes.",
     why="The spawner waits and ends; none of its controllers is started.",
     fix="Correct the name of the manager (`-c`), or start it in that namespace.",
-    bad=launch_of(node_of("controller_manager", "spawner", ("arm", "-c", "/robot1/controller_manager"))),
+    bad=launch_of(
+        node_of("controller_manager", "spawner", ("arm", "-c", "/robot1/controller_manager"))
+    ),
     good=launch_of(_WITH_TYPE, _SPAWNER),
 )
 def no_manager(launched: Launched) -> Iterator[Finding]:
@@ -147,36 +168,44 @@ def no_description(launched: Launched) -> Iterator[Finding]:
 
 @launch_rule(
     "MG725",
-    "controller-without-type",
-    what="A spawner loads a controller whose type no parameter of its manager and no word of the spawner "
-    "says.",
-    why="The controller manager does not load it.",
-    fix="Write `NAME: {type: ...}` below the parameters of the controller manager.",
-    bad=launch_of(_MANAGER, _SPAWNER),
-    good=launch_of(_WITH_TYPE, _SPAWNER),
+    "controller-without-joints",
+    what="A spawner loads a controller that gets no parameter which names a joint.",
+    why="The controller is not configured: it has nothing to move.",
+    fix="Write its joints into a section with its name and namespace, in a file of the controller "
+    "manager or of the spawner (`--param-file`).",
+    bad=launch_of(_WITH_JOINTS.replace("arm", "lost"), _SPAWNER),
+    good=launch_of(_WITH_JOINTS, _SPAWNER),
     line=1,
+    beside=_JOINTS,
 )
-def no_type(launched: Launched) -> Iterator[Finding]:
-    """Of managers all of whose parameters are known."""
-    known = {it.full_name for it in launched.nodes if _is(it, "controller_manager")}
-    files = any(it.parameters for it in launched.graph.notes)
-    for it in launched.spawned:
-        if it.manager not in known or files or it.inactive:
+def no_joints(launched: Launched) -> Iterator[Finding]:
+    """Where all parameter files are known, and what it claims follows from its parameters alone."""
+    if any(it.parameters for it in launched.graph.notes):
+        return
+    spawned = {(it.full_name, it.place) for it in launched.spawned}
+    for it in launched.nodes:
+        facts = it.facts
+        if (it.full_name, it.place) not in spawned or facts is None or not facts.claims:
             continue
-        own = [n for n in launched.nodes if n.full_name == it.full_name and n.place == it.place]
-        if own and all(n.program == "a controller" for n in own):
-            message = f"controller {it.name} of {it.manager} has no type"
-            yield at(no_type, it.place, message, f"write {it.name}: {{type: ...}} in its parameters")
+        given = GivenNode(it.name, facts.known, it.program, it.values, it.place)
+        commands = [claim for claim in facts.claims if claim.kind == COMMAND]
+        by_joint = commands and all(claim.template.startswith("<") for claim in commands)
+        if by_joint and not any(True for _ in claims_of(commands, given)):
+            message = f"controller {it.full_name} gets no parameter that names a joint"
+            hint = f"write its parameters in a section {it.full_name}"
+            yield at(no_joints, it.place, message, hint)
 
 
 @launch_rule(
     "MG726",
     "nobody-activates",
-    what="A node of Nav2 with a life cycle is in no list of a lifecycle manager, though the launch file "
-    "starts one, or a manager lists a node that the launch file does not start.",
+    what="A node of Nav2 with a life cycle is in no list of a lifecycle manager, while the launch "
+    "file starts one, or a manager lists a node that the launch file does not start.",
     why="The node stays unconfigured and does nothing. A manager that waits for a node activates none.",
     fix="Write the same names in `node_names` and at the nodes.",
-    bad=launch_of(_AMCL, node_of("nav2_map_server", "map_server", name='"map_server"'), _managed('"amcl"')),
+    bad=launch_of(
+        _AMCL, node_of("nav2_map_server", "map_server", name='"map_server"'), _managed('"amcl"')
+    ),
     good=launch_of(_AMCL, _managed('"amcl"')),
     line=1,
 )
@@ -188,17 +217,19 @@ def not_listed(launched: Launched) -> Iterator[Finding]:
     started = {it.full_name: it for it in launched.nodes}
     for it in launched.nodes if managers and known else ():
         kind = it.facts.kind if it.facts else ""
-        if kind in NAV2 and kind not in _SELF and it.full_name not in listed:
-            if not _activates_itself(it):
-                message = f"{it.full_name} is in the list of no lifecycle manager"
-                hint = f"add it to node_names of {managers[0].full_name}"
-                yield at(not_listed, it.place, message, hint, node=it.full_name)
+        managed = kind in NAV2 and kind not in _SELF and not _activates_itself(it)
+        if managed and it.full_name not in listed:
+            message = f"{it.full_name} is in the list of no lifecycle manager"
+            hint = f"add it to node_names of {managers[0].full_name}"
+            yield at(not_listed, it.place, message, hint)
     for name, manager in listed.items() if _is_known(launched) else ():
         if name not in started:
             near = nearest(name, started)
-            hint = f"did you mean {near.rpartition('/')[2]}?" if near else "start it, or leave it out"
-            message = f"waits for {name}, which the launch file does not start"
-            yield at(not_listed, manager.place, message, hint, node=manager.full_name)
+            hint = (
+                f"did you mean {near.rpartition('/')[2]}?" if near else "start it, or leave it out"
+            )
+            message = f"{manager.full_name} waits for {name}, which the launch file does not start"
+            yield at(not_listed, manager.place, message, hint)
 
 
 # Some releases of it have no life cycle, in others its own launch file brings it up.
@@ -217,7 +248,11 @@ def _names(it: RunningNode) -> object:
 
 def _listed(it: RunningNode) -> Iterator[str]:
     names = _names(it)
-    yield from (expand(str(one), it.namespace, "") for one in names or ()) if isinstance(names, list) else ()
+    yield from (
+        (expand(str(one), it.namespace, "") for one in names or ())
+        if isinstance(names, list)
+        else ()
+    )
 
 
 @launch_rule(
@@ -236,5 +271,5 @@ def waits(launched: Launched) -> Iterator[Finding]:
     for it in launched.nodes:
         given = it.values.get("autostart")
         if _is(it, LIFECYCLE_MANAGER) and (given is None or given.value is False):
-            message = "activates no node by itself: autostart is not true"
-            yield at(waits, it.place, message, "set autostart to true", node=it.full_name)
+            message = f"{it.full_name} activates no node by itself: autostart is not true"
+            yield at(waits, it.place, message, "set autostart to true")

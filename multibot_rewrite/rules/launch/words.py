@@ -7,12 +7,14 @@ without flags), tf2 buffer_core.cpp (a frame is not its own parent, a quaternion
 from __future__ import annotations
 
 import os
+from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 from math import isclose, pi
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.nearest import SLIP, nearest
+from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.records import RunningNode
 from multibot_rewrite.producers.launch.static_transforms import STATIC
@@ -29,7 +31,7 @@ _TURN = 2 * pi
 @launch_rule(
     "MG711",
     "static-transform-implausible",
-    what="A static_transform_publisher gets words that make no transform or another one than is meant: a "
+    what="The words of a static_transform_publisher make no transform, or not the one that is meant: a "
     "frame is its own parent, an angle in degrees, a quaternion that is no rotation, words that are no "
     "numbers where numbers belong.",
     why="tf2 refuses the transform, or the robot and its sensors stand turned.",
@@ -44,7 +46,7 @@ def implausible(launched: Launched) -> Iterator[Finding]:
         if it.facts is None or it.facts.known != STATIC:
             continue
         for message, hint in _faults(it):
-            yield at(implausible, it.place, message, hint, node=it.full_name)
+            yield at(implausible, it.place, f"{it.full_name}: {message}", hint)
 
 
 def _faults(it: RunningNode) -> Iterator[tuple[str, str]]:
@@ -92,7 +94,7 @@ def _number(word: str) -> float | None:
     "MG712",
     "remap-matches-nothing",
     level=WARNING,
-    what="A remap rule of a launch file is for a name that the node has not, and is like one that it has.",
+    what="A remap rule of a launch file is for a name that the node has not, but nearly has.",
     why="The rule does nothing: the node keeps its own name.",
     fix="Write the name as the node has it.",
     bad=launch_of(
@@ -116,10 +118,8 @@ def matches_nothing(launched: Launched) -> Iterator[Finding]:
             bare = old.lstrip("/~")
             near = nearest(bare, names, SLIP) if bare not in names and ":" not in old else ""
             if near and not bare.startswith("__"):
-                message = f"the remap rule for {old} matches nothing"
-                yield at(
-                    matches_nothing, it.place, message, f"did you mean {near}?", node=it.full_name
-                )
+                message = f"{it.full_name}: the remap rule for {old} matches nothing"
+                yield at(matches_nothing, it.place, message, f"did you mean {near}?")
 
 
 @launch_rule(
@@ -156,7 +156,12 @@ def not_there(launched: Launched) -> Iterator[Finding]:
             key = (it.place.file, it.place.line, path)
             if not os.path.exists(path) and key not in told:
                 told.add(key)
-                yield at(not_there, it.place, f"{path} is not there", _PATH, node=it.full_name)
+                yield at(
+                    not_there,
+                    it.place,
+                    f"{it.full_name} is given {path}, which is not there",
+                    _PATH,
+                )
 
 
 _PATH = "correct the path, or install the file"
@@ -183,26 +188,45 @@ def _files(it: RunningNode) -> Iterator[str]:
     why="launch ends there: the executable is not found.",
     fix="Write the name of the program.",
     bad=launch_of(
-        node_of("robot_state_publisher", "robot_state_publish", parameters='[{"robot_description": "x"}]')
+        node_of(
+            "robot_state_publisher",
+            "robot_state_publish",
+            parameters='[{"robot_description": "x"}]',
+        )
     ),
     good=launch_of(
-        node_of("robot_state_publisher", "robot_state_publisher", parameters='[{"robot_description": "x"}]')
+        node_of(
+            "robot_state_publisher",
+            "robot_state_publisher",
+            parameters='[{"robot_description": "x"}]',
+        )
     ),
 )
 def misspelt(launched: Launched) -> Iterator[Finding]:
     """By what is known of a package's programs."""
-    for it in launched.nodes:
-        package, _, program = it.program.partition("/")
-        known = (*it.facts.programs, it.facts.kind) if it.facts else ()
-        if it.facts is None or it.facts.package != package or "::" in program or not program:
+    known = _programs(launched.release)
+    for it in launched.graph.nodes:
+        every = known.get(it.package, ())
+        if not it.executable or "::" in it.executable or it.executable in every:
             continue
-        every = {one.rpartition("/")[2] for one in known}
-        near = nearest(program, sorted(every), SLIP) if program not in every else ""
-        if near and _differ(program, near):
-            message = f"package {package} has no program {program}"
-            yield at(misspelt, it.place, message, f"did you mean {near}?", node=it.full_name)
+        near = nearest(it.executable, sorted(every), SLIP)
+        if near and _differ(it.executable, near):
+            message = f"package {it.package} has no program {it.executable}"
+            yield at(misspelt, it.place, message, f"did you mean {near}?")
+
+
+def _programs(release: str) -> dict[str, set[str]]:
+    """The programs of each package that are known."""
+    found: dict[str, set[str]] = defaultdict(set)
+    for node in built_in(release).nodes.values():
+        for it in node.programs or (node.kind,):
+            package, slash, program = it.rpartition("/")
+            found[package if slash else node.package].add(program)
+    return found
 
 
 def _differ(program: str, near: str) -> bool:
     """Programs are called with and without ``_node``, with and without a file ending."""
-    return program.removesuffix(".py").removesuffix("_node") != near.removesuffix(".py").removesuffix("_node")
+    return program.removesuffix(".py").removesuffix("_node") != near.removesuffix(
+        ".py"
+    ).removesuffix("_node")

@@ -1,7 +1,7 @@
 """Whether the world that a launch starts runs what its robots need.
 
-Source: gz-sim8 src/ServerConfig.cc and src/SimulationRunner.cc (a world without any plugin gets those of
-server.config: physics, user commands, scene broadcaster); src/systems/user_commands (it spawns
+Source: gz-sim8 src/ServerConfig.cc and src/SimulationRunner.cc (a world without any plugin gets those
+of server.config: physics, user commands, scene broadcaster); src/systems/user_commands (it spawns
 entities); src/systems/sensors and the systems of other sensors.
 """
 
@@ -31,21 +31,19 @@ from multibot_rewrite.rules.launch.declaration import (
 _PHYSICS, _SPAWNS = "physics", "user-commands"
 _PLUGIN = '<plugin filename="gz-sim-{}-system" name="gz::sim::systems::{}"/>'
 _WORLD = '<sdf version="1.9"><world name="w">{}</world></sdf>\n'
-_SIM = (
-    'Node(package="ros_gz_sim", executable="gzserver", arguments=["-r", str(HERE / "{}.sdf")])'
-)
+_SIM = 'Node(package="ros_gz_sim", executable="gzserver", arguments=["-r", str(HERE / "{}.sdf")])'
 
 
 @launch_rule(
     "MG706",
     "world-without-system",
-    what="The world that a launch file starts Gazebo with names its systems, and one that the robots of "
-    "the launch file need is not among them: UserCommands for spawning, Physics for what drives, Sensors "
-    "or Imu for a sensor.",
-    why="Gazebo loads what the world names and nothing else: nothing is spawned, nothing moves, or a sensor "
-    "sends nothing.",
-    fix="Add the `<plugin>` to the world, or name no plugin there: then Gazebo loads physics, user commands "
-    "and the scene by itself.",
+    what="The world that a launch file starts Gazebo with names its systems, and one that the robots "
+    "need is not among them: UserCommands for spawning, Physics for what drives, Sensors or Imu for a "
+    "sensor.",
+    why="Gazebo loads what the world names and nothing else: nothing is spawned, nothing moves, or a "
+    "sensor sends nothing.",
+    fix="Add the `<plugin>` to the world, or name no plugin there: then Gazebo loads physics, user "
+    "commands and the scene by itself.",
     bad=launch_of(_SIM.format("bad"), create_of("robot1")),
     good=launch_of(_SIM.format("good"), create_of("robot1")),
     line=0,
@@ -53,8 +51,7 @@ _SIM = (
         **ROVERS,
         "bad.sdf": _WORLD.format(_PLUGIN.format("physics", "Physics")),
         "good.sdf": _WORLD.format(
-            _PLUGIN.format("physics", "Physics")
-            + _PLUGIN.format("user-commands", "UserCommands")
+            _PLUGIN.format("physics", "Physics") + _PLUGIN.format("user-commands", "UserCommands")
         ),
     },
 )
@@ -73,7 +70,7 @@ def without_system(launched: Launched) -> Iterator[Finding]:
 
 
 def _systems(world: World) -> set[str]:
-    found = [it for it in world.root.iterfind("world/plugin")]
+    found = list(world.root.iterfind("world/plugin"))
     return {_system(it.get("filename", "")) for it in found} if found else set(DEFAULTS)
 
 
