@@ -96,9 +96,9 @@ def _parameters(launched: Launched) -> Iterator[Finding]:
 def _values(launched: Launched) -> Iterator[Finding]:
     """What is wrong with the parameters that a launch file gives a node itself, at the node."""
     settings = Settings(select=_OF_VALUES, distro=launched.release)
-    nodes = {it.place: it for it in launched.nodes if it.facts}
+    nodes = {(it.place, it.namespace, it.program): it for it in launched.nodes if it.facts}
     for it in launched.graph.nodes:
-        running = nodes.get(it.place)
+        running = nodes.get((it.place, it.namespace, f"{it.package}/{it.executable}"))
         for text in (one.text for one in it.parameters if not one.file and running):
             if running and text.startswith(_FOR_ALL) and not _TEXT.search(text):
                 own = text.replace(_FOR_ALL, f"{running.full_name}:", 1)
