@@ -5,10 +5,10 @@ from __future__ import annotations
 ARM_FILES = {
     "arm.urdf": """\
 <robot name="arm">
-  <link name="base_link"><inertial><mass value="1"/></inertial></link>
-  <link name="upper_link"><inertial><mass value="1"/></inertial></link>
-  <link name="tool_link"><inertial><mass value="1"/></inertial></link>
-  <link name="finger_link"><inertial><mass value="1"/></inertial></link>
+  <link name="base_link"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <link name="upper_link"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <link name="tool_link"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <link name="finger_link"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
   <link name="lidar_link"/>
   <joint name="shoulder_joint" type="revolute">
     <parent link="base_link"/><child link="upper_link"/><axis xyz="0 0 1"/>
