@@ -105,14 +105,17 @@ def command_to_nobody(seen: Index) -> Iterator[Finding]:
 
 def _of_a_mux(seen: Index, ends: Ends) -> str:
     """The velocities that a robot's drive reads and nobody sends, where its twist_mux is unread."""
-    mux = next(filter(chooses, nodes_of(ends.publishers)), "")
-    kinds = set(ends.type.split(" | "))
+    robot, kinds = seen.robot(ends.name), set(ends.type.split(" | "))
+    if not any(map(chooses, nodes_of(ends.publishers))):
+        return ""
+    moving = [it for it in seen.orders.values() if words.moves(seen.plain(it.name), it.type)]
+    # Who sends velocities of its own is no drive.
+    senders = {node for it in moving for node in nodes_of(it.publishers)}
     drives = (
         it.name
-        for it in seen.orders.values()
-        if mux and not it.publishers and words.moves(seen.plain(it.name), it.type)
-        if seen.robot(it.name) == seen.robot(ends.name) and kinds & set(it.type.split(" | "))
-        if any(not chooses(node) for node in nodes_of(at_work(it.subscribers)))
+        for it in moving
+        if seen.robot(it.name) == robot and not it.publishers and kinds & set(it.type.split(" | "))
+        if not senders.issuperset(nodes_of(at_work(it.subscribers)))
     )
     return next(drives, "")
 
