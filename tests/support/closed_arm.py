@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-MASS = (
-    '<inertial><mass value="1"/>'
-    '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
-)
+from closed_robot import MASS
+
 ARM_FILES = {
     "arm.urdf": """\
 <robot name="arm">

@@ -1,5 +1,5 @@
-"""A robot whose simulator gets another file than robot_state_publisher: do the two fit? And an SDF alone:
-is it read?"""
+"""A robot whose simulator gets another file than robot_state_publisher: do the two fit? And an SDF that
+robot_state_publisher gets: is it read?"""
 
 from __future__ import annotations
 
