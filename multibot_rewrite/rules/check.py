@@ -36,9 +36,12 @@ from multibot_rewrite.rules.system import (
     equal_robots,
     frame_ids,
     interfaces,
+    likes,
+    localized,
     lookups,
     matching,
     names,
+    refused,
     relays,
     sharing,
     states,
@@ -55,7 +58,19 @@ from multibot_rewrite.system.tf_copies import without_bridged
 
 _SYSTEM = (
     *(running_nodes, names, matching, commands, relays, sharing, any_transforms, tf_topics),
-    *(frame_ids, lookups, clocks, states, equal_robots, unsent, interfaces, addresses),
+    *(
+        frame_ids,
+        lookups,
+        localized,
+        refused,
+        clocks,
+        states,
+        equal_robots,
+        likes,
+        unsent,
+        interfaces,
+        addresses,
+    ),
 )
 _PAIR = (
     *(nodes, endpoints, leaks, types, publishers, demands, in_enclaves, planned_states),
@@ -88,7 +103,8 @@ ABSENCE = frozenset(it.code for it in RULES.values() if it.options["absence"])
 def judge(seen: Index) -> list[Finding]:
     """What is wrong with a system; empty for one that is as it should be."""
     with gc_paused():
-        return [it for rule in SYSTEM_RULES.values() if rule.check for it in rule.check(seen)]
+        found = [it for rule in SYSTEM_RULES.values() if rule.check for it in rule.check(seen)]
+        return likes.unexplained(found)
 
 
 def contradictions(seen: Index) -> list[Finding]:

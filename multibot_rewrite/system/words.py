@@ -61,6 +61,11 @@ def is_pose_order(plain: str, type_: str) -> bool:
     return type_ in _POSES and plain.strip("/").replace("_", "") in _POSE_NAMES
 
 
+def is_start_pose(plain: str, type_: str) -> bool:
+    """Does the topic (without its robot's name) tell a node where the robot starts?"""
+    return type_ == _POSES[1] and is_pose_order(plain, type_)
+
+
 def is_order(plain: str, type_: str) -> bool:
     """Does the topic (without its robot's name) move a robot or send it somewhere?"""
     return moves(plain, type_) or is_pose_order(plain, type_)

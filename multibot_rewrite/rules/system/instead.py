@@ -124,4 +124,3 @@ def listed_in_vain(seen: Index, end: End) -> str:
     node = end.name.removesuffix(_CHANGE)
     manager = end.kind == SERVICE and last_word(end.node).startswith(_MANAGER)
     return node if manager and node != end.name and node not in seen.nodes else ""
-

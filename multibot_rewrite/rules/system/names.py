@@ -10,7 +10,7 @@ from itertools import islice, zip_longest
 from multibot_rewrite.base.conventions import EVERYBODYS, chooses
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.nearest import CHOICE, COMPARED, MISTYPED, nearest
-from multibot_rewrite.base.wording import and_then
+from multibot_rewrite.base.wording import and_then, shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import see, where
 from multibot_rewrite.rules.system.instead import (
@@ -56,14 +56,18 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
     for (kind, name), ends in seen.by_name.items():
         if kind != TOPIC or ends.publishers or name in EVERYBODYS or ends.type == TF:
             continue
+        by_kind: dict[str, list[End]] = {}
         for end in _each_node(ends.subscribers):
             if is_viewer(end.node):
                 continue
             # What chooses between several inputs seldom has all of them.
             offered = unheard if chooses(end.node) else published
-            near = published.get(_published_instead(seen, end, offered, unheard))
-            if other := near or sent_instead(seen, end):
-                yield _missed_topic(seen, end, other, ERROR if near else WARNING)
+            if near := published.get(_published_instead(seen, end, offered, unheard)):
+                yield _missed_topic(seen, end, near, ERROR)
+            elif other := sent_instead(seen, end):
+                by_kind.setdefault(other.name, []).append(end)
+        for other_name, (first, *more) in by_kind.items():
+            yield _missed_topic(seen, first, published[other_name], WARNING, more)
 
 
 def _each_node(ends: Iterable[End]) -> Iterator[End]:
@@ -184,9 +188,14 @@ def _same_but_number(one: str, other: str) -> bool:
     return _DIGITS.sub("", one) == _DIGITS.sub("", other)
 
 
-def _missed_topic(seen: Index, end: End, other: Ends, level: str) -> Finding:
+def _missed_topic(
+    seen: Index, end: End, other: Ends, level: str, more: Sequence[End] = ()
+) -> Finding:
     sender = nodes_of(other.publishers)[0]
-    message = f"subscribes to {end.name}, which nobody publishes; {sender} publishes {other.name}"
+    also = f" (and so does {shorten(nodes_of(more))})" if more else ""
+    message = (
+        f"subscribes to {end.name}{also}, which nobody publishes; {sender} publishes {other.name}"
+    )
     # The side in the wrong place is the one whose name has no robot, or is below the node.
     if _is_doubled(other.name, end.name):
         cause = f"its namespace is there twice: name it {last_word(other.name)} in {sender}"

@@ -206,8 +206,8 @@ def joint_states_twice(seen: Index) -> Iterator[Finding]:
     "sensor-twice",
     ERROR,
     meant=(PUBLISHES,),
-    what="Two nodes publish the odometry of one robot, its description, or the data of one sensor (scan,"
-    " image, IMU, points, GPS) on the same topic. For all but odometry it is a warning.",
+    what="Two nodes publish the odometry of one robot, its description, or the data of one sensor"
+    " (scan, image, IMU, points, GPS) on the same topic. For all but odometry it is a warning.",
     why="Who reads it gets both by turns: the odometry of two filters jumps from one to the other, a"
     " scan from the front to the rear, a controller takes the description that comes last.",
     fix="Give each its own topic: `odometry/filtered:=odometry/local` for the first of two filters,"
