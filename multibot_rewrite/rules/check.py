@@ -6,7 +6,7 @@ incomplete, a finding about something missing is *inconclusive*.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from fnmatch import fnmatchcase
 from types import ModuleType
 
@@ -144,13 +144,19 @@ def _besides(plan: Index, seen: Index, found: Sequence[Finding]) -> Iterator[Fin
     said = {(it.code, about) for it in found for about in (*it.names, it.node) if about}
     said |= {(it.code, f"of {it.robot}") for it in found if it.robot}
     lost = {name for node, *_, name in missing(plan, seen) if node not in plan.may_miss}
+    loose = {name for node, *_, name in missing(plan, seen)} - lost
     for it in judge(seen._replace(system=_without_planned(plan, seen.system))):
         options = RULES[it.code].options
         abouts = (*it.names, it.node, *[f"of {it.robot}"] * bool(options["robot_wide"]))
         by_plan = any((it.code, about) in said for about in abouts)
-        absent = options["absence"] and not lost.isdisjoint(it.names)
+        absent = options["absence"] and (not lost.isdisjoint(it.names) or _all_in(it, loose))
         if not (by_plan or absent or _is_meant(plan, seen, it)):
             yield it
+
+
+def _all_in(finding: Finding, loose: Set[str]) -> bool:
+    """Is it only about what need not be there by the plan?"""
+    return bool(finding.names) and loose.issuperset(finding.names)
 
 
 def _is_meant(plan: Index, seen: Index, finding: Finding) -> bool:

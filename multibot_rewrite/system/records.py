@@ -161,7 +161,7 @@ class Edge(NamedTuple):
 
     tf messages do not say which node sent them; ``several`` is whether more than one did.
     ``transform`` is the last one: x, y, z in metres and a quaternion x, y, z, w; empty if not known, or
-    if several static ones differ; inf for NaN. One that is ``OFF`` a node would send if a parameter, at its ``place``, let it.
+    if several static ones differ; inf for NaN. One that is ``OFF`` would be sent if a parameter let it.
     """
 
     child: str

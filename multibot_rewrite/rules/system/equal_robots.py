@@ -65,10 +65,12 @@ def _of_each(seen: Index) -> Mapping[str, Mapping[str, str]]:
 
 
 def _silent(seen: Index) -> Iterator[Finding]:
-    """Of a running system one message a topic is known: of one robot it came, of the other not."""
+    """Of a running system one message a topic is known: of one robot it came, of the other not, which
+    has sent others."""
     heard = {it.topic for it in seen.system.heard}
     if any(it.code == _NOT_ALL for it in seen.system.environment.caveats):
         return
+    there_at_all = {seen.robot(it) for it in heard}
     there: dict[tuple[str, str], dict[str, str]] = defaultdict(dict)
     for it in seen.topics if heard and not seen.known.messages else ():
         robot = seen.robot(it.name)
@@ -77,7 +79,7 @@ def _silent(seen: Index) -> Iterator[Finding]:
     for own in there.values():
         loud = next((name for name in own.values() if name in heard), "")
         for robot, name in own.items() if loud else ():
-            if name not in heard:
+            if name not in heard and robot in there_at_all:
                 node = nodes_of(at_work(seen.by_name[TOPIC, name].publishers))[0]
                 message = f"publishes {name}, on which no message came; {loud} has some"
                 yield less_than_another_robot.finding(

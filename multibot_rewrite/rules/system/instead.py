@@ -11,7 +11,7 @@ from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.rules.system.unsent import meant
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Ends, Index, at_work, once
-from multibot_rewrite.system.records import CALLS, SERVICE, SUBSCRIBES, End
+from multibot_rewrite.system.records import CALLS, SERVICE, SUBSCRIBES, UNKNOWN_NODES, End
 from multibot_rewrite.system.tool_nodes import is_viewer, last_word
 
 _MANAGER, _CHANGE = "lifecycle_manager", "/change_state"
@@ -31,7 +31,9 @@ def sent_instead(seen: Index, end: End) -> Ends | None:
     """The topic or service of the end's robot that its node may have meant; None for none."""
     if known := meant(seen, end):
         return known
-    if is_viewer(end.node) or not end.type:
+    # Where nodes may run that are not known, one of them may send it, or read the other.
+    doubt = any(it.code == UNKNOWN_NODES for it in seen.system.environment.caveats)
+    if doubt or is_viewer(end.node) or not end.type:
         return None
     if end.role == CALLS:
         return _nearest(end, list(_served(seen, end)))
@@ -41,7 +43,8 @@ def sent_instead(seen: Index, end: End) -> Ends | None:
 def _data(seen: Index, end: End) -> Ends | None:
     """What nobody reads; of what a body measures also what others read."""
     # Such as a footprint, which a person may send.
-    outside = is_from_outside(end.name) and not words.moves(end.name, end.type)
+    by_hand = "teleop" in last_word(end.name) or not words.moves(end.name, end.type)
+    outside = is_from_outside(end.name) and by_hand
     kind = words.kind_of_data(end.name, end.type)
     if outside and kind != words.DESCRIPTION:
         return None

@@ -7,16 +7,18 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 
 from multibot_rewrite.base.conventions import EVERYBODYS
-from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
+from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.system.index import TF, Index
+from multibot_rewrite.system.index import TF, Index, at_work, ends_of
 from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES, End
 from multibot_rewrite.system.tool_nodes import is_viewer, last_word
 
 # Fewer nodes in common say nothing.
 _ENOUGH = 3
+# Services of every node.
+_EVERY_NODE = ("rcl_interfaces/", "type_description_interfaces/")
 _OTHER_SIDE = {PUBLISHES: SUBSCRIBES, SUBSCRIBES: PUBLISHES, SERVES: CALLS, CALLS: SERVES}
 # A number of a process or an address in a node's name.
 _RANDOM = re.compile(r"[0-9a-f]*\d{4,}[0-9a-f]*")
@@ -37,14 +39,14 @@ class _Made(NamedTuple):
     WARNING,
     absence=True,
     what="A robot lacks a node, or a node of it a topic or service, that other robots of the same nodes"
-    " have. A note where nothing in the robot needs it and only one other robot has it.",
+    " have. Of two robots it is said where the nodes of the one wait for it in vain.",
     why="A process that died, a launch argument that is set for one robot and not for the other.",
     fix="Start what is missing, or nothing where the robots are meant to differ.",
     bad="""\
 running: /robot1/driver publishes /robot1/odom nav_msgs/msg/Odometry
 running: /robot1/planner subscribes /robot1/odom nav_msgs/msg/Odometry
 running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan
-running: /robot1/battery publishes /robot1/battery_state sensor_msgs/msg/BatteryState
+running: /robot1/odometer subscribes /robot1/scan sensor_msgs/msg/LaserScan
 running: /robot2/driver publishes /robot2/odom nav_msgs/msg/Odometry
 running: /robot2/planner subscribes /robot2/odom nav_msgs/msg/Odometry
 running: /robot2/lidar publishes /robot2/scan sensor_msgs/msg/LaserScan
@@ -71,10 +73,10 @@ def lacks_what_its_likes_have(seen: Index) -> Iterator[Finding]:
             lost = [it for it in nodes if nodes[it] == others and it not in made[robot].nodes]
             # Two robots of which each has a node of its own are made for two things.
             if lost and (others > 1 or not more):
-                yield from _lost_nodes(made, robot, likes, lost)
+                yield from _lost_nodes(seen, made, robot, likes, lost)
             gone = [it for it in ends if ends[it] == others and it not in made[robot].ends]
             yield from _lost_ends(
-                made, robot, likes, [k for k in gone if k[0] in made[robot].nodes]
+                seen, made, robot, likes, [k for k in gone if k[0] in made[robot].nodes]
             )
 
 
@@ -98,7 +100,8 @@ def _made(seen: Index, robot: str) -> _Made:
             continue
         nodes[plain] = name
         for it in seen.by_node.get(name, ()):
-            if it.type != TF and it.name not in EVERYBODYS and "/_" not in it.name:
+            plumbing = it.type.startswith(_EVERY_NODE) or it.name in EVERYBODYS
+            if it.type != TF and not plumbing and "/_" not in it.name:
                 ends[plain, it.kind, it.role, seen.plain(it.name)] = it
     return _Made(nodes, ends)
 
@@ -119,23 +122,25 @@ def _are_alike(one: Set[str], other: Set[str]) -> bool:
 
 
 def _lost_nodes(
-    made: Mapping[str, _Made], robot: str, likes: Sequence[str], lost: Sequence[str]
+    seen: Index, made: Mapping[str, _Made], robot: str, likes: Sequence[str], lost: Sequence[str]
 ) -> Iterator[Finding]:
     """All of one robot in one finding."""
     like = next(it for it in likes if it != robot)
     keys = [key for key in made[like].ends if key[0] in lost]
-    own = _own_names(made, robot, keys)
+    own = _waiting(seen, made, robot, keys)
+    if not own and len(likes) < 3:
+        return
     theirs = sorted(made[like].nodes[it] for it in lost)
     yield lacks_what_its_likes_have.finding(
         f"{robot} has no {shorten(sorted(it.strip('/') for it in lost), SEVERAL)}, as {like} has"
         f" ({shorten(theirs, SEVERAL)})",
         "start it for this robot too, if the two are to be equal",
-        level=_level(likes, own), robot=robot, names=own,
+        robot=robot, names=own,
     )  # fmt: skip
 
 
 def _lost_ends(
-    made: Mapping[str, _Made], robot: str, likes: Sequence[str], gone: Iterable[_Key]
+    seen: Index, made: Mapping[str, _Made], robot: str, likes: Sequence[str], gone: Iterable[_Key]
 ) -> Iterator[Finding]:
     """Those of a node in one finding."""
     like = next(it for it in likes if it != robot)
@@ -143,26 +148,27 @@ def _lost_ends(
     for key in gone:
         by_node[key[0]].append(key)
     for plain, keys in by_node.items():
-        own, node = _own_names(made, robot, keys), made[robot].nodes[plain]
+        own, node = _waiting(seen, made, robot, keys), made[robot].nodes[plain]
+        if not own:
+            continue
         theirs = [made[like].ends[key] for key in keys]
         does = shorten([f"{it.role} {it.name}" for it in theirs], SEVERAL)
         yield lacks_what_its_likes_have.finding(
-            f"lacks {shorten(own, SEVERAL) or 'an end'} beside {theirs[0].node}, which {does}",
+            f"lacks {shorten(own, SEVERAL)} beside {theirs[0].node}, which {does}",
             "a remap rule, a parameter or a version of its own?",
-            level=_level(likes, own), robot=robot, node=node, names=own,
+            robot=robot, node=node, names=own,
         )  # fmt: skip
 
 
-def _own_names(made: Mapping[str, _Made], robot: str, keys: Sequence[_Key]) -> tuple[str, ...]:
-    """The names of the robot that the other side of these has in it."""
-    sides = {(kind, _OTHER_SIDE[role], name) for _, kind, role, name in keys}
-    found = (
-        it.name
-        for (_, kind, role, name), it in made[robot].ends.items()
-        if (kind, role, name) in sides and not is_viewer(it.node)
-    )
-    return tuple(dict.fromkeys(found))
-
-
-def _level(likes: Sequence[str], needed: Sequence[str]) -> str:
-    return WARNING if needed or len(likes) > 2 else NOTE
+def _waiting(
+    seen: Index, made: Mapping[str, _Made], robot: str, keys: Sequence[_Key]
+) -> tuple[str, ...]:
+    """The names of the robot whose other side is in it, and has nobody but what it lacks."""
+    sides = {(kind, _OTHER_SIDE[role], name): role for _, kind, role, name in keys}
+    found: dict[str, None] = {}
+    for (_, kind, role, name), it in made[robot].ends.items():
+        lost = sides.get((kind, role, name))
+        there = at_work(ends_of(seen, it.name)) if lost and not is_viewer(it.node) else ()
+        if lost and not any(one.role == lost for one in there):
+            found[it.name] = None
+    return tuple(found)
