@@ -232,7 +232,8 @@ def several_command_senders(seen: Index) -> Iterator[Finding]:
             continue
         readers = nodes_of(at_work(ends.subscribers))
         # A program to look with that sends velocities is a joystick.
-        senders = nodes_of(ends.publishers)
+        # What sends it and reads it is a bridge in both directions, and orders nothing itself.
+        senders = [it for it in nodes_of(ends.publishers) if it not in nodes_of(ends.subscribers)]
         teams = {team(node): node for node in reversed(senders)}
         played = any(last_word(node).startswith(words.PLAYER) for node in senders)
         if not readers or len(teams) < 2 or played or all(map(chooses, readers)):
