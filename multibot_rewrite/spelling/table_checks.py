@@ -68,6 +68,24 @@ def _needed(endpoint: Endpoint, naming: Naming) -> bool:
     return bool(target_of(endpoint.name, endpoint.kind, PROBE, naming))
 
 
+def _plugin_with(*rules: str) -> str:
+    """An example: a lidar whose plugin has these remap rules, in the words of its ``<ros>``."""
+    inside = "".join(f"          <remapping>{it}</remapping>\n" for it in rules)
+    return f"""\
+<robot name="rover">
+  <link name="base_link"/>
+  <gazebo reference="base_link">
+    <sensor name="lidar" type="ray">
+      <plugin name="lidar_driver" filename="libgazebo_ros_ray_sensor.so">
+        <ros>
+{inside}        </ros>
+      </plugin>
+    </sensor>
+  </gazebo>
+</robot>
+"""
+
+
 RULE_WITHOUT_NAME = declare(
     "MR103",
     "rule-matches-no-name",
@@ -75,35 +93,8 @@ RULE_WITHOUT_NAME = declare(
     what="A remap rule of a plugin in the description matches no name of that plugin.",
     why="The rule does nothing, and the name that it was meant for keeps its old name.",
     fix="Correct the name on the left of the rule, or remove the rule.",
-    bad="""\
-<robot name="rover">
-  <link name="base_link"/>
-  <gazebo reference="base_link">
-    <sensor name="lidar" type="ray">
-      <plugin name="lidar_driver" filename="libgazebo_ros_ray_sensor.so">
-        <ros>
-          <remapping>~/out:=scan</remapping>
-          <remapping>laser_scan:=scan</remapping>
-        </ros>
-      </plugin>
-    </sensor>
-  </gazebo>
-</robot>
-""",
-    good="""\
-<robot name="rover">
-  <link name="base_link"/>
-  <gazebo reference="base_link">
-    <sensor name="lidar" type="ray">
-      <plugin name="lidar_driver" filename="libgazebo_ros_ray_sensor.so">
-        <ros>
-          <remapping>~/out:=scan</remapping>
-        </ros>
-      </plugin>
-    </sensor>
-  </gazebo>
-</robot>
-""",
+    bad=_plugin_with("~/out:=scan", "laser_scan:=scan"),
+    good=_plugin_with("~/out:=scan"),
     line=5,
     formats=("remap-urdf",),
 )
@@ -114,35 +105,8 @@ LATER_RULE = declare(
     what="A remap rule has no effect, because an earlier rule of the same node matches the same name.",
     why="rcl applies the first rule that matches, so the topic gets the other name.",
     fix="Remove one of the two rules.",
-    bad="""\
-<robot name="rover">
-  <link name="base_link"/>
-  <gazebo reference="base_link">
-    <sensor name="lidar" type="ray">
-      <plugin name="lidar_driver" filename="libgazebo_ros_ray_sensor.so">
-        <ros>
-          <remapping>~/out:=scan</remapping>
-          <remapping>~/out:=front_scan</remapping>
-        </ros>
-      </plugin>
-    </sensor>
-  </gazebo>
-</robot>
-""",
-    good="""\
-<robot name="rover">
-  <link name="base_link"/>
-  <gazebo reference="base_link">
-    <sensor name="lidar" type="ray">
-      <plugin name="lidar_driver" filename="libgazebo_ros_ray_sensor.so">
-        <ros>
-          <remapping>~/out:=scan</remapping>
-        </ros>
-      </plugin>
-    </sensor>
-  </gazebo>
-</robot>
-""",
+    bad=_plugin_with("~/out:=scan", "~/out:=front_scan"),
+    good=_plugin_with("~/out:=scan"),
     line=5,
     formats=("remap-urdf",),
 )

@@ -22,10 +22,8 @@ from multibot_rewrite.rules.description.physics.shared import (
 )
 from multibot_rewrite.rules.facts.elements import Elements
 from multibot_rewrite.rules.facts.memo import memoized, parts
-from multibot_rewrite.rules.schema.versions import KNOWN
 from multibot_rewrite.rules.subject import Subject
 
-REFUSING = KNOWN[2]
 LONG_SHAPE = 50.0
 LARGE_SCALE, SMALL_SCALE, UNEVEN = 50.0, 1e-5, 100.0
 
