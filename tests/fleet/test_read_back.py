@@ -130,7 +130,7 @@ PLANTED: Mapping[str, tuple[Edit, str]] = {
     ),
     "a node has no description": (
         in_launch(
-            lambda it: it.replace('{"robot_description": text("robot1/hexbase.urdf")}, ', "", 1)
+            lambda it: it.replace('{"robot_description": text("robot1/hexbase.urdf")},', "", 1)
         ),
         "MF823",
     ),
