@@ -85,7 +85,7 @@ FAULTS = {
     "no time": Fault(
         LAUNCH, "name='joint_state_publisher',\n            parameters=[CLOCK]",
         "name='joint_state_publisher',\n            parameters=[CLOCK] if name == 'robot1' else []",
-        "MG503",
+        "MG514", level="warning",
     ),
     "odometry of the other robot": Fault(
         ROVER, "robot2/odom</frame_id>", "robot1/odom</frame_id>", "MG414"

@@ -74,9 +74,13 @@ def unrolled(text: str) -> str:
         own = [_for_one(function[0], robot, given) for robot, name, given in calls if name == title]
         text = text.replace(function[0], "\n\n".join(own))
     text = _CALL.sub(r"    '\1': start_\1,", text)
-    return _TEXT.sub(
-        lambda it: it[0] if it[2] is None or '"' in it[2] else f'{it[1]}"{it[2]}"', text
-    )
+    return _TEXT.sub(_double_quoted, text)
+
+
+def _double_quoted(it: re.Match[str]) -> str:
+    if it[2] is None or '"' in it[2]:
+        return it[0]
+    return f'{it[1] if "{" in it[2] else ""}"{it[2]}"'
 
 
 def _for_one(function: str, robot: str, given: str) -> str:
@@ -85,6 +89,7 @@ def _for_one(function: str, robot: str, given: str) -> str:
     body = re.sub(r"\bname(?=[,)])", f"'{robot}'", body)
     for key, value in re.findall(r", (\w+)=([^,]+)", given):
         body = body.replace(f"str({key})", f"'{value}'")
+        body = re.sub(rf"\b{key},", f"{value},", body)
     return f"def start_{robot}():\n{body}"
 
 
