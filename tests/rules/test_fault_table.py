@@ -14,6 +14,7 @@ from fault_sources import NODES, SOURCES, recording, written
 from graph_faults import FAULTS, MORE_NEEDS, NEEDS, needed
 from graph_faults_page import LACKS, PLANS, cell, lines, planned_cell
 from healthy_systems import SYSTEMS
+from healthy_twins import TWINS
 from paths import ROOT
 
 from multibot_rewrite.cli import multibot
@@ -22,14 +23,15 @@ from multibot_rewrite.producers.bags.recording import RecordedTopic, as_snapshot
 from multibot_rewrite.rules.check import ABSENCE
 from multibot_rewrite.system.json import to_json
 
+HEALTHY = {**SYSTEMS, **TWINS}
 NAMED = {it.name: it for it in FAULTS}
 
 
 @pytest.mark.sample(11)
 @pytest.mark.parametrize("source", SOURCES)
-@pytest.mark.parametrize("name", SYSTEMS)
+@pytest.mark.parametrize("name", HEALTHY)
 def test_a_healthy_system_has_no_finding(name: str, source: str) -> None:
-    read = SOURCES[source].read(SYSTEMS[name]())
+    read = SOURCES[source].read(HEALTHY[name]())
     assert [str(it) for it in diagnose(read).findings] == []
 
 

@@ -25,6 +25,7 @@ from fault_sources import (
 )
 from moving_faults import command_rows, tf_rows
 from naming_faults import clock_rows, data_rows, name_rows
+from open_faults import like_rows, open_rows, place_rows, sender_rows
 
 FAULTS = (
     *tf_rows(),
@@ -36,6 +37,10 @@ FAULTS = (
     *state_rows(),
     *chain_rows(),
     *file_rows(),
+    *open_rows(),
+    *sender_rows(),
+    *place_rows(),
+    *like_rows(),
 )
 # What a fault with this code cannot be seen without.
 NEEDS = {
@@ -49,6 +54,11 @@ NEEDS = {
     **dict.fromkeys(("MG411", "MG412"), (HEADERS,)),
     **dict.fromkeys(("MG511", "MG512", "MG513"), (STATES,)),
     "MG307": (QOS, READERS),
+    "MG309": (QOS, READERS),
+    "MG326": (HEADERS,),
+    "MG327": (NODES,),
+    "MG414": (TRANSFORMS,),
+    "MG415": (TRANSFORMS, NODES),
     "MG514": (PARAMETERS,),
     "MB412": (ADDRESSES,),
     "MG413": (LOOKUPS, TRANSFORMS),
