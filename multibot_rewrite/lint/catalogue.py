@@ -119,6 +119,17 @@ HOMES: tuple[Home, ...] = (
         "any system: time and states",
         ("rules.system.clocks", "rules.system.states", "rules.system.interfaces"),
     ),
+    Home(
+        "MG7",
+        "launch files",
+        (
+            "rules.launch.models",
+            "rules.launch.rows",
+            "rules.launch.started",
+            "rules.launch.words",
+            "rules.launch.world",
+        ),
+    ),
     Home("MR1", "remap tables", ("spelling.table_checks", "spelling.way_checks")),
 )
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache
 from itertools import islice, zip_longest
 
 from multibot_rewrite.base.conventions import EVERYBODYS, chooses
@@ -32,10 +33,10 @@ _DIGITS = re.compile(r"_?\d+")
     "topic-names-miss",
     ERROR,
     absence=True,
-    what="A node subscribes to a topic that nobody publishes, while nearly the same name is published:"
+    what="A node subscribes to a topic that no node publishes, while nearly the same name is published:"
     " with or without the robot's namespace, below another namespace or the node's own name, or"
     " misspelled; or the robot sends data of that kind under another name, which is a warning.",
-    why="The two sides never meet, and there is no error message.",
+    why="The two sides never connect, and there is no error message.",
     fix="Pass the remap rule of the hint, or write the other side's name in the parameters.",
     bad="""\
 running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
@@ -179,6 +180,7 @@ def _is_slip(one: str, other: str) -> bool:
     return all(here == there or nearest(here, (there,), CHOICE) for here, there in parts)
 
 
+@lru_cache(maxsize=4096)
 def _letters(name: str) -> str:
     """Its letters, digits and slashes, in lower case."""
     return "".join(it for it in name.lower() if it.isalnum() or it == "/")
@@ -194,7 +196,7 @@ def _missed_topic(
     sender = nodes_of(other.publishers)[0]
     also = f" (and so does {shorten(nodes_of(more))})" if more else ""
     message = (
-        f"subscribes to {end.name}{also}, which nobody publishes; {sender} publishes {other.name}"
+        f"subscribes to {end.name}{also}, which no node publishes; {sender} publishes {other.name}"
     )
     # The side in the wrong place is the one whose name has no robot, or is below the node.
     if _is_doubled(other.name, end.name):
@@ -219,7 +221,7 @@ def _missed_topic(
     "server-names-miss",
     ERROR,
     absence=True,
-    what="A node calls a service or action that nobody serves, while nearly the same name is served:"
+    what="A node calls a service or action that no node serves, while nearly the same name is served:"
     " with or without the robot's namespace, or misspelled; or a lifecycle manager lists a node that"
     " does not run. In a namespace without any node, and where the type alone is the same, it is a"
     " warning.",
@@ -250,7 +252,7 @@ def _unserved(seen: Index, end: End, served: Sequence[str]) -> Iterator[Finding]
     by_type = sent_instead(seen, end)
     near = _served_instead(seen, end, served) or in_other_namespace(seen, end)
     does = "sends goals to" if end.kind == ACTION else "calls"
-    lost = f"{does} {end.name}, which nobody serves"
+    lost = f"{does} {end.name}, which no node serves"
     if other := near or (by_type.name if by_type else ""):
         yield _missed_server(seen, end, lost, other, ERROR if near else WARNING)
     elif listed := listed_in_vain(seen, end):
