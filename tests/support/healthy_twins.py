@@ -113,6 +113,13 @@ def isaac() -> System:
     return with_node(single(), "/isaac", (SUBSCRIBES, "/joint_command", JOINTS))
 
 
+def sent_twice_alike() -> System:
+    """Two publishers of one static transform: no harm, so it is a note."""
+    more = with_ends(single(), "/static_transform_publisher_x", (PUBLISHES, "/tf_static", TF))
+    more = reframed(lambda it: it._replace(several=it.child == "lidar_link"))(more)
+    return at("lidar_link", *AT)(more)
+
+
 TWINS: Mapping[str, Callable[[], System]] = {
     "helper nodes in simulation": helper_nodes,
     "a bridge in both directions": bridge_both_ways,

@@ -20,10 +20,10 @@ from fault_changes import (
 )
 from graph_cases import reframed, with_type, without_node
 from healthy_systems import (
+    CLOCK,
     NAVIGATE,
     ODOMETRY,
     SCAN,
-    TF,
     TRIGGER,
     TWIST,
     simulated,
@@ -31,7 +31,7 @@ from healthy_systems import (
     with_node,
 )
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES, Heard, System
 
 IMAGE, COMPRESSED = "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"
@@ -111,7 +111,7 @@ def open_rows() -> tuple[Fault, ...]:
                 added("/twist_mux", (SUBSCRIBES, "/nav_vel", TWIST)),
                 added("/twist_mux", (PUBLISHES, "/cmd_vel_out", TWIST)),
             ),
-            "MG303", ("/twist_mux publishes /cmd_vel_out", "subscribes to /cmd_vel"), WARNING,
+            "MG308", ("/twist_mux", "/cmd_vel_out:=/cmd_vel"),
         ),
         Fault(
             "the drive reads stamped velocities on another topic", single,
@@ -125,6 +125,7 @@ def open_rows() -> tuple[Fault, ...]:
             "a raw image is read, a compressed one is sent", single,
             both(_compressed, added("/detector", (SUBSCRIBES, "/front/image_raw", IMAGE))),
             "MG303", ("/front/image_raw", "/front/image_raw/compressed as CompressedImage"), WARNING,
+            ("MG316",),
         ),
         Fault(
             "the joints are sent under another name", single,
@@ -184,7 +185,7 @@ def open_rows() -> tuple[Fault, ...]:
         Fault(
             "a lifecycle manager lists what nothing starts", single, without("/velocity_smoother"),
             "MG304", ("/lifecycle_manager_navigation", "/velocity_smoother is in its list"), ERROR,
-            ("MG303",),
+            ("MG303", "MG316"),
         ),
     )  # fmt: skip
 
@@ -228,15 +229,6 @@ def sender_rows() -> tuple[Fault, ...]:
             at("base_footprint", float("inf"), 0, 0, 0, 0, 0, 1),
             "MG414", ("odom -> base_footprint", "NaN", "/robot1/diff_drive"),
         ),
-        Fault(
-            "a static transform is sent twice alike", single,
-            both(
-                added("/static_transform_publisher_x", (PUBLISHES, "/tf_static", TF)),
-                at("lidar_link", *AT),
-                reframed(lambda it: it._replace(several=it.child == "lidar_link")),
-            ),
-            "MG408", ("base_link -> lidar_link", "/static_transform_publisher_x"), NOTE,
-        ),
     )  # fmt: skip
 
 
@@ -279,7 +271,7 @@ def three() -> System:
     graph = simulated("robot1", "robot2", "robot3")
     for robot in ("robot1", "robot2", "robot3"):
         row = (PUBLISHES, f"/{robot}/battery_state", "sensor_msgs/msg/BatteryState")
-        graph = with_node(graph, f"/{robot}/battery", row)
+        graph = with_node(graph, f"/{robot}/battery", row, (SUBSCRIBES, "/clock", CLOCK))
     return graph
 
 
@@ -302,6 +294,7 @@ def like_rows() -> tuple[Fault, ...]:
         Fault(
             "robot2's robot_state_publisher died", nav, not_of_robot2,
             "MG327", ("robot2 has no robot_state_publisher", "/robot1/robot_state_publisher"), WARNING,
+            ("MG316",),
         ),
         Fault(
             "robot2 has no lifecycle manager", nav, without("/robot2/lifecycle_manager_navigation"),
