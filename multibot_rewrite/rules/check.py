@@ -156,7 +156,7 @@ def _besides(plan: Index, seen: Index, found: Sequence[Finding]) -> Iterator[Fin
 
 def _all_in(finding: Finding, loose: Set[str]) -> bool:
     """Is it only about what need not be there by the plan?"""
-    return bool(finding.names) and loose.issuperset(finding.names)
+    return bool(finding.names) and {*finding.names} <= loose
 
 
 def _is_meant(plan: Index, seen: Index, finding: Finding) -> bool:

@@ -222,12 +222,12 @@ def sender_rows() -> tuple[Fault, ...]:
         ),
         Fault(
             "a quaternion of zeros", single, at("lidar_link", 0.1, 0, 0.2, 0, 0, 0, 0),
-            "MG414", ("base_link -> lidar_link", "zeros", "/robot_state_publisher"),
+            "MG416", ("base_link -> lidar_link", "zeros", "/robot_state_publisher"),
         ),
         Fault(
             "odometry that is not a number", nav,
             at("base_footprint", float("inf"), 0, 0, 0, 0, 0, 1),
-            "MG414", ("odom -> base_footprint", "NaN", "/robot1/diff_drive"),
+            "MG416", ("odom -> base_footprint", "NaN", "/robot1/diff_drive"),
         ),
     )  # fmt: skip
 
