@@ -22,6 +22,7 @@ from multibot_rewrite.cli import multibot
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.producers.bags.recording import RecordedTopic, as_snapshot
 from multibot_rewrite.rules.check import ABSENCE
+from multibot_rewrite.system.guess import guess_robots
 from multibot_rewrite.system.json import to_json
 
 NAMED = {it.name: it for it in FAULTS}
@@ -38,6 +39,11 @@ def test_a_healthy_system_has_no_finding(name: str, source: str) -> None:
 @pytest.mark.parametrize("name", TWINS)
 def test_what_looks_like_a_fault_and_is_none_has_no_finding(name: str) -> None:
     assert [str(it) for it in diagnose(SOURCES["file"].read(TWINS[name]())).findings] == []
+
+
+@pytest.mark.parametrize("name", ["parts of a robot", "arms on a base", "one robot"])
+def test_parts_are_no_robots(name: str) -> None:
+    assert guess_robots({**SYSTEMS, **TWINS}[name]()) == ()
 
 
 def test_a_static_transform_that_is_sent_twice_alike_is_a_note() -> None:

@@ -26,7 +26,7 @@ from open_faults import AT, COMPRESSED, IMAGE, at, ekf, heard_all_but, three
 
 from multibot_rewrite.system.records import CALLS, PUBLISHES, SUBSCRIBES, Edge, System
 
-COMMANDS = "std_msgs/msg/Float64"
+COMMANDS, TEXT = "std_msgs/msg/Float64", "std_msgs/msg/String"
 
 
 def helper_nodes() -> System:
@@ -89,6 +89,19 @@ def parts() -> System:
     return sent(graph)
 
 
+def arms_on_a_base() -> System:
+    """Two arms with joint states and descriptions of their own, mounted on a robot without a name."""
+    graph = single()
+    for arm in ("arm_l", "arm_r"):
+        joints = f"/{arm}/joint_states"
+        graph = with_node(graph, f"/{arm}/driver", (PUBLISHES, joints, JOINTS))
+        ends = (SUBSCRIBES, joints, JOINTS), (PUBLISHES, f"/{arm}/robot_description", TEXT)
+        graph = with_node(graph, f"/{arm}/robot_state_publisher", *ends)
+        mount = Edge(f"{arm}/base_link", "base_link", "/tf", False, ())
+        graph = graph._replace(edges=(*graph.edges, mount))
+    return sent(graph)
+
+
 def explorers() -> System:
     """m-explore-ros2: explore reads the map of its robot, map_merge those of all."""
     graph = started(("nav2_slam",))
@@ -126,6 +139,7 @@ TWINS: Mapping[str, Callable[[], System]] = {
     "tf that is sent again": republished_tf,
     "slashes in front of frames": slashes,
     "parts of a robot": parts,
+    "arms on a base": arms_on_a_base,
     "explorers and a merged map": explorers,
     "two cameras": cameras,
     "joint commands of a simulator": isaac,

@@ -11,6 +11,7 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.base.wording import SEVERAL, and_then, only, shorten, unique
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import see, where
+from multibot_rewrite.rules.system.senders import who_can_send
 from multibot_rewrite.system.index import Index, Tree, robots_of
 from multibot_rewrite.system.records import Edge
 from multibot_rewrite.system.tool_nodes import last_word
@@ -270,11 +271,13 @@ def transform_of_two_senders(seen: Index) -> Iterator[Finding]:
             senders = _senders(tree, own)
             who = robot or only(robots_of(seen, senders))
             nodes = [it for it in senders if seen.robot(it) in ("", who)] or senders
+            nodes = who_can_send(seen, nodes, own)
             right = {it for edge in own for it in seen.known.senders.get(edge[1::-1], ())}
             nodes = sorted(nodes, key=lambda it: it not in right)
             listed_nodes = shorten(nodes, SEVERAL)
             cause = f"stop one, or its tf (publish_tf, enable_odom_tf): two of {listed_nodes}"
-            others = [it for it in senders if it not in nodes]
+            others = [it for it in senders if seen.robot(it) not in ("", who)]
+            others = [it for it in others if it not in nodes]
             if others:
                 cause += f"; or {shorten(others)} with the description or parameters of {who}"
             yield transform_of_two_senders.finding(
