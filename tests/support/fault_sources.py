@@ -65,7 +65,7 @@ TRANSFORMS, SENDERS, READERS, HEADERS, STATES, PARAMETERS, QOS, HASHES, NODES, S
 LOOKUPS, ADDRESSES = "look-ups of nodes", "addresses"
 IN_FILES = (LOOKUPS, ADDRESSES)
 # What only messages tell.
-NUMBERS = "received transforms"
+NUMBERS, AGES = "received transforms", "ages of messages"
 
 
 class Source(NamedTuple):
@@ -362,7 +362,7 @@ SOURCES: Mapping[str, Source] = {
     "Zenoh": Source(from_zenoh, (HEADERS, STATES, PARAMETERS, QOS, *IN_FILES)),
     "rosgraph": Source(from_rosgraph, (TRANSFORMS, HEADERS, STATES, PARAMETERS, *IN_FILES)),
     "recorded": Source(
-        from_bag, (NODES, READERS, SERVICES, SENDERS, STATES, PARAMETERS, *IN_FILES)
+        from_bag, (NODES, READERS, SERVICES, SENDERS, STATES, PARAMETERS, AGES, *IN_FILES)
     ),
-    "check-launch": Source(from_launch, (HEADERS, STATES, QOS, HASHES, NUMBERS)),
+    "check-launch": Source(from_launch, (HEADERS, STATES, QOS, HASHES, NUMBERS, AGES)),
 }

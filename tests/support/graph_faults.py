@@ -11,6 +11,7 @@ from chain_faults import chain_rows
 from fault_changes import Fault
 from fault_sources import (
     ADDRESSES,
+    AGES,
     HASHES,
     HEADERS,
     LOOKUPS,
@@ -58,6 +59,7 @@ NEEDS = {
     "MG309": (QOS, READERS),
     "MG326": (HEADERS, NODES),
     "MG327": (NODES,),
+    "MG417": (HEADERS, AGES),
     "MG416": (TRANSFORMS, NUMBERS),
     "MG415": (TRANSFORMS, NODES),
     "MG514": (PARAMETERS,),

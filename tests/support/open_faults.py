@@ -17,6 +17,7 @@ from fault_changes import (
     offered,
     renamed,
     shared_tf,
+    simulation,
 )
 from graph_cases import reframed, with_type, without_node
 from healthy_systems import (
@@ -66,6 +67,12 @@ def without_edge(child: str, topic: str) -> Change:
 def at(child: str, *numbers: float) -> Change:
     """The transform as it was received."""
     return reframed(lambda it: it._replace(transform=numbers) if it.child == child else it)
+
+
+def stamped(topic: str, age: float) -> Change:
+    """A message of the topic came so many seconds after its stamp."""
+    frame = {"scan": "lidar_link", "odom": "odom", "imu": "imu_link"}[topic.rpartition("/")[2]]
+    return lambda graph: graph._replace(heard=(*graph.heard, Heard(topic, frame, age)))
 
 
 def heard_all_but(*silent: str) -> Change:
@@ -214,6 +221,26 @@ def sender_rows() -> tuple[Fault, ...]:
         Fault(
             "a lidar that sends nothing", nav, heard_all_but("/robot2/scan"),
             "MG326", ("/robot2/lidar_driver", "/robot2/scan", "/robot1/scan"), WARNING,
+        ),
+        Fault(
+            "a lidar's clock is 12 s behind", nav, stamped("/robot1/scan", 12.0),
+            "MG417", ("/robot1/lidar_driver", "/robot1/scan", "12 s old"),
+        ),
+        Fault(
+            "a machine's clock is a minute ahead", nav, stamped("/robot2/odom", -60.0),
+            "MG417", ("/robot2/diff_drive", "60 s in the future"),
+        ),
+        Fault(
+            "stamps of simulated time on a real robot", nav, stamped("/robot1/imu", 1.7e9),
+            "MG417", ("/robot1/imu_driver", "another clock"),
+        ),
+        Fault(
+            "stamps of the machine's time in a simulation", simulation, stamped("/robot1/scan", 2.0),
+            "MG417", ("/robot1/lidar_driver", "not of /clock"),
+        ),
+        Fault(
+            "stamps of zero", nav, stamped("/robot1/scan", float("inf")),
+            "MG417", ("/robot1/lidar_driver", "0:"), WARNING,
         ),
         Fault(
             "a scan without a frame", nav,
