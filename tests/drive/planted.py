@@ -29,6 +29,8 @@ SIMULATED = [
             SYSTEM.format("label", "Label"), "robot1", "drives", "the world has no physics"),
     Spoiled("launch_tutorial", ROVER, '<mass value="0.5"/>', '<mass value="0"/>', "robot1",
             "drives", "diff-drive has no left_joint in Gazebo"),
+    Spoiled("launch_tutorial", ROVER, "<collision>", "<collisions>", "robot1", "drives",
+            "has no collision to roll on"),
     Spoiled("launch_tutorial", ROVER, "<mass value=", "<mass kg=", "robot1", "starts",
             "Gazebo keeps no link"),
     Spoiled("launch_tutorial", ROVER, "<right_joint>robot1_right_wheel_joint",
