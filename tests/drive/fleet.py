@@ -125,7 +125,9 @@ def assembled(given: Reader, robots: tuple[str, ...], file: Path) -> Fleet:
     posed = {it.robot for it in nodes if it.what.startswith("joint_state_publisher")}
     broken = [fault for it in there for fault in simulator.broken(it, world, it.robot in posed)]
     for it in there:
-        broken += simulator.idle(it, [each.values for each in found.nodes if each.robot == it.robot])
+        broken += simulator.idle(
+            it, [each.values for each in found.nodes if each.robot == it.robot]
+        )
     return Fleet(
         robots,
         tuple(nodes),

@@ -47,8 +47,8 @@ def _keys(plugin: _Element) -> Iterator[str]:
 
 
 def _of_release(found: Sequence[VocabularySection], plugin: _Element) -> VocabularySection:
-    """ROS 1 and ROS 2 have plugins of one name. Only ROS 2 reads <ros> and has <ros2_control>; in a robot
-    without them the release that reads more of the parameters counts, ROS 2 if both do."""
+    """ROS 1 and ROS 2 have plugins of one name. Only ROS 2 reads <ros> and has <ros2_control>; in
+    a robot without them the release that reads more of the parameters counts, ROS 2 if both do."""
     by_release = {section.ros: section for section in found}
     new, old = by_release.get(ROS_2, found[0]), by_release.get(ROS_1)
     whole = plugin.getroottree()
