@@ -52,7 +52,7 @@ class Fleet(NamedTuple):
     description (``file:line``) of each plugin's node, ``origins`` of every other node the file or stack
     that names it. ``tags`` are the robots whose prefix or postfix
     differs from their namespace, with it. ``read`` are the files that were read for descriptions,
-    ``gaps`` what is open in the robots, ``bridged`` what a ros_gz_bridge has to carry;
+    ``gaps`` what is open in the robots, ``bridged`` what a ros_gz_bridge has to bridge;
     ``maybe_real`` are robots of which nothing says that they are simulated, ``clocks`` the
     ``use_sim_time`` of robots for which the fleet file says it, ``described`` the descriptions of
     robots whose simulator gets another file."""

@@ -95,7 +95,7 @@ def command_to_nobody(seen: Index) -> Iterator[Finding]:
         absent = nobody_in(seen, name, same)
         for node in nodes_of(at_work(ends.publishers)) if absent else ():
             yield command_to_nobody.finding(
-                f"publishes {name}, which nobody reads; {absent}",
+                f"publishes {name}, which no node reads; {absent}",
                 ABSENT,
                 level=WARNING,
                 node=node,
@@ -127,7 +127,7 @@ def _obeyed(ends: Ends) -> bool:
 def _unread(seen: Index, ends: Ends, meant: str, robots: int) -> Finding:
     node = nodes_of(ends.publishers)[0]
     reader = nodes_of(at_work(seen.by_name[TOPIC, meant].subscribers))[0]
-    message = f"publishes {ends.name}, which nobody reads; {reader} reads {meant}"
+    message = f"publishes {ends.name}, which no node reads; {reader} reads {meant}"
     several = f" (or that of another of the {robots} robots)" if robots > 1 else ""
     cause = f"start it in the robot's namespace, or pass the rule {ends.name}:={meant}{several}"
     level = NOTE if is_viewer(node) and not is_hidden(node) else ERROR
@@ -171,7 +171,7 @@ def command_from_another_robot(seen: Index) -> Iterator[Finding]:
             if not _mistaken(seen, node, robot, ends):
                 continue
             does = "publishes" if kind == TOPIC else "sends goals to" if kind == ACTION else "calls"
-            message = f"{does} {name}, which belongs to {owner}"
+            message = f"{does} {name}, a name of {owner}"
             cause = f"a namespace, remap rule or parameter of {robot} names {owner}"
             yield command_from_another_robot.finding(
                 message, cause, robot=robot, node=node, names=(name,)
@@ -232,7 +232,8 @@ def several_command_senders(seen: Index) -> Iterator[Finding]:
             continue
         readers = nodes_of(at_work(ends.subscribers))
         # A program to look with that sends velocities is a joystick.
-        senders = nodes_of(ends.publishers)
+        # What sends it and reads it is a bridge in both directions, and orders nothing itself.
+        senders = [it for it in nodes_of(ends.publishers) if it not in nodes_of(ends.subscribers)]
         teams = {team(node): node for node in reversed(senders)}
         played = any(last_word(node).startswith(words.PLAYER) for node in senders)
         if not readers or len(teams) < 2 or played or all(map(chooses, readers)):
