@@ -264,9 +264,25 @@ def test_prefixes_of_macros(params: str, inside: str, expected: list[str], tmp_p
 
 
 # Where plugins and transmissions name a link, joint or frame: gazebo_ros and gz-sim of any age.
-NAMING = """left_joint right_joint leftJoint rightJoint joint_name jointName link_name linkName frame_name
-frameName body_name bodyName robot_base_frame robotBaseFrame child_frame_id gz_frame_id
-ignition_frame_id""".split()
+NAMING = [
+    "left_joint",
+    "right_joint",
+    "leftJoint",
+    "rightJoint",
+    "joint_name",
+    "jointName",
+    "link_name",
+    "linkName",
+    "frame_name",
+    "frameName",
+    "body_name",
+    "bodyName",
+    "robot_base_frame",
+    "robotBaseFrame",
+    "child_frame_id",
+    "gz_frame_id",
+    "ignition_frame_id",
+]
 
 
 @pytest.mark.parametrize("tag", NAMING)
