@@ -71,10 +71,14 @@ def _refuse_strangers(looks: Sequence[Look]) -> None:
         other = look.snapshot.environment
         if other.domain != around.domain:
             where = f"{first.file} is of domain {around.domain}, {look.file} of {other.domain}"
-            raise UsageError(f"{where}: nodes of two domains never meet; merge those of one domain")
+            raise UsageError(
+                f"{where}: nodes of two domains never see each other; merge those of one domain"
+            )
         if (other.rmw == ZENOH) != (around.rmw == ZENOH):
             where = f"{first.file} is of {around.rmw}, {look.file} of {other.rmw}"
-            raise UsageError(f"{where}: their nodes never meet; merge those of one middleware")
+            raise UsageError(
+                f"{where}: their nodes never see each other; merge those of one middleware"
+            )
 
 
 def _nodes(looks: Sequence[Sequence[Node]]) -> Iterator[Node]:

@@ -233,7 +233,7 @@ def test_what_cannot_be_read_is_told_with_its_reason(multibot: Multibot, folder:
     (folder / "d.urdf").symlink_to("nowhere")
     result = multibot("inspect", ".")
     assert result.code == 0
-    assert result.out.startswith("1 file read, 3 cannot be read (facts of lyrical)\n")
+    assert result.out.startswith("1 file read, 3 cannot be read (ROS 2 lyrical)\n")
     assert "\n  ./b.urdf:1:8: not well-formed XML" in result.out
     assert "\n  ./c.urdf:1:1: the root element is <html>" in result.out
     assert "\n  ./d.urdf: cannot be read: No such file or directory\n" in result.out
@@ -262,7 +262,7 @@ def two(folder: Path) -> Path:
 def test_the_report(multibot: Multibot, two: Path) -> None:
     result = multibot("inspect", ".")
     assert (result.code, result.err) == (0, "")
-    assert "2 files read, 0 cannot be read (facts of lyrical)\n" in result.out
+    assert "2 files read, 0 cannot be read (ROS 2 lyrical)\n" in result.out
     assert "\n3 of 5 plugins known (60.0 %), 1 of 2 names\n" in result.out
     assert "\n    2      2  libacme.so  ./a.urdf:1\n" in result.out
     assert "\n4 unclaimed and exactly a link or joint\n" in result.out

@@ -291,6 +291,6 @@ def undelivered(
 
 def unsent(who: str, what: str, name: str, sent: Mapping[str, str]) -> Iterator[tuple[str, str]]:
     if name not in sent:
-        yield who, f"{what} waits for {name}, which nobody sends"
+        yield who, f"{what} waits for {name}, which no node sends"
     elif sent[name] != who:
         yield who, f"{what} waits for {name}, which {sent[name] or 'another'} sends"

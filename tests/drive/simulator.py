@@ -143,8 +143,8 @@ def blind(model: Model, world: World) -> Iterator[Broken]:
 
 
 def still(model: Model) -> Iterator[Broken]:
-    """Joints that move and are not in the simulator: nobody sends their states."""
+    """Joints that move and are not in the simulator: no node sends their states."""
     for it in model.root.iterfind("joint"):
         if it.get("type") not in ("fixed", "floating") and it.get("name") not in model.kept.joints:
-            why = f"Gazebo keeps no joint {it.get('name')}: nobody sends its transform"
+            why = f"Gazebo keeps no joint {it.get('name')}: no node sends its transform"
             yield model.robot, "plans", why

@@ -230,7 +230,7 @@ def with_mux() -> System:
 
 
 def idle_mux() -> System:
-    """A twist_mux with an input that nobody sends yet, its output on a topic of its own."""
+    """A twist_mux with an input that no node sends yet, its output on a topic of its own."""
     graph = with_mux()
     for robot in TWO:
         for node in ("twist_mux", "diff_drive"):

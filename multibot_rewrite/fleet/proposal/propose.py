@@ -257,7 +257,7 @@ def _is_simulated(it: Looked, wanted: Wanted) -> bool:
 def release_of(robots: Sequence[Looked], wanted: Wanted) -> Choice:
     """The release that was asked for, else the one that has the robots' simulator."""
     if wanted.named:
-        return Choice(wanted.release, "the ROS release whose facts count")
+        return Choice(wanted.release, "the ROS 2 release that was asked for")
     if any(it.simulator == CLASSIC for it in robots):
         return Choice(OF_CLASSIC, "the last ROS release that has Gazebo Classic")
     return Choice(wanted.release, "the newest long-term ROS release; name yours")
