@@ -33,7 +33,9 @@ def others(layout: str, *defaults: str) -> set[str]:
     ],
 )
 def test_a_default_frame_of_a_node_may_come(default: str, planned: bool) -> None:
-    assert others("tf-per-robot", default) - others("tf-per-robot") == ({"laser"} if planned else set())
+    assert others("tf-per-robot", default) - others("tf-per-robot") == (
+        {"laser"} if planned else set()
+    )
     assert others("postfix", default) - others("postfix") == (
         {"laser/robot1"} if planned else set()
     )
@@ -42,4 +44,3 @@ def test_a_default_frame_of_a_node_may_come(default: str, planned: bool) -> None
 def test_what_all_share_and_what_is_declared_is_no_further_frame() -> None:
     assert others("postfix", "map") == others("postfix")
     assert others("tf-per-robot", "base_link") == others("tf-per-robot")
-    assert others("postfix", "base_link") - others("postfix") == {"base_link/robot1"}
