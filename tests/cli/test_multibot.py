@@ -268,7 +268,8 @@ count files not known first seen
 
 0 of 0 hardware classes known (100.0 %), 0 of 0 names
 
-0 values claimed
+15 values claimed
+link 8, node 3, joint 2, model 2
 
 4 unclaimed and exactly a link or joint
 count files path value first seen
