@@ -57,8 +57,8 @@ _XML = (
     (SRDF, lazy_compile(rb"<(?:group|group_state|disable_collisions|virtual_joint)\s", 0)),
     (URDF, lazy_compile(rb"<robot\b", 0)),
 )
-# Of YAML, Python, Lua: what only files of one kind have at the start of a line or an item. A file of one
-# node's sections may be MoveIt's as well: that is a parameter file for its reader.
+# Of YAML, Python, Lua: what only files of one kind have at the start of a line or an item. A file of
+# one node's sections may be MoveIt's as well: that is a parameter file for its reader.
 BESIDE = (
     (PARAMS, lazy_compile(rb"^\s+[\"']?ros__parameters[\"']?\s*:", re.MULTILINE)),
     (RVIZ, lazy_compile(rb"^Visualization Manager\s*:", re.MULTILINE)),
@@ -79,12 +79,12 @@ BESIDE = (
     (TREE, _XML[1][1]),
     (LUA, lazy_compile(rb"^\s*(?:tracking_frame|published_frame|map_frame)\s*=", re.MULTILINE)),
 )
-# What follows ``robots:`` in a fleet file is a list, and in a plan a map.
+# What follows ``robots:`` in a fleet file is a list; a plan has the ways of its rules besides.
 _ROBOTS = rb"^robots:[ \t]*(?:#[^\n]*)?(?:\s*#[^\n]*\n)*\s*"
 _OTHERS = (
-    (LAUNCH, lazy_compile(rb"^def generate_launch_description\b|^launch:\s*$", re.MULTILINE)),
     (FLEET, lazy_compile(_ROBOTS + rb"[-\[]", re.MULTILINE)),
-    (PLAN, lazy_compile(_ROBOTS + rb"[\w{\"']", re.MULTILINE)),
+    (PLAN, lazy_compile(rb"^robots:(?=.*^ways:)", re.MULTILINE | re.DOTALL)),
+    (LAUNCH, lazy_compile(rb"^def generate_launch_description\b|^launch:\s*-", re.MULTILINE)),
     (BAG, lazy_compile(rb"^rosbag2_bagfile_information:", re.MULTILINE)),
     (MAP, lazy_compile(rb"^image:[^\n]*\n(?:.*\n)*?resolution:", re.MULTILINE)),
 )

@@ -98,6 +98,7 @@ HOMES: tuple[Home, ...] = (
             "rules.system.relays",
             "rules.system.sharing",
             "rules.system.equal_robots",
+            "rules.system.likes",
             "rules.system.unsent",
         ),
     ),
@@ -109,6 +110,9 @@ HOMES: tuple[Home, ...] = (
             "rules.system.tf_topics",
             "rules.system.frame_ids",
             "rules.system.lookups",
+            "rules.system.localized",
+            "rules.system.refused",
+            "rules.system.stamps",
         ),
     ),
     Home(

@@ -17,7 +17,7 @@ from multibot_rewrite.system.json import to_json
 CLOSED = FILES["ekf.yaml"]
 OPEN = CLOSED.replace("imu0: imu/data", "imu0: imu_0/data")
 SAID = (
-    "MG303 /ekf_filter_node of robot1 subscribes to /imu_0/data, which nobody publishes; /ros_gz_bridge"
+    "MG303 /ekf_filter_node of robot1 subscribes to /imu_0/data, which no node publishes; /ros_gz_bridge"
     " publishes /imu/data (pass the rule /imu_0/data:=/imu/data, or write /imu/data in its parameters;"
     " see "
 )
@@ -152,7 +152,12 @@ def test_rows_that_cannot_be_meant(rows: str, told: str, tmp_path: Path) -> None
 
 ROVER = """\
 <robot name="rover">
-  <link name="base_link"/><link name="laser"/>
+  <link name="base_link">
+    <inertial>
+      <mass value="1"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/>
+    </inertial>
+  </link>
+  <link name="laser"/>
   <joint name="laser_joint" type="fixed"><parent link="base_link"/><child link="laser"/></joint>
 </robot>
 """
@@ -160,7 +165,6 @@ FAULTY = """\
 ekf_filter_node:
   ros__parameters:
     frequncy: 30.0
-    publish_tf: "yes"
     odom0: 1odom
     base_link_frame: base_lnk
 """
@@ -176,7 +180,7 @@ robots: [{name: robot1}, {name: robot2}]
 def test_each_command_says_the_same_of_a_parameter_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Expected by rclcpp (types of parameters), rcl (names of topics) and the links of the robot."""
+    """Expected by robot_localization (parameters), rcl (names of topics) and the links of the robot."""
     for name, text in (("rover.urdf", ROVER), ("ekf.yaml", FAULTY), ("fleet.yaml", FLEET)):
         (tmp_path / name).write_text(text)
     monkeypatch.chdir(tmp_path)
@@ -196,7 +200,7 @@ def test_each_command_says_the_same_of_a_parameter_file(
         said.append([it.partition(":")[2] for it in lines if "ekf.yaml:" in it])
     assert said[0] == said[1] == said[2] == said[3]
     codes = [(it.split(":")[0], it.split()[2]) for it in said[0]]
-    assert codes == [("3", "MB110"), ("4", "MB120"), ("5", "MB312"), ("6", "MB853")]
+    assert codes == [("3", "MB110"), ("4", "MB312"), ("5", "MB853")]
 
 
 def test_a_robot_in_gazebo_without_a_sensor_has_its_clock(tmp_path: Path) -> None:

@@ -59,6 +59,11 @@ def level_of(fault: Fault) -> str:
     return next((it for it in _LEVELS if it in found), SILENT)
 
 
+def healthy_findings() -> list[Finding]:
+    """What the lint says of the robot without a fault."""
+    return _linted(None)
+
+
 @cache
 def _healthy() -> frozenset[tuple[str, str]]:
     return frozenset(_key(it) for it in _linted(None))

@@ -28,6 +28,7 @@ from multibot_rewrite.knowledge.plugin_classes import (
 )
 from multibot_rewrite.rules.files.declared import Given
 from multibot_rewrite.rules.files.demands import Demand, demands
+from multibot_rewrite.rules.files.given import beside
 from multibot_rewrite.rules.files.records import Remark, remark_at
 
 _DWB, _CRITIC = "dwb_critics", "Critic"
@@ -44,9 +45,11 @@ def unknown_classes(file: NamedFile) -> Iterator[Remark]:
     if file.kind == MOVEIT:
         yield from _solvers(file, release)
         return
+    known = file.known.nodes.values() if file.known else ()
+    told = {type_ for node in known for type_ in node.facts.deprecated_types}  # MB869
     for it in demands(file, "class", "classes"):
         for given in [it.given] if it.check == "class" else _plugins(it):
-            if isinstance(given.value, str):
+            if isinstance(given.value, str) and given.value not in told:
                 where = f"{it.section.title}: {given.name}"
                 yield from _of_class(given.node, where, given.value, it.words[0], release)
     for it in demands(file, "critics"):
@@ -142,7 +145,8 @@ def without_plugin(file: NamedFile) -> Iterator[Remark]:
             found = f"{below}plugin" in it.section.whole or (
                 it.check == "blocks" and any(name.startswith(below) for name in it.section.whole)
             )
-            if not found and not _is_misspelt(it, word, words):
+            elsewhere = not found and _is_given_beside(file, f"{below}plugin")
+            if not found and not elsewhere and not _is_misspelt(it, word, words):
                 yield _without(it, word)
     yield from _without_type(file)
 
@@ -152,6 +156,11 @@ def _without(it: Demand, word: str) -> Remark:
     message = f"{it.section.title}: {it.given.name} has {word}, which has no {what}"
     name = f"{it.section.at}{word}" + (".plugin" if what == "plugin" else "")
     return remark_at(it.given.node, message, f"add {name}, or take {word} off the list", level)
+
+
+def _is_given_beside(file: NamedFile, name: str) -> bool:
+    """Does another parameter file of the robot have it?"""
+    return any(name in node.values for node in beside(file).given)
 
 
 def _is_misspelt(it: Demand, word: str, words: Sequence[str]) -> bool:

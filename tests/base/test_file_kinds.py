@@ -1,0 +1,99 @@
+"""What a file is, by its text, and what each command says of another one than it takes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite.base.file_kinds import KINDS, recognised, refuse_others
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.lint.check import lint_data
+from multibot_rewrite.producers.launch.child import launch_graph
+from multibot_rewrite.producers.launch.records import LaunchOrder
+from multibot_rewrite.rules.settings import Settings
+from multibot_rewrite.spelling.plan_file import read_plan
+from multibot_rewrite.system.json import from_json
+
+TEXTS = {
+    "urdf": '<robot name="r"><link name="a"/></robot>',
+    "xacro": '<?xml version="1.0"?>\n<robot xmlns:xacro="http://www.ros.org/wiki/xacro"/>',
+    "sdf": '<sdf version="1.9"><model name="m"/></sdf>',
+    "world": '<sdf version="1.9">\n  <world name="w"/></sdf>',
+    "srdf": '<robot name="r"><group name="arm"><joint name="j"/></group></robot>',
+    "launch": "from launch import LaunchDescription\ndef generate_launch_description():\n  pass\n",
+    "params": "amcl:\n  ros__parameters:\n    alpha1: 0.1\n",
+    "rviz": "Panels: []\nVisualization Manager:\n  Displays: []\n",
+    "bridge": "- ros_topic_name: scan\n  gz_topic_name: scan\n",
+    "moveit": "arm:\n  kinematics_solver: kdl_kinematics_plugin/KDLKinematicsPlugin\n",
+    "tree": '<root BTCPP_format="4"><BehaviorTree ID="M"/></root>',
+    "lua": 'options = {\n  map_frame = "map",\n}\n',
+    "fleet": "layout: postfix\nrobots:\n  # two\n  - {name: robot1, description: a.urdf}\n",
+    "plan": "layout: postfix\nrobots:\n  robot1:\n    namespace: /robot1\n",
+    "snapshot": '{"schema": 2, "nodes": []}',
+    "bag": "rosbag2_bagfile_information:\n  version: 5\n",
+    "map": "image: hall.pgm\nmode: trinary\nresolution: 0.05\n",
+}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_each_kind_is_known_by_its_text(kind: str) -> None:
+    assert recognised(TEXTS[kind].encode()) == kind
+    assert recognised(b"\xef\xbb\xbf" + TEXTS[kind].encode()) == kind
+
+
+@pytest.mark.parametrize("data", [b"", b"\x89MCAP0", b"a: 1\n", b"<a/>", b"\xff\xfe", b"[1, 2]"])
+def test_others_are_of_no_kind(data: bytes) -> None:
+    assert recognised(data) == ""
+    refuse_others(data, "x", "fleet")
+
+
+@pytest.mark.parametrize("kind", [it for it in KINDS if it != "fleet"])
+def test_a_fleet_file_that_is_another_file(kind: str, tmp_path: Path) -> None:
+    path = tmp_path / "x.yaml"
+    path.write_text(TEXTS[kind])
+    with pytest.raises(InputError) as caught:
+        read_fleet(str(path), "jazzy", {})
+    assert KINDS[kind].words in str(caught.value)
+    assert KINDS[kind].use in str(caught.value)
+
+
+@pytest.mark.parametrize("kind", [it for it in KINDS if it != "plan"])
+def test_a_plan_that_is_another_file(kind: str) -> None:
+    with pytest.raises(InputError, match=KINDS[kind].words):
+        read_plan(TEXTS[kind].encode(), "x")
+
+
+@pytest.mark.parametrize("kind", [it for it in KINDS if it not in ("plan", "snapshot")])
+def test_a_snapshot_that_is_another_file(kind: str) -> None:
+    with pytest.raises(InputError, match=KINDS[kind].words):
+        from_json(TEXTS[kind].encode(), "x")
+
+
+@pytest.mark.parametrize("kind", ["params", "fleet", "plan", "urdf", "rviz"])
+def test_a_launch_file_that_is_another_file(kind: str, tmp_path: Path) -> None:
+    path = tmp_path / "x.launch.py"
+    path.write_text(TEXTS[kind])
+    with pytest.raises(InputError, match=KINDS[kind].words):
+        launch_graph(LaunchOrder(str(path), trusted=True))
+
+
+@pytest.mark.parametrize("kind", ["fleet", "plan", "launch", "map", "bag"])
+@pytest.mark.parametrize("name", ["x.yaml", "x.urdf"])
+def test_a_file_that_the_lint_does_not_take(kind: str, name: str) -> None:
+    (it,) = lint_data(name, TEXTS[kind].encode(), Settings())
+    assert (it.code, it.message, it.hint) == ("MB101", KINDS[kind].words, KINDS[kind].use)
+
+
+def test_all_faults_of_a_fleet_file_at_once(tmp_path: Path) -> None:
+    path = tmp_path / "fleet.yaml"
+    path.write_text(
+        "layot: postfix\nrobots:\n  - {name: robot1, descripton: a.urdf}\naffix: middle\n"
+    )
+    with pytest.raises(InputError) as caught:
+        read_fleet(str(path), "jazzy", {})
+    told = str(caught.value)
+    assert told.startswith(f"{path}:1: unknown key 'layot'; did you mean 'layout'?")
+    assert "line 3: robots[0]: unknown key 'descripton'" in told
+    assert "line 4: affix: 'middle' is not known" in told
