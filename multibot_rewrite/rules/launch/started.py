@@ -198,7 +198,7 @@ def no_joints(launched: Launched) -> Iterator[Finding]:
 
 @launch_rule(
     "MG726",
-    "nobody-activates",
+    "not-activated",
     what="A node of Nav2 with a life cycle is in no list of a lifecycle manager, while the launch "
     "file starts one, or a manager lists a node that the launch file does not start.",
     why="The node stays unconfigured and does nothing. A manager that waits for a node activates none.",
