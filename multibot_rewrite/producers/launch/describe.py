@@ -79,7 +79,7 @@ def failure(error: BaseException) -> str:
 
 
 def is_certain(error: BaseException, here: Visit) -> bool:
-    """Does the launch fail so on every machine? A file that belongs beside the launch file is not there,
+    """Does the launch fail so on every machine? A file that belongs beside the launch file is missing,
     or the launch file itself raises what names no file or device of a machine."""
     if isinstance(error, FileNotFoundError):
         folder = os.path.dirname(os.path.realpath(here.place.file))
