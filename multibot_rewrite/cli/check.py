@@ -106,7 +106,7 @@ def _of_release(options: argparse.Namespace, plan: System) -> System:
     asked: str = options.distro or ""
     if asked and plan.release not in ("", asked):
         hint = f"make one with multibot plan --distro {asked}, or leave out --distro"
-        raise UsageError(f"{options.plan} has the facts of {plan.release}; {hint}")
+        raise UsageError(f"{options.plan} is for ROS 2 {plan.release}; {hint}")
     return plan._replace(release=plan.release or asked)
 
 

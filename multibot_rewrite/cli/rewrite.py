@@ -67,7 +67,7 @@ def _undo(options: argparse.Namespace, source: Source, names: list[str]) -> int:
 
 def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> int:
     file, given = input_name(options), rewriting(options)
-    rewrites = rewrite_all(source, names, again=options.again, file=file, **given)
+    rewrites = rewrite_all(source, names, again=options.force, file=file, **given)
     first = next(rewrites)
     # Robots with descriptions of their own are all made before the first is here.
     others = list(rewrites) if first.prepared.job.naming.own else []

@@ -26,7 +26,7 @@ from multibot_rewrite.system.records import ACTION, SERVICE
 # What each state means, for the legend and the tooltips.
 MEANINGS = {
     OK: "as planned",
-    LEAK: "leak: a robot's node uses a name that belongs to no robot",
+    LEAK: "leak: a robot's node uses a name of no robot",
     CROSS_TALK: "cross-talk: a robot's node uses another robot's name",
     CLASH: "conflict: two nodes with one name, types or QoS that do not match",
     MISSING: "missing: in the plan, but not in the graph",

@@ -17,7 +17,7 @@ from multibot_rewrite.system.json import to_json
 CLOSED = FILES["ekf.yaml"]
 OPEN = CLOSED.replace("imu0: imu/data", "imu0: imu_0/data")
 SAID = (
-    "MG303 /ekf_filter_node of robot1 subscribes to /imu_0/data, which nobody publishes; /ros_gz_bridge"
+    "MG303 /ekf_filter_node of robot1 subscribes to /imu_0/data, which no node publishes; /ros_gz_bridge"
     " publishes /imu/data (pass the rule /imu_0/data:=/imu/data, or write /imu/data in its parameters;"
     " see "
 )

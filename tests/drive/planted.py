@@ -19,6 +19,10 @@ class Spoiled(NamedTuple):
 
 LAUNCH, ROVER, BRIDGE = "fleet.launch.py", "robot1/rover.urdf", "robot1/bridge.yaml"
 PARAMS = "base1/nav2_params.yaml"
+WHEEL = (
+    '<collision><origin rpy="1.5708 0 0"/><geometry><cylinder radius="0.1" length="0.04"/></geometry>'
+    "</collision>"
+)
 SYSTEM = '<plugin filename="gz-sim-{}-system" name="gz::sim::systems::{}"'
 SIMULATED = [
     Spoiled("launch_tutorial", "world.sdf", SYSTEM.format("sensors", "Sensors"),
@@ -29,6 +33,7 @@ SIMULATED = [
             SYSTEM.format("label", "Label"), "robot1", "drives", "the world has no physics"),
     Spoiled("launch_tutorial", ROVER, '<mass value="0.5"/>', '<mass value="0"/>', "robot1",
             "drives", "diff-drive has no left_joint in Gazebo"),
+    Spoiled("launch_tutorial", ROVER, WHEEL, "", "robot1", "drives", "has no collision to roll on"),
     Spoiled("launch_tutorial", ROVER, "<mass value=", "<mass kg=", "robot1", "starts",
             "Gazebo keeps no link"),
     Spoiled("launch_tutorial", ROVER, "<right_joint>robot1_right_wheel_joint",
@@ -70,7 +75,7 @@ CONTROLLED = [
     Spoiled("two_arms_moveit", LAUNCH,
             'namespace="/right",\n            name="robot_state_publisher"',
             'namespace="/left",\n            name="description"', "right", "starts",
-            "waits for /right/robot_description, which nobody sends"),
+            "waits for /right/robot_description, which no node sends"),
     Spoiled("two_arms_moveit", "left/controllers.yaml",
             "{type: joint_trajectory_controller/JointTrajectoryController}", "{}", "left", "starts",
             "has no type for arm_controller"),
@@ -85,9 +90,9 @@ NAMED = [
     Spoiled("two_robots_nav2", "robot2/hexbase.urdf", "<topic>robot2/cmd_vel", "<topic>robot1/cmd_vel",
             "robot1", "drives", "/robot1/cmd_vel moves robot2, too"),
     Spoiled("two_robots_nav2", "robot2/hexbase.urdf", "<topic>robot2/scan", "<topic>scan",
-            "robot2", "sees", "/robot2/scan, which nobody sends"),
+            "robot2", "sees", "/robot2/scan, which no node sends"),
     Spoiled("two_robots_nav2", "robot2/bridge.yaml", '"/robot2/scan"', '"/robot1/scan"',
-            "robot2", "sees", "/robot2/scan, which nobody sends"),
+            "robot2", "sees", "/robot2/scan, which no node sends"),
     Spoiled("two_robots_nav2", "robot1/nav2_params.yaml", "odom_topic: odom",
             "odom_topic: /robot2/odom", "robot1", "sees", "which robot2 sends"),
     Spoiled("two_robots_nav2", "robot1/nav2_params.yaml", "robot_base_frame: base_link",
@@ -108,7 +113,7 @@ NAMED = [
             "cmd_vel:=/robot2/cmd_vel", "robot1", "drives",
             "to /robot2/cmd_vel: that moves ['robot2']"),
     Spoiled("mixed_fleet", "base1/nav2_params.yaml", "scan_topic: scan", "scan_topic: laser",
-            "base1", "sees", "/base1/laser, which nobody sends"),
+            "base1", "sees", "/base1/laser, which no node sends"),
     Spoiled("two_arms_moveit", "left/controllers.yaml", "arm_controller:\n", "hand:\n",
             "left", "starts", "arm_controller has no joints"),
     Spoiled("two_arms_moveit", "left/arm.urdf", 'command_interface name="position"',

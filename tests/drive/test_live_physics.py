@@ -81,16 +81,20 @@ def arm(found: fleet.Fleet, robot: str, file: Path, at: float) -> dict[str, Any]
     }  # fmt: skip
 
 
-def played(domain: int, robots: list[dict[str, Any]], *send: Any) -> dict[str, Any]:
+def played(domain: int, robots: list[dict[str, Any]], *send: Any, film: str = "") -> dict[str, Any]:
     env = {
         **os.environ,
         "ROS_DOMAIN_ID": str(domain + os.getpid() % 20),
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
         "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4",
     }
-    command = [sys.executable, str(CHILD), json.dumps({"robots": robots, "send": send})]
+    command = [
+        sys.executable,
+        str(CHILD),
+        json.dumps({"robots": robots, "send": send, "film": film}),
+    ]
     done = subprocess.run(
-        command, capture_output=True, text=True, timeout=120, env=env, check=False
+        command, capture_output=True, text=True, timeout=240, env=env, check=False
     )
     assert done.returncode == 0, done.stderr[-2000:]
     found: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
@@ -123,7 +127,7 @@ def test_a_base_with_a_lidar_drives_and_the_other_stands(tmp_path: Path) -> None
     )
     seen = {it: sent(found, it, "sensor_msgs/msg/LaserScan") for it in ("robot1", "robot2")}
     assert len(set(seen.values())) == 2
-    drove(played(60, [one, other], one["commands"], "Twist", [0.2, 0.1]), one, other)
+    drove(played(60, [one, other], (one["commands"], "Twist", [0.2, 0.1])), one, other)
 
 
 def test_a_base_with_an_arm_drives_and_the_arm_stands(tmp_path: Path) -> None:
@@ -133,11 +137,11 @@ def test_a_base_with_an_arm_drives_and_the_arm_stands(tmp_path: Path) -> None:
         for it, at in (("base1", 1), ("base2", -1))
     )
     third = arm(found, "arm", tmp_path / "arm" / "arm.urdf", 0)
-    seen = played(80, [one, other, third], one["commands"], "Twist", [0.2, 0.1])
+    seen = played(80, [one, other, third], (one["commands"], "Twist", [0.2, 0.1]))
     drove(seen, one, other)
     assert moved(seen, "arm") == pytest.approx([0, 0], abs=0.02)
     goal = dict(zip(third["joints"], (0.4, -0.3), strict=True))
-    seen = played(80, [one, other, third], third["trajectory"], "JointTrajectory", goal)
+    seen = played(80, [one, other, third], (third["trajectory"], "JointTrajectory", goal))
     assert moved(seen, "arm") == pytest.approx([0.4, -0.3], abs=0.05)
     assert seen["said"]["arm"]["states"] == pytest.approx(goal, abs=0.05)
     for it in ("base1", "base2"):
@@ -150,7 +154,7 @@ def test_of_two_arms_one_moves(tmp_path: Path) -> None:
         arm(found, it, tmp_path / it / "arm.urdf", at) for it, at in (("left", 1), ("right", -1))
     )
     goal = dict(zip(one["joints"], (0.4, -0.3), strict=True))
-    seen = played(100, [one, other], one["trajectory"], "JointTrajectory", goal)
+    seen = played(100, [one, other], (one["trajectory"], "JointTrajectory", goal))
     assert moved(seen, "left") == pytest.approx([0.4, -0.3], abs=0.05)
     assert moved(seen, "right") == pytest.approx([0, 0], abs=0.05)
     assert seen["said"]["left"]["states"] == pytest.approx(goal, abs=0.05)

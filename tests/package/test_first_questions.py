@@ -45,7 +45,7 @@ def test_why_does_cmd_vel_never_come(
     assert doctor(graph, tmp_path, capsys) == []
     bare = with_node(graph, "/teleop_twist_keyboard", (PUBLISHES, "/cmd_vel", TWIST))
     (said,) = doctor(bare, tmp_path, capsys)
-    assert "publishes /cmd_vel, which nobody reads" in said
+    assert "publishes /cmd_vel, which no node reads" in said
     lines = (built / "commands.md").read_text().splitlines()
     (line,) = (it for it in lines if "teleop" in it and "/robot1/" in it)
     name = line.split("cmd_vel:=")[1].split()[0]

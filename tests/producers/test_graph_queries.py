@@ -156,9 +156,7 @@ def test_each_query_is_the_one_of_its_role(at: int, method: str, kind: str, role
 
 def test_a_topic_of_two_nodes_has_qos_hash_and_process_of_each() -> None:
     infos = {"publishes /t": [info("/a", 1)], "subscribes /t": [info("/r/b", 2), info("/me", 3)]}
-    found = details(
-        GraphNode((), infos), end("/a", PUBLISHES, "/t"), end("/r/b", SUBSCRIBES, "/t")
-    )
+    found = details(GraphNode((), infos), end("/a", PUBLISHES, "/t"), end("/r/b", SUBSCRIBES, "/t"))
     assert found == [whole("/a", PUBLISHES, "/t", 1), whole("/r/b", SUBSCRIBES, "/t", 2)]
 
 

@@ -35,7 +35,7 @@ REASONS = {
     FRAMES: ("frame", SHARED),
     OPENED: ("resource", SHARED),
     SAME_TEXT: ("description", "the same for all robots"),
-    PARTED: ("topic", "whose ends no longer meet"),
+    PARTED: ("topic", "whose ends no longer match"),
     NO_LINK: ("robot", "without a link"),
     LOOKUP: ("name", "looked up in the whole world"),
     "MB410": ("description name", SHARED),

@@ -224,7 +224,7 @@ def as_declared(plan: FleetPlan, controller: str) -> Iterator[str | File]:
 
 
 def _spawner(given: _Given) -> Start:
-    """What puts the robot into its simulator; an SDF is read from its file, nobody publishes it."""
+    """What puts the robot into its simulator; an SDF is read from its file, no node publishes it."""
     (it,), _ = spawn.spawns(given.plan)
     start = spawn.spawner(it, spawn.is_classic(given.robot))
     words = list(start.arguments)

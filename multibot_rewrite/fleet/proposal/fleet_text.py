@@ -130,7 +130,7 @@ def _needed(it: Looked) -> Iterator[str]:
         yield f"{it.switch} is the switch between the simulated and the real robot"
     found = [name for name in it.needed if name in arguments]
     if found:
-        yield f"It needs {', '.join(found)}, which nobody gave: is that right?"
+        yield f"It needs {', '.join(found)}; init chose a value: is it right?"
 
 
 def _robots(it: Proposal, folder: str) -> Iterator[dict[str, Any]]:

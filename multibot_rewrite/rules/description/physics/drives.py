@@ -36,7 +36,7 @@ ENDLESS = 20 * pi
     "or diameter is not that of its wheels. Where several wheels of a side skid in a turn the "
     "separation may be up to twice the distance.",
     why="The plugin computes the speed of each wheel from them: the robot drives or turns faster "
-    "or slower than it is told, and its odometry is wrong by the same factor, so maps bend.",
+    "or slower than its commands say, and its odometry is wrong by the same factor, so maps bend.",
     fix="Write the distance of the wheels, and the size of the wheel's collision shape, in metres.",
     bad=a_rover(LEFT, RIGHT, separation="0.8"),
     good=a_rover(),

@@ -50,7 +50,7 @@ def _camera_at(link: str, *optical: str) -> str:
     WARNING,
     what="An optical frame is turned like the robot: its x points forward and its z up.",
     why="Optical frames have z forward, x to the right and y down (REP 103). Images and depth "
-    "clouds that carry this frame are shown looking at the ceiling, and costmaps get obstacles "
+    "clouds with this frame are shown looking at the ceiling, and costmaps get obstacles "
     "from above.",
     fix='Turn its joint: rpy="-1.5708 0 -1.5708" below a link with x forward.',
     bad=_camera_at("camera"),

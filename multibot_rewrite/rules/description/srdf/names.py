@@ -38,7 +38,7 @@ other_robot = srdf_rule(
     WARNING,
     what="The SRDF and its URDF have different robot names.",
     why="srdfdom logs 'Semantic description is not specified for the same robot as the URDF': the "
-    "file may belong to another robot.",
+    "file may be for another robot.",
     fix="Use the same name in both.",
     options={"urdf": "r.urdf"},
     bad=f'<robot name="other">{ARM}</robot>',
