@@ -124,7 +124,7 @@ _MAIN = "from multibot_rewrite.cli.multibot import main; sys.exit(main())"
 def _launch(folder: Path, beside: Path) -> tuple[list[dict[str, Any]], Step]:
     """What the programs of the launch file were told."""
     file = folder / OUT / "fleet.launch.py"
-    pairs = re.findall(r'package="(\w+)",\s+executable="([\w.]+)"', file.read_text())
+    pairs = re.findall(r"package='(\w+)',\s+executable='([\w.]+)'", file.read_text())
     programs = {executable: package for package, executable in pairs}
     begun = time.monotonic()
     told, said = launched(file, beside, programs=programs)
