@@ -11,8 +11,8 @@ from multibot_rewrite.base.bounded import MAX_FLEET_BYTES
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, NOTE, Finding
 from multibot_rewrite.base.findings.selection import fails
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.releases import facts_of_release
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli import live, pictures
 from multibot_rewrite.cli.output import note, print_lines, say
 from multibot_rewrite.cli.process import PROGRAM, STOPPED

@@ -9,8 +9,8 @@ from itertools import chain
 
 from multibot_rewrite.base.config import configured_vocabulary
 from multibot_rewrite.base.naming import SEPARATORS
-from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.releases import facts_of_release
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.output import STANDARD, serves_a_program
 from multibot_rewrite.cli.process import DONE, STOPPED
 from multibot_rewrite.cli.rewrite_use import (

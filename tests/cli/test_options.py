@@ -15,7 +15,7 @@ from paths import FIXTURES
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import DEFAULT_LAYOUT, LAYOUTS
-from multibot_rewrite.base.plural import plural
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli import multibot, urdf_lint, urdf_postfix
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
 from multibot_rewrite.cli.declared.fleet import PLAN_FORMS

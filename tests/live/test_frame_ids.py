@@ -22,11 +22,11 @@ from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.producers.ros.headers import HeaderSamples, sensor_topics
 from multibot_rewrite.producers.zenoh.cdr import read_header_frame
 from multibot_rewrite.rules.check import check, judge
-from multibot_rewrite.system.answers import with_answers
 from multibot_rewrite.system.index import index
 from multibot_rewrite.system.json import from_json, to_json
 from multibot_rewrite.system.merging import Look, merged
 from multibot_rewrite.system.ownership import Whose
+from multibot_rewrite.system.parameters import with_answers
 from multibot_rewrite.system.records import (
     PUBLISHES,
     TOPIC,
