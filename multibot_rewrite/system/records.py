@@ -160,8 +160,8 @@ class Edge(NamedTuple):
     nodes that may have sent it.
 
     tf messages do not say which node sent them; ``several`` is whether more than one did.
-    ``transform`` is the last one: x, y, z in metres and a quaternion x, y, z, w; empty if not known.
-    One that is ``OFF`` a node would send if a parameter, at its ``place``, let it.
+    ``transform`` is the last one: x, y, z in metres and a quaternion x, y, z, w; empty if not known, or
+    if several static ones differ; inf for NaN. One that is ``OFF`` would be sent if a parameter let it.
     """
 
     child: str

@@ -1,4 +1,4 @@
-"""Child processes are made in one place, and run nothing of the folder or repository that they are in."""
+"""Child processes are made in one place, and run nothing of the folder that they are in."""
 
 from __future__ import annotations
 

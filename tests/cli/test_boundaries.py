@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
+from subprocess import run
 
 import pytest
 
+from multibot_rewrite.base.child import python
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.cli.walk import check_link
-from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet import make_fleet
 from multibot_rewrite.producers.bags import read
 
 
@@ -18,7 +17,7 @@ def test_an_output_that_is_a_link_out_of_its_folder(tmp_path: Path) -> None:
     (tmp_path / "other").mkdir()
     (tmp_path / "link").symlink_to(tmp_path / "other" / "file")
     (tmp_path / "near").symlink_to(tmp_path / "file")
-    with pytest.raises(UsageError, match="is a link to .*other/file; name that file"):
+    with pytest.raises(UsageError, match=r"is a link to .*other/file; name that file"):
         check_link(str(tmp_path / "link"))
     check_link(str(tmp_path / "near"))
     check_link(str(tmp_path / "none"))
@@ -32,9 +31,22 @@ def test_a_file_of_another_kind_is_not_copied_by_a_fleet(tmp_path: Path) -> None
     (fleet / "fleet.yaml").write_text(
         "robots: [{name: robot1, description: r.urdf}]\ncompanions: {params: [../secret]}\n"
     )
-    with pytest.raises(InputError, match="not a ROS 2 parameter file"):
-        made = make_fleet(read_fleet(str(fleet / "fleet.yaml"), "jazzy", {}))
-        make_outputs(made, str(tmp_path / "out"))
+    said = run(
+        [
+            *python("multibot_rewrite"),
+            "build",
+            str(fleet / "fleet.yaml"),
+            "-o",
+            str(tmp_path / "out"),
+        ],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert said.returncode == 2
+    assert "not a ROS 2 parameter file" in said.stderr
+    assert "password" not in said.stderr
+    assert not (tmp_path / "out").exists()
 
 
 def test_a_bag_that_unpacks_to_more_than_a_bound(

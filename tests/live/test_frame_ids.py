@@ -118,7 +118,7 @@ def test_systems_whose_headers_are_right(name: str) -> None:
     seen = diagnose(graph).whose
     own = {seen.frame_robot(it.child): it.child for it in graph.edges}
     topics = [it.name for it in sensor_topics(graph.ends)]
-    names = [Heard(it, own.get(seen.robot(it), "")) for it in topics]
+    names = [Heard(it, own[seen.robot(it)]) for it in topics if seen.robot(it) in own]
     findings = diagnose(graph._replace(heard=tuple(names))).findings
     assert [str(it) for it in findings] == []
 

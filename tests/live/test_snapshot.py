@@ -189,7 +189,7 @@ NODE_OBJECT = {"name": "/a", "process": ""}
             "edges[1].transform: expected 7 numbers",
         ),
         (
-            changed("edges", 1, "transform", to=[None] * 7),
+            changed("edges", 1, "transform", to=[None] * 6),
             "edges[1].transform: expected 7 numbers",
         ),
         (changed("edges", 1, "transform", 0, to=1e200), "edges[1].transform: expected 7 numbers"),
@@ -482,7 +482,7 @@ def test_a_transform_has_the_numbers_that_came_last() -> None:
     found = frames(session.transforms(), ends, last=session.last)
     assert {it.child: it.transform for it in found} == {
         "base": (2.123456789, 0, 0, 0, 0, 0, 1),
-        **dict.fromkeys(("imu", "gps", "lost"), ()),
+        **dict.fromkeys(("imu", "gps", "lost"), (math.inf, 0, 0, 0, 0, 0, 1)),
     }
 
 

@@ -391,7 +391,8 @@ def test_two_robots_are_in_one_scene_of_mujoco(options: dict[str, str]) -> None:
     import mujoco
 
     shapes = '<{0} name="hull"><geometry><box size="1 1 1"/></geometry></{0}>'
-    inertial = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
+    moments = 'ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"'
+    inertial = f'<inertial><mass value="1"/><inertia {moments}/></inertial>'
     robot = (
         f'<robot name="r"><link name="base">{inertial}{shapes.format("collision")}</link>'
         f'<link name="arm">{inertial}{shapes.format("collision").replace("hull", "plate")}</link>'

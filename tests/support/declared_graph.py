@@ -43,6 +43,8 @@ OFF = (
     'source_type == "c',
     "not (data_type ==",
     "enable_path_lookahead_",
+    # move_group --debug (planning_pipeline.cpp).
+    "publish_received_requests_",
     "subscribe_to_stamped_footprint_",
     'command_out_type == "std_msgs/Float64MultiArr',
 )

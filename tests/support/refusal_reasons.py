@@ -34,7 +34,4 @@ def is_true(why: str, data: bytes) -> bool:
     if found := re.fullmatch(r"MB105 xacro substitution '(.*)'", why):
         values = etree.fromstring(data).xpath("//@*|//text()")
         return any(found[1] == " ".join(value.split()) for value in values)
-    if found := re.search(r"Namespace prefix (\w+) .* is not defined", why):
-        prefix = found[1].encode()
-        return prefix + b":" in data and b"xmlns:" + prefix not in data
     return False

@@ -13,6 +13,7 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.base.releases import releases_with
 from multibot_rewrite.description.checks.hazards import hazards
+from multibot_rewrite.description.checks.loose import loosely_written
 from multibot_rewrite.description.checks.model_namespaces import ignored_namespaces, used_namespaces
 from multibot_rewrite.description.checks.problem import Problem, to_findings
 from multibot_rewrite.description.checks.references import (
@@ -40,6 +41,7 @@ def audit(inventory: Inventory, renames: RenameMap, tree: Tree) -> list[Finding]
     document = inventory.document
     errors = chain(leftover_xacro(inventory), worlds(inventory), duplicates(inventory))
     warnings = chain(
+        loosely_written(document),
         undeclared(inventory, renames.naming),
         ambiguous(inventory),
         unknown_parts(inventory, tree),

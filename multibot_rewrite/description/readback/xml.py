@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from lxml import etree
 from lxml.etree import _Element
 
+from multibot_rewrite.base.loose_xml import is_loose, well_formed
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.description.rewriters.vocabulary import split_path, split_step
 
@@ -21,7 +22,14 @@ _PARSER = etree.XMLParser(resolve_entities=False, huge_tree=True, remove_blank_t
 def read_xml(data: bytes, file: str) -> _Element:
     """The root element; raises InputError."""
     try:
-        return etree.fromstring(data, _PARSER)
+        return etree.fromstring(well_formed(data).text if is_loose(data) else data, _PARSER)
+    except etree.XMLSyntaxError:
+        return _read_loosely(data, file)
+
+
+def _read_loosely(data: bytes, file: str) -> _Element:
+    try:
+        return etree.fromstring(well_formed(data).text, _PARSER)
     except etree.XMLSyntaxError as error:
         raise InputError(f"{file}: cannot be read again: {error}") from None
 

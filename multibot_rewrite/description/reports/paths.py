@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from multibot_rewrite.description.rewriters.tree import NAMESPACES
+from multibot_rewrite.base.loose_xml import NAMESPACES
 
 if TYPE_CHECKING:
     from lxml.etree import _Element

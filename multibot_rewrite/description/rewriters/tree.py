@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
+from multibot_rewrite.base.loose_xml import NAMESPACES
 from multibot_rewrite.base.model import Site, VocabularyError
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.description.rewriters.vocabulary import (
@@ -24,16 +25,6 @@ from multibot_rewrite.description.rewriters.vocabulary import (
 
 if TYPE_CHECKING:
     from lxml.etree import _Element
-
-
-_STAGE = "http://playerstage.sourceforge.net/gazebo/xmlschema/#"
-# Prefixes of the vocabulary; a document may bind others to the same namespaces.
-NAMESPACES = {
-    "gz": "http://gazebosim.org/schema",
-    "ignition": "http://ignitionrobotics.org/schema",
-    "drake": "http://drake.mit.edu",
-    **{prefix: _STAGE + prefix for prefix in ("controller", "sensor", "joint", "slider", "body")},
-}
 
 
 def qualified(name: str) -> str:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from functools import lru_cache
 from operator import sub
 
@@ -18,6 +19,7 @@ from multibot_rewrite.base.bounded import MAX_BYTES
 from multibot_rewrite.base.file_kinds import DESCRIPTIONS, SRDF, refuse_others
 from multibot_rewrite.base.findings.finding import Finding, locate
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.loose_xml import Mended, is_loose, well_formed
 from multibot_rewrite.base.model import Edit, InputError
 from multibot_rewrite.base.record import NamedTuple
 
@@ -72,11 +74,7 @@ def read_document(source: bytes, file: str, placed: bool = True) -> Document:
     Without ``placed`` elements are numbered and not looked for in the bytes.
     """
     _refuse_bytes(source, file)
-    try:
-        root = etree.fromstring(source, _PARSER)
-    except etree.XMLSyntaxError as error:
-        _refuse_other_kinds(source, file)
-        raise InputError(_syntax_message(error, file)) from None
+    root = _parsed(source, file)
     elements = list(root.iter("*"))
     starts = start_offsets(source) if placed else range(len(elements))
     document = Document(source, file, root, elements, starts)
@@ -84,6 +82,19 @@ def read_document(source: bytes, file: str, placed: bool = True) -> Document:
     if placed:
         _refuse_wide(document)
     return document
+
+
+def _parsed(source: bytes, file: str) -> etree._Element:
+    """The root of a text as TinyXML-2 reads it, so that what is no fault to it is none here."""
+    if not is_loose(source):
+        with suppress(etree.XMLSyntaxError):
+            return etree.fromstring(source, _PARSER)
+    mended = well_formed(source)
+    try:
+        return etree.fromstring(mended.text, _PARSER)
+    except etree.XMLSyntaxError as error:
+        _refuse_other_kinds(source, file)
+        raise InputError(_syntax_message(error, file, mended)) from None
 
 
 def _refuse_bytes(source: bytes, file: str) -> None:
@@ -110,11 +121,12 @@ def _refuse_other_kinds(source: bytes, file: str) -> None:
         refuse_others(source, file, *DESCRIPTIONS, SRDF)
 
 
-def _syntax_message(error: etree.XMLSyntaxError, file: str) -> str:
+def _syntax_message(error: etree.XMLSyntaxError, file: str, mended: Mended) -> str:
     message = " ".join(str(error.msg).split()).partition(", line ")[0]
     message = message.partition(", use XML_PARSE_HUGE")[0].partition(", see xml")[0]
     hint = next((hint for start, hint in _HINTS if start in message), CORRECT)
     line, column = error.position
+    column = mended.column(line, column)
     return f"{file}:{line or 1}:{column or 1}: not well-formed XML: {message}; {hint}"
 
 

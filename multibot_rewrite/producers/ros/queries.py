@@ -107,7 +107,8 @@ def with_topic_details(
     unknown = {end.node: end for end in found if end.node not in known and end.kind != ACTION}
     if not unknown or asked.over():
         return endpoints
-    return [*endpoints, *_with_process(node, endpoints, unknown)]
+    better = dict(_with_process(node, endpoints, unknown))
+    return [*(it for it in endpoints if it not in better), *better.values()]
 
 
 def _query_topics(
@@ -131,18 +132,16 @@ def _query_topics(
     return result
 
 
-def _with_process(node: Any, endpoints: list[End], unknown: Mapping[str, End]) -> Iterator[End]:
-    """For each node without a known process one endpoint with its process.
-
-    The same endpoint without a process is removed from ``endpoints``.
-    """
+def _with_process(
+    node: Any, endpoints: Collection[End], unknown: Mapping[str, End]
+) -> Iterator[tuple[End, End]]:
+    """For each node without a known process one of its endpoints, and the same with its process."""
     for name, end in unknown.items():
         topic = end.kind == TOPIC
         found = _topic_endpoints(node, end.name) if topic else _service_endpoints(node, end)
-        for better in found:
-            if better.node == name and better.role == end.role and end in endpoints:
-                endpoints.remove(end)
-                yield better
+        same = (it for it in found if it.node == name and it.role == end.role)
+        if end in endpoints and (better := next(same, None)):
+            yield end, better
 
 
 def _topic_endpoints(node: Any, topic: str) -> list[End]:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 
 from multibot_rewrite.base.conventions import WORLD_FRAMES
-from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.base.wording import SEVERAL, and_then, only, shorten, unique
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import see, where
@@ -16,6 +16,7 @@ from multibot_rewrite.system.records import Edge
 from multibot_rewrite.system.tool_nodes import last_word
 
 _STATIC = "static_transform_publisher"
+_ODOM = "odom"
 
 
 @system_rule(
@@ -250,7 +251,7 @@ def static_and_moving(seen: Index) -> Iterator[Finding]:
     "transform-of-two-senders",
     ERROR,
     what="Several publishers send the same transform: an EKF and the controller both odometry, AMCL and"
-    " SLAM both the place in the map.",
+    " SLAM both the place in the map. A note where the transform is static, and all send one value.",
     why="The robot jumps between what the two believe, many times a second.",
     fix="Let one of them send it: `publish_tf: false` of the EKF, `enable_odom_tf: false` of"
     " diff_drive_controller, `publish_odom_tf` of a simulator's plugin, `tf_broadcast: false` of AMCL.",
@@ -278,9 +279,14 @@ def transform_of_two_senders(seen: Index) -> Iterator[Finding]:
             if others:
                 cause += f"; or {shorten(others)} with the description or parameters of {who}"
             yield transform_of_two_senders.finding(
-                message, cause + see(own),
+                message, cause + see(own), level=NOTE if all(map(_is_fixed, own)) else ERROR,
                 robot=who, names=unique(it.child for it in own), **where(own),
             )  # fmt: skip
+
+
+def _is_fixed(edge: Edge) -> bool:
+    """Is it static and of one value? Where senders differ none is known."""
+    return edge.static and bool(edge.transform)
 
 
 def _sent_twice(tree: Tree) -> list[Edge]:
@@ -320,3 +326,34 @@ def robots_name_twice(seen: Index) -> Iterator[Finding]:
                 " by default), on top of a description that has the name: set them to '' and false"
             )
             yield robots_name_twice.finding(message, cause, robot=robot, names=tuple(frames))
+
+
+@system_rule(
+    "MG414",
+    "odometry-of-another-robot",
+    ERROR,
+    what="A robot's frame is sent below the odom frame of another robot.",
+    why="Both robots begin in one frame: each moves with the odometry of the other, and its own odom "
+    "frame is in no tree.",
+    fix="Set the odometry frame of the sender to that of its own robot.",
+    bad="""\
+running: transform robot1/odom -> robot1/base_link on /tf
+running: transform robot1/odom -> robot2/base_link on /tf
+""",
+    good="""\
+running: transform robot1/odom -> robot1/base_link on /tf
+running: transform robot2/odom -> robot2/base_link on /tf
+""",
+    line=2,
+)
+def odometry_of_another(seen: Index) -> Iterator[Finding]:
+    """A robot that stands on another one is below its links, not below its odometry."""
+    for tree in seen.trees:
+        for edge in tree.edges:
+            owner, robot = seen.frame_robot(edge.parent), seen.frame_robot(edge.child)
+            if owner and robot and owner != robot and seen.plain_frame(edge.parent) == _ODOM:
+                message = f"{edge.child} is sent below {edge.parent}, the odometry of {owner}"
+                hint = f"set the odometry frame of {robot} to its own{see([edge])}"
+                yield odometry_of_another.finding(
+                    message, hint, robot=robot, names=(edge.child,), **where([edge])
+                )

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.base.conventions import is_from_outside
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
@@ -10,7 +11,7 @@ from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.base.wording import shorten, unique
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import where
-from multibot_rewrite.system.index import Ends, Index
+from multibot_rewrite.system.index import Ends, Index, once
 from multibot_rewrite.system.records import ACTION, CALLS, RUNS, SUBSCRIBES, TOPIC, End
 from multibot_rewrite.system.tool_nodes import is_viewer, last_word
 
@@ -84,14 +85,27 @@ def meant(seen: Index, end: End) -> Ends | None:
     name; nothing for one of which it is not known what the code calls it."""
     if not is_needed(end) or not end.type:
         return None
-    same = (it for it in seen.by_name.values() if (it.kind, it.type) == (end.kind, end.type))
-    alike = {it.name: it for it in same if _may_be(seen, it, end)}
+    given = _given(seen)
+    own = {"", seen.robot(end.node)}
+    same = {at: it for one in own for at, it in given.get((end.kind, end.type, one), ())}
+    alike = {same[at].name: same[at] for at in sorted(same) if _may_be(seen, same[at], end)}
     if end.type.startswith(_PLAIN_TYPES):
         # What their names in the code have in common counts, not the robot's namespace.
         words = {last_word(one.code_name): it for it in alike.values() for one in _givers(it)}
         return words.get(nearest(last_word(end.code_name), words))
     last = [name for name in alike if name.endswith(f"/{last_word(end.name)}")]
     return alike.get(nearest(end.name, last or alike, alike=0.0))
+
+
+@once
+def _given(seen: Index) -> Mapping[tuple[str, str, str], list[tuple[int, Ends]]]:
+    """What is sent or served, by its kind, its type and the robot that does, each with its place among
+    all: a look at all names for each end takes the square of the robots."""
+    found: dict[tuple[str, str, str], list[tuple[int, Ends]]] = defaultdict(list)
+    for at, it in enumerate(seen.by_name.values()):
+        for robot in {seen.robot(one.node) for one in _givers(it)}:
+            found[it.kind, it.type, robot].append((at, it))
+    return found
 
 
 def _may_be(seen: Index, ends: Ends, end: End) -> bool:

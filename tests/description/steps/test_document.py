@@ -66,7 +66,6 @@ BAD = [
     pytest.param(b'<robot xacro:a="1"/>', "xmlns:", id="undeclared-attribute-prefix"),
     pytest.param(b"<a/>" + DECLARED + ROBOT, "delete what is before", id="markup-first"),
     pytest.param(b"<!--a-->" + DECLARED + ROBOT, "delete what is before", id="comment-first"),
-    pytest.param(b"\n" + DECLARED + ROBOT, "delete what is before", id="blank-line-first"),
     pytest.param(b"<robot>\0</robot>", "correct the XML", id="nul-in-text"),
     pytest.param(b'<robot name="a\0"/>', "correct the XML", id="nul-in-attribute"),
     pytest.param(ROBOT + b"\0", "correct the XML", id="nul-at-the-end"),

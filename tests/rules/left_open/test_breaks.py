@@ -9,7 +9,7 @@ import re
 from pathlib import Path
 
 import pytest
-from closed_arm import ARM_FILES
+from closed_arm import ARM_FILES, MASS
 from closed_robot import FILES
 from open_findings import found
 
@@ -156,8 +156,8 @@ BREAKS = [
     # A link with two joints above it: two static transforms.
     (
         "rover.urdf",
-        '<link name="finger_link"><inertial><mass value="1"/></inertial></link>\n',
-        '<link name="finger_link"><inertial><mass value="1"/></inertial></link>\n'
+        f'<link name="finger_link">{MASS}</link>\n',
+        f'<link name="finger_link">{MASS}</link>\n'
         '  <joint name="second" type="fixed"><parent link="lidar_link"/>'
         '<child link="imu_link"/></joint>\n',
         "MG401",

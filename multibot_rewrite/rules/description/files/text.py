@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from multibot_rewrite.base.findings.finding import NOTE, WARNING
-from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.base.findings.rule import SRDF, URDF, XACRO, rule
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import Edit
+from multibot_rewrite.description.checks.loose import loosely_written
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.subject import Subject
 
@@ -100,3 +101,27 @@ def unused_namespace(subject: Subject) -> Iterator[Problem]:
             edit = Edit(found.start(), found.end(), b"", None)
             message = f"nothing in the file uses the prefix {found[1].decode()!r}"
             yield Problem(root, message, f"xmlns:{found[1].decode()}", "", (edit,))
+
+
+@rule(
+    "MB146",
+    "loose-xml",
+    WARNING,
+    what="A prefix that nothing declares (gz:type), -- in a comment, an XML declaration behind blank "
+    "lines, or a default namespace (xmlns=).",
+    why="urdfdom, sdformat and ros2_control read XML with TinyXML-2, which takes it: a prefix is part "
+    "of the name. xacro, launch files and spawn_entity.py of Gazebo Classic read it with Python's "
+    "parsers: they refuse the first three, and find no <link> in a default namespace. In a xacro file "
+    "it is an error.",
+    fix='Declare the prefix on the root element, as xmlns:gz="http://gazebosim.org/schema"; write == '
+    "for --; delete what is before <?xml, and the default namespace.",
+    bad='<link name="a"/>\n<!-- old -- and wrong -->\n<link name="b"/>',
+    good='<link name="a"/>\n<!-- old and wrong -->\n<link name="b"/>',
+    line=3,
+    formats=(URDF, SRDF, XACRO),
+)
+def loose_xml(subject: Subject) -> Iterator[Problem]:
+    """As the rewrite says it; xacro itself cannot read what is wrong here."""
+    found = () if subject.origins else loosely_written(subject.document)
+    level = ERROR if subject.format == XACRO else ""
+    yield from (it._replace(level=level) for it in found)
