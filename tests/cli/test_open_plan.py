@@ -17,9 +17,9 @@ from multibot_rewrite.system.json import to_json
 CLOSED = FILES["ekf.yaml"]
 OPEN = CLOSED.replace("imu0: imu/data", "imu0: imu_0/data")
 SAID = (
-    "MG303 /ekf_filter_node of robot1 subscribes to /imu_0/data, which no node publishes; /ros_gz_bridge"
-    " publishes /imu/data (pass the rule /imu_0/data:=/imu/data, or write /imu/data in its parameters;"
-    " see "
+    "MG303 /ekf_filter_node of robot1 subscribes to /imu_0/data, which no node publishes; "
+    "/ros_gz_bridge publishes /imu/data (pass the rule /imu_0/data:=/imu/data, or write /imu/data in "
+    "its parameters; see "
 )
 ODOMETRY = "odom0: base_controller/odom"
 

@@ -1,7 +1,7 @@
 """The way of a new user from one description to robots that run as planned, by ``--help`` alone.
 
 ``python tests/support/walk.py REPOSITORY [DESCRIPTION]`` walks it in a copy of a checkout and prints
-the page tests/support/walk.md. It needs launch, launch_ros and rclpy; neither ROS's programs nor a simulator:
+tests/support/walk.md. It needs launch, launch_ros and rclpy; neither ROS's programs nor a simulator:
 the programs of the launch file write down what they are told, and nodes that do as they are told stand
 where they would be.
 """

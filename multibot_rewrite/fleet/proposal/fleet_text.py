@@ -32,7 +32,7 @@ def text_of(it: Proposal, folder: str, name: str) -> str:
 
 
 def _schema(folder: str) -> str:
-    """The schema for editors: relative where this package is installed below the fleet file's folder."""
+    """For editors: relative where this package is installed below the fleet file's folder."""
     path = str(files(FLEET_PACKAGE) / SCHEMA)
     below = os.path.relpath(path, folder)
     return path if below.startswith(os.pardir) else below

@@ -134,7 +134,7 @@ def _nameless(seen: Index) -> Iterator[Finding]:
         senders = nodes_of(at_work(ends.publishers)) if ends else ()
         if ends and senders and not written and ends.type in _PLACED:
             yield frame_id_unknown.finding(
-                f"frame_id of {topic} is empty: nobody can say where it was measured; sent by"
+                f"frame_id of {topic} is empty: it is unknown where it was measured; sent by"
                 f" {_who(senders)}",
                 f"set the frame of {_who(senders)}",
                 robot=seen.robot(topic) or only(robots_of(seen, senders)),

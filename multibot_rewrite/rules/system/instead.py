@@ -41,7 +41,7 @@ def sent_instead(seen: Index, end: End) -> Ends | None:
 
 
 def _data(seen: Index, end: End) -> Ends | None:
-    """What nobody reads; of what a body measures also what others read."""
+    """What no node reads; of what a body measures also what others read."""
     # Such as a footprint, which a person may send.
     by_hand = "teleop" in last_word(end.name) or not words.moves(end.name, end.type)
     outside = is_from_outside(end.name) and by_hand

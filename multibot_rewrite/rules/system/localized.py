@@ -109,7 +109,7 @@ def _is_told_not_to(seen: Index, node: str) -> bool:
 def _lost(seen: Index, tree: Tree, node: str, body: _Body) -> Finding:
     start = _starts_at(seen, node)
     return map_not_joined.finding(
-        f"sends no {_MAP} -> {body.root} on {tree.topic}, and nobody else does",
+        f"sends no {_MAP} -> {body.root} on {tree.topic}, and no other node does",
         _why(seen, node, body, start.name if start else ""),
         robot=seen.robot(node), node=node, names=(body.root, *body.loose),
     )  # fmt: skip
@@ -126,7 +126,7 @@ def _why(seen: Index, node: str, body: _Body, start: str) -> str:
             f" odom_frame_id to {body.root}"
         )
     if unsent := _unsent(seen, node):
-        return f"it waits for {shorten(unsent)}, which nobody publishes"
+        return f"it waits for {shorten(unsent)}, which no node publishes"
     ends = seen.by_name.get((TOPIC, start))
     told = any(
         (it.node, it.name, it.value) == (node, _START, "true") for it in seen.system.parameters
@@ -138,7 +138,7 @@ def _why(seen: Index, node: str, body: _Body, start: str) -> str:
 
 
 def _unsent(seen: Index, node: str) -> Sequence[str]:
-    """The scans and maps that it reads and nobody publishes."""
+    """The scans and maps that it reads and no node publishes."""
     names = (
         it.name
         for it in seen.by_node.get(node, ())
