@@ -19,6 +19,10 @@ class Spoiled(NamedTuple):
 
 LAUNCH, ROVER, BRIDGE = "fleet.launch.py", "robot1/rover.urdf", "robot1/bridge.yaml"
 PARAMS = "base1/nav2_params.yaml"
+WHEEL = (
+    '<collision><origin rpy="1.5708 0 0"/><geometry><cylinder radius="0.1" length="0.04"/></geometry>'
+    "</collision>"
+)
 SYSTEM = '<plugin filename="gz-sim-{}-system" name="gz::sim::systems::{}"'
 SIMULATED = [
     Spoiled("launch_tutorial", "world.sdf", SYSTEM.format("sensors", "Sensors"),
@@ -29,6 +33,7 @@ SIMULATED = [
             SYSTEM.format("label", "Label"), "robot1", "drives", "the world has no physics"),
     Spoiled("launch_tutorial", ROVER, '<mass value="0.5"/>', '<mass value="0"/>', "robot1",
             "drives", "diff-drive has no left_joint in Gazebo"),
+    Spoiled("launch_tutorial", ROVER, WHEEL, "", "robot1", "drives", "has no collision to roll on"),
     Spoiled("launch_tutorial", ROVER, "<mass value=", "<mass kg=", "robot1", "starts",
             "Gazebo keeps no link"),
     Spoiled("launch_tutorial", ROVER, "<right_joint>robot1_right_wheel_joint",

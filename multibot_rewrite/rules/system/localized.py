@@ -1,4 +1,4 @@
-"""Dangers of localization: a node that is to join the map and the robot, and does not."""
+"""Dangers of where a robot is: nothing joins the map and the robot, or the odometry is another's."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import system_rule
+from multibot_rewrite.rules.places import see, where
 from multibot_rewrite.rules.system.states import ACTIVE
 from multibot_rewrite.rules.system.tf_topics import root_of
 from multibot_rewrite.rules.system.transforms import collide
@@ -145,3 +146,34 @@ def _unsent(seen: Index, node: str) -> Sequence[str]:
         if it.role == SUBSCRIBES and (words.is_of_a_body(it.type) or it.type == words.MAP)
     )
     return [it for it in names if it not in seen.published]
+
+
+@system_rule(
+    "MG414",
+    "odometry-of-another-robot",
+    ERROR,
+    what="A robot's frame is sent below the odom frame of another robot.",
+    why="Both robots begin in one frame: each moves with the odometry of the other, and its own odom "
+    "frame is in no tree.",
+    fix="Set the odometry frame of the sender to that of its own robot.",
+    bad="""\
+running: transform robot1/odom -> robot1/base_link on /tf
+running: transform robot1/odom -> robot2/base_link on /tf
+""",
+    good="""\
+running: transform robot1/odom -> robot1/base_link on /tf
+running: transform robot2/odom -> robot2/base_link on /tf
+""",
+    line=2,
+)
+def odometry_of_another(seen: Index) -> Iterator[Finding]:
+    """A robot that stands on another one is below its links, not below its odometry."""
+    for tree in seen.trees:
+        for edge in tree.edges:
+            owner, robot = seen.frame_robot(edge.parent), seen.frame_robot(edge.child)
+            if owner and robot and owner != robot and seen.plain_frame(edge.parent) == _ODOM:
+                message = f"{edge.child} is sent below {edge.parent}, the odometry of {owner}"
+                hint = f"set the odometry frame of {robot} to its own{see([edge])}"
+                yield odometry_of_another.finding(
+                    message, hint, robot=robot, names=(edge.child,), **where([edge])
+                )
