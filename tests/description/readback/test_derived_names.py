@@ -85,3 +85,18 @@ def test_a_name_in_a_message_is_a_mention(where: str) -> None:
     text = MODEL.format("triggered-publisher", "TriggeredPublisher", ends.format(*given))
     assert codes(text) == ["MB901"]
     assert codes(text.replace("'base'", "'other'")) == []
+
+
+UUV = """<robot name="r"><link name="base"/><gazebo>
+<plugin name="p" filename="libuuv_joint_state_publisher.so">{}</plugin></gazebo></robot>"""
+
+
+def test_nothing_of_ros_2_is_inserted_into_what_reads_none_of_it() -> None:
+    """JointStatePublisher.cc of uuv_simulator and of Plankton: robotNamespace, and no <ros>."""
+    old = UUV.format("<robotNamespace>r</robotNamespace><updateRate>5</updateRate>")
+    for layout in ("postfix", "both", "tf-per-robot"):
+        assert "<ros>" not in rewrite(old, "robot1", layout=layout, distro="humble").text
+    assert "MG320" in [it.code for it in rewrite(old, "robot1", distro="humble").findings]
+    made = rewrite(old, "robot1", layout="both", distro="humble")
+    assert "<robotNamespace>robot1/r</robotNamespace>" in made.text
+    assert made.not_proved == ()
