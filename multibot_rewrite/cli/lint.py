@@ -12,7 +12,12 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.findings.formats.shared import counts, in_words
 from multibot_rewrite.base.findings.selection import fails
 from multibot_rewrite.base.model import UsageError, VocabularyError
-from multibot_rewrite.base.releases import facts_of_release, release_here
+from multibot_rewrite.base.releases import (
+    facts_of_release,
+    release_doubt,
+    release_of,
+    release_told,
+)
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.output import (
     detail,
@@ -54,7 +59,10 @@ def run(options: argparse.Namespace) -> int:
     """Lint or fix; returns the exit code."""
     check_use(options)
     config = configured(".", options.config)
-    release = release_here(options.distro or config.distro)
+    asked = options.distro or config.distro
+    if doubt := release_doubt(asked):
+        note(options, f"warning: {doubt}")
+    release = release_of(release_told(asked), b"")
     config = with_options(config, **given(options), distro=release)
     paths, unreadable = _files(options, config)
     _check_targets(options, paths)

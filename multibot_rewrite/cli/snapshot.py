@@ -94,7 +94,7 @@ def report(snapshot: System) -> Iterator[str | Grid]:
         yield Grid(("tf topic", "frames", "publishers"), tf)
     if snapshot.heard:
         yield ""
-        yield Grid(("message on", "frame_id"), snapshot.heard)
+        yield Grid(("message on", "frame_id"), [it[:2] for it in snapshot.heard])
     said = answering(snapshot)
     if said:
         yield ""

@@ -127,7 +127,7 @@ def _fleet(
     table = with_meetings(fleet.table, members, naming)
     chosen = [it.member for it in robots if is_chosen(it)]
     real = [it.member for it in robots if it.spec.simulator == REAL]
-    told = wrong_in_descriptions(members, file.vocabulary, chosen, real)
-    told = (*declared_twice(robots, naming, table), *told)
+    wrong = wrong_in_descriptions(members, file.vocabulary, chosen, real)
+    told = (*declared_twice(robots, naming, table), *wrong)
     problems = tuple(dict.fromkeys((*table.problems, *told, *notes)))
     return fleet._replace(table=table._replace(problems=problems))

@@ -111,6 +111,7 @@ HOMES: tuple[Home, ...] = (
             "rules.system.lookups",
             "rules.system.localized",
             "rules.system.refused",
+            "rules.system.stamps",
         ),
     ),
     Home(

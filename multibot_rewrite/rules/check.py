@@ -44,6 +44,7 @@ from multibot_rewrite.rules.system import (
     refused,
     relays,
     sharing,
+    stamps,
     states,
     tf_topics,
     unsent,
@@ -63,6 +64,7 @@ _SYSTEM = (
         lookups,
         localized,
         refused,
+        stamps,
         clocks,
         states,
         equal_robots,
@@ -156,7 +158,7 @@ def _besides(plan: Index, seen: Index, found: Sequence[Finding]) -> Iterator[Fin
 
 def _all_in(finding: Finding, loose: Set[str]) -> bool:
     """Is it only about what need not be there by the plan?"""
-    return bool(finding.names) and loose.issuperset(finding.names)
+    return bool(finding.names) and {*finding.names} <= loose
 
 
 def _is_meant(plan: Index, seen: Index, finding: Finding) -> bool:

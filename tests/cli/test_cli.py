@@ -216,7 +216,7 @@ def test_changes_stand_where_they_say(folder: Path, rover: bytes) -> None:
 
 def test_again_rewrites_what_is_rewritten(folder: Path) -> None:
     run(folder, "siblings.urdf", "robot1", "-o", "robot1.urdf")
-    result = run(folder, "robot1.urdf", "robot1", "--again")
+    result = run(folder, "robot1.urdf", "robot1", "--force")
     assert result.code == 0
     assert all(name.endswith("/robot1/robot1") for name in names(result.out, "link"))
 
@@ -250,7 +250,7 @@ def test_a_vocabulary_file_teaches_a_plugin(folder: Path) -> None:
         '<robot name="a">\n<link name="base_link"/>\n<gazebo><plugin name="mine" '
         'filename="libmine.so"><my_frame>base_link</my_frame></plugin></gazebo>\n</robot>\n'
     )
-    (folder / "mine.vocab").write_text("[plugin mine]\nmy_frame uses link frame\n")
+    (folder / "mine.vocab").write_text("[plugin mine]\nopens: nothing\nmy_frame uses link frame\n")
     without = run(folder, "in.urdf", "robot1")
     assert b"<my_frame>base_link</my_frame>" in without.out
     assert [line.split(":")[1] for line in without.err.splitlines()[:2]] == ["3", "3"]

@@ -19,6 +19,10 @@ class Spoiled(NamedTuple):
 
 LAUNCH, ROVER, BRIDGE = "fleet.launch.py", "robot1/rover.urdf", "robot1/bridge.yaml"
 PARAMS = "base1/nav2_params.yaml"
+WHEEL = (
+    '<collision><origin rpy="1.5708 0 0"/><geometry><cylinder radius="0.1" length="0.04"/></geometry>'
+    "</collision>"
+)
 SYSTEM = '<plugin filename="gz-sim-{}-system" name="gz::sim::systems::{}"'
 SIMULATED = [
     Spoiled("launch_tutorial", "world.sdf", SYSTEM.format("sensors", "Sensors"),
@@ -29,6 +33,7 @@ SIMULATED = [
             SYSTEM.format("label", "Label"), "robot1", "drives", "the world has no physics"),
     Spoiled("launch_tutorial", ROVER, '<mass value="0.5"/>', '<mass value="0"/>', "robot1",
             "drives", "diff-drive has no left_joint in Gazebo"),
+    Spoiled("launch_tutorial", ROVER, WHEEL, "", "robot1", "drives", "has no collision to roll on"),
     Spoiled("launch_tutorial", ROVER, "<mass value=", "<mass kg=", "robot1", "starts",
             "Gazebo keeps no link"),
     Spoiled("launch_tutorial", ROVER, "<right_joint>robot1_right_wheel_joint",
@@ -45,15 +50,15 @@ SIMULATED = [
             "no topic of ROS reaches its drive"),
     Spoiled("launch_tutorial", BRIDGE, 'ros_topic_name: "/robot1/cmd_vel"',
             'ros_topic_name: "/cmd_vel"', "robot1", "drives", "that moves []"),
-    Spoiled("launch_tutorial", LAUNCH, '"-name", "robot2"', '"-name", "robot1"',
+    Spoiled("launch_tutorial", LAUNCH, "'-name', name", "'-name', 'robot1'",
             "robot2", "starts", "two models are called"),
 ]  # fmt: skip
 NAVIGATED = [
-    Spoiled("mixed_fleet", LAUNCH, '"autostart": True', '"autostart": False', "base1", "starts",
+    Spoiled("mixed_fleet", LAUNCH, "'autostart': True", "'autostart': False", "base1", "starts",
             "autostart is not true"),
-    Spoiled("two_robots_nav2", LAUNCH, '"route_server", ', "", "robot1", "starts",
+    Spoiled("two_robots_nav2", LAUNCH, "  'route_server',", "", "robot1", "starts",
             "route_server waits for a lifecycle manager"),
-    Spoiled("two_robots_nav2", LAUNCH, '("/map", "map")', '("/map", "map_of_mine")', "robot1",
+    Spoiled("two_robots_nav2", LAUNCH, "('/map', 'map')", "('/map', 'map_of_mine')", "robot1",
             "plans", "waits for the map /robot1/map"),
     Spoiled("mixed_fleet", PARAMS, "cmd_vel_in_topic: cmd_vel_smoothed",
             "cmd_vel_in_topic: cmd_vel_smooth", "base1", "drives", "that moves nothing"),
@@ -68,8 +73,8 @@ NAVIGATED = [
 ]  # fmt: skip
 CONTROLLED = [
     Spoiled("two_arms_moveit", LAUNCH,
-            'namespace="/right",\n            name="robot_state_publisher"',
-            'namespace="/left",\n            name="description"', "right", "starts",
+            "namespace=f'/{name}',\n            name='robot_state_publisher'",
+            "namespace='/left',\n            name='description'", "right", "starts",
             "waits for /right/robot_description, which no node sends"),
     Spoiled("two_arms_moveit", "left/controllers.yaml",
             "{type: joint_trajectory_controller/JointTrajectoryController}", "{}", "left", "starts",
@@ -92,18 +97,18 @@ NAMED = [
             "odom_topic: /robot2/odom", "robot1", "sees", "which robot2 sends"),
     Spoiled("two_robots_nav2", "robot1/nav2_params.yaml", "robot_base_frame: base_link",
             "robot_base_frame: robot1/base_link", "robot1", "plans", "robot1/base_link on /robot1/tf"),
-    Spoiled("two_robots_nav2", "fleet.launch.py", '("/tf", "tf")', '("/tf_", "tf")',
+    Spoiled("two_robots_nav2", "fleet.launch.py", "('/tf', 'tf')", "('/tf_', 'tf')",
             "robot1", "plans", "on /tf, where it is not"),
-    Spoiled("two_robots_nav2", "fleet.launch.py", 'namespace="/robot2"', 'namespace="/robot1"',
+    Spoiled("two_robots_nav2", "fleet.launch.py", "namespace=f'/{name}'", "namespace='/robot1'",
             "robot2", "starts", "two nodes are called /robot1/"),
-    Spoiled("two_robots_nav2", "fleet.launch.py", '"route_server", ', '"router", ',
+    Spoiled("two_robots_nav2", "fleet.launch.py", "  'route_server',", "  'router',",
             "robot1", "starts", "waits for router"),
-    Spoiled("two_robots_nav2", "fleet.launch.py", '"-topic", "/robot1/robot_description"',
-            '"-topic", "robot_description"', "robot1", "starts", "waits for /robot_description"),
-    Spoiled("two_robots_nav2", "fleet.launch.py", 'file("robot1/nav2_params.yaml")',
-            'file("robot1/params.yaml")', "robot1", "starts", "params.yaml, which is not there"),
-    Spoiled("two_robots_nav2", "fleet.launch.py", 'text("robot1/hexbase.urdf")',
-            'text("robot1/hexbase")', "", "starts", "the launch file raises"),
+    Spoiled("two_robots_nav2", "fleet.launch.py", "'-topic', f'/{name}/robot_description'",
+            "'-topic', 'robot_description'", "robot1", "starts", "waits for /robot_description"),
+    Spoiled("two_robots_nav2", "fleet.launch.py", "file(f'{name}/nav2_params.yaml')",
+            "file(f'{name}/params.yaml')", "robot1", "starts", "params.yaml, which is not there"),
+    Spoiled("two_robots_nav2", "fleet.launch.py", "text(f'{name}/hexbase.urdf')",
+            "text(f'{name}/hexbase')", "", "starts", "the launch file raises"),
     Spoiled("two_robots_nav2", "fleet.launch.py", "cmd_vel:=/robot1/cmd_vel",
             "cmd_vel:=/robot2/cmd_vel", "robot1", "drives",
             "to /robot2/cmd_vel: that moves ['robot2']"),
@@ -114,8 +119,8 @@ NAMED = [
     Spoiled("two_arms_moveit", "left/arm.urdf", 'command_interface name="position"',
             'command_interface name="effort"', "left", "starts", "the description does not export"),
     Spoiled("two_arms_moveit", "fleet.launch.py",
-            'namespace="/right",\n            name="controller_manager"',
-            'namespace="/",\n            name="controller_manager"', "right", "starts",
+            "namespace=f'/{name}',\n            name='controller_manager'",
+            "namespace='/',\n            name='controller_manager'", "right", "starts",
             "a spawner waits for /right/controller_manager"),
     Spoiled("two_robots_postfix", "robot2/scout.urdf", "cmd_vel/robot2", "cmd_vel/robot1",
             "robot1", "drives", "/cmd_vel/robot1 moves robot2, too"),

@@ -180,7 +180,10 @@ def single() -> System:
 
 def slam_with_filters() -> System:
     """SLAM and two filters a robot: the second's map to odom is switched off."""
-    return with_tools(started(("nav2_slam", "robot_localization_gps")), TWO)
+    graph = started(("nav2_slam", "robot_localization_gps"))
+    for robot in TWO:
+        graph = moved(graph, f"/{robot}/imu", f"/{robot}/imu/data", "/imu_driver")
+    return with_tools(graph, TWO)
 
 
 def arms() -> System:

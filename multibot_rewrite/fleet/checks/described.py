@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, locate
 from multibot_rewrite.fleet.robots.member import Member
 from multibot_rewrite.rules.settings import Settings
 
@@ -59,5 +59,11 @@ def _is_for_gazebo(member: Member) -> bool:
 
 def _is_for_a_simulator(member: Member, found: Finding) -> bool:
     """Is it about a ``<gazebo>`` block?"""
-    before = [it for it in member.source.root if (it.sourceline or 0) <= found.line]
+    document = member.source
+    starts = zip(document.elements, document.starts, strict=True)
+    before = [
+        it
+        for it, at in starts
+        if it.getparent() is document.root and locate(document.source, at)[0] <= found.line
+    ]
     return bool(before) and before[-1].tag == "gazebo"

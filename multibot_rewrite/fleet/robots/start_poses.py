@@ -117,8 +117,9 @@ def _place(plan: FleetPlan, robot: RewrittenRobot, pose: Pose) -> Iterator[objec
         yield InitialPose(name, AMCL, initial_pose(pose))
         return
     if locators:
-        nodes = " and ".join(locators)
-        what = f"its pose is not published, because {nodes} already publishes where it is"
+        nodes = " and ".join(it or "its description" for it in locators)
+        says = "already says" if len(locators) == 1 else "already say"
+        what = f"its pose is not published, because {nodes} {says} where it is"
         hint = "a second parent would make the frame jump"
         yield _finding(LOCALISED_ALREADY, robot, what, hint)
         return

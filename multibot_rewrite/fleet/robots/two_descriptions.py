@@ -64,7 +64,7 @@ SDF_ALONE = declare(
     WARNING,
     what="robot_state_publisher gets an SDF.",
     why="It reads one only where the package sdformat_urdf is installed, which it does not depend on: "
-    "without it the node ends at its start, and nobody sends the transforms of the robot's links.",
+    "without it the node ends at its start, and no node sends the transforms of the robot's links.",
     fix="Name the robot's URDF as `description` and the SDF as `simulated`, or install "
     "ros-$ROS_DISTRO-sdformat-urdf on the robots.",
     bad="description: rover.sdf\nrobots: [{name: robot1}]\n",
@@ -85,7 +85,7 @@ def of_sdf_alone(plan: FleetPlan) -> Iterator[Finding]:
             links = _shown([*robot.member.described.declared.get("link", ())])
             message = (
                 f"robot_state_publisher of {robot.spec.name} gets an SDF, which it reads with the "
-                f"package sdformat_urdf alone; else nobody sends {links}"
+                f"package sdformat_urdf alone; else no node sends {links}"
             )
             hint = "name its URDF as description and this file as simulated, or install the package"
             yield at_robot(SDF_ALONE, robot, message, hint)

@@ -213,6 +213,8 @@ def _controllers(
     known: Knowledge,
 ) -> Iterator[RunningNode]:
     """The controllers that spawners load into launched managers, where they are activated."""
+    if not spawned:
+        return
     own = {full_name(it, known_node(it, (), known.nodes)): it.parameters for it in started}
     forwarded = controller_way(known.release)
     for name, texts in texts_of(spawned, own):

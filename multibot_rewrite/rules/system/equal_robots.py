@@ -72,7 +72,7 @@ def _silent(seen: Index) -> Iterator[Finding]:
         return
     there_at_all = {seen.robot(it) for it in heard}
     there: dict[tuple[str, str], dict[str, str]] = defaultdict(dict)
-    for it in seen.topics if heard and not seen.known.messages else ():
+    for it in seen.topics if heard and seen.nodes and not seen.known.messages else ():
         robot = seen.robot(it.name)
         if robot and words.kind_of_data(it.name, it.type) and at_work(it.publishers):
             there[seen.plain(it.name), it.type][robot] = it.name

@@ -129,12 +129,12 @@ def frame_id_unknown(seen: Index) -> Iterator[Finding]:
 
 def _nameless(seen: Index) -> Iterator[Finding]:
     """What a sensor or odometry sends without any frame: tf2 refuses it (an empty frame_id)."""
-    for topic, written in seen.system.heard:
+    for topic, written, _ in seen.system.heard:
         ends = seen.by_name.get((TOPIC, topic))
         senders = nodes_of(at_work(ends.publishers)) if ends else ()
         if ends and senders and not written and ends.type in _PLACED:
             yield frame_id_unknown.finding(
-                f"frame_id of {topic} is empty: nobody can say where it was measured; sent by"
+                f"frame_id of {topic} is empty: tf cannot say where it was measured; sent by"
                 f" {_who(senders)}",
                 f"set the frame of {_who(senders)}",
                 robot=seen.robot(topic) or only(robots_of(seen, senders)),
@@ -172,7 +172,7 @@ def _by_sender(seen: Index) -> dict[tuple[str, str, tuple[str, ...]], list[_Mess
 
 def _messages(seen: Index) -> Iterator[_Message]:
     """What nodes other than viewers send; tf2 takes a frame with a slash in front as one without."""
-    for topic, written in seen.system.heard:
+    for topic, written, _ in seen.system.heard:
         ends = seen.by_name.get((TOPIC, topic))
         senders = nodes_of(at_work(ends.publishers)) if ends else ()
         frame = written.removeprefix("/")

@@ -14,7 +14,7 @@ from multibot_rewrite.system.index import Ends, Index, at_work, once
 from multibot_rewrite.system.records import CALLS, SERVICE, SUBSCRIBES, UNKNOWN_NODES, End
 from multibot_rewrite.system.tool_nodes import is_viewer, last_word
 
-_MANAGER, _CHANGE = "lifecycle_manager", "/change_state"
+_MANAGER, _CHANGE = "lifecycle_manager", ("/change_state", "/get_state")
 # Every node serves them, or many do: another one of such a type says nothing.
 COMMON = (
     "rcl_interfaces/",
@@ -41,7 +41,7 @@ def sent_instead(seen: Index, end: End) -> Ends | None:
 
 
 def _data(seen: Index, end: End) -> Ends | None:
-    """What nobody reads; of what a body measures also what others read."""
+    """What no node reads; of what a body measures also what others read."""
     # Such as a footprint, which a person may send.
     by_hand = "teleop" in last_word(end.name) or not words.moves(end.name, end.type)
     outside = is_from_outside(end.name) and by_hand
@@ -56,7 +56,7 @@ def _data(seen: Index, end: End) -> Ends | None:
 
 def _is_offered(seen: Index, ends: Ends, end: End) -> bool:
     """Does another node of its robot send it, and does its own not read it already? What the nodes of
-    Nav2 and MoveIt show is no sensor."""
+    Nav2 and MoveIt show is no sensor; a twist_mux that no node reads is a finding of its own."""
     if any(it.node == end.node for it in ends.subscribers):
         return False
     robot = seen.robot(end.node) or seen.robot(end.name)
@@ -64,7 +64,7 @@ def _is_offered(seen: Index, ends: Ends, end: End) -> bool:
     return any(
         it.node != end.node
         and seen.robot(it.node) == robot
-        and (commands or team(it.node) == it.node)
+        and (not chooses(it.node) if commands else team(it.node) == it.node)
         for it in at_work(ends.publishers)
     )
 
@@ -124,6 +124,6 @@ def _is_lived_in(seen: Index, space: str) -> bool:
 
 def listed_in_vain(seen: Index, end: End) -> str:
     """The node that a lifecycle manager has in its list and nothing starts; empty for none."""
-    node = end.name.removesuffix(_CHANGE)
+    node = end.name.rpartition("/")[0]
     manager = end.kind == SERVICE and last_word(end.node).startswith(_MANAGER)
-    return node if manager and node != end.name and node not in seen.nodes else ""
+    return node if manager and end.name.endswith(_CHANGE) and node not in seen.nodes else ""

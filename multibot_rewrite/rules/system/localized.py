@@ -1,4 +1,4 @@
-"""Dangers of localization: a node that is to join the map and the robot, and does not."""
+"""Dangers of where a robot is: nothing joins the map and the robot, or the odometry is another's."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import system_rule
+from multibot_rewrite.rules.places import see, where
 from multibot_rewrite.rules.system.states import ACTIVE
 from multibot_rewrite.rules.system.tf_topics import root_of
 from multibot_rewrite.rules.system.transforms import collide
@@ -109,7 +110,7 @@ def _is_told_not_to(seen: Index, node: str) -> bool:
 def _lost(seen: Index, tree: Tree, node: str, body: _Body) -> Finding:
     start = _starts_at(seen, node)
     return map_not_joined.finding(
-        f"sends no {_MAP} -> {body.root} on {tree.topic}, and nobody else does",
+        f"sends no {_MAP} -> {body.root} on {tree.topic}, and no other node does",
         _why(seen, node, body, start.name if start else ""),
         robot=seen.robot(node), node=node, names=(body.root, *body.loose),
     )  # fmt: skip
@@ -126,7 +127,7 @@ def _why(seen: Index, node: str, body: _Body, start: str) -> str:
             f" odom_frame_id to {body.root}"
         )
     if unsent := _unsent(seen, node):
-        return f"it waits for {shorten(unsent)}, which nobody publishes"
+        return f"it waits for {shorten(unsent)}, which no node publishes"
     ends = seen.by_name.get((TOPIC, start))
     told = any(
         (it.node, it.name, it.value) == (node, _START, "true") for it in seen.system.parameters
@@ -138,10 +139,41 @@ def _why(seen: Index, node: str, body: _Body, start: str) -> str:
 
 
 def _unsent(seen: Index, node: str) -> Sequence[str]:
-    """The scans and maps that it reads and nobody publishes."""
+    """The scans and maps that it reads and no node publishes."""
     names = (
         it.name
         for it in seen.by_node.get(node, ())
         if it.role == SUBSCRIBES and (words.is_of_a_body(it.type) or it.type == words.MAP)
     )
     return [it for it in names if it not in seen.published]
+
+
+@system_rule(
+    "MG414",
+    "odometry-of-another-robot",
+    ERROR,
+    what="A robot's frame is sent below the odom frame of another robot.",
+    why="Both robots begin in one frame: each moves with the odometry of the other, and its own odom "
+    "frame is in no tree.",
+    fix="Set the odometry frame of the sender to that of its own robot.",
+    bad="""\
+running: transform robot1/odom -> robot1/base_link on /tf
+running: transform robot1/odom -> robot2/base_link on /tf
+""",
+    good="""\
+running: transform robot1/odom -> robot1/base_link on /tf
+running: transform robot2/odom -> robot2/base_link on /tf
+""",
+    line=2,
+)
+def odometry_of_another(seen: Index) -> Iterator[Finding]:
+    """A robot that stands on another one is below its links, not below its odometry."""
+    for tree in seen.trees:
+        for edge in tree.edges:
+            owner, robot = seen.frame_robot(edge.parent), seen.frame_robot(edge.child)
+            if owner and robot and owner != robot and seen.plain_frame(edge.parent) == _ODOM:
+                message = f"{edge.child} is sent below {edge.parent}, the odometry of {owner}"
+                hint = f"set the odometry frame of {robot} to its own{see([edge])}"
+                yield odometry_of_another.finding(
+                    message, hint, robot=robot, names=(edge.child,), **where([edge])
+                )

@@ -249,20 +249,20 @@ def server_names_miss(seen: Index) -> Iterator[Finding]:
 
 
 def _unserved(seen: Index, end: End, served: Sequence[str]) -> Iterator[Finding]:
-    by_type = sent_instead(seen, end)
     near = _served_instead(seen, end, served) or in_other_namespace(seen, end)
-    does = "sends goals to" if end.kind == ACTION else "calls"
-    lost = f"{does} {end.name}, which no node serves"
+    lost = f"{'sends goals to' if end.kind == ACTION else 'calls'} {end.name}, which no node serves"
+    listed = "" if near else listed_in_vain(seen, end)
+    by_type = None if near or listed else sent_instead(seen, end)
     if other := near or (by_type.name if by_type else ""):
         yield _missed_server(seen, end, lost, other, ERROR if near else WARNING)
-    elif listed := listed_in_vain(seen, end):
+    elif listed and end.name.endswith("/change_state"):
         yield server_names_miss.finding(
             f"{lost}: {listed} is in its list, and does not run",
             f"it waits for {listed} and activates nothing after it: start it, or leave it out of"
             " node_names",
             robot=seen.robot(end.node), node=end.node, names=(end.name,), **where([end]),
         )  # fmt: skip
-    elif not is_viewer(end.node) and (absent := nobody_in(seen, end.name, served)):
+    elif not (listed or is_viewer(end.node)) and (absent := nobody_in(seen, end.name, served)):
         yield server_names_miss.finding(
             f"{lost}; {absent}", ABSENT, level=WARNING, node=end.node, names=(end.name,)
         )

@@ -17,7 +17,7 @@ _TOLERANCE = 10e-3
 
 
 @system_rule(
-    "MG414",
+    "MG416",
     "transform-refused",
     ERROR,
     what="A transform is sent that tf2 drops: a quaternion of zeros or not of length 1, a number that"

@@ -227,8 +227,7 @@ def sensor_twice(seen: Index) -> Iterator[Finding]:
     for ends in seen.topics:
         if len(ends.publishers) < 2 or not _is_of_one_sensor(ends):
             continue
-        readers = nodes_of(ends.subscribers)
-        nodes = [it for it in nodes_of(at_work(ends.publishers)) if it not in readers]
+        nodes = [it for it in nodes_of(at_work(ends.publishers)) if not _passes_on(seen, it, ends)]
         played = any(last_word(node).startswith(words.PLAYER) for node in nodes)
         if len(nodes) < 2 or played or len(robots_of(seen, nodes)) > 1:
             continue
@@ -240,6 +239,13 @@ def sensor_twice(seen: Index) -> Iterator[Finding]:
             node=nodes[0],
             names=(ends.name,),
         )
+
+
+def _passes_on(seen: Index, node: str, ends: Ends) -> bool:
+    """Does it read what it sends, or data of that kind? A filter makes its own of others' odometry."""
+    read = (it for it in seen.by_node.get(node, ()) if it.role == SUBSCRIBES)
+    passed = ends.type != words.ODOMETRY
+    return any(it.name == ends.name or (passed and it.type == ends.type) for it in read)
 
 
 def _is_of_one_sensor(ends: Ends) -> bool:

@@ -11,12 +11,12 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.base.wording import SEVERAL, and_then, only, shorten, unique
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import see, where
+from multibot_rewrite.rules.system.senders import who_can_send
 from multibot_rewrite.system.index import Index, Tree, robots_of
 from multibot_rewrite.system.records import Edge
 from multibot_rewrite.system.tool_nodes import last_word
 
 _STATIC = "static_transform_publisher"
-_ODOM = "odom"
 
 
 @system_rule(
@@ -271,11 +271,13 @@ def transform_of_two_senders(seen: Index) -> Iterator[Finding]:
             senders = _senders(tree, own)
             who = robot or only(robots_of(seen, senders))
             nodes = [it for it in senders if seen.robot(it) in ("", who)] or senders
+            nodes = who_can_send(seen, nodes, own)
             right = {it for edge in own for it in seen.known.senders.get(edge[1::-1], ())}
             nodes = sorted(nodes, key=lambda it: it not in right)
             listed_nodes = shorten(nodes, SEVERAL)
             cause = f"stop one, or its tf (publish_tf, enable_odom_tf): two of {listed_nodes}"
-            others = [it for it in senders if it not in nodes]
+            others = [it for it in senders if seen.robot(it) not in ("", who)]
+            others = [it for it in others if it not in nodes]
             if others:
                 cause += f"; or {shorten(others)} with the description or parameters of {who}"
             yield transform_of_two_senders.finding(
@@ -326,34 +328,3 @@ def robots_name_twice(seen: Index) -> Iterator[Finding]:
                 " by default), on top of a description that has the name: set them to '' and false"
             )
             yield robots_name_twice.finding(message, cause, robot=robot, names=tuple(frames))
-
-
-@system_rule(
-    "MG414",
-    "odometry-of-another-robot",
-    ERROR,
-    what="A robot's frame is sent below the odom frame of another robot.",
-    why="Both robots begin in one frame: each moves with the odometry of the other, and its own odom "
-    "frame is in no tree.",
-    fix="Set the odometry frame of the sender to that of its own robot.",
-    bad="""\
-running: transform robot1/odom -> robot1/base_link on /tf
-running: transform robot1/odom -> robot2/base_link on /tf
-""",
-    good="""\
-running: transform robot1/odom -> robot1/base_link on /tf
-running: transform robot2/odom -> robot2/base_link on /tf
-""",
-    line=2,
-)
-def odometry_of_another(seen: Index) -> Iterator[Finding]:
-    """A robot that stands on another one is below its links, not below its odometry."""
-    for tree in seen.trees:
-        for edge in tree.edges:
-            owner, robot = seen.frame_robot(edge.parent), seen.frame_robot(edge.child)
-            if owner and robot and owner != robot and seen.plain_frame(edge.parent) == _ODOM:
-                message = f"{edge.child} is sent below {edge.parent}, the odometry of {owner}"
-                hint = f"set the odometry frame of {robot} to its own{see([edge])}"
-                yield odometry_of_another.finding(
-                    message, hint, robot=robot, names=(edge.child,), **where([edge])
-                )

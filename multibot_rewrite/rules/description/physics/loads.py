@@ -75,9 +75,7 @@ def too_weak_for_gravity(subject: Subject) -> Iterator[Problem]:
         load = _load(subject, joint) if _holds(joint) else 0.0
         if load > effort * SPARE:
             unit = "N" if joint.type == "prismatic" else "Nm"
-            message = (
-                f"joint {joint.name!r} carries {load:.3g} {unit} at 0, its effort is {effort:g}"
-            )
+            message = f"joint {joint.name!r} holds {load:.3g} {unit} at 0, its effort is {effort:g}"
             yield Problem(limit, message, "effort", f"{load:.3g} {unit} would hold it")
 
 
