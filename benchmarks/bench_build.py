@@ -1,7 +1,7 @@
 """Measure ``multibot build`` on 100 robots with Nav2's full set, against other ways, in one run.
 
 python benchmarks/bench_build.py            print the table
-python benchmarks/bench_build.py --write    and put it into docs/benchmark-build.md
+python benchmarks/bench_build.py --write    and put it into docs/measurements.md
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import yaml
+from one_page import write_section
 from pairs import HOW, MACHINE, Row, as_installed, child, least_seconds, paired, seconds, table
 from robots import robot
 
@@ -26,11 +27,11 @@ from multibot_rewrite.companions.params.rewrite import rewrite_params
 from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.fleet.build import Outputs, make_outputs
+from multibot_rewrite.fleet.checks.read_back import read_back
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.fleet.robots.robot_groups import group_robots
 
-PAGE = Path(__file__).parent.parent / "docs" / "benchmark-build.md"
 ROBOTS = 100
 LINKS = 12
 HEAD = "layout: frames-per-robot\naffix: prefix\nstack: nav2\ndescription: rover.urdf\n"
@@ -161,6 +162,12 @@ def made(fleet: str) -> Outputs:
     return make_outputs(plan_fleet(read_fleet(fleet, "", {})))
 
 
+def read_again(fleet: str) -> Callable[[], object]:
+    """What reads the files of a fleet back before they are written."""
+    plan = plan_fleet(read_fleet(fleet, "", {}))
+    return partial(read_back, plan, make_outputs(plan, "/out"), "/out")
+
+
 def write_raw(files: Outputs, folder: str) -> None:
     """The same bytes into a fresh folder, and nothing else."""
     shutil.rmtree(folder, ignore_errors=True)
@@ -223,6 +230,10 @@ def rows(folder: Path) -> list[Row]:
             each_further(partial(made, one), partial(made, many)), "0.1"),
         Row("each further robot, `multibot build`", "a build of one, Python's start included",
             each_further(partial(fresh, one, single), build, 5), "0.1"),
+        Row(f"reading {ROBOTS} robots back", "making their files, in memory",
+            paired(read_again(many), partial(made, many), 5), "0.2"),
+        Row("reading one robot back", "making its files, in memory",
+            paired(read_again(one), partial(made, one), 5), "0.2"),
         Row(f"{ROBOTS} robots, in memory", "raw writes of the same bytes",
             paired(partial(made, many), raw, 7), ""),
         Row(f"{ROBOTS} robots, `multibot build`", "raw writes of the same bytes",
@@ -277,7 +288,7 @@ def main(arguments: list[str]) -> None:
     text = page()
     print(text)
     if "--write" in arguments:
-        PAGE.write_text(text)
+        write_section(text)
 
 
 if __name__ == "__main__":

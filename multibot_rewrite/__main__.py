@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 
-from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.cli.entry import multibot
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(multibot())

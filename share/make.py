@@ -15,11 +15,13 @@ import shtab
 from argparse_manpage.manpage import Manpage
 
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
+from multibot_rewrite.cli.options import Option
 from multibot_rewrite.cli.parser import Parser, declare, make_parser
 from multibot_rewrite.version import __version__
 
 HERE = Path(__file__).parent
 BASH = "bash-completion/completions/{}"
+FISH = "fish/vendor_completions.d/{}.fish"
 ZSH = "zsh/site-functions/_{}"
 MAN = "man/man1/{}.1"
 ABOUT = "Many robots in one ROS 2 system: rewrite, plan, build and check a fleet."
@@ -33,10 +35,40 @@ def made() -> dict[str, str]:
     files = {}
     for name, parser in parsers.items():
         files[BASH.format(name)] = shtab.complete(completed(parser()), "bash")
+        files[FISH.format(name)] = fish(name)
         files[ZSH.format(name)] = shtab.complete(completed(parser()), "zsh")
     for page in pages():
         files[MAN.format(page.prog)] = manual(page)
     return {path: f"{text.rstrip()}\n" for path, text in files.items()}
+
+
+def fish(program: str) -> str:
+    """Completions for fish, which shtab does not make."""
+    lines = ["# Made by share/make.py.", f"complete -c {program} -l version -d 'show the version'"]
+    for it in [one for one in PROGRAMS if one.name == program] or COMMANDS.values():
+        below = f" -n '__fish_seen_subcommand_from {it.name}'" * (program != it.name)
+        if below:
+            first = f"complete -c {program} -n __fish_use_subcommand -f -a {it.name}"
+            lines.append(f"{first} -d {quoted(it.about)}")
+        every = (one for group in it.groups for one in group.options if one.shown)
+        options = (one for one in every if one.names[0].startswith("-"))
+        lines += [f"complete -c {program}{below}{fish_option(one)}" for one in options]
+    return "\n".join(lines)
+
+
+def fish_option(option: Option) -> str:
+    """What fish is told of an option: its names, whether a value follows and which there are."""
+    kinds = ((it.lstrip("-"), "l" if it.startswith("--") else "s") for it in option.names)
+    names = "".join(f" -{kind} {it}" for it, kind in kinds)
+    choices = option.keywords.get("choices", ())
+    value = " -r" * ("metavar" in option.keywords)
+    one_of = f" -f -a {quoted(' '.join(choices))}" * bool(choices)
+    return f"{names}{value}{one_of} -d {quoted(option.help.partition(';')[0])}"
+
+
+def quoted(text: str) -> str:
+    """A word for fish."""
+    return "'" + " ".join(text.split()).replace("\\", "\\\\").replace("'", "\\'") + "'"
 
 
 def multibot() -> argparse.ArgumentParser:

@@ -79,11 +79,11 @@ BESIDE = (
     (TREE, _XML[1][1]),
     (LUA, lazy_compile(rb"^\s*(?:tracking_frame|published_frame|map_frame)\s*=", re.MULTILINE)),
 )
-# What follows ``robots:`` in a fleet file is a list, and in a plan a map.
+# What follows ``robots:`` in a fleet file is a list; a plan has the ways of its rules besides.
 _ROBOTS = rb"^robots:[ \t]*(?:#[^\n]*)?(?:\s*#[^\n]*\n)*\s*"
 _OTHERS = (
     (FLEET, lazy_compile(_ROBOTS + rb"[-\[]", re.MULTILINE)),
-    (PLAN, lazy_compile(_ROBOTS + rb"[\w{\"']", re.MULTILINE)),
+    (PLAN, lazy_compile(rb"^robots:(?=.*^ways:)", re.MULTILINE | re.DOTALL)),
     (LAUNCH, lazy_compile(rb"^def generate_launch_description\b|^launch:\s*-", re.MULTILINE)),
     (BAG, lazy_compile(rb"^rosbag2_bagfile_information:", re.MULTILINE)),
     (MAP, lazy_compile(rb"^image:[^\n]*\n(?:.*\n)*?resolution:", re.MULTILINE)),

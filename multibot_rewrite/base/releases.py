@@ -46,7 +46,7 @@ def chosen_release(given: str, environment: Mapping[str, str]) -> str:
     if given:
         hint = did_you_mean_one_of(found, RELEASES)
         raise UsageError(f"release {found!r} is not known; {hint or known}")
-    hint = f"name the release whose facts count with --distro: {', '.join(RELEASES)}"
+    hint = f"name your ROS 2 release with --distro: {', '.join(RELEASES)}"
     raise UsageError(f"{VARIABLE} is {found!r}, which is not known; {hint}")
 
 
@@ -108,8 +108,8 @@ def release_doubt(given: str | None = None) -> str:
 
 
 def facts_of_release(release: str, why: str = "") -> str:
-    """The end of a summary: whose facts it rests on, and why; nothing where that is not known."""
-    return f" (facts of {release}{why and f': it loads {why}'})" if release else ""
+    """The end of a summary: which release it is for, and why; nothing where that is not known."""
+    return f" (ROS 2 {release}{why and f': it loads {why}'})" if release else ""
 
 
 def has_release(words: str, release: str) -> bool:

@@ -5,11 +5,12 @@ from __future__ import annotations
 import argparse
 import os
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from contextlib import suppress
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.releases import facts_of_release
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.fleet import note_interfaces, words_of
 from multibot_rewrite.cli.folders import change_folder, check_inside, clear_leftovers, locked
 from multibot_rewrite.cli.output import detail, note, print_lines, say
@@ -39,6 +40,8 @@ from multibot_rewrite.fleet.outputs.output_file import OutputFile
 def run(options: argparse.Namespace) -> int:
     """Build or check; returns the exit code."""
     _check_folder(options.output)
+    if options.undo:
+        return _undone(options)
     check_report(options, printed=False)
     if options.count == 0:
         raise UsageError("--count 0: a fleet has at least one robot")
@@ -155,6 +158,24 @@ def _written(
         detail(options, f"wrote {os.path.join(options.output, path)}")
     note(options, f"{robots}, {plural(len(files), 'file')}, {len(found.write)} written{end}")
     note(options, f"next: ros2 launch {os.path.join(options.output, LAUNCH)}")
+    return DONE
+
+
+def _undone(options: argparse.Namespace) -> int:
+    """Remove what a build wrote; files that it did not write stay."""
+    folder = options.output
+    with locked(folder):
+        known = _known(folder)
+        if not known:
+            raise UsageError(f"{folder}: no build wrote into it, so there is nothing to undo")
+        found = output_changes((), known, _there(folder, known))
+        if not options.force:
+            _refuse(folder, found.edited, "it was edited since it was built")
+        check_inside(folder, found.remove)
+        change_folder(folder, {}, found.remove, (NOTE, b""))
+        with suppress(OSError):
+            os.rmdir(folder)
+    note(options, f"{folder}: {plural(len(found.remove), 'file')} removed")
     return DONE
 
 

@@ -6,55 +6,71 @@ import argparse
 import shlex
 from collections.abc import Sequence
 
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.cli import check, pictures, unplanned
 from multibot_rewrite.cli.fleet import own_nodes
 from multibot_rewrite.cli.output import note
-from multibot_rewrite.cli.report import check_report
+from multibot_rewrite.cli.report import check_report, chosen
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.fleet.fleet import known_nodes
 from multibot_rewrite.knowledge.parameters import load_known_nodes
+from multibot_rewrite.lint.launched import named_findings
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.producers.launch.child import launch_graph
-from multibot_rewrite.producers.launch.records import LaunchOrder, order_in_words
+from multibot_rewrite.producers.launch.launched import Launched
+from multibot_rewrite.producers.launch.records import LaunchOrder, joined, orders_in_words
 from multibot_rewrite.producers.launch.running import Knowledge
-from multibot_rewrite.producers.launch.snapshot import would_run
-from multibot_rewrite.system.records import System
+from multibot_rewrite.producers.launch.snapshot import launched
+from multibot_rewrite.rules.launch.judge import judge_launch, placed
+from multibot_rewrite.rules.system.interfaces import (
+    interface_claimed_twice,
+    interface_not_exported,
+)
 
 
 def run(options: argparse.Namespace) -> int:
     """Read the launch file, make the graph that it would start, report; returns the exit code."""
-    order = order_of(options, options.words)
-    _check_use(options, order)
+    orders = orders_of(options, options.words)
+    _check_use(options, orders)
     plan = check.plan_of(options) if options.plan else None
-    made = graph_of(options, order)
-    for it in made.environment.caveats:
+    made = launched_by(options, orders)
+    for it in made.system.environment.caveats:
         if not it.incomplete:
             note(options, it.message)
+    found = [*judge_launch(made), *named_findings(made)]
     if plan is not None:
-        return check.conclude(options, plan, made)
+        return check.conclude(options, plan, made.system, chosen(options, found))
     # What a check is told besides: there is no snapshot, and nothing to begin.
     whole = argparse.Namespace(**vars(options), snapshot=[], suggest=None)
-    return unplanned.report_on(whole, diagnose(made))
+    seen = diagnose(made.system)
+    every = (*found, *(placed(_certain(it), made) for it in seen.findings))
+    return unplanned.report_on(whole, seen._replace(findings=every))
 
 
-def order_of(options: argparse.Namespace, words: Sequence[str]) -> LaunchOrder:
-    """The launch file that words name, with its arguments; raises UsageError for other words."""
-    order = order_in_words(words, shlex.join(words), options.roots)
-    return order._replace(trusted=True)
+def orders_of(options: argparse.Namespace, words: Sequence[str]) -> list[LaunchOrder]:
+    """The launch files that words name, with the arguments; raises UsageError for other words."""
+    orders = orders_in_words(words, shlex.join(words), options.roots)
+    return [it._replace(trusted=True) for it in orders]
 
 
-def graph_of(options: argparse.Namespace, order: LaunchOrder) -> System:
-    """What the launch file would start; raises InputError for one that cannot be read."""
+def _certain(it: Finding) -> Finding:
+    """A claim that no hardware meets is an error where all that is started is known."""
+    claims = it.code in (interface_not_exported.code, interface_claimed_twice.code)
+    return it._replace(level=ERROR) if claims and it.level == WARNING else it
+
+
+def launched_by(options: argparse.Namespace, orders: Sequence[LaunchOrder]) -> Launched:
+    """What launch files would start, together; raises InputError for one that cannot be read."""
     release = release_here(options.distro)
     nodes, nodl = own_nodes(options)
     library = known_nodes(nodes, release, nodl).library
     known = Knowledge(library.nodes, load_known_nodes(nodes or "", release), release)
-    return would_run(launch_graph(order), known)
+    return launched(joined([launch_graph(it) for it in orders]), known)
 
 
-def _check_use(options: argparse.Namespace, order: LaunchOrder) -> None:
+def _check_use(options: argparse.Namespace, orders: Sequence[LaunchOrder]) -> None:
     check_report(options, printed=False)
     pictures.check(options)
     if options.output:
-        check_target(options.output, [*filter(None, [options.plan]), order.file])
+        check_target(options.output, [*filter(None, [options.plan]), *(it.file for it in orders)])

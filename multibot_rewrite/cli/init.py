@@ -7,14 +7,17 @@ import os
 import re
 import sys
 from collections.abc import Callable, Sequence
+from contextlib import redirect_stderr
+from io import StringIO
 from itertools import pairwise
+from typing import TypeVar
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import LAYOUTS, find_layout
-from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.releases import RELEASES, VARIABLE, release_here
 from multibot_rewrite.base.rosnames import check_robot_names
-from multibot_rewrite.cli.output import STANDARD, deliver, goes_to_file, note, say
+from multibot_rewrite.base.wording import plural
+from multibot_rewrite.cli.output import STANDARD, deliver, goes_to_file, note, say, status
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.usage import plain_words, xacro_args
 from multibot_rewrite.fleet.proposal.fleet_text import text_of
@@ -35,6 +38,7 @@ from multibot_rewrite.fleet.proposal.trying import first_that_builds, in_layout,
 
 SIMULATORS = ("gazebo", "none")
 LEFT_OUT = "it was left out"
+_T = TypeVar("_T")
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 
@@ -45,7 +49,7 @@ def run(options: argparse.Namespace) -> int:
     _check_names(options)
     _check_output(options)
     wanted = _wanted(options)
-    seen = see(wanted)
+    seen = _quietly(wanted, see)
     if wanted.names and seen.named and len(seen.robots) > 1:
         raise UsageError("--robots is for one description; give --count for several")
     if not options.yes and sys.stdin.isatty() and sys.stderr.isatty():
@@ -53,10 +57,21 @@ def run(options: argparse.Namespace) -> int:
     else:
         wanted = wanted._replace(each=wanted.each or 2)
         if seen.named:
-            made = that_builds(seen.robots, seen.found, wanted)
+            made = _quietly(wanted, lambda it: that_builds(seen.robots, seen.found, it))
         else:
-            made = first_that_builds(seen, wanted)
+            made = _quietly(wanted, lambda it: first_that_builds(seen, it))
     return _deliver(options, made)
+
+
+def _quietly(wanted: Wanted, call: Callable[[Wanted], _T]) -> _T:
+    """What a call makes of it, and a terminal shows what is looked at. What xacro warns about is said
+    by the build, of the files that are taken."""
+    show = status()
+    try:
+        with redirect_stderr(StringIO()):
+            return call(wanted._replace(tell=show))
+    finally:
+        show("")
 
 
 def _wanted(options: argparse.Namespace) -> Wanted:
@@ -118,10 +133,10 @@ def ask_for_fleet(seen: Seen, wanted: Wanted) -> Proposal:
         word = _one_of("ROS release", release.why, RELEASES, release)
         wanted = wanted._replace(release=word, named=True)
     robots = [_with_arguments(it, wanted, seen.found) for it in robots]
-    made = that_builds(robots, seen.found, wanted)
+    made = _quietly(wanted, lambda it: that_builds(robots, seen.found, it))
     refused = dict(made.refused) | dict.fromkeys(_left_out(made), LEFT_OUT)
     wanted = wanted._replace(apart=_apart(made))
-    made = that_builds(robots, seen.found, wanted, refused)
+    made = _quietly(wanted, lambda it: that_builds(robots, seen.found, it, refused))
     if not wanted.layout:
         made = _in_layout(made)
     if wanted.simulator:
@@ -131,7 +146,7 @@ def ask_for_fleet(seen: Seen, wanted: Wanted) -> Proposal:
     if word == simulator.value:
         return made
     wanted = wanted._replace(simulator=word, layout=str(made.keys["layout"].value))
-    return that_builds(robots, seen.found, wanted, refused)
+    return _quietly(wanted, lambda it: that_builds(robots, seen.found, it, refused))
 
 
 def _chosen(found: Sequence[Looked]) -> Sequence[Looked]:
@@ -164,7 +179,7 @@ def _with_names(wanted: Wanted) -> Wanted:
 
 def _with_arguments(robot: Looked, wanted: Wanted, found: Found) -> Looked:
     """The arguments of a xacro that name the robot, or that it needs and nobody gave."""
-    (it,) = with_arguments([robot], wanted, found)
+    (it,) = _quietly(wanted, lambda asked: with_arguments([robot], asked, found))
     asked = [(name, value) for name, value in it.arguments if name not in wanted.arguments]
     if asked:
         say("  {robot} stands for the name of each robot", PROGRAM)

@@ -6,9 +6,10 @@ import sys
 from collections.abc import Sequence
 from functools import partial
 
+from multibot_rewrite.base import other_words
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
-from multibot_rewrite.cli.declared.commands import COMMANDS, INSTEAD
+from multibot_rewrite.cli.declared.commands import COMMANDS
 from multibot_rewrite.cli.options import Command
 from multibot_rewrite.cli.output import AUTO, is_coloured, print_bytes
 from multibot_rewrite.cli.parser import painted
@@ -43,8 +44,8 @@ def find_command(word: str) -> Command:
         return COMMANDS[word]
     if word.startswith("-"):
         raise UsageError(f"{word}: write the command first, for example: multibot check {word}")
-    if word in INSTEAD:
-        raise UsageError(f"there is no command {word!r}; use {INSTEAD[word]}")
+    if word in other_words.COMMANDS:
+        raise UsageError(f"there is no command {word!r}; use {other_words.COMMANDS[word]}")
     near = did_you_mean_one_of(word, COMMANDS)
     raise UsageError(f"unknown command {word!r}; {near or 'see multibot --help'}")
 
@@ -60,7 +61,7 @@ def overview(colour: str) -> str:
             "",
             "examples:",
             "  multibot init rover.urdf",
-            "  multibot build fleet.yaml -o out/",
+            "  multibot build fleet.yaml",
             "  multibot plan rover.urdf robot1 robot2 --stack nav2 --form table",
             "",
             "commands:",

@@ -16,11 +16,13 @@ NOTHING: Mapping[str, Any] = MappingProxyType({})
 
 
 class Option(NamedTuple):
-    """An option or argument; ``keywords`` are those of argparse's ``add_argument``."""
+    """An option or argument; ``keywords`` are those of argparse's ``add_argument``. One that few need
+    is not ``shown`` by ``--help``; the page of commands has it."""
 
     names: tuple[str, ...]
     help: str
     keywords: Mapping[str, Any] = NOTHING
+    shown: bool = True
 
 
 class OptionGroup(NamedTuple):
@@ -103,6 +105,11 @@ def repeated(name: str, metavar: str, about: str) -> Option:
     return Option(
         (name,), about, {"metavar": metavar, "action": "append", "type": values.path, "default": []}
     )
+
+
+def rare(option: Option) -> Option:
+    """An option that ``--help`` does not show."""
+    return option._replace(shown=False)
 
 
 def output(about: str, **more: Any) -> Option:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import argparse
 import io
 import os
+import shutil
 import stat
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import TextIO, TypeVar
 
 from multibot_rewrite.base.model import UsageError
@@ -25,6 +26,8 @@ READ = (
 _T = TypeVar("_T")
 _PAINT = {b"+": b"\033[32m", b"-": b"\033[31m", b"@": b"\033[36m"}
 _PLAIN = b"\033[0m"
+# To the start of the line, which is emptied.
+_CLEARED = "\r\033[K"
 
 
 def is_coloured(when: str, stream: TextIO | None) -> bool:
@@ -105,6 +108,21 @@ def watched(items: Iterable[_T], total: int, doing: str) -> Iterable[_T]:
     from rich.progress import track
 
     return track(items, doing, total, console=Console(stderr=True), transient=True)
+
+
+def status() -> Callable[[str], None]:
+    """What shows a line about the work, in the place of the one before; an empty one takes it away. It
+    shows nothing where standard error is no terminal."""
+    screen = sys.stderr
+    if screen is None or not screen.isatty() or os.environ.get("TERM") == "dumb":
+        return lambda _: None
+
+    def show(text: str) -> None:
+        width = shutil.get_terminal_size().columns - 1
+        screen.write(f"{_CLEARED}{one_line(text)[:width]}")
+        screen.flush()
+
+    return show
 
 
 def print_bytes(data: bytes) -> None:

@@ -10,8 +10,9 @@ from functools import partial
 from itertools import pairwise, takewhile
 from typing import NoReturn
 
+from multibot_rewrite.base import other_words
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.nearest import did_you_mean_one_of
+from multibot_rewrite.base.nearest import CHOICE, nearest
 from multibot_rewrite.base.printable import one_line
 from multibot_rewrite.cli.options import Command, Example, OptionGroup
 from multibot_rewrite.cli.output import AUTO, is_coloured
@@ -134,6 +135,7 @@ def _names(group: OptionGroup) -> list[str]:
     words = [
         it.names[-1] if it.names[0].startswith("-") else it.keywords["metavar"]
         for it in group.options
+        if it.shown
     ]
     lines = wrapped(f"{title}: {' '.join(words)}", COLUMNS - 2).split("\n")
     return [lines[0], *(f"  {it}" for it in lines[1:])]
@@ -170,7 +172,7 @@ def wrapped(text: str, width: int = 80) -> str:
 def _add(parser: argparse.ArgumentParser, group: OptionGroup) -> None:
     section = parser.add_argument_group(group.title)
     for option in group.options:
-        text = option.help.replace("%", "%%")
+        text = option.help.replace("%", "%%") if option.shown else argparse.SUPPRESS
         section.add_argument(*option.names, help=text, **option.keywords)
 
 
@@ -201,5 +203,13 @@ def _unknown_option(words: Sequence[str], known: Sequence[str]) -> str:
     wrong = next((name for name in names if name not in known), "")
     if not wrong:
         return ""
-    near = did_you_mean_one_of(wrong, known)
-    return f"unknown option {wrong}{'; ' * bool(near)}{near}"
+    if other := other_words.OPTIONS.get(wrong):
+        return f"unknown option {wrong}; use {other}"
+    # Dashes are in all of them: compared with these, every short word is like every other.
+    full = {name.lstrip("-"): name for name in known if name.startswith("--")}
+    near = nearest(wrong.lstrip("-"), full, CHOICE)
+    return (
+        f"unknown option {wrong}; did you mean '{full[near]}'?"
+        if near
+        else f"unknown option {wrong}"
+    )

@@ -64,15 +64,15 @@ def _of_launch(options: argparse.Namespace) -> int:
     if given or options.form != PLAN:
         what = given[0] if given else "--form"
         raise UsageError(f"{options.input}: a launch file says what runs, leave out {what}")
-    order = check_launch.order_of(options, [options.input, *options.words])
+    orders = check_launch.orders_of(options, [options.input, *options.words])
     if options.output:
-        check_target(options.output, [order.file])
+        check_target(options.output, [it.file for it in orders])
         check_folder(options.output)
-    made = check_launch.graph_of(options, order)
+    made = check_launch.launched_by(options, orders).system
     seen = diagnose(made)
     if not seen.robots:
         raise UsageError(
-            f"{order.file}: no name of a robot is in what it starts, so there is no plan"
+            f"{orders[0].file}: no name of a robot is in what it starts, so there is no plan"
         )
     for caveat in doubts(made):
         say(f"incomplete: {caveat.message}", PROGRAM)

@@ -28,6 +28,8 @@ PROGRAM = "multibot"
 def leave(code: int) -> NoReturn:
     """End this process at once: taking Python down takes as long as many a job, and frees nothing that
     the system does not free."""
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
     try:
         for stream in (sys.stdout, sys.stderr):
             if stream is not None:
@@ -93,9 +95,12 @@ def guarded(program: str, run: Callable[[], int], own_process: bool) -> int:
 def _guarded(program: str, run: Callable[[], int], own_process: bool) -> int:
     # Closed by the caller: messages go nowhere.
     sys.stderr = sys.stderr or io.StringIO()
-    if own_process:
-        signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
+        if own_process:
+            signal.signal(signal.SIGTERM, signal.default_int_handler)
+            # As the program began it (``entry``); a shell's job in the background has SIG_IGN.
+            if signal.getsignal(signal.SIGINT) is signal.SIG_DFL:
+                signal.signal(signal.SIGINT, signal.default_int_handler)
         return run()
     except ProofError as error:
         fault = "the proof failed, nothing was written; this is a fault of the tool"

@@ -9,13 +9,13 @@ from itertools import chain
 
 from multibot_rewrite.base.config import configured_vocabulary
 from multibot_rewrite.base.naming import SEPARATORS
-from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.releases import (
     evidence,
     facts_of_release,
     release_doubt,
     release_told,
 )
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.output import STANDARD, serves_a_program
 from multibot_rewrite.cli.process import DONE, STOPPED
 from multibot_rewrite.cli.rewrite_use import (
@@ -74,7 +74,7 @@ def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> i
     file, given = input_name(options), rewriting(options)
     if doubt := release_doubt(options.distro):
         tell(options, f"warning: {doubt}")
-    rewrites = rewrite_all(source, names, again=options.again, file=file, **given)
+    rewrites = rewrite_all(source, names, again=options.force, file=file, **given)
     first = next(rewrites)
     # Robots with descriptions of their own are all made before the first is here.
     others = list(rewrites) if first.prepared.job.naming.own else []

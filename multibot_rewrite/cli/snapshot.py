@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.plural import plural
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli import live
 from multibot_rewrite.cli.output import STANDARD, deliver, note, say
 from multibot_rewrite.cli.process import DONE, PROGRAM
@@ -94,7 +94,7 @@ def report(snapshot: System) -> Iterator[str | Grid]:
         yield Grid(("tf topic", "frames", "publishers"), tf)
     if snapshot.heard:
         yield ""
-        yield Grid(("message on", "frame_id"), snapshot.heard)
+        yield Grid(("message on", "frame_id"), [it[:2] for it in snapshot.heard])
     said = answering(snapshot)
     if said:
         yield ""

@@ -4,23 +4,24 @@ from __future__ import annotations
 
 import argparse
 import os
+import re
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from multibot_rewrite.base.model import MultibotError, UsageError
-from multibot_rewrite.base.plural import plural
-from multibot_rewrite.base.wording import SEVERAL, shorten
+from multibot_rewrite.base.model import InputError, MultibotError, UsageError
+from multibot_rewrite.base.wording import SEVERAL, plural, shorten
 from multibot_rewrite.cli.output import deliver, note
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.usage import check_xacro, policy, robots, xacro_args
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.fleet.file.fleet_data import DICT
 from multibot_rewrite.fleet.file.fleet_file import input_files, read_fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.fleet.manifest import hash_of, inputs_of
 from multibot_rewrite.pages.page import Framed
 from multibot_rewrite.pages.view.heard import moved
-from multibot_rewrite.pages.view.page import Meshes, meshes_of, title_of, to_frame, to_html
+from multibot_rewrite.pages.view.page import Meshes, bare, meshes_of, title_of, to_frame, to_html
 from multibot_rewrite.pages.view.scene import ViewedRobot, scene_of
 from multibot_rewrite.producers.bags.read import read_bag
 from multibot_rewrite.producers.bags.recording import as_snapshot
@@ -57,12 +58,14 @@ def _graph(options: argparse.Namespace) -> System | None:
 
 
 def _notes(robots: Sequence[ViewedRobot], meshes: Meshes) -> Iterator[str]:
-    """Meshes that are not there or cannot be read, and what tf has elsewhere."""
+    """Meshes that are not there or cannot be read, robots without a shape, what tf has elsewhere."""
     shapes = (it for one in robots for its in one.model.links.values() for it in its)
     unread = (why for why in meshes.values() if isinstance(why, str))
     for missing in sorted({*(it.missing for it in shapes if it.missing), *unread}):
         yield f"{missing}, it is shown as a box"
     for robot in robots:
+        if nothing := bare(robot.model):
+            yield f"{robot.name}: {nothing}"
         off = list(moved(robot.model.joints, robot.transforms))
         if off:
             yield (
@@ -114,6 +117,7 @@ def _plan(options: argparse.Namespace) -> FleetPlan:
             raise UsageError(f"{first}: a fleet file has its own robots, leave out {word}")
         return _fleet(options, first)
     check_xacro(options, [first])
+    read_file(first)
     names = given or ["robot1"]
     data = {
         **policy(options),
@@ -121,7 +125,11 @@ def _plan(options: argparse.Namespace) -> FleetPlan:
         "arguments": arguments,
         "robots": [{"name": name, "pose": {"y": 1.5 * at}} for at, name in enumerate(names)],
     }
-    return _fleet(options, {key: value for key, value in data.items() if value})
+    try:
+        return _fleet(options, {key: value for key, value in data.items() if value})
+    except InputError as error:
+        # Of the words of the command, and of no file with lines.
+        raise InputError(re.sub(rf"^{DICT}(:\d+)?: ", "", str(error))) from None
 
 
 def _fleet(options: argparse.Namespace, source: str | dict[str, Any]) -> FleetPlan:

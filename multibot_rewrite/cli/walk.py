@@ -81,12 +81,14 @@ def check_target(target: str, inputs: Iterable[str], option: str = "--output") -
 
 
 def check_link(target: str) -> None:
-    """Raise UsageError where ``target`` is a link to a file of another folder: a result would replace
-    what nobody named."""
-    if os.path.islink(target):
-        real = os.path.realpath(target)
-        if os.path.dirname(real) != os.path.realpath(os.path.dirname(target) or "."):
-            raise UsageError(f"{target} is a link to {real}; name that file, if it is meant")
+    """Raise UsageError where ``target`` is a link to a file outside of its folder: a result would
+    replace what nobody named. The links of the system, as /dev/stdout is, are what they lead to."""
+    folder = os.path.realpath(os.path.dirname(target) or ".")
+    if not os.path.islink(target) or folder.startswith(("/dev", "/proc")):
+        return
+    real = os.path.realpath(target)
+    if os.path.commonpath((real, folder)) != folder:
+        raise UsageError(f"{target} is a link to {real}; name that file, if it is meant")
 
 
 def is_same_file(path: str, other: str) -> bool:

@@ -167,7 +167,7 @@ def rewrite_all(
     name after the robot stays as it is, and each robot is an expansion of its own; ``vocabulary``
     are vocabulary files beside the built-in one; ``again`` allows a second rewrite; ``file`` is the
     name used in messages; ``trust`` lets xacro files do anything: without it they only compute, and
-    read what is near them (SECURITY.md); ``distro`` is the ROS 2 release whose facts count (default:
+    read what is near them (SECURITY.md); ``distro`` is the ROS 2 release that the robots run (default:
     ROS_DISTRO, else what is sourced, else what the description loads, else the newest LTS). Raises as
     ``rewrite`` does, before the first result.
     """

@@ -45,7 +45,7 @@ from multibot_rewrite.fleet.robots.named_twice import named_twice
 from multibot_rewrite.fleet.robots.robot_groups import said_once, split_per_robot
 from multibot_rewrite.fleet.robots.simulators import other_hardware
 from multibot_rewrite.fleet.robots.start_poses import with_start_pose_nodes
-from multibot_rewrite.fleet.robots.two_descriptions import differences
+from multibot_rewrite.fleet.robots.two_descriptions import differences, of_sdf_alone
 from multibot_rewrite.spelling.enclaves import to_policy
 from multibot_rewrite.spelling.plan_file import to_yaml
 from multibot_rewrite.spelling.records import Table
@@ -119,6 +119,7 @@ def _of_robots(plan: FleetPlan) -> Iterator[Finding]:
     yield from launched_prefixes(plan)
     yield from moveit_frames(plan)
     yield from differences(plan)
+    yield from of_sdf_alone(plan)
     yield from for_another_robot(plan)
 
 

@@ -13,7 +13,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.library import rewrite_all
 from multibot_rewrite.description.sources.read import Source
 from multibot_rewrite.description.steps.collect import Inventory
-from multibot_rewrite.fleet.checks.described import left_out
+from multibot_rewrite.fleet.checks.described import wrong_in_descriptions
 from multibot_rewrite.fleet.checks.meeting import with_meetings
 from multibot_rewrite.fleet.launch.launched_robot import (
     given_with,
@@ -52,7 +52,7 @@ class Fleet(NamedTuple):
     description (``file:line``) of each plugin's node, ``origins`` of every other node the file or stack
     that names it. ``tags`` are the robots whose prefix or postfix
     differs from their namespace, with it. ``read`` are the files that were read for descriptions,
-    ``gaps`` what is open in the robots, ``bridged`` what a ros_gz_bridge has to carry;
+    ``gaps`` what is open in the robots, ``bridged`` what a ros_gz_bridge has to bridge;
     ``maybe_real`` are robots of which nothing says that they are simulated, ``clocks`` the
     ``use_sim_time`` of robots for which the fleet file says it, ``described`` the descriptions of
     robots whose simulator gets another file."""
@@ -111,15 +111,20 @@ def make_fleet(
     wired = under_plugins(runs.nodes, launched, members[0].handed_on, release)
     every = with_hardware(wired, members[0].source.root, members[0].source.file, known)
     fleet = assemble(members, every, make_naming(**policy), release)
-    return _with_bridge_and_findings(fleet, members, runs.findings)
+    return _with_bridge_and_findings(fleet, members, tuple(vocabulary), runs.findings)
 
 
 def _with_bridge_and_findings(
-    fleet: Fleet, members: Sequence[Member], findings: Iterable[Finding]
+    fleet: Fleet,
+    members: Sequence[Member],
+    vocabulary: tuple[str, ...],
+    findings: Iterable[Finding],
 ) -> Fleet:
     """The fleet with where its robots meet, findings about their nodes, and what has to be bridged."""
     table = with_meetings(fleet.table, members, fleet.naming)
-    table = table._replace(problems=(*table.problems, *left_out(members), *findings))
+    table = table._replace(
+        problems=(*table.problems, *wrong_in_descriptions(members, vocabulary), *findings)
+    )
     topics, _ = bridged_topics(fleet.inventories, fleet.naming)
     own = topics if any(it.robot for it in topics) else ()
     return fleet._replace(table=table, bridged=bridged_as(own))

@@ -9,10 +9,10 @@ from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.naming import Naming, make_naming
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.checks.declared_twice import declared_twice
-from multibot_rewrite.fleet.checks.described import left_out
+from multibot_rewrite.fleet.checks.described import wrong_in_descriptions
 from multibot_rewrite.fleet.checks.meeting import with_meetings
 from multibot_rewrite.fleet.file.filled_arguments import with_own_arguments
-from multibot_rewrite.fleet.file.fleet_file import FleetFile, Sources
+from multibot_rewrite.fleet.file.fleet_file import REAL, FleetFile, Sources
 from multibot_rewrite.fleet.file.shape import placed, with_shape
 from multibot_rewrite.fleet.fleet import Fleet, assemble, merge
 from multibot_rewrite.fleet.launch.launched_files import with_bridge_namespaces, with_launched_files
@@ -126,6 +126,8 @@ def _fleet(
     members = [it.member for it in robots]
     table = with_meetings(fleet.table, members, naming)
     chosen = [it.member for it in robots if is_chosen(it)]
-    told = (*declared_twice(robots, naming, table), *left_out(members, chosen))
+    real = [it.member for it in robots if it.spec.simulator == REAL]
+    wrong = wrong_in_descriptions(members, file.vocabulary, chosen, real)
+    told = (*declared_twice(robots, naming, table), *wrong)
     problems = tuple(dict.fromkeys((*table.problems, *told, *notes)))
     return fleet._replace(table=table._replace(problems=problems))

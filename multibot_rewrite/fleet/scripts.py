@@ -145,8 +145,8 @@ def load_fleet(
     pattern.
 
     ``trust`` lets xacro files do anything; without it they only compute (SECURITY.md). ``distro``
-    is the ROS 2 release whose facts count (default: the fleet file's, else ROS_DISTRO, else the newest
-    LTS).
+    is the ROS 2 release that the robots run (default: the fleet file's, else ROS_DISTRO, else the
+    newest LTS).
 
     Raises InputError and UsageError for what cannot be read or used, RewriteRefused if two
     robots would get the same name, VocabularyError and ProofError as ``rewrite`` does.

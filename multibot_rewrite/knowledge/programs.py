@@ -52,6 +52,8 @@ def known_program(name: str, release: str) -> Program:
 def runs(node: NodeFacts, program: str) -> bool:
     """Is the node what ``package/executable`` or ``package/class`` runs?"""
     own = (*node.programs, node.component) if node.component else node.programs
+    if not own:
+        return False
     return any(program == (it if "/" in it else f"{node.package}/{it}") for it in own)
 
 

@@ -40,7 +40,6 @@ HOMES: tuple[Home, ...] = (
         (
             "companions.rviz.window_checks",
             "companions.rviz.bridged",
-            "companions.rviz.display_checks",
         ),
     ),
     Home("MF5", "bridges", ("fleet.outputs.bridge_outputs",)),
@@ -98,6 +97,7 @@ HOMES: tuple[Home, ...] = (
             "rules.system.relays",
             "rules.system.sharing",
             "rules.system.equal_robots",
+            "rules.system.likes",
             "rules.system.unsent",
         ),
     ),
@@ -109,12 +109,26 @@ HOMES: tuple[Home, ...] = (
             "rules.system.tf_topics",
             "rules.system.frame_ids",
             "rules.system.lookups",
+            "rules.system.localized",
+            "rules.system.refused",
+            "rules.system.stamps",
         ),
     ),
     Home(
         "MG5",
         "any system: time and states",
         ("rules.system.clocks", "rules.system.states", "rules.system.interfaces"),
+    ),
+    Home(
+        "MG7",
+        "launch files",
+        (
+            "rules.launch.models",
+            "rules.launch.rows",
+            "rules.launch.started",
+            "rules.launch.words",
+            "rules.launch.world",
+        ),
     ),
     Home("MR1", "remap tables", ("spelling.table_checks", "spelling.way_checks")),
 )

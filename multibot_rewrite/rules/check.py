@@ -6,7 +6,7 @@ incomplete, a finding about something missing is *inconclusive*.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from fnmatch import fnmatchcase
 from types import ModuleType
 
@@ -36,11 +36,15 @@ from multibot_rewrite.rules.system import (
     equal_robots,
     frame_ids,
     interfaces,
+    likes,
+    localized,
     lookups,
     matching,
     names,
+    refused,
     relays,
     sharing,
+    stamps,
     states,
     tf_topics,
     unsent,
@@ -55,7 +59,20 @@ from multibot_rewrite.system.tf_copies import without_bridged
 
 _SYSTEM = (
     *(running_nodes, names, matching, commands, relays, sharing, any_transforms, tf_topics),
-    *(frame_ids, lookups, clocks, states, equal_robots, unsent, interfaces, addresses),
+    *(
+        frame_ids,
+        lookups,
+        localized,
+        refused,
+        stamps,
+        clocks,
+        states,
+        equal_robots,
+        likes,
+        unsent,
+        interfaces,
+        addresses,
+    ),
 )
 _PAIR = (
     *(nodes, endpoints, leaks, types, publishers, demands, in_enclaves, planned_states),
@@ -88,7 +105,8 @@ ABSENCE = frozenset(it.code for it in RULES.values() if it.options["absence"])
 def judge(seen: Index) -> list[Finding]:
     """What is wrong with a system; empty for one that is as it should be."""
     with gc_paused():
-        return [it for rule in SYSTEM_RULES.values() if rule.check for it in rule.check(seen)]
+        found = [it for rule in SYSTEM_RULES.values() if rule.check for it in rule.check(seen)]
+        return likes.unexplained(found)
 
 
 def contradictions(seen: Index) -> list[Finding]:
@@ -128,13 +146,19 @@ def _besides(plan: Index, seen: Index, found: Sequence[Finding]) -> Iterator[Fin
     said = {(it.code, about) for it in found for about in (*it.names, it.node) if about}
     said |= {(it.code, f"of {it.robot}") for it in found if it.robot}
     lost = {name for node, *_, name in missing(plan, seen) if node not in plan.may_miss}
+    loose = {name for node, *_, name in missing(plan, seen)} - lost
     for it in judge(seen._replace(system=_without_planned(plan, seen.system))):
         options = RULES[it.code].options
         abouts = (*it.names, it.node, *[f"of {it.robot}"] * bool(options["robot_wide"]))
         by_plan = any((it.code, about) in said for about in abouts)
-        absent = options["absence"] and not lost.isdisjoint(it.names)
+        absent = options["absence"] and (not lost.isdisjoint(it.names) or _all_in(it, loose))
         if not (by_plan or absent or _is_meant(plan, seen, it)):
             yield it
+
+
+def _all_in(finding: Finding, loose: Set[str]) -> bool:
+    """Is it only about what need not be there by the plan?"""
+    return bool(finding.names) and {*finding.names} <= loose
 
 
 def _is_meant(plan: Index, seen: Index, finding: Finding) -> bool:

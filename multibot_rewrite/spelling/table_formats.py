@@ -39,7 +39,7 @@ def ros_args(table: Table) -> str:
 
 def _comment(table: Table) -> str:
     """A line that says whose facts the table rests on, for shells and Python."""
-    return f"# Facts of {table.release}\n" if table.nodes else ""
+    return f"# ROS 2 {table.release}\n" if table.nodes else ""
 
 
 def _ros_args(it: Started) -> str:
@@ -132,7 +132,7 @@ def as_yaml(table: Table) -> str:
 
 def gazebo(table: Table) -> str:
     """``<ros>`` blocks for Gazebo Classic and gz_ros2_control plugins, one for each node."""
-    blocks = [f"<!-- Facts of {table.release} -->\n"] * bool(table.release)
+    blocks = [f"<!-- ROS 2 {table.release} -->\n"] * bool(table.release)
     for node in table.nodes:
         rows = [f"  <namespace>{escape(node.namespace)}</namespace>"] * (node.namespace != "/")
         rows += [

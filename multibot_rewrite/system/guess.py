@@ -12,10 +12,10 @@ from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from functools import cache
 
-from multibot_rewrite.base.conventions import USUAL_FRAMES
+from multibot_rewrite.base.conventions import BODY_FRAMES, USUAL_FRAMES
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.system.ownership import SEPARATORS, Whose
-from multibot_rewrite.system.records import TOPIC, System
+from multibot_rewrite.system.records import TOPIC, Edge, System
 from multibot_rewrite.system.tool_nodes import is_tool
 
 # Topics of a robot's body: two of them are enough, or one of tf.
@@ -33,7 +33,7 @@ _TF = frozenset(("tf", "tf_static"))
 # Namespaces with topics like a robot's that are only a part of one.
 _PART = re.compile(
     r".*(cam|costmap|lidar|laser|scan|sensor|imu|gps|realsense|zed|oakd?$|velodyne|ouster|sick|wheel|motor"
-    r"|gripper|controller|manager|server).*"
+    r"|gripper|controller|manager|server|caster|steering|finger|torso).*"
 )
 _NUMBER = re.compile(r"\d+")
 
@@ -52,9 +52,23 @@ class GuessedRobot(NamedTuple):
     only_frames: bool = False
 
 
+def _of_parts(edges: Iterable[Edge]) -> set[str]:
+    """The frames that hang on a robot's base: an arm, a wheel, whatever its own base is called."""
+    children: dict[str, list[str]] = defaultdict(list)
+    for edge in edges:
+        children[edge.parent.removeprefix("/")].append(edge.child.removeprefix("/"))
+    todo, found = [*BODY_FRAMES], {*BODY_FRAMES}
+    for frame in todo:  # grows
+        new = [it for it in children[frame] if it not in found]
+        found.update(new)
+        todo += new
+    return found - {*BODY_FRAMES}
+
+
 def guess_robots(graph: System) -> tuple[GuessedRobot, ...]:
     """The robots of a graph, in the order of their names; empty where none has a name."""
-    namespaces = _namespaces(graph)
+    parts = _of_parts(graph.edges)
+    namespaces = [it for it in _namespaces(graph) if not _is_a_part(it, parts)]
     frames = {it for edge in graph.edges for it in (edge.child, edge.parent)}
     if namespaces:
         found = [GuessedRobot(_name(it, namespaces), it) for it in namespaces]
@@ -62,7 +76,13 @@ def guess_robots(graph: System) -> tuple[GuessedRobot, ...]:
     words = _last_words(graph)
     if words:
         return tuple(with_frames(GuessedRobot(it, ""), frames) for it in words)
-    return tuple(_by_frames(frames))
+    return tuple(_by_frames(frames - parts))
+
+
+def _is_a_part(namespace: str, parts: Collection[str]) -> bool:
+    """Does its base hang on that of a robot without a name?"""
+    word = namespace.rpartition("/")[2]
+    return any(f"{word}{way}{base}" in parts for way in "/_" for base in BODY_FRAMES)
 
 
 def _name(namespace: str, all_of_them: Iterable[str]) -> str:

@@ -61,9 +61,11 @@ def read_seconds(value: object) -> object:
 
 
 def read_transform(value: object) -> object:
-    """Three numbers and four, or nothing."""
+    """Three numbers and four, or nothing; null is one that is none (NaN)."""
     numbers = cast("tuple[float, ...]", read_list(read_seconds, value))
-    if len(numbers) not in (0, 7) or not all(abs(it) < FARTHEST for it in numbers):
+    if len(numbers) not in (0, 7) or not all(
+        abs(it) < FARTHEST or it == math.inf for it in numbers
+    ):
         raise unexpected("7 numbers: x, y, z and a quaternion x, y, z, w", value)
     return numbers
 

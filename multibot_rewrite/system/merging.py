@@ -49,7 +49,7 @@ def merged(looks: Sequence[Look]) -> System:
     nodes = tuple(_nodes([look.snapshot.nodes for look in looks]))
     endpoints = tuple(_endpoints([look.snapshot.ends for look in looks]))
     frames = tuple(_frames(frame for look in looks for frame in look.snapshot.edges))
-    heard = tuple(sorted({it for look in looks for it in look.snapshot.heard}))
+    heard = {it[:2]: it for look in looks for it in look.snapshot.heard}
     around = _environment(looks, nodes, endpoints)
     parameters = {(it.node, it.name): it for look in looks for it in look.snapshot.parameters}
     controllers = {(it.manager, it.name): it for look in looks for it in look.snapshot.controllers}
@@ -58,7 +58,7 @@ def merged(looks: Sequence[Look]) -> System:
         endpoints,
         frames,
         around,
-        heard,
+        tuple(sorted(heard.values())),
         tuple(parameters[it] for it in sorted(parameters)),
         tuple(controllers[it] for it in sorted(controllers)),
     )
@@ -71,10 +71,14 @@ def _refuse_strangers(looks: Sequence[Look]) -> None:
         other = look.snapshot.environment
         if other.domain != around.domain:
             where = f"{first.file} is of domain {around.domain}, {look.file} of {other.domain}"
-            raise UsageError(f"{where}: nodes of two domains never meet; merge those of one domain")
+            raise UsageError(
+                f"{where}: nodes of two domains never see each other; merge those of one domain"
+            )
         if (other.rmw == ZENOH) != (around.rmw == ZENOH):
             where = f"{first.file} is of {around.rmw}, {look.file} of {other.rmw}"
-            raise UsageError(f"{where}: their nodes never meet; merge those of one middleware")
+            raise UsageError(
+                f"{where}: their nodes never see each other; merge those of one middleware"
+            )
 
 
 def _nodes(looks: Sequence[Sequence[Node]]) -> Iterator[Node]:

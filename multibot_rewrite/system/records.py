@@ -157,11 +157,9 @@ class End(NamedTuple):
 
 class Edge(NamedTuple):
     """A transform on ``topic``, which is empty in a plan that says who sends it; ``publishers`` are all
-    nodes that may have sent it.
-
-    tf messages do not say which node sent them; ``several`` is whether more than one did.
-    ``transform`` is the last one: x, y, z in metres and a quaternion x, y, z, w; empty if not known.
-    One that is ``OFF`` a node would send if a parameter, at its ``place``, let it.
+    nodes that may have sent it. A tf message does not say which node sent it; ``several`` is whether
+    more than one did. ``transform`` is the last one: x, y, z in metres and a quaternion x, y, z, w;
+    empty if not known, or if several static ones differ; inf for NaN. ``OFF``: a parameter forbids it.
     """
 
     child: str
@@ -181,10 +179,12 @@ def edge_of(parent: str, child: str, static: bool = False) -> Edge:
 
 
 class Heard(NamedTuple):
-    """The ``header.frame_id`` of a message that was received on ``topic``, as it is written there."""
+    """The ``header.frame_id`` of a message that came on ``topic``, stamped ``age`` seconds before; inf
+    for a stamp of 0, 0 for less than a second or not known."""
 
     topic: str
     frame: str
+    age: float = 0.0
 
 
 class Lookup(NamedTuple):

@@ -29,9 +29,24 @@ _SENSOR_PACKAGES = (
     "livox_ros_driver2/",
 )  # fmt: skip
 MAP = "nav_msgs/msg/OccupancyGrid"
-JOYSTICK = "sensor_msgs/msg/Joy"
 ODOMETRY, JOINTS = "nav_msgs/msg/Odometry", "sensor_msgs/msg/JointState"
-DESCRIPTION = "robot_description"
+# Data of one kind: a reader of the first may have meant the other.
+_KINDS = {
+    "geometry_msgs/msg/Twist": "velocity", "geometry_msgs/msg/TwistStamped": "velocity",
+    **dict.fromkeys(_ALWAYS[:2], "steering"),
+    "sensor_msgs/msg/Image": "image", "sensor_msgs/msg/CompressedImage": "image",
+}  # fmt: skip
+# One device sends it; joints and ranges of one robot come from several.
+_OF_ONE_SENSOR = (
+    ODOMETRY, "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/Imu", "sensor_msgs/msg/Image",
+    "sensor_msgs/msg/CompressedImage", "sensor_msgs/msg/PointCloud2", "sensor_msgs/msg/NavSatFix",
+)  # fmt: skip
+# No sensor's: a person's hand, a clock.
+_NO_SENSOR = ("sensor_msgs/msg/Joy", "sensor_msgs/msg/TimeReference")
+# What is sent to joints, as Isaac Sim and topic_based_ros2_control have it, is no state of them.
+_TO_JOINTS = re.compile(r"cmd|command|goal|target|desired|reference")
+JOYSTICK = "sensor_msgs/msg/Joy"
+DESCRIPTION, _TEXT = "robot_description", "std_msgs/msg/String"
 # The node of `ros2 bag play`.
 PLAYER = "rosbag2_player"
 
@@ -46,14 +61,40 @@ def is_pose_order(plain: str, type_: str) -> bool:
     return type_ in _POSES and plain.strip("/").replace("_", "") in _POSE_NAMES
 
 
+def is_start_pose(plain: str, type_: str) -> bool:
+    """Does the topic (without its robot's name) tell a node where the robot starts?"""
+    return type_ == _POSES[1] and is_pose_order(plain, type_)
+
+
 def is_order(plain: str, type_: str) -> bool:
     """Does the topic (without its robot's name) move a robot or send it somewhere?"""
     return moves(plain, type_) or is_pose_order(plain, type_)
 
 
+def kind_of_data(name: str, type_: str) -> str:
+    """The kind of what a robot's driver, sensor, map server or description sends, or obeys; else ""."""
+    last = name.rpartition("/")[2]
+    if moves(name, type_):
+        # A robot has one drive, and arms with as many controllers as its makers thought of.
+        return _KINDS.get(type_, "")
+    if type_ == MAP:
+        return MAP if "map" in name.split("/")[-2:] else ""
+    if type_ == _TEXT:
+        return DESCRIPTION if last.endswith(("description", "urdf")) else ""
+    if type_ == JOINTS and _TO_JOINTS.search(last):
+        return ""
+    sensor = type_.startswith("sensor_msgs/") and not type_.startswith(_NO_SENSOR)
+    return _KINDS.get(type_, type_) if sensor or type_ == ODOMETRY else ""
+
+
 def is_of_a_body(type_: str) -> bool:
     """Is it what the body of a single robot measures: its joints, its way, its scan?"""
     return type_ in _BODY
+
+
+def is_of_one_sensor(type_: str) -> bool:
+    """Does one device, or one filter, send it?"""
+    return type_ in _OF_ONE_SENSOR
 
 
 def is_of_one_robot(plain: str, type_: str) -> bool:

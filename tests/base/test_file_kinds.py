@@ -30,7 +30,7 @@ TEXTS = {
     "tree": '<root BTCPP_format="4"><BehaviorTree ID="M"/></root>',
     "lua": 'options = {\n  map_frame = "map",\n}\n',
     "fleet": "layout: postfix\nrobots:\n  # two\n  - {name: robot1, description: a.urdf}\n",
-    "plan": "layout: postfix\nrobots:\n  robot1:\n    namespace: /robot1\n",
+    "plan": "layout: postfix\nrobots:\n  robot1:\n    namespace: /robot1\nways: {}\n",
     "snapshot": '{"schema": 2, "nodes": []}',
     "bag": "rosbag2_bagfile_information:\n  version: 5\n",
     "map": "image: hall.pgm\nmode: trinary\nresolution: 0.05\n",

@@ -14,13 +14,14 @@ from multibot_rewrite.producers.bags import read
 
 
 def test_an_output_that_is_a_link_out_of_its_folder(tmp_path: Path) -> None:
-    (tmp_path / "other").mkdir()
-    (tmp_path / "link").symlink_to(tmp_path / "other" / "file")
-    (tmp_path / "near").symlink_to(tmp_path / "file")
-    with pytest.raises(UsageError, match=r"is a link to .*other/file; name that file"):
-        check_link(str(tmp_path / "link"))
-    check_link(str(tmp_path / "near"))
-    check_link(str(tmp_path / "none"))
+    folder = tmp_path / "here"
+    folder.mkdir()
+    (folder / "link").symlink_to(tmp_path / "file")
+    (folder / "near").symlink_to(folder / "deep" / "file")
+    with pytest.raises(UsageError, match=r"is a link to .*/file; name that file"):
+        check_link(str(folder / "link"))
+    for name in ("near", "none", "/dev/stdout"):
+        check_link(str(folder / name))
 
 
 def test_a_file_of_another_kind_is_not_copied_by_a_fleet(tmp_path: Path) -> None:

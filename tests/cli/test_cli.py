@@ -216,7 +216,7 @@ def test_changes_stand_where_they_say(folder: Path, rover: bytes) -> None:
 
 def test_again_rewrites_what_is_rewritten(folder: Path) -> None:
     run(folder, "siblings.urdf", "robot1", "-o", "robot1.urdf")
-    result = run(folder, "robot1.urdf", "robot1", "--again")
+    result = run(folder, "robot1.urdf", "robot1", "--force")
     assert result.code == 0
     assert all(name.endswith("/robot1/robot1") for name in names(result.out, "link"))
 
@@ -250,7 +250,7 @@ def test_a_vocabulary_file_teaches_a_plugin(folder: Path) -> None:
         '<robot name="a">\n<link name="base_link"/>\n<gazebo><plugin name="mine" '
         'filename="libmine.so"><my_frame>base_link</my_frame></plugin></gazebo>\n</robot>\n'
     )
-    (folder / "mine.vocab").write_text("[plugin mine]\nmy_frame uses link frame\n")
+    (folder / "mine.vocab").write_text("[plugin mine]\nopens: nothing\nmy_frame uses link frame\n")
     without = run(folder, "in.urdf", "robot1")
     assert b"<my_frame>base_link</my_frame>" in without.out
     assert [line.split(":")[1] for line in without.err.splitlines()[:2]] == ["3", "3"]
@@ -268,7 +268,7 @@ def test_the_report_counts_by_kind(folder: Path, rover: bytes) -> None:
     start = f"urdf-postfix: robot1: {links} links, {joints} joints, 3 sensors, 1 model"
     assert result.err.startswith(start)
     assert ", 5 nodes, 1 topic word, 2 topics, " in result.err
-    assert result.err.endswith("; proved (facts of lyrical)\n")
+    assert result.err.endswith("; proved (ROS 2 lyrical)\n")
     assert result.err.count("\n") == 1
 
 
@@ -456,7 +456,7 @@ def test_an_error_at_robot_seven_of_ten_leaves_nothing(folder: Path) -> None:
 
 @pytest.mark.parametrize("signal_", [signal.SIGINT, signal.SIGTERM], ids=lambda s: s.name)
 def test_an_interrupt_leaves_nothing(folder: Path, signal_: signal.Signals) -> None:
-    """The last target is a pipe nobody reads, so the command waits there with nine files staged."""
+    """The last target is a pipe no node reads, so the command waits there with nine files staged."""
     out = folder / "out"
     out.mkdir()
     os.mkfifo(out / "r10.urdf")

@@ -421,7 +421,7 @@ def test_a_quoted_word_is_a_name_and_stays_quoted(word: str) -> None:
 def test_topics_of_costmap_layers_leave_the_costmaps_namespace(
     written: str, policy: tuple[str, str], distro: str, new: str
 ) -> None:
-    """nav2 #1433, #3772: below /robot1/local_costmap nobody publishes."""
+    """nav2 #1433, #3772: below /robot1/local_costmap no node publishes."""
     line = f"layer: {{scan: {{topic: {written}}}}}"
     source = f"local_costmap:\n  local_costmap:\n    ros__parameters:\n      {line}\n"
     text, findings = made(source, policy, distro)

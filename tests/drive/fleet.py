@@ -124,6 +124,10 @@ def assembled(given: Reader, robots: tuple[str, ...], file: Path) -> Fleet:
     faults += [*undelivered(given, nodes, ends), *lifecycles.faults(given, nodes)]
     posed = {it.robot for it in nodes if it.what.startswith("joint_state_publisher")}
     broken = [fault for it in there for fault in simulator.broken(it, world, it.robot in posed)]
+    for it in there:
+        broken += simulator.idle(
+            it, [each.values for each in found.nodes if each.robot == it.robot]
+        )
     return Fleet(
         robots,
         tuple(nodes),
@@ -145,6 +149,9 @@ QUIET = ("parameter_bridge", "rviz2", "gz_sim.launch.py", "gazebo.launch.py")
 def strangers(given: Reader, nodes: list[Node]) -> Iterator[tuple[str, str]]:
     """Programs, components, controllers and included launch files that no source was read of."""
     for it in nodes:
+        # Its manager and controllers are read on their own.
+        if any(word in it.what for word in gazebo.CONTROL):
+            continue
         if not it.ends and it.what not in QUIET and not programs.is_known(it.what, given.release):
             yield it.robot, it.what
     for who, start in given.starts:
@@ -291,6 +298,6 @@ def undelivered(
 
 def unsent(who: str, what: str, name: str, sent: Mapping[str, str]) -> Iterator[tuple[str, str]]:
     if name not in sent:
-        yield who, f"{what} waits for {name}, which nobody sends"
+        yield who, f"{what} waits for {name}, which no node sends"
     elif sent[name] != who:
         yield who, f"{what} waits for {name}, which {sent[name] or 'another'} sends"

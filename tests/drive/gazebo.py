@@ -147,6 +147,9 @@ def strangers(
     known = {row["plugin"] for file in TABLES for row in rows(file)}
     for who in (it for it in roots if it in models):
         for it in roots[who].iter("plugin"):
+            # A hardware class of ros2_control has no file: its controller manager loads it.
+            if it.getparent().tag == "hardware":
+                continue
             ours = any(word in it.get("filename", "") for word in CONTROL)
             if not ours and plugin_key(it) not in known:
                 yield who, it.get("filename", "")

@@ -1,6 +1,7 @@
 """Robots in one MuJoCo scene, their drives and controllers stood in for, and who sends commands.
 
-``python physics_child.py SPEC``: SPEC is JSON, {"robots": [...], "send": [topic, kind, values]}. Each
+``python physics_child.py SPEC``: SPEC is JSON, {"robots": [...], "send": [[topic, kind, values], ...],
+"film": a file or ""}; what is sent is sent one after the other. Each robot
 has "urdf", "at", "free" (it stands on wheels), "states", and a drive ("commands", "odom", "tf",
 "frames", "wheels", "separation", "radius") or a controller ("trajectory", "joints"). It prints where
 each began and ended, and the last that each said of itself, as it came through DDS.
@@ -16,6 +17,7 @@ from typing import Any
 
 import mujoco
 import rclpy
+from film import EVERY, Film
 from geometry_msgs.msg import TransformStamped, Twist
 from nav_msgs.msg import Odometry
 from rclpy.context import Context
@@ -92,7 +94,7 @@ class Robot(Node):  # type: ignore[misc]
             ):
                 at = self.joint(name).dofadr[0]
                 error = speed / self.given["radius"] - self.data.qvel[at]
-                self.data.qfrc_applied[at] = MOTOR * error
+                self.data.qfrc_applied[at] = self.given.get("motor", MOTOR) * error
         for name in self.given.get("joints", ()):
             error = self.goal.get(name, 0.0) - self.angle(name)
             self.data.qvel[self.joint(name).dofadr[0]] = max(-1.5, min(1.5, 20 * error))
@@ -122,6 +124,9 @@ class Robot(Node):  # type: ignore[misc]
             moved = TransformStamped(header=said.header, child_frame_id=said.child_frame_id)
             moved.transform.translation.x, moved.transform.translation.y = self.pose[:2]
             self.tf.publish(TFMessage(transforms=[moved]))
+
+
+TYPES = {"Twist": Twist, "JointTrajectory": JointTrajectory}
 
 
 def message_of(kind: str, values: Any) -> Any:
@@ -190,8 +195,11 @@ def main(given: dict[str, Any]) -> None:
     rclpy.init(context=other)
     robots = [Robot(it, model, data, own) for it in given["robots"]]
     operator = Node("operator", context=other)
-    topic, kind, values = given["send"]
-    send = operator.create_publisher(Twist if kind == "Twist" else JointTrajectory, topic, 10)
+    senders = [
+        (topic, message_of(kind, values), operator.create_publisher(TYPES[kind], topic, 10))
+        for topic, kind, values in given["send"]
+    ]
+    film = Film(model, [it["name"] for it in given["robots"]]) if given["film"] else None
     said = listen(operator, robots)
     inside, outside = SingleThreadedExecutor(context=own), SingleThreadedExecutor(context=other)
     for it in robots:
@@ -200,9 +208,12 @@ def main(given: dict[str, Any]) -> None:
     began = [place(data, model, it) for it in robots]
     counted = 0
     for _ in range(5000):
+        topic, message, send = senders[min(counted // TURNS, len(senders) - 1)]
         if send.get_subscription_count():
-            send.publish(message_of(kind, values))
+            send.publish(message)
             counted += 1
+            if film and counted % EVERY == 0:
+                film.take(data, topic)
         for _ in range(STEPS if counted else 0):
             for it in robots:
                 it.push()
@@ -211,8 +222,10 @@ def main(given: dict[str, Any]) -> None:
             it.say()
         inside.spin_once(timeout_sec=0.005)
         outside.spin_once(timeout_sec=0.0)
-        if counted > TURNS:
+        if counted > TURNS * len(senders):
             break
+    if film:
+        film.write(given["film"])
     for _ in range(200):
         for it in robots:
             it.say()

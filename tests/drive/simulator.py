@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import gazebo
-from kept import Kept, kept
+from kept import Kept, bodies, joints_of, kept
 from lxml import etree
 
 # What runs where a world names no system (gz-sim, include/gz/sim/server.config).
@@ -31,6 +31,13 @@ JOINTS = {
         *("left_joint", "right_joint", "left_steering_joint", "right_steering_joint"),
     ),
 }
+# The parameters of ros2_controllers that name the joints of wheels on the ground.
+WHEELS = (
+    *("left_wheel_names", "right_wheel_names", "wheel_names", "wheel_joint_name"),
+    *("front_left_wheel_command_joint_name", "front_right_wheel_command_joint_name"),
+    *("rear_left_wheel_command_joint_name", "rear_right_wheel_command_joint_name"),
+    *("rear_wheels_names", "traction_joints_names", "traction_joint_name"),
+)
 Broken = tuple[str, str, str]
 
 
@@ -128,6 +135,28 @@ def broken(model: Model, world: World, poses: bool) -> Iterator[Broken]:
         yield from still(model)
 
 
+def idle(model: Model, values: Iterable[Mapping[str, Any]]) -> Iterator[Broken]:
+    """Wheels without a collision turn, and nothing moves; ``values`` are those of the controllers."""
+    named = [
+        (it.text or "").strip()
+        for plugin in model.kept.plugins
+        for group in JOINTS.get(gazebo.plugin_key(plugin), ())
+        if "steering" not in group
+        for it in plugin.iterfind(group)
+    ]
+    given = (it[key] for it in values for key in WHEELS if it.get(key))
+    named += [it for one in given for it in ([one] if isinstance(one, str) else one)]
+    touching = {it.getparent().get("name") for it in model.root.iter("collision")}
+    body = bodies(model.root, list(joints_of(model.root)))
+    solid = {body.get(it, it) for it in touching}
+    for it in model.root.iter("joint"):
+        child = it.find("child")
+        if it.get("name") in named and child is not None:
+            wheel = child.get("link") or (child.text or "").strip()
+            if body.get(wheel, wheel) not in solid:
+                yield model.robot, "drives", f"the wheel {wheel} has no collision to roll on"
+
+
 def blind(model: Model, world: World) -> Iterator[Broken]:
     """Sensors that Gazebo drops with their links, or that no system of the world serves."""
     have = [it.get("name") for _, it in model.kept.sensors]
@@ -143,8 +172,8 @@ def blind(model: Model, world: World) -> Iterator[Broken]:
 
 
 def still(model: Model) -> Iterator[Broken]:
-    """Joints that move and are not in the simulator: nobody sends their states."""
+    """Joints that move and are not in the simulator: no node sends their states."""
     for it in model.root.iterfind("joint"):
         if it.get("type") not in ("fixed", "floating") and it.get("name") not in model.kept.joints:
-            why = f"Gazebo keeps no joint {it.get('name')}: nobody sends its transform"
+            why = f"Gazebo keeps no joint {it.get('name')}: no node sends its transform"
             yield model.robot, "plans", why

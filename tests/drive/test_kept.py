@@ -8,7 +8,9 @@ from typing import Any
 
 import kept
 import pytest
+import xacro
 from lxml import etree
+from paths import ROOT
 from real_robots import corpus_files
 
 INERTIA = '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
@@ -61,6 +63,20 @@ def test_a_mount_without_mass_keeps_what_turns_on_it() -> None:
 def test_what_is_on_the_world_is_fixed_to_it() -> None:
     found = read('<link name="world"/>', link("a"), joint("world", "a", "fixed"))
     assert (found.links, found.joints) == (("a",), ("world_a",))
+
+
+@pytest.mark.parametrize(
+    "file", sorted((ROOT / "examples").rglob("*.urdf*")), ids=lambda it: it.name
+)
+def test_the_examples_stay_whole_in_gazebo(file: Path) -> None:
+    """Each joint that can turn is there, and each wheel has something that touches the ground."""
+    root = etree.fromstring(xacro.process_file(str(file)).toxml())
+    turning = {it.get("name") for it in root.iter("joint") if it.get("type") not in ("fixed", None)}
+    found = kept.of_urdf(root)
+    assert turning <= set(found.joints)
+    assert root.find("link/visual") is not None
+    wheels = [it for it in root.iter("link") if "wheel" in it.get("name")]
+    assert all(it.find("collision") is not None for it in wheels)
 
 
 def said(found: kept.Kept) -> list[Any]:

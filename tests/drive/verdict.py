@@ -188,7 +188,7 @@ def sees(fleet: Fleet, robot: str) -> Iterator[Fault]:
         elif not whose and offered(fleet, robot, it.type):
             had = ", ".join(sorted(offered(fleet, robot, it.type)))
             yield Fault(
-                robot, "sees", f"{it.node} reads {it.name}, which nobody sends; it has {had}"
+                robot, "sees", f"{it.node} reads {it.name}, which no node sends; it has {had}"
             )
 
 
@@ -280,13 +280,13 @@ def one_start(fleet: Fleet, robot: str) -> Iterator[Fault]:
 
 
 def mapless(fleet: Fleet, robot: str) -> Iterator[Fault]:
-    """Readers of a map that nobody sends: a static layer waits for it, amcl too."""
+    """Readers of a map that no node sends: a static layer waits for it, amcl too."""
     sent = {it.name for it in fleet.ends if it.role == "publishes" and it.type == MAP}
     for it in fleet.ends:
         waits = it.role == "subscribes" and it.type == MAP and it.sure
         if waits and it.robot == robot and it.name not in sent:
             yield Fault(
-                robot, "plans", f"{it.node} waits for the map {it.name}, which nobody sends"
+                robot, "plans", f"{it.node} waits for the map {it.name}, which no node sends"
             )
 
 

@@ -307,7 +307,7 @@ BAD: dict[str, tuple[str, ...]] = {
     ),
     "srdf-of-yaml": (
         "robots:\n  - {name: a, description: rover.urdf, srdf: params.yaml}\n",
-        "@params.yaml:1:1: not well-formed XML",
+        "@params.yaml: a parameter file; name it under params:",
     ),
     "moveit-of-rviz": (f"{ONE}companions: {{moveit: one_robot.rviz}}\n", "@one_robot.rviz:1: not "),
     "bridge-of-params": (

@@ -67,7 +67,7 @@ def test_a_collision_is_found_without_any_stack(
     code, out, err = run(capsys, "check", plan, "--snapshot", str(COLLISION))
     assert code == 1
     assert all(it in out for it in ("MG402 robot1 and robot2 send", "base_link"))
-    assert err.endswith("not as planned (facts of lyrical)\n")
+    assert err.endswith("not as planned (ROS 2 lyrical)\n")
     assert "2 robots" in err
 
 

@@ -141,3 +141,28 @@ def test_two_robots_of_one_model_and_of_none(tmp_path: Path) -> None:
     lines = b"".join(it.data for it in outputs.files if it.path == "commands.md").decode()
     assert "-name robot1 -file robot1/rover.sdf" in lines
     assert "-name robot2 -topic /robot2/robot_description" in lines
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({}, []),
+        ({"description": "rover.sdf.xacro", "simulated": ""}, ["base_link, wheel"]),
+        (
+            {
+                "description": "rover.sdf.xacro",
+                "simulated": "",
+                "stack": ["no_robot_state_publisher", "slam_toolbox"],
+            },
+            [],
+        ),
+    ],
+)
+def test_an_sdf_alone_is_said(changed: dict[str, object], said: list[str], tmp_path: Path) -> None:
+    """robot_state_publisher needs sdformat_urdf for it; where it does not run nothing is missing."""
+    fleet = yaml.safe_load(Path(written(tmp_path, "tf-per-robot")).read_text())
+    given = {key: it for key, it in {**fleet, **changed}.items() if it}
+    (tmp_path / "fleet.yaml").write_text(yaml.safe_dump(given))
+    outputs = make_outputs(plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "jazzy", {})))
+    found = [it for it in outputs.findings if it.code == "MF712"]
+    assert [text in it.message for it, text in zip(found, said, strict=True)] == [True] * len(said)

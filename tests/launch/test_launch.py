@@ -196,7 +196,6 @@ WORDS = [
 ]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("word", "name", "wanted"), WORDS)
 def test_words(word: str, name: str, wanted: str, fleet: str, context: Any) -> None:
     context.launch_configurations.update({"which": "robot2", "where": fleet})
@@ -234,7 +233,6 @@ def test_a_robot_in_its_group(fleet: str, context: Any) -> None:
     assert set(context.launch_configurations) == {"where"}
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("robots", "wanted"),
     [
@@ -253,7 +251,6 @@ def test_only_some_robots(robots: Any, wanted: list[str], fleet: str, context: A
     assert [it.options["name"] for it in run(context, made)] == wanted
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("files", ["params.yaml,more.yaml", ["params.yaml", "more.yaml"]])
 def test_several_files(files: Any, fleet: str, context: Any) -> None:
     (Path(fleet).with_name("more.yaml")).write_text(PARAMS)
@@ -262,7 +259,6 @@ def test_several_files(files: Any, fleet: str, context: Any) -> None:
     assert [Path(it).name for it in made.options["parameters"]] == ["params.yaml", "more.yaml"]
 
 
-@pytest.mark.slow
 def test_robots_that_the_file_does_not_have(fleet: str, context: Any) -> None:
     found = []
     robots = "robot2={x: 4.0, y: 1}; third={x: 6.0}"
@@ -270,7 +266,6 @@ def test_robots_that_the_file_does_not_have(fleet: str, context: Any) -> None:
     assert [(it.name, it.pose.x) for it in found] == [("robot2", 4.0), ("third", 6.0)]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("count", ["three", "-1", "2.5"])
 def test_a_number_of_robots_that_is_none(count: str, fleet: str, context: Any) -> None:
     context.launch_configurations["multibot_count"] = count
@@ -289,7 +284,6 @@ def test_a_condition(fleet: str, context: Any) -> None:
             assert len(run(context, one)) == bool(count)
 
 
-@pytest.mark.slow
 def test_a_node(fleet: str, context: Any) -> None:
     mine, later = ("scan", "front"), {"use_sim_time": True}
     action = launch.node(
@@ -344,7 +338,6 @@ def test_a_component_is_loaded_into_its_container(fleet: str, context: Any) -> N
     assert "composable_node_descriptions" not in box.options
 
 
-@pytest.mark.slow
 def test_a_node_with_the_description(fleet: str, context: Any) -> None:
     where = {"robot": "robot2", "fleet": fleet}
     (made,) = run(context, launch.node("robot_state_publisher", describe=True, **where))
@@ -356,7 +349,6 @@ def test_a_node_with_the_description(fleet: str, context: Any) -> None:
     assert bare.options["parameters"] == []
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("odd", ["\x7f", "\x85", "\u2028", "\ufeff", "\U0001f916", 'a "b" \\n'])
 def test_a_description_reads_back_whatever_is_in_it(odd: str, fleet: str, context: Any) -> None:
     path = Path(fleet).with_name("rover.urdf")
@@ -388,7 +380,6 @@ def test_a_spawner_and_a_place(fleet: str, context: Any) -> None:
     assert run(context, launch.place("robot2", fleet)) == []
 
 
-@pytest.mark.slow
 def test_files_go_with_the_launch(fleet: str, context: Any) -> None:
     own = launch.perform(context, launch.params_file("params.yaml", "robot1", fleet))
     shared = launch.perform(context, launch.rviz_config("one.rviz", fleet=fleet))
@@ -401,7 +392,6 @@ def test_files_go_with_the_launch(fleet: str, context: Any) -> None:
     assert not folder.exists()
 
 
-@pytest.mark.slow
 def test_files_go_with_a_launch_that_is_never_shut_down(fleet: str, context: Any) -> None:
     own = importlib.import_module("launch").LaunchContext()
     path = Path(launch.perform(own, launch.params_file("params.yaml", "robot1", fleet)))
@@ -430,7 +420,6 @@ def test_a_launch_loads_a_fleet_once(
     assert launch.fleet_of(other, fleet) is not first
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("configured", "trusted"), [({}, False), ({"multibot_trust": "true"}, True),
     ({"multibot_trust": "false"}, False), ({"multibot_trust": "True"}, True)],
@@ -637,7 +626,6 @@ def test_a_step_of_the_tutorial_in_launch(file: str, tmp_path: Path) -> None:
         assert f"/{robot.name}/bridge.yaml" in texts
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("code", PYTHON, ids=["plain", "running"])
 def test_the_python_of_the_page(
     code: str, fleet: str, context: Any, monkeypatch: pytest.MonkeyPatch
@@ -711,7 +699,6 @@ def test_the_table_is_that_of_launch_and_launch_ros() -> None:
     assert launch_signatures.table() == SIGNATURES
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "make",
     [

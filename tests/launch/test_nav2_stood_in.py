@@ -6,33 +6,88 @@ nav2_bringup's launch files, the numbers those of lifecycle_msgs msg/Transition.
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+from typing import Any
+
 import pytest
 import yaml
+from launched_here import read_here
 from nav2_fleet import FILE, written
 
 from multibot_rewrite.launch import nav2_programs
 from multibot_rewrite.producers.launch.child import launch_graph
-from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchOrder
+from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, LaunchOrder
 
 BESIDE = ["map_server", "amcl"]
+NAV2 = {
+    "amcl": "nav2_amcl",
+    "behavior_server": "nav2_behaviors",
+    "bt_navigator": "nav2_bt_navigator",
+    "collision_monitor": "nav2_collision_monitor",
+    "controller_server": "nav2_controller",
+    "docking_server": "opennav_docking",
+    "map_server": "nav2_map_server",
+    "planner_server": "nav2_planner",
+    "route_server": "nav2_route",
+    "smoother_server": "nav2_smoother",
+    "velocity_smoother": "nav2_velocity_smoother",
+    "waypoint_follower": "nav2_waypoint_follower",
+}
+MANAGERS = [f"lifecycle_manager_{it}" for it in ("localization", "navigation")]
+SHARED = "shared_nodes: [map_server]\nshared_topics: [/map, /clock, /rosout, /parameter_events]"
+
+
+def read(folder: Path, *words: tuple[str, str], **fleet: str) -> LaunchGraph:
+    """What is started for a fleet, with these launch arguments."""
+    file = written(folder, **fleet) / "fleet.yaml"
+    with pytest.MonkeyPatch.context() as kept:
+        read_here(kept, folder)
+        return launch_graph(LaunchOrder(str(FILE), (("fleet", str(file)), *words), trusted=True))
+
+
+def windows(graph: LaunchGraph) -> list[LaunchedNode]:
+    return [it for it in graph.nodes if it.executable == "rviz2"]
+
+
+def by_name(graph: LaunchGraph) -> dict[str, LaunchedNode]:
+    """By full name; an RViz has none."""
+    return {f"{it.namespace.rstrip('/')}/{it.name}": it for it in graph.nodes if it.name}
 
 
 @pytest.fixture(scope="module")
-def nodes(tmp_path_factory: pytest.TempPathFactory) -> dict[str, LaunchedNode]:
-    """By full name, postfix."""
-    fleet = written(tmp_path_factory.mktemp("fleet")) / "fleet.yaml"
-    words = (("fleet", str(fleet)), ("map", "/depot.yaml"))
-    found = launch_graph(LaunchOrder(str(FILE), words, trusted=True)).nodes
-    return {f"{it.namespace.rstrip('/')}/{it.name}": it for it in found}
+def each(tmp_path_factory: pytest.TempPathFactory) -> LaunchGraph:
+    """Postfix: all in processes of their own, and all that can be asked for."""
+    more = {"rviz": "each", "robot_state_publisher": "true", "use_sim_time": "true"}
+    words = {"map": "/depot.yaml", **more}
+    return read(tmp_path_factory.mktemp("fleet"), *words.items())
+
+
+@pytest.fixture(scope="module")
+def nodes(each: LaunchGraph) -> dict[str, LaunchedNode]:
+    return by_name(each)
+
+
+@pytest.fixture(scope="module")
+def composed(tmp_path_factory: pytest.TempPathFactory) -> LaunchGraph:
+    """Namespaces: in a container of each robot, with a map server for all and tf on one topic."""
+    fleet = {"layout": "both", "stack": "nav2_composed", "more": f"relayed: true\n{SHARED}"}
+    return read(tmp_path_factory.mktemp("fleet"), ("rviz", "one"), ("autostart", "false"), **fleet)
 
 
 def own(node: LaunchedNode) -> dict[str, object]:
-    """What the launch file itself sets."""
+    """What the launch file itself sets, but the clock."""
     texts = (yaml.safe_load(it.text) for it in node.parameters if it.text.startswith("/**"))
-    return {name: value for it in texts for name, value in it["/**"]["ros__parameters"].items()}
+    found = (pair for it in texts for pair in it["/**"]["ros__parameters"].items())
+    return {name: value for name, value in found if name != "use_sim_time"}
 
 
-@pytest.mark.slow
+def clocks(node: LaunchedNode) -> set[object]:
+    """The values of use_sim_time that a node is told."""
+    found = re.findall(r"use_sim_time: (\S+)", "".join(it.text for it in node.parameters))
+    return {yaml.safe_load(it) for it in found}
+
+
 @pytest.mark.parametrize("robot", ["robot1", "robot2"])
 def test_a_manager_has_the_nodes_that_it_manages_by_their_names(
     robot: str, nodes: dict[str, LaunchedNode]
@@ -45,7 +100,6 @@ def test_a_manager_has_the_nodes_that_it_manages_by_their_names(
     assert {"controller_server", f"bt_navigator_{robot}"} <= {*moving}  # type: ignore[misc]
 
 
-@pytest.mark.slow
 def test_a_map_server_gets_its_map_and_no_node_is_told_of_others(
     nodes: dict[str, LaunchedNode],
 ) -> None:
@@ -58,3 +112,79 @@ def test_a_map_server_gets_its_map_and_no_node_is_told_of_others(
 
 def test_a_node_is_configured_and_then_activated() -> None:
     assert dict(nav2_programs.TRANSITIONS) == {"configure": 1, "activate": 3}
+
+
+def test_programs_are_those_of_nav2(nodes: dict[str, LaunchedNode]) -> None:
+    for name, package in NAV2.items():
+        (it,) = (nodes[key] for key in (f"/{name}_robot2", f"/robot2/{name}") if key in nodes)
+        program = "opennav_docking" if name == "docking_server" else name
+        assert (it.package, it.executable, it.container) == (package, program, "")
+    state = nodes["/robot_state_publisher_robot2"]
+    assert (state.package, state.executable) == ("robot_state_publisher",) * 2
+    assert "robot_description" in "".join(it.text for it in state.parameters)
+    assert len(nodes) == 2 * (len(NAV2) + len(MANAGERS) + 1)
+
+
+def test_every_node_has_the_clock_that_is_said(each: LaunchGraph, composed: LaunchGraph) -> None:
+    assert [clocks(it) for it in each.nodes] == [{True}] * len(each.nodes)
+    # Nobody says it: neither the launch, nor the fleet file, nor a file of parameters.
+    assert [clocks(it) - {False} for it in composed.nodes] == [set()] * len(composed.nodes)
+
+
+def test_a_window_of_each_robot_and_one_of_all(each: LaunchGraph, composed: LaunchGraph) -> None:
+    for at, window in enumerate(windows(each), 1):
+        tf = [(f"/{it}", f"/{it}/robot{at}") for it in ("tf", "tf_static")]
+        assert (window.package, [*window.remappings][:2]) == ("rviz2", tf)
+        assert window.arguments[0] == "-d"
+        assert window.arguments[1].endswith(f"/robot{at}/one.rviz")
+    assert len(windows(each)) == 2
+    (shared,) = windows(composed)
+    assert (shared.package, shared.remappings, shared.namespace) == ("rviz2", (), "/")
+    assert shared.arguments[1].endswith("/all/one.rviz")
+
+
+def test_components_are_in_the_container_of_their_robot(composed: LaunchGraph) -> None:
+    nodes = by_name(composed)
+    box = nodes["/robot1/nav2_container"]
+    assert (box.package, box.executable) == ("rclcpp_components", "component_container_isolated")
+    hosted = {name: it for name, it in nodes.items() if it.container == "/robot1/nav2_container"}
+    own_nodes = [it for it in NAV2 if it != "map_server"]
+    assert {*hosted} == {f"/robot1/{it}" for it in (*own_nodes, *MANAGERS)}
+    amcl = hosted["/robot1/amcl"]
+    assert (amcl.package, amcl.executable) == ("nav2_amcl", "nav2_amcl::AmclNode")
+    manager = own(hosted["/robot1/lifecycle_manager_localization"])
+    assert manager == {"autostart": False, "node_names": ["amcl"]}
+
+
+def test_what_all_share_has_a_manager_of_its_own(composed: LaunchGraph) -> None:
+    nodes = by_name(composed)
+    assert "/robot1/map_server" not in nodes and nodes["/map_server"].package == "nav2_map_server"
+    manager = nodes["/lifecycle_manager_shared"]
+    assert own(manager) == {"autostart": False, "node_names": ["map_server"]}
+    assert (manager.package, manager.executable) == ("nav2_lifecycle_manager", "lifecycle_manager")
+    # No map was given: what parameter files say is not replaced.
+    assert own(nodes["/map_server"]) == {}
+
+
+def test_tf_of_each_robot_is_relayed(composed: LaunchGraph, nodes: dict[str, Any]) -> None:
+    for tf in ("tf", "tf_static"):
+        relay = by_name(composed)[f"/robot2/{tf}_relay"]
+        assert (relay.package, relay.executable) == ("topic_tools", "relay")
+        told = [*relay.arguments, *own(relay).values()]
+        assert [it for it in told if str(it).startswith("/")] == [f"/robot2/{tf}", f"/{tf}"]
+    assert not [it for it in nodes if "relay" in it]
+
+
+@pytest.mark.parametrize(
+    ("words", "fleet", "said"),
+    [
+        ({"rviz": "one"}, {}, "these robots need 2 windows; say relayed: true"),
+        ({"rviz": "all"}, {}, "rviz:=all: way 'all' is not known"),
+        ({}, {"stack": "robot_localization"}, "robot 'robot1' has no node of Nav2; add nav2, "),
+    ],
+)
+def test_what_cannot_be_started_is_said(
+    words: dict[str, str], fleet: dict[str, str], said: str, tmp_path: Path
+) -> None:
+    notes = read(tmp_path, *words.items(), **fleet).notes
+    assert any(said in it.message for it in notes), notes

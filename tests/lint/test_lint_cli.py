@@ -267,7 +267,7 @@ def test_standard_input(
     monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(TWO_ROOTS.encode())))
     code, out, err = said(capsys, "-", "--select", "MB501")
     assert (code, out.partition(" ")[0]) == (1, "<stdin>:3:7:")
-    assert err == "urdf-lint: 1 file: 1 error (facts of lyrical)\n"
+    assert err == "urdf-lint: 1 file: 1 error (ROS 2 lyrical)\n"
 
 
 STREAMS = [

@@ -167,7 +167,7 @@ PLANTED = {
         classic("gazebo_ros_p3d", f"{OF_ROS_1}<xyzOffsets>0 0 0</xyzOffsets>"),
         "MB110",
     ),
-    "a parameter nobody reads in ROS 1": (
+    "a parameter no node reads in ROS 1": (
         classic("gazebo_ros_p3d", f"{OF_ROS_1}<alwaysOn>true</alwaysOn>"),
         "MB111",
     ),
@@ -208,7 +208,7 @@ PLANTED = {
         classic("gazebo_ros_p3d", "<ros/><body_name>a</body_name><namespace>a</namespace>"),
         "MB112",
     ),
-    "a name of a block that nobody reads": (
+    "a name of a block that no node reads": (
         f"<gazebo>{CONTROL}<ros><controlPeriod>1</controlPeriod></ros></plugin></gazebo>",
         "MB111",
     ),
@@ -222,7 +222,7 @@ PLANTED = {
         classic("gazebo_ros_diff_drive", "<ros/><wheel_radius>1</wheel_radius>"),
         "MB163",
     ),
-    "a parameter nobody reads": (system(*DRIVE, "<use_sim_time>true</use_sim_time>"), "MB111"),
+    "a parameter no node reads": (system(*DRIVE, "<use_sim_time>true</use_sim_time>"), "MB111"),
     "no joint of a thruster": (system("thruster", "Thruster"), "MB115"),
     "no link of p3d": (classic("gazebo_ros_p3d", "<ros/>"), "MB115"),
     "a radius in words": (system(*DRIVE, "<wheel_radius>ten cm</wheel_radius>"), "MB120"),

@@ -216,6 +216,9 @@ def test_values_that_a_caller_can_give(
 
 MACRO = f'<robot name="r" {XACRO}><xacro:macro name="m" params="{{}}">{{}}</xacro:macro></robot>'
 JOINT = '<joint name="{}" type="fixed"><parent link="{}"/><child link="{}"/></joint>'
+MIMIC = JOINT.format("${{prefix}}j", "${{prefix}}a", "${{prefix}}b").replace(
+    "</joint>", '<mimic joint="{}"/></joint>'
+)
 LINKS = '<link name="${prefix}a"/><link name="${prefix}b"/>'
 
 
@@ -237,6 +240,9 @@ LINKS = '<link name="${prefix}a"/><link name="${prefix}b"/>'
         ("prefix", LINKS + JOINT.format("${prefix}j", "a", "${prefix}b"), ["MB417"]),
         ("prefix", LINKS + JOINT.format("${prefix}j", "tool0", "${prefix}b"), []),
         ("prefix", LINKS + '<gazebo reference="a"/>', ["MB417"]),
+        ("prefix", LINKS + JOINT.format("${prefix}j", "${prefix}a", "b"), ["MB417"]),
+        ("prefix", LINKS + MIMIC.format("j"), ["MB417"]),
+        ("prefix", LINKS + MIMIC.format("${prefix}j"), []),
         ("prefix", LINKS + "<gazebo><plugin><link_name>a</link_name></plugin></gazebo>", ["MB417"]),
         ("prefix", LINKS + "<gazebo><plugin><topic>a</topic></plugin></gazebo>", []),
         # Carried on by a property.
@@ -255,6 +261,35 @@ LINKS = '<link name="${prefix}a"/><link name="${prefix}b"/>'
 )
 def test_prefixes_of_macros(params: str, inside: str, expected: list[str], tmp_path: Path) -> None:
     assert codes(tmp_path, MACRO.format(params, inside), "MB417 MB418") == expected
+
+
+# Where plugins and transmissions name a link, joint or frame: gazebo_ros and gz-sim of any age.
+NAMING = [
+    "left_joint",
+    "right_joint",
+    "leftJoint",
+    "rightJoint",
+    "joint_name",
+    "jointName",
+    "link_name",
+    "linkName",
+    "frame_name",
+    "frameName",
+    "body_name",
+    "bodyName",
+    "robot_base_frame",
+    "robotBaseFrame",
+    "child_frame_id",
+    "gz_frame_id",
+    "ignition_frame_id",
+]
+
+
+@pytest.mark.parametrize("tag", NAMING)
+def test_every_element_that_names_a_part_has_the_prefix(tag: str, tmp_path: Path) -> None:
+    for name, expected in (("a", ["MB417"]), ("${prefix}a", [])):
+        inside = f"{LINKS}<gazebo><plugin><{tag}> {name} </{tag}></plugin></gazebo>"
+        assert codes(tmp_path, MACRO.format("prefix", inside), "MB417") == expected
 
 
 @pytest.mark.parametrize(

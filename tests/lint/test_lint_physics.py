@@ -10,7 +10,7 @@ import pytest
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.rules.description.physics.moments import eigenvalues
+from multibot_rewrite.rules.description.physics.inertia import eigenvalues
 from multibot_rewrite.rules.settings import Settings
 
 GROUP = Settings(select=("MB6", "MB115", "MB125"), ignore=("MB609", "MB610", "MB611"))
@@ -31,6 +31,13 @@ def weighs(mass: object, *values: object) -> str:
 
 
 GOOD = weighs(1)
+
+
+def reaching(shape: str, size: str, radius: float | None, xyz: str = "0 0 0") -> str:
+    """A shape, and an inertia of this radius of gyration."""
+    own = "" if radius is None else weighs(1, *[radius**2] * 3)
+    what = f'<origin xyz="{xyz}"/><geometry><{shape} {size}/></geometry>'
+    return f"{own}<collision>{what}</collision>"
 
 
 def robot(*parts: str, name: str = "a") -> str:
@@ -123,6 +130,26 @@ CASES = [
         robot(weighs(1, 1, 1, 1) + HARD.replace("box", "mesh")),
         "",
         id="the size of a mesh is not known",
+    ),
+    pytest.param(robot(reaching("sphere", 'radius="0.1"', 0.41)), "MB608:1", id="4 spheres"),
+    pytest.param(robot(reaching("sphere", 'radius="0.1"', 0.39)), "", id="nearly"),
+    # A box reaches half its diagonal, a cylinder its radius or length, as far as its origin is off.
+    pytest.param(robot(reaching("box", 'size="0.2 0.2 0.1"', 0.61)), "MB608:1", id="4 boxes"),
+    pytest.param(robot(reaching("box", 'size="0.2 0.2 0.1"', 0.59)), "", id="nearly a box"),
+    pytest.param(
+        robot(reaching("cylinder", 'radius="0.1" length="0.3"', 1.21)), "MB608:1", id="4 cylinders"
+    ),
+    pytest.param(
+        robot(reaching("cylinder", 'radius="0.1" length="0.3"', 1.19)), "", id="nearly one"
+    ),
+    pytest.param(
+        robot(reaching("sphere", 'radius="0.1"', 1.61, "0 0.3 0")), "MB608:1", id="off the origin"
+    ),
+    pytest.param(robot(reaching("sphere", 'radius="0.1"', 1.59, "0 0.3 0")), "", id="nearly off"),
+    pytest.param(
+        robot(reaching("sphere", 'radius="0.1"', 0.41) + reaching("box", 'size="1 1 1"', None)),
+        "",
+        id="the largest of its shapes",
     ),
     # shapes
     pytest.param(robot(HARD.replace("0.1 0.1 0.1", "1 -1 1")), "MB125:1", id="negative side"),

@@ -60,7 +60,7 @@ def found(folder: Path, body: str) -> list[str]:
         # a sensor's name counts in its link
         (ROBOT + BLOCK.format("tip", SENSOR.format("s", "") * 2), ["MB201"]),
         (ROBOT + BLOCK.format("tip", SENSOR.format("s", "")) * 2, ["MB201"]),
-        # a block for Gazebo is right below the robot: inside of another one nobody reads it
+        # a block for Gazebo is right below the robot: inside of another one no node reads it
         (ROBOT + BLOCK.format("tip", BLOCK.format("tip", SENSOR.format("s", "")) * 2), []),
         (
             ROBOT

@@ -1,4 +1,4 @@
-"""Frames of the plan that no transform has: joint states that nobody sends, the wrong description."""
+"""Frames of the plan that no transform has: joint states that no node sends, the wrong description."""
 
 from __future__ import annotations
 

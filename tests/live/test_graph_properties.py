@@ -125,7 +125,7 @@ def own(topic: str, robot: str, naming: Naming) -> str:
 @settings(max_examples=150, deadline=None)
 @given(fleets())
 def test_a_fleet_as_planned_is_silent(fleet: Fleet) -> None:
-    """But where the plan itself has a reader or client whose name nobody sends or serves."""
+    """But where the plan itself has a reader or client whose name no node sends or serves."""
     sent_by_plan = {it.name for it in fleet.plan.ends if it.role in (PUBLISHES, SERVES)}
     found = check(fleet.plan, fleet.graph)
     assert [it for it in found if it.code not in ("MG303", "MG304")] == []

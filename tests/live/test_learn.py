@@ -701,7 +701,7 @@ def test_what_is_learned_gives_the_whole_table(
     mine = str(tmp_path / "mine.yaml")
     assert main(["learn", "--snapshot", str(shot), "--stack", "mine", "-o", mine]) == 0
     note = "left out as tools: /rviz2; to learn one give its name to --node"
-    said = f"multibot: note: {note}\nmultibot: 2 nodes learned as stack mine (facts of lyrical)\n"
+    said = f"multibot: note: {note}\nmultibot: 2 nodes learned as stack mine (ROS 2 lyrical)\n"
     assert capsys.readouterr() == ("", said)
     names = [node.name for node in stack_of(user_stack(mine, NEWEST_LTS), "mine")]
     assert names == ["driver", "eye"]
@@ -725,7 +725,7 @@ def test_one_node_goes_to_standard_output(shot: Path, capsys: pytest.CaptureFixt
         "      ~/image: {type: sensor_msgs/msg/Image, transport: true}\n\nstacks:\n  learned:\n"
         "    about: Learned from a running graph\n    nodes:\n      - eye\n"
     ) in out
-    assert err == "multibot: 1 node learned as stack learned (facts of lyrical)\n"
+    assert err == "multibot: 1 node learned as stack learned (ROS 2 lyrical)\n"
 
 
 def test_an_incomplete_view_is_written_and_reported(

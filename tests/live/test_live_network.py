@@ -248,7 +248,7 @@ def test_a_robot_of_another_domain(plan: Path, tmp_path: Path) -> None:
         env=live_fleet.environ(DOMAIN),
     )
     assert done.returncode == 2
-    assert "nodes of two domains never meet" in done.stderr
+    assert "nodes of two domains never see each other" in done.stderr
 
 
 @pytest.mark.deep

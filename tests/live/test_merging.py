@@ -96,7 +96,7 @@ def test_two_domains_are_refused() -> None:
 
 
 def test_zenoh_and_dds_are_refused() -> None:
-    with pytest.raises(UsageError, match="their nodes never meet"):
+    with pytest.raises(UsageError, match="their nodes never see each other"):
         join(look(node("robot1")), look(node("robot2"), rmw="rmw_zenoh_cpp"))
 
 

@@ -258,7 +258,7 @@ def test_a_bridge_that_was_not_started(layout: str, type_: str) -> None:
     odom = Edge(spelled(layout, "odom"), "world", own.replace("tf", "tf_static", 1), True, ())
     graph = reframed(lambda it: None if (it.child, it.topic) == (footprint, own) else it, odom)
     (finding,) = (it for it in check(plan, graph(healthy(layout))) if it.code == "MG406")
-    assert f"nothing publishes {name}, which a ros_gz_bridge has to carry" in finding.hint
+    assert f"nothing publishes {name}, which a ros_gz_bridge has to bridge" in finding.hint
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)

@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 import yaml
+from launched_here import read_here
 from launched_programs import launched
 from paths import ROOT
 
@@ -50,6 +52,23 @@ def generate_launch_description():
     return LaunchDescription([
 """
 NAMES = HEAD.count("\n")
+
+
+# They are read in a process of their own, as by every command.
+IN_THE_CHILD = (
+    "test_a_node_is_under_the_group_that_has_it",
+    "test_a_launch_file_that_cannot_be_read_is_one_line",
+    "test_without_launch_a_stand_in_reads_and_says_so",
+)
+
+
+@pytest.fixture(autouse=True)
+def quick(
+    request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch, tmp_path_factory: Any
+) -> None:
+    """What the stand-in reads is read in this process: a test is done in a hundredth of the time."""
+    if without() and request.node.originalname not in IN_THE_CHILD:
+        read_here(monkeypatch, tmp_path_factory.mktemp("launch"))
 
 
 def read(folder: Path, actions: str, *arguments: tuple[str, str], roots: str = "") -> LaunchGraph:
@@ -113,7 +132,6 @@ def test_includes_get_their_arguments_and_conditions_decide(tmp_path: Path) -> N
     assert (Path(found.place.file).name, found.place.line) == ("inner.launch.xml", 4)
 
 
-@pytest.mark.slow
 def test_components_are_in_their_container(tmp_path: Path) -> None:
     graph = read(
         tmp_path,
@@ -137,7 +155,6 @@ def test_components_are_in_their_container(tmp_path: Path) -> None:
     assert {first.container, second.container} == {"/robot1/box"}
 
 
-@pytest.mark.slow
 def test_functions_run_and_what_starts_later_says_so(tmp_path: Path) -> None:
     graph = read(
         tmp_path,
@@ -233,7 +250,6 @@ def generate_launch_description():
 """
 
 
-@pytest.mark.slow
 def test_a_timer_knows_the_folder_of_its_launch_file(tmp_path: Path) -> None:
     """It keeps the locals of its place (timer_action.py), an event handler does not."""
     inner = 'Node(package="acme", executable="d", arguments=[ThisLaunchFileDir()])'
@@ -241,7 +257,6 @@ def test_a_timer_knows_the_folder_of_its_launch_file(tmp_path: Path) -> None:
     assert one(graph).arguments == (str(tmp_path),)
 
 
-@pytest.mark.slow
 def test_a_timer_that_starts_itself_again_is_told(tmp_path: Path) -> None:
     file = tmp_path / "again.launch.py"
     file.write_text(AGAIN)
@@ -251,7 +266,6 @@ def test_a_timer_that_starts_itself_again_is_told(tmp_path: Path) -> None:
     assert 1 < len(graph.nodes) < 100
 
 
-@pytest.mark.slow
 def test_a_configuration_that_is_gone_at_an_event_is_told(tmp_path: Path) -> None:
     late = 'Node(package="acme", executable="e", namespace=LaunchConfiguration("robot"))'
     event = f"RegisterEventHandler(OnProcessExit(on_exit=[{late}]))"
@@ -263,7 +277,6 @@ def test_a_configuration_that_is_gone_at_an_event_is_told(tmp_path: Path) -> Non
     )
 
 
-@pytest.mark.slow
 def test_what_starts_later_is_outside_the_group_that_it_stands_in(tmp_path: Path) -> None:
     """launch leaves the scope of a group before any event (LaunchService, GroupAction)."""
     graph = read(
@@ -280,7 +293,6 @@ def test_what_starts_later_is_outside_the_group_that_it_stands_in(tmp_path: Path
     assert found == {"n": "/robot1", "e": "/robot1", "t": "/"}
 
 
-@pytest.mark.slow
 def test_a_node_without_its_parameter_file_is_known(tmp_path: Path) -> None:
     """launch_ros warns of the file and starts the node (``_perform_substitutions`` of Node)."""
     graph = read(tmp_path, 'Node(package="acme", executable="d", parameters=["none.yaml"]),')
@@ -288,7 +300,6 @@ def test_a_node_without_its_parameter_file_is_known(tmp_path: Path) -> None:
     assert ([it.parameters for it in graph.notes], graph.whole) == ([True], True)
 
 
-@pytest.mark.slow
 def test_nothing_is_started(tmp_path: Path) -> None:
     made = tmp_path / "made"
     found = one(
@@ -304,7 +315,6 @@ def test_nothing_is_started(tmp_path: Path) -> None:
     assert any("rate: 1" in it.text for it in found.parameters)
 
 
-@pytest.mark.slow
 def test_a_missing_package_is_named_and_found_in_its_sources(tmp_path: Path) -> None:
     share = 'FindPackageShare("acme_bringup")'
     include = f'        IncludeLaunchDescription([{share}, "/launch/a.launch.py"]),'
@@ -341,7 +351,6 @@ def test_a_launch_file_that_cannot_be_read_is_one_line(
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.slow
 def test_a_launch_without_nodes_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="it starts no node"):
         read(tmp_path, '        Node(package="a", executable="b", condition=IfCondition("0")),')
@@ -369,7 +378,6 @@ def test_the_command_itself_imports_no_launch() -> None:
     assert "launch_ros" not in sys.modules or not without()
 
 
-@pytest.mark.slow
 def test_a_file_that_is_made_of_another_one_names_it(tmp_path: Path) -> None:
     source = tmp_path / "p.yaml"
     source.write_text("/**:\n  ros__parameters: {rate: $(var rate)}\n")
@@ -383,7 +391,6 @@ def test_a_file_that_is_made_of_another_one_names_it(tmp_path: Path) -> None:
     assert "rate: 5" in given.text
 
 
-@pytest.mark.slow
 def test_the_file_of_a_rewritten_one_is_found(tmp_path: Path) -> None:
     source, name = tmp_path / "p.yaml", repr(str(tmp_path / "p.yaml"))
     source.write_text("/**:\n  ros__parameters: {rate: 5}\n")
@@ -412,7 +419,6 @@ class RewrittenYaml(Substitution):
     assert given.text.startswith("# made\n# made\n")
 
 
-@pytest.mark.slow
 def test_the_files_of_a_spawner_are_its_parameters(tmp_path: Path) -> None:
     source = tmp_path / "p.yaml"
     source.write_text("a:\n  ros__parameters: {type: x/X}\n")
@@ -424,7 +430,6 @@ def test_the_files_of_a_spawner_are_its_parameters(tmp_path: Path) -> None:
     assert found.arguments[0] == "a"
 
 
-@pytest.mark.slow
 def test_a_launch_file_sees_the_command_line_of_ros2_launch(tmp_path: Path) -> None:
     """As nav2_common's ParseMultiRobotPose looks at it."""
     file = tmp_path / "bringup.launch.py"
@@ -441,7 +446,6 @@ def test_a_launch_file_sees_the_command_line_of_ros2_launch(tmp_path: Path) -> N
     assert [it.namespace for it in launch_graph(order).nodes] == ["/r1", "/r2"]
 
 
-@pytest.mark.slow
 def test_the_text_of_a_file_that_the_launch_makes_is_kept(tmp_path: Path) -> None:
     made = "tempfile.NamedTemporaryFile('w', suffix='.yaml', delete=False)"
     file = tmp_path / "bringup.launch.py"
@@ -561,7 +565,6 @@ def test_the_whole_command(
         assert "MG102" in capsys.readouterr().out
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     ["two.launch.py", "three.launch.py", pytest.param("three.launch.xml", marks=in_launch)],
@@ -585,7 +588,6 @@ def test_actions_for_robots_are_read_with_their_names(name: str) -> None:
     assert main(words) == 0
 
 
-@pytest.mark.slow
 def test_files_that_plugins_of_a_description_name_are_kept(tmp_path: Path) -> None:
     """A launch makes them of others, and they are gone when it has been read."""
     file = tmp_path / "controllers.yaml"
@@ -636,7 +638,6 @@ def test_a_substitution_has_the_value_that_launch_gives_it(
 
 
 # launch jazzy, actions/append_environment_variable.py, group_action.py (a group pushes them).
-@pytest.mark.slow
 def test_variables_are_those_of_their_group(tmp_path: Path) -> None:
     graph = read(
         tmp_path,
@@ -656,7 +657,6 @@ def test_variables_are_those_of_their_group(tmp_path: Path) -> None:
 
 
 # launch jazzy, group_action.py, reset_launch_configurations.py, unset_launch_configuration.py.
-@pytest.mark.slow
 def test_launch_configurations_are_set_and_forgotten(tmp_path: Path) -> None:
     said = "Node(package='a', executable='b', name=LaunchConfiguration('x', default='none')),"
     graph = read(
@@ -710,7 +710,6 @@ def test_a_parameter_has_the_type_that_launch_gives_it(
 
 
 # launch jazzy, include_launch_description.py: it looks for arguments before anything is started.
-@pytest.mark.slow
 @pytest.mark.parametrize("given", ["", "launch_arguments=[('ip', '1')]"])
 def test_an_include_without_a_required_argument_starts_nothing(tmp_path: Path, given: str) -> None:
     inner = tmp_path / "inner.launch.py"
@@ -723,7 +722,6 @@ def test_an_include_without_a_required_argument_starts_nothing(tmp_path: Path, g
 
 
 # launch jazzy, share/launch/frontend/grammar.lark.
-@pytest.mark.slow
 def test_substitutions_in_a_parameter_file_are_read(tmp_path: Path) -> None:
     (tmp_path / "p.yaml").write_text(
         "/**:\n  ros__parameters:\n    a: $(var one)\n    b: $(not $(var yes))\n"

@@ -14,12 +14,15 @@ from fault_sources import NODES, SOURCES, recording, written
 from graph_faults import FAULTS, MORE_NEEDS, NEEDS, needed
 from graph_faults_page import LACKS, PLANS, cell, lines, planned_cell
 from healthy_systems import SYSTEMS
+from healthy_twins import TWINS, sent_twice_alike
 from paths import ROOT
 
+from multibot_rewrite.base.findings.finding import NOTE
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.producers.bags.recording import RecordedTopic, as_snapshot
 from multibot_rewrite.rules.check import ABSENCE
+from multibot_rewrite.system.guess import guess_robots
 from multibot_rewrite.system.json import to_json
 
 NAMED = {it.name: it for it in FAULTS}
@@ -31,6 +34,30 @@ NAMED = {it.name: it for it in FAULTS}
 def test_a_healthy_system_has_no_finding(name: str, source: str) -> None:
     read = SOURCES[source].read(SYSTEMS[name]())
     assert [str(it) for it in diagnose(read).findings] == []
+
+
+@pytest.mark.parametrize("name", TWINS)
+def test_what_looks_like_a_fault_and_is_none_has_no_finding(name: str) -> None:
+    assert [str(it) for it in diagnose(SOURCES["file"].read(TWINS[name]())).findings] == []
+
+
+@pytest.mark.parametrize("name", ["parts of a robot", "arms on a base", "one robot"])
+def test_parts_are_no_robots(name: str) -> None:
+    assert guess_robots({**SYSTEMS, **TWINS}[name]()) == ()
+
+
+def test_a_static_transform_that_is_sent_twice_alike_is_a_note() -> None:
+    (found,) = diagnose(sent_twice_alike()).findings
+    assert (found.code, found.level) == ("MG408", NOTE)
+    assert "/static_transform_publisher_x" in found.hint
+
+
+def test_every_finding_says_what_it_is_about() -> None:
+    """Of all faults: a robot, a node or a name, and a remedy that stands for itself."""
+    for fault in FAULTS:
+        for it in diagnose(fault.change(fault.system())).findings:
+            assert it.robot or it.node or it.names, it
+            assert it.message and not it.message.startswith(" "), it
 
 
 @pytest.mark.sample(47)

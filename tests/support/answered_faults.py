@@ -6,7 +6,7 @@ from fault_changes import Change, Fault, nav, shared_tf, simulation
 from node_answers import told
 
 from multibot_rewrite.base.findings.finding import WARNING
-from multibot_rewrite.system.answers import Answer, with_answers
+from multibot_rewrite.system.parameters import Answer, with_answers
 from multibot_rewrite.system.records import DEVICE, Address, Heard, Lookup
 
 MANAGERS = "/robot1/controller_manager", "/robot1/gz/controller_manager"
@@ -38,7 +38,7 @@ def header_rows() -> tuple[Fault, ...]:
             "MG412", ("/robot1/lidar_driver", "to lidar_link"),
         ),
         Fault(
-            "a camera whose frame nobody sends", nav, heard("/robot1/front/image_raw", "thermal"),
+            "a camera whose frame no node sends", nav, heard("/robot1/front/image_raw", "thermal"),
             "MG412", ("/robot1/camera_driver", "send a transform"), WARNING,
         ),
         Fault(
@@ -57,9 +57,9 @@ def state_rows() -> tuple[Fault, ...]:
             "MG511", ("/robot1/lifecycle_manager_localization", "ros2 lifecycle get /robot1/amcl"),
         ),
         Fault(
-            "a driver that nobody activates", nav,
+            "a driver that no node activates", nav,
             answered(told("/robot1/lidar_driver", "unconfigured")),
-            "MG511", ("/robot1/lidar_driver", "nobody activates it"), WARNING,
+            "MG511", ("/robot1/lidar_driver", "no node activates it"), WARNING,
         ),
         Fault(
             "one of robot2's nodes has use_sim_time false", simulation,

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from closed_robot import MASS
+
 ARM_FILES = {
     "arm.urdf": """\
 <robot name="arm">
-  <link name="base_link"><inertial><mass value="1"/></inertial></link>
-  <link name="upper_link"><inertial><mass value="1"/></inertial></link>
-  <link name="tool_link"><inertial><mass value="1"/></inertial></link>
-  <link name="finger_link"><inertial><mass value="1"/></inertial></link>
+  <link name="base_link">MASS</link>
+  <link name="upper_link">MASS</link>
+  <link name="tool_link">MASS</link>
+  <link name="finger_link">MASS</link>
   <link name="lidar_link"/>
   <joint name="shoulder_joint" type="revolute">
     <parent link="base_link"/><child link="upper_link"/><axis xyz="0 0 1"/>
@@ -65,7 +67,7 @@ ARM_FILES = {
     </sensor>
   </gazebo>
 </robot>
-""",
+""".replace("MASS", MASS),
     "arm.srdf": """\
 <robot name="arm">
   <group name="arm"><chain base_link="base_link" tip_link="tool_link"/></group>

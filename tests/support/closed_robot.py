@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+MASS = (
+    '<inertial><mass value="1"/>'
+    '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+)
 FILES = {
     "rover.urdf": """\
 <robot name="rover">
-  <link name="base_link"><inertial><mass value="1"/></inertial></link>
-  <link name="left_wheel_link"><inertial><mass value="1"/></inertial></link>
-  <link name="right_wheel_link"><inertial><mass value="1"/></inertial></link>
+  <link name="base_link">MASS</link>
+  <link name="left_wheel_link">MASS</link>
+  <link name="right_wheel_link">MASS</link>
   <link name="imu_link"/>
   <link name="lidar_link"/>
-  <link name="finger_link"><inertial><mass value="1"/></inertial></link>
+  <link name="finger_link">MASS</link>
   <joint name="left_wheel_joint" type="continuous">
     <parent link="base_link"/><child link="left_wheel_link"/><axis xyz="0 1 0"/>
   </joint>
@@ -54,7 +58,7 @@ FILES = {
     </sensor>
   </gazebo>
 </robot>
-""",
+""".replace("MASS", MASS),
     "controllers.yaml": """\
 controller_manager:
   ros__parameters:

@@ -64,6 +64,8 @@ TRANSFORMS, SENDERS, READERS, HEADERS, STATES, PARAMETERS, QOS, HASHES, NODES, S
 # What only the parameters and descriptions of nodes tell.
 LOOKUPS, ADDRESSES = "look-ups of nodes", "addresses"
 IN_FILES = (LOOKUPS, ADDRESSES)
+# What only messages tell.
+NUMBERS, AGES = "received transforms", "ages of messages"
 
 
 class Source(NamedTuple):
@@ -84,6 +86,9 @@ def from_rosgraph(graph: System) -> System:
 # ---------------------------------------------------------------- Zenoh
 
 
+AT = (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)
+
+
 class Router:
     """What a session asks of a router: its tokens, and the transforms that are sent meanwhile."""
 
@@ -102,7 +107,7 @@ class Router:
             if it.topic == topic:
                 voices = (b"a" * 16, b"b" * 16) if it.several else (b"a" * 16,)
                 for voice in voices * (1 if latched else 2):
-                    received(tf_message((it.parent, it.child)), voice)
+                    received(tf_message((it.parent, it.child), numbers=it.transform or AT), voice)
         return lambda: None
 
     def deliver(self) -> None:
@@ -357,7 +362,7 @@ SOURCES: Mapping[str, Source] = {
     "Zenoh": Source(from_zenoh, (HEADERS, STATES, PARAMETERS, QOS, *IN_FILES)),
     "rosgraph": Source(from_rosgraph, (TRANSFORMS, HEADERS, STATES, PARAMETERS, *IN_FILES)),
     "recorded": Source(
-        from_bag, (NODES, READERS, SERVICES, SENDERS, STATES, PARAMETERS, *IN_FILES)
+        from_bag, (NODES, READERS, SERVICES, SENDERS, STATES, PARAMETERS, AGES, *IN_FILES)
     ),
-    "check-launch": Source(from_launch, (HEADERS, STATES, QOS, HASHES)),
+    "check-launch": Source(from_launch, (HEADERS, STATES, QOS, HASHES, NUMBERS, AGES)),
 }

@@ -15,7 +15,7 @@ Each line begins with ``planned:`` (it is in the plan), ``running:`` (it is in t
     enclave PATH of NODE                the enclave of SROS2 that a running node is in
     transform PARENT -> CHILD on TOPIC [by NODES] [twice]    a transform, who publishes on its topic,
                                                      and whether several of them send it
-    frame_id FRAME on TOPIC             the frame that a message on the topic names
+    frame_id FRAME on TOPIC [NUMBER s old]     the frame that a message on the topic names, and its age
     NODE is STATE, NODE has PARAMETER VALUE          what it answers when it is asked for its state
     state of NODE: STATE, parameter NAME of NODE: VALUE     what it is planned to answer
     host of NODE: WORD, NODE on machine NUMBER       where it is planned to run, and where it runs
@@ -41,9 +41,9 @@ from plans import told as planned_told
 
 from multibot_rewrite.base.conventions import SENT_BY_EVERY_NODE
 from multibot_rewrite.spelling.plan import planned_end
-from multibot_rewrite.system.answers import Answer, with_answers
 from multibot_rewrite.system.guess import GuessedRobot, whose_by_guess, with_frames
 from multibot_rewrite.system.index import Index, Known, index
+from multibot_rewrite.system.parameters import Answer, with_answers
 from multibot_rewrite.system.records import (
     ACTION,
     MAY,
@@ -87,7 +87,7 @@ HOLDS = re.compile(r"(/\S+) holds (device|calibration|computer|own) (\S+) (\S+)"
 LOOKS_UP = re.compile(r"(/\S+) looks up (\S+)")
 CONTROLS = re.compile(r"(/\S+) controls (\S+) by (\w+)")
 CAME = re.compile(r"(/\S+) came (\d+) times")
-FRAME_ID = re.compile(r"frame_id (\S+) on (/\S+)")
+FRAME_ID = re.compile(r"frame_id (\S+) on (/\S+)(?: ([\d.]+) s old)?")
 KEEPS = re.compile(r"(/\S+) keeps (\w+) (\w+)")
 ANSWERS = (STATE, SIM_TIME, CONTROLS, KEEPS, HAS, MACHINE)
 ROBOT = re.compile(r"robot\d+")
@@ -242,7 +242,9 @@ def read_graph(lines: list[str]) -> System:
         tuple(_endpoint(*words) for words in ends),
         tuple(_transform(*words) for words in _words(TRANSFORM, lines)),
         environment(),
-        tuple(Heard(topic, frame) for frame, topic in _words(FRAME_ID, lines)),
+        tuple(
+            Heard(topic, frame, float(age or 0)) for frame, topic, age in _words(FRAME_ID, lines)
+        ),
         interfaces=tuple(
             Interface(kind, name, node, role) for node, role, kind, name in _words(INTERFACE, lines)
         ),

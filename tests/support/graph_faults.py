@@ -11,10 +11,12 @@ from chain_faults import chain_rows
 from fault_changes import Fault
 from fault_sources import (
     ADDRESSES,
+    AGES,
     HASHES,
     HEADERS,
     LOOKUPS,
     NODES,
+    NUMBERS,
     PARAMETERS,
     QOS,
     READERS,
@@ -25,6 +27,7 @@ from fault_sources import (
 )
 from moving_faults import command_rows, tf_rows
 from naming_faults import clock_rows, data_rows, name_rows
+from open_faults import like_rows, open_rows, place_rows, sender_rows
 
 FAULTS = (
     *tf_rows(),
@@ -36,6 +39,10 @@ FAULTS = (
     *state_rows(),
     *chain_rows(),
     *file_rows(),
+    *open_rows(),
+    *sender_rows(),
+    *place_rows(),
+    *like_rows(),
 )
 # What a fault with this code cannot be seen without.
 NEEDS = {
@@ -49,6 +56,12 @@ NEEDS = {
     **dict.fromkeys(("MG411", "MG412"), (HEADERS,)),
     **dict.fromkeys(("MG511", "MG512", "MG513"), (STATES,)),
     "MG307": (QOS, READERS),
+    "MG309": (QOS, READERS),
+    "MG326": (HEADERS, NODES),
+    "MG327": (NODES,),
+    "MG417": (HEADERS, AGES),
+    "MG416": (TRANSFORMS, NUMBERS),
+    "MG415": (TRANSFORMS, NODES),
     "MG514": (PARAMETERS,),
     "MB412": (ADDRESSES,),
     "MG413": (LOOKUPS, TRANSFORMS),

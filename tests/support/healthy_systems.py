@@ -180,7 +180,10 @@ def single() -> System:
 
 def slam_with_filters() -> System:
     """SLAM and two filters a robot: the second's map to odom is switched off."""
-    return with_tools(started(("nav2_slam", "robot_localization_gps")), TWO)
+    graph = started(("nav2_slam", "robot_localization_gps"))
+    for robot in TWO:
+        graph = moved(graph, f"/{robot}/imu", f"/{robot}/imu/data", "/imu_driver")
+    return with_tools(graph, TWO)
 
 
 def arms() -> System:
@@ -230,7 +233,7 @@ def with_mux() -> System:
 
 
 def idle_mux() -> System:
-    """A twist_mux with an input that nobody sends yet, its output on a topic of its own."""
+    """A twist_mux with an input that no node sends yet, its output on a topic of its own."""
     graph = with_mux()
     for robot in TWO:
         for node in ("twist_mux", "diff_drive"):

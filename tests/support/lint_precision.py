@@ -25,7 +25,7 @@ from multibot_rewrite.lint.run import lint_files
 from multibot_rewrite.rules.settings import Settings
 
 PRECISION = FIXTURES / "lint_precision.tsv"
-# Facts of these releases: the newest ones have nothing to find.
+# ROS 2 these releases: the newest ones have nothing to find.
 RELEASES = {"MB157": "humble", "MB172": "lyrical"}
 # Found in checkouts of whole packages alone, which have launch files or descriptions beside the file.
 IN_PACKAGES = ("MB145", "MB854", "MB856")

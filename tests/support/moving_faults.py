@@ -91,7 +91,7 @@ def tf_rows() -> tuple[Fault, ...]:
         Fault(
             "the EKF calls its frame odom_combined, amcl odom", nav,
             other_parent("base_footprint", "odom_combined", tf1),
-            "MG406", ("2 roots", "odom_combined", "nobody sends"),
+            "MG406", ("2 roots", "odom_combined", "no node sends"),
         ),
         Fault(
             "frame_prefix on top of a rewritten description", shared_tf, prefixed_twice,
@@ -143,7 +143,7 @@ def command_rows() -> tuple[Fault, ...]:
         ),
         Fault(
             "a joystick in the root", nav, added("/teleop_node", (PUBLISHES, "/cmd_vel", TWIST)),
-            "MG308", ("nobody reads", "/cmd_vel:=/robot"),
+            "MG308", ("no node reads", "/cmd_vel:=/robot"),
         ),
         Fault(
             "a joystick in a namespace with a capital", nav,

@@ -12,7 +12,10 @@ amcl:
   ros__parameters: {base_frame_id: base_link, odom_frame_id: odom}
 local_costmap:
   local_costmap:
-    ros__parameters: {global_frame: odom, plugins: [keepout]}
+    ros__parameters:
+      global_frame: odom
+      plugins: [keepout]
+      keepout: {plugin: "nav2_costmap_2d::KeepoutFilter"}
 """
 RVIZ = "Visualization Manager:\n  Displays: []\n  Global Options: {Fixed Frame: map}\n"
 FLEET = """\

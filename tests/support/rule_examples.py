@@ -18,11 +18,17 @@ from multibot_rewrite.base.policy import Policy
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet import make_fleet
+from multibot_rewrite.fleet.fleet import known_nodes, make_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
+from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.lint.check import lint_file
+from multibot_rewrite.producers.launch.read import read_own
+from multibot_rewrite.producers.launch.running import Knowledge
+from multibot_rewrite.producers.launch.snapshot import launched
 from multibot_rewrite.rules.check import check, judge
 from multibot_rewrite.rules.declaration import PAIR, SYSTEM
+from multibot_rewrite.rules.launch.declaration import LAUNCH
+from multibot_rewrite.rules.launch.judge import judge_launch
 from multibot_rewrite.rules.settings import Settings
 
 # What every companion file of an example stands beside, unless ``beside`` has another robot.urdf.
@@ -185,6 +191,18 @@ def system_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
     return judge(read_system(example))
 
 
+def launch_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
+    """A launch file, read without launch."""
+    file = folder / "example.launch.py"
+    file.write_text(example)
+    own = folder / "made"
+    own.mkdir()
+    graph = read_own(str(file), str(own))
+    library = known_nodes(None, NEWEST_LTS, ()).library
+    known = Knowledge(library.nodes, load_known_nodes("", NEWEST_LTS), NEWEST_LTS)
+    return judge_launch(launched(graph, known))
+
+
 RUNNERS: dict[str, Callable[[Rule, str, Path], list[Finding]]] = {
     **dict.fromkeys((URDF, SRDF, XACRO), lint_example),
     **dict.fromkeys(COMPANIONS, companion_example),
@@ -194,4 +212,5 @@ RUNNERS: dict[str, Callable[[Rule, str, Path], list[Finding]]] = {
     **dict.fromkeys(REMAP, remap_example),
     PAIR: pair_example,
     SYSTEM: system_example,
+    LAUNCH: launch_example,
 }

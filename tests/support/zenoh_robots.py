@@ -157,15 +157,19 @@ def mangled(name: str) -> str:
     return name.replace("/", "%")
 
 
-def tf_message(*edges: tuple[str, str], mark: str = "<") -> bytes:
-    """A TFMessage in CDR, little endian or big."""
+def tf_message(
+    *edges: tuple[str, str],
+    mark: str = "<",
+    numbers: tuple[float, ...] = (1, 2, 3, 0, 0, 0, 1),
+) -> bytes:
+    """A TFMessage in CDR, little endian or big; all its transforms have these numbers."""
     data = struct.pack(f"{mark}I", len(edges))
     for edge in edges:
         data += b"\0" * (-len(data) % 4) + struct.pack(f"{mark}iI", 7, 8)
         for name in edge:
             text = name.encode() + b"\0"
             data += b"\0" * (-len(data) % 4) + struct.pack(f"{mark}I", len(text)) + text
-        data += b"\0" * (-len(data) % 8) + struct.pack(f"{mark}7d", 1, 2, 3, 0, 0, 0, 1)
+        data += b"\0" * (-len(data) % 8) + struct.pack(f"{mark}7d", *numbers)
     return (b"\0\1\0\0" if mark == "<" else b"\0\0\0\0") + data
 
 

@@ -30,16 +30,3 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
         )
     }
 )
-# Words that are no command -> what does it, as it is typed.
-INSTEAD: Mapping[str, str] = MappingProxyType(
-    {
-        "arguments": "multibot inspect FILE.xacro",
-        "coverage": "multibot inspect PATH...",
-        "vocabulary": "multibot inspect [NAME]",
-        "doctor": "multibot check without a PLAN",
-        "lint": "urdf-lint PATH...",
-        "remap": "multibot plan INPUT ROBOT... --form table",
-        "zenoh": "multibot build, with the key zenoh in the fleet file",
-        "rewrite": "urdf-postfix INPUT ROBOT...",
-    }
-)

@@ -23,6 +23,7 @@ from multibot_rewrite.cli.options import (
     argument,
     output,
     path_option,
+    rare,
     several,
     switch,
     value,
@@ -90,7 +91,7 @@ POSTFIX = Command(
                     "with --strip: the xacro whose arguments (NAME:=VALUE) put the robot's name"
                     " into names; these stay",
                 ),
-                switch("--again", about="rewrite although it was rewritten for this robot"),
+                switch("--force", about="rewrite although it was rewritten for this robot"),
                 value(
                     "--why",
                     metavar="FILE:LINE",
@@ -164,7 +165,9 @@ LINT = Command(
                     about="processes; default: one for each processor",
                     type=values.count,
                 ),
-                switch("--no-cache", about="lint what did not change since the last time, too"),
+                rare(
+                    switch("--no-cache", about="lint what did not change since the last time, too")
+                ),
             ),
         ),
         NAMING,

@@ -25,6 +25,7 @@ from multibot_rewrite.cli.declared.shared import (
 from multibot_rewrite.cli.options import (
     Command,
     Example,
+    Option,
     OptionGroup,
     argument,
     choice,
@@ -84,6 +85,11 @@ A fleet file, as multibot init writes it; only robots is required (docs/fleet-fi
 
 Then ros2 launch out/fleet.launch.py starts the robots, and multibot check out/plan.yaml tells\
  whether they run as planned."""
+_FLEET = Option(
+    ("fleet",),
+    "the fleet file; default: fleet.yaml",
+    {"metavar": "FLEET", "nargs": "?", "default": "fleet.yaml"},
+)
 _COUNT = value(
     "-n",
     "--count",
@@ -149,18 +155,21 @@ INIT = Command(
 BUILD = Command(
     "build",
     "build",
-    "%(prog)s FLEET -o FOLDER [options]",
+    "%(prog)s [FLEET] [-o FOLDER] [options]",
     "Make everything a fleet needs from its fleet file.",
     (
-        Example("multibot build fleet.yaml -o out/", "everything, one folder a robot"),
-        Example("multibot build fleet.yaml -o out/ --check", "in CI: what is stale?"),
+        Example("multibot build fleet.yaml", "everything, into out/, one folder a robot"),
+        Example("multibot build fleet.yaml --check", "in CI: what is stale?"),
+        Example("multibot build --undo", "remove what a build wrote into out/"),
     ),
     (
-        OptionGroup(
-            "input", (argument("fleet", "FLEET", "the fleet file, YAML"), _COUNT, DISTRO, TRUST)
-        ),
+        OptionGroup("input", (_FLEET, _COUNT, DISTRO, TRUST)),
         output_group(
-            output("write everything into that folder", required=True),
+            output("write everything into that folder; default: out/", default="out/"),
+            switch(
+                "--undo",
+                about="remove the files that the last build wrote; those that were edited need --force",
+            ),
             switch("--check", about="list what is stale, write nothing"),
             switch("--force", about="overwrite files that no build made"),
             choice(

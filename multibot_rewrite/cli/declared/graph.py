@@ -30,6 +30,7 @@ from multibot_rewrite.cli.options import (
     output,
     output_group,
     path_option,
+    rare,
     several,
     switch,
     value,
@@ -40,9 +41,11 @@ STATE = switch(
     about="also ask nodes for their state, within 5 s: life cycle, use_sim_time, controllers, and the"
     " parameters that multibot build wrote beside PLAN",
 )
-HEADERS = switch(
-    "--no-frame-ids",
-    about="do not receive a message of each sensor topic, for its frame; --watch never does",
+HEADERS = rare(
+    switch(
+        "--no-frame-ids",
+        about="do not receive a message of each sensor topic, for its frame; --watch never does",
+    )
 )
 WATCH = switch(
     "--watch",

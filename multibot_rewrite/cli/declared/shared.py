@@ -13,6 +13,7 @@ from multibot_rewrite.cli.options import (
     choice,
     output,
     path_option,
+    rare,
     repeated,
     several,
     switch,
@@ -46,21 +47,27 @@ NAMING = OptionGroup(
             f" description, not for ROS nodes and topics; defaults: {_SEPARATORS}",
             [],
         ),
-        several(
-            "--shared-frames",
-            "A,B",
-            f"frames that all robots share; default: {','.join(WORLD_FRAMES)}",
+        rare(
+            several(
+                "--shared-frames",
+                "A,B",
+                f"frames that all robots share; default: {','.join(WORLD_FRAMES)}",
+            )
         ),
-        several(
-            "--shared-topics",
-            "A,B",
-            f"topics that all robots share; default: {','.join(SHARED_TOPICS)}",
+        rare(
+            several(
+                "--shared-topics",
+                "A,B",
+                f"topics that all robots share; default: {','.join(SHARED_TOPICS)}",
+            )
         ),
-        choice(
-            "--groups",
-            "HOW",
-            ("keep", "rename"),
-            "groups and end effectors of an SRDF: keep (default) or rename",
+        rare(
+            choice(
+                "--groups",
+                "HOW",
+                ("keep", "rename"),
+                "groups and end effectors of an SRDF: keep (default) or rename",
+            )
         ),
     ),
 )
@@ -68,12 +75,12 @@ ROBOTS = several("--robots", "A,B", "names of robots", [])
 VOCABULARY = several(
     "--vocabulary", "FILE", "what more plugins mean by their parameters (docs/add-a-plugin.md)", []
 )
-URDF = path_option("--urdf", "the URDF that an SRDF or another file belongs to")
+URDF = path_option("--urdf", "the URDF of an SRDF or of another file")
 DISTRO = choice(
     "--distro",
     "NAME",
     RELEASES,
-    f"the ROS 2 release whose facts count: {', '.join(RELEASES)}; default: the fleet file's or"
+    f"the ROS 2 release that the robots run: {', '.join(RELEASES)}; default: the fleet file's or"
     f" configuration's, else {VARIABLE}, else {NEWEST_LTS}",
 )
 TRUST = switch(
@@ -160,7 +167,7 @@ SAVED = repeated(
 BAG = path_option(
     "--bag",
     "a recording of rosbag2, a folder or a file .mcap or .db3: its topics and frames; needs no"
-    " ROS (docs/bags.md)",
+    " ROS (docs/snapshot.md)",
     "BAG",
 )
 SOURCE = OptionGroup("where the graph comes from", (SAVED, ZENOH, *LIVE.options))

@@ -146,7 +146,7 @@ WRONG_TARGET = declare(
     what="The remap rules of a node turn a topic that a parameter names into another one than they did "
     "for a single robot.",
     why="Remap rules also match names that come from parameters, and in a namespace another rule may "
-    "match: the node uses a topic that nobody else uses.",
+    "match: the node uses a topic that no other node uses.",
     fix="Remove the name from the remap rules of the node, or from the file.",
     bad="""\
 slam_toolbox:
@@ -169,9 +169,9 @@ MADE_ABSOLUTE = declare(
     "costmap-topic-made-absolute",
     WARNING,
     what="A relative topic of a costmap layer is made absolute.",
-    why="Up to Jazzy, the costmap resolves scan as /robot1/local_costmap/scan, where nobody publishes: "
-    "it never sees an obstacle (navigation2 #1433, #3772). From Kilted on it resolves the topic in the "
-    "robot's namespace.",
+    why="Up to Jazzy, the costmap resolves scan as /robot1/local_costmap/scan, where no node "
+    "publishes: it never sees an obstacle (navigation2 #1433, #3772). From Kilted on it resolves the "
+    "topic in the robot's namespace.",
     fix="Nothing has to be done; a topic with a slash before it is not reported. If the file is for "
     "Kilted or later, name that release in the fleet file (distro:) or with --distro.",
     bad="""\

@@ -14,8 +14,8 @@ from multibot_rewrite.base.naming import (
     TOPIC_KINDS,
     OwnNames,
 )
-from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.description.checks.problem import Problem, about
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.description.steps.inserted import markers
@@ -125,7 +125,7 @@ def _problem(inventory: Inventory, robot: str, found: list[UsedName], marked: bo
     why = " and ".join(filter(None, (carried, added)))
     message = f"the description is already rewritten for {robot}: {why}"
     # Two layers of added elements could not be told apart.
-    again = "" if marked else ", or add its name once more with urdf-postfix --again"
+    again = "" if marked else ", or add its name once more with urdf-postfix --force"
     way = "undo the rewrite with urdf-postfix --strip and the options it was made with"
     hint = f"{way}, or name the robot otherwise{again}"
     if found:

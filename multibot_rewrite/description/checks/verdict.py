@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterable
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.plural import plural
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.description.checks.meeting import NO_LINK, PARTED, SAME_TEXT
 from multibot_rewrite.description.readback.meeting import (
     COMMAND,
@@ -35,7 +35,7 @@ REASONS = {
     FRAMES: ("frame", SHARED),
     OPENED: ("resource", SHARED),
     SAME_TEXT: ("description", "the same for all robots"),
-    PARTED: ("topic", "whose ends no longer meet"),
+    PARTED: ("topic", "whose ends no longer match"),
     NO_LINK: ("robot", "without a link"),
     LOOKUP: ("name", "looked up in the whole world"),
     "MB410": ("description name", SHARED),

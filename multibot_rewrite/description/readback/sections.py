@@ -47,11 +47,12 @@ def _keys(plugin: _Element) -> Iterator[str]:
 
 
 def _of_release(found: Sequence[VocabularySection], plugin: _Element) -> VocabularySection:
-    """ROS 1 and ROS 2 have plugins of one name. Only ROS 2 reads <ros>; without it the release that
-    reads more of its parameters counts, ROS 2 if both do."""
+    """ROS 1 and ROS 2 have plugins of one name. Only ROS 2 reads <ros> and has <ros2_control>; in
+    a robot without them the release that reads more of the parameters counts, ROS 2 if both do."""
     by_release = {section.ros: section for section in found}
     new, old = by_release.get(ROS_2, found[0]), by_release.get(ROS_1)
-    if old is None or plugin.find("ros") is not None:
+    whole = plugin.getroottree()
+    if old is None or any(whole.find(it) is not None for it in ("ros2_control", ".//plugin/ros")):
         return new
     tags = {child.tag for child in plugin}
     return old if len(tags & old.tags) > len(tags & new.tags) else new

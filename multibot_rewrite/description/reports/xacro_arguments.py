@@ -85,9 +85,16 @@ class XacroArguments(NamedTuple):
     read: tuple[str, ...] = ()
 
     @property
+    def for_robots(self) -> Mapping[str, str]:
+        """A value for every argument that names robots, and is called so: a title in front of a name is
+        none. ``inspect`` offers them, ``init`` writes them."""
+        named = (it for it in self.arguments if it.value and names_robots(it.name))
+        return {it.name: it.value for it in named}
+
+    @property
     def words(self) -> tuple[str, ...]:
-        """``NAME:=VALUE`` for every argument that names robots."""
-        return tuple(f"{it.name}:={it.value}" for it in self.arguments if it.value)
+        """``NAME:=VALUE`` for each of them."""
+        return tuple(f"{name}:={value}" for name, value in self.for_robots.items())
 
 
 def names_robots(name: str) -> bool:

@@ -107,7 +107,7 @@ def expand_traced(
     trace = Trace(result, sources, path)
     text = _text(path, result, trace)
     if len(result.origins) != 3 * len(start_offsets(text)):
-        raise InputError(f"{path}: xacro failed: the places that its process told are wrong")
+        raise InputError(f"{path}: xacro failed: the places that its process reported are wrong")
     return Expansion(text, Origins(trace), trace.sources, tuple(sources.texts))
 
 

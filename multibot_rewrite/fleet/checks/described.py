@@ -1,35 +1,69 @@
-"""What the rules of descriptions find in those of a fleet's robots: what a simulator leaves out."""
+"""What the rules of descriptions find in those of a fleet's robots: every error of the lint, and what a
+simulator leaves out."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, locate
 from multibot_rewrite.fleet.robots.member import Member
+from multibot_rewrite.rules.settings import Settings
+
+# What sdformat leaves out of a description (MB603, MB610) stops a simulated robot; anything else is as
+# the description came, and the build has not made it.
+_STOPPING = ("MB603", "MB610")
 
 
-def left_out(members: Iterable[Member], chosen: Iterable[Member] = ()) -> Iterator[Finding]:
-    """What Gazebo leaves out of robots that have something for it, and of those that run in it, as
-    their fleet file says (``chosen``): there it is an error. Each description once."""
-    sure = {it.source.file: it.source for it in chosen}
-    perhaps = {it.source.file: it.source for it in members if _is_for_gazebo(it)}
-    simulated = perhaps | sure
-    if not simulated:
-        return
-    # A fleet of real robots needs none of the lint.
-    from multibot_rewrite.lint.check import lint_subject
+def wrong_in_descriptions(
+    members: Iterable[Member],
+    vocabulary: tuple[str, ...],
+    chosen: Iterable[Member] = (),
+    real: Iterable[Member] = (),
+) -> Iterator[Finding]:
+    """What the lint calls an error in the descriptions, each once, and what Gazebo leaves out of those
+    that are for it. Of robots that run in it (``chosen``) that is an error; of ``real`` ones nothing
+    counts that is for a simulator."""
+    sure, not_simulated = ({it.source.file for it in its} for its in (chosen, real))
+    documents = {it.source.file: it for it in members}
+    for file, it in documents.items():
+        is_real = file in not_simulated - sure
+        weighed = () if is_real or not (file in sure or _is_for_gazebo(it)) else _STOPPING
+        asked = Settings(
+            vocabulary=vocabulary, distro=it.vocabulary.release, simulated=file in sure
+        )
+        for found in _linted(it, asked, weighed):
+            if is_real and _is_for_a_simulator(it, found):
+                continue
+            stops = found.code in _STOPPING and file in sure
+            yield found if stops or found.level != ERROR else found._replace(level=WARNING)
+
+
+def _linted(it: Member, settings: Settings, weighed: Collection[str]) -> Iterator[Finding]:
+    # What only looks at a robot's files needs none of the lint.
+    from multibot_rewrite.lint.check import lint_subject, unsuppressed
     from multibot_rewrite.lint.files.subjects import make_subject
-    from multibot_rewrite.rules.description.physics.mass import link_without_mass, no_inertia
-    from multibot_rewrite.rules.settings import Settings
 
-    weighed = Settings(select=(link_without_mass.code, no_inertia.code))
-    for file, document in simulated.items():
-        subject = make_subject(document, weighed._replace(simulated=file in sure))
-        for it in lint_subject(subject):
-            # It may be a real robot: nothing says that it runs in the simulator.
-            yield it if file in sure or it.level != ERROR else it._replace(level=WARNING)
+    subject = make_subject(it.source, settings)
+    found = [one for one in lint_subject(subject) if one.level == ERROR or one.code in weighed]
+    told = {(one.code, one.message) for one in it.shared}
+    for one in unsuppressed(found, {it.source.file: it.source.source}, settings):
+        is_asked = one.code in weighed or one.code not in _STOPPING
+        if is_asked and (one.code, one.message) not in told:
+            yield one
 
 
 def _is_for_gazebo(member: Member) -> bool:
     blocks = member.inventory.document.root.iter("gazebo")
     return any(it.find(tag) is not None for it in blocks for tag in ("plugin", "sensor"))
+
+
+def _is_for_a_simulator(member: Member, found: Finding) -> bool:
+    """Is it about a ``<gazebo>`` block?"""
+    document = member.source
+    starts = zip(document.elements, document.starts, strict=True)
+    before = [
+        it
+        for it, at in starts
+        if it.getparent() is document.root and locate(document.source, at)[0] <= found.line
+    ]
+    return bool(before) and before[-1].tag == "gazebo"

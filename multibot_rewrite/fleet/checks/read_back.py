@@ -18,6 +18,7 @@ from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.fleet.build import Outputs
 from multibot_rewrite.fleet.checks.as_planned import not_as_planned
+from multibot_rewrite.fleet.checks.two_of_each import names_one_of, two_of_each
 from multibot_rewrite.fleet.fleet import known_nodes
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.launch_file import LAUNCH
@@ -35,10 +36,19 @@ _HINT = "the fleet would not start as planned; please report it, with the fleet 
 
 
 def read_back(plan: FleetPlan, made: Outputs, folder: str) -> list[Finding]:
-    """What is wrong with the files of a fleet, which will be in ``folder``.
+    """What is wrong with the files of a fleet, which will be in ``folder``. Two robots of each sort are
+    read; where they are not as they should be, or name other ones, all are.
 
     Raises MultibotError where no temporary file can be written.
     """
+    few, left = two_of_each(made, [it.spec for it in plan.robots])
+    found, graph = _read(plan, few, folder)
+    if left and (found or names_one_of(graph, left)):
+        found, _ = _read(plan, made, folder)
+    return found
+
+
+def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], LaunchGraph]:
     with _temporary_folder() as above, gc_paused():
         home, own = os.path.join(above, "built"), os.path.join(above, "launch")
         os.makedirs(own)
@@ -46,10 +56,10 @@ def read_back(plan: FleetPlan, made: Outputs, folder: str) -> list[Finding]:
         try:
             graph = read_own(os.path.join(home, LAUNCH), own)
         except UnreadableError as error:
-            return [_fault(f"{error}", Place(LAUNCH, 1), home)]
+            return [_fault(f"{error}", Place(LAUNCH, 1), home)], LaunchGraph()
         seen = would_run(graph, _known(plan))
         wrong = not_as_planned(made.planned, seen, made.started, made.findings)
-        return [*_lost(graph, seen, home), *(_in_folder(it, home) for it in wrong)]
+        return [*_lost(graph, seen, home), *(_in_folder(it, home) for it in wrong)], graph
 
 
 def _known(plan: FleetPlan) -> Knowledge:

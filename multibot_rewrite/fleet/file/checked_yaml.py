@@ -7,6 +7,7 @@ from typing import Any
 
 import yaml
 
+from multibot_rewrite.base import other_words
 from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.file_kinds import FLEET, refuse_others
 from multibot_rewrite.base.model import InputError, UsageError
@@ -131,6 +132,8 @@ def _wanted(error: Any) -> str:
     about = error.schema.get("description", "")
     if error.validator == "type" and wanted == "string" and not isinstance(given, dict | list):
         return "write it in quotes"
+    if isinstance(given, str) and "name" in error.schema.get("properties", ()):
+        return f"write {{name: {given}}}"
     if error.validator == "type":
         types = [wanted] if isinstance(wanted, str) else wanted
         return f"write {' or '.join(TYPES[it] for it in types)}"
@@ -159,4 +162,7 @@ def _where(path: Path) -> str:
 def _known(word: object, known: Iterable[object]) -> str:
     """What to write instead of an unknown word: the nearest known one, else all of them."""
     words = [str(it) for it in known]
+    other = other_words.KEYS.get(str(word), "")
+    if other in words:
+        return f"use {other!r}"
     return did_you_mean_one_of(str(word), words) or f"known are {', '.join(words)}"

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from textwrap import wrap
 from typing import Any
 
+from multibot_rewrite.fleet.launch.each_robot import Written, functions
 from multibot_rewrite.fleet.launch.starts import (
     CLASSIC,
     GZ,
@@ -20,6 +22,16 @@ from multibot_rewrite.fleet.launch.starts import (
 from multibot_rewrite.fleet.outputs.relays import BRIDGE, not_bridged
 
 _Files = tuple[File, ...]
+# What brings topics of a simulator is of no use without it.
+BRIDGES = "ros_gz_bridge"
+# What ament_flake8 allows, what stays in one line, and robots of which each has its line to drive.
+WIDTH, _SHORT, _DRIVING = 99, 64, 4
+_FLAG = re.compile(r"-{1,2}[A-Za-z][\w-]*")
+_TEXTS = re.compile(r'"(?:[^"\\]|\\.)*"')
+# A key with its value, which may be a list or a call.
+# A docstring, a comment, a string: whichever begins first.
+_TOKEN = re.compile(r'"""[\s\S]*?"""|#[^\n]*|\'(?:[^\'\\\n]|\\.)*\'|f?"(?:[^"\\\n]|\\.)*"')
+_ENTRY = re.compile(rf"{_TEXTS.pattern}: (?:\[[^\]]*\]|\{{[^}}]*\}}|\w+\([^)]*\)|[^,\[{{]+)")
 
 
 # The names that it imports where it uses them, in this order.
@@ -41,25 +53,23 @@ _IMPORTS = {
     "launch_ros.substitutions": ("FindPackageShare",),
     "lifecycle_msgs.msg": ("Transition",),
 }
-# For who adds to it.
-_ALWAYS = frozenset(("GroupAction", "IfCondition", "Node"))
 _BODY = '''\
 FOLDER = Path(__file__).resolve().parent
 CLOCK = {"use_sim_time": ParameterValue(LaunchConfiguration("use_sim_time"), value_type=bool)}
 
 
 def file(name):
-    """The path of a file beside this one."""
+    """Return the path of a file beside this one."""
     return str(FOLDER / name)
 
 
 def text(name):
-    """What a file beside this one holds, as a parameter."""
+    """Return what a file beside this one holds, as a parameter."""
     return ParameterValue((FOLDER / name).read_text(), value_type=str)
 '''
 _INSTALLED = '''\
 def if_installed(package, otherwise, actions):
-    """The actions where the package is installed, else a line that says what is missing."""
+    """Return the actions if the package is installed, else a line that says what is missing."""
     try:
         get_package_prefix(package)
     except PackageNotFoundError:
@@ -68,7 +78,7 @@ def if_installed(package, otherwise, actions):
 '''
 _BROUGHT_UP = '''\
 def brought_up(node):
-    """A node with a life cycle: it is configured, and activated when that is done."""
+    """Start a node with a life cycle: configure it, and activate it when that is done."""
 
     def change(transition):
         matched = matches_action(node)
@@ -85,7 +95,7 @@ def brought_up(node):
 '''
 _CHOSEN = '''\
 def first(count):
-    """The names of so many robots."""
+    """Return the names of so many robots."""
     if not 0 < count <= len(ROBOTS):
         more = f"multibot build FLEET -o {FOLDER} --count {count}"
         raise RuntimeError(f"robots:={count}: {len(ROBOTS)} robots were built; for more: {more}")
@@ -93,13 +103,14 @@ def first(count):
 
 
 def chosen(context):
-    """What the robots run that robots:= names, or so many of them; all of them by default."""
+    """Start the robots that robots:= names, or so many of them; all of them by default."""
     words = LaunchConfiguration("robots").perform(context).replace(",", " ").split()
     if len(words) == 1 and words[0].isdigit():
         words = first(int(words[0]))
     unknown = [it for it in words if it not in ROBOTS]
     if unknown:
-        raise RuntimeError(f"robots:={unknown[0]} is not in this fleet; it has {', '.join(ROBOTS)}")
+        known = ", ".join(ROBOTS)
+        raise RuntimeError(f"robots:={unknown[0]} is not in this fleet; it has {known}")
     return [action for name in words or ROBOTS for action in ROBOTS[name]()]
 '''
 
@@ -107,7 +118,20 @@ def chosen(context):
 def to_python(it: FleetStarts) -> str:
     """The text of the file."""
     body = _text(_BODY.splitlines(), *_parts(it))
-    return _text(_head(it), _imports(body)) + body
+    return _single_quoted(_text(_head(it), _imports(body)) + body)
+
+
+def _single_quoted(text: str) -> str:
+    """The text as ament_flake8 wants it: single quotes but for a string that has one."""
+    return _TOKEN.sub(lambda it: _quotes_of(it[0]), text)
+
+
+def _quotes_of(token: str) -> str:
+    inner = token.removeprefix("f")[1:-1]
+    is_plain = token.removeprefix("f").startswith('"') and not token.endswith('"""')
+    if not is_plain or "'" in inner or "\\" in inner:
+        return token
+    return f"{'f' * token.startswith('f')}'{inner}'"
 
 
 def _text(*parts: Iterable[str]) -> str:
@@ -119,10 +143,13 @@ def _parts(it: FleetStarts) -> Iterator[Iterable[str]]:
         yield "", "", *_INSTALLED.splitlines()
     if any(start.brought_up for robot in it.robots for start in robot.starts):
         yield "", "", *_BROUGHT_UP.splitlines()
-    for robot in it.robots:
-        yield ("", "", *_robot(robot, bool(it.simulators)))
-    names = (f'    "{robot.name}": start_{robot.name},' for robot in it.robots)
+    made = functions([_written(robot) for robot in it.robots])
+    for own in made:
+        yield ("", "", *own.lines)
+    calls = dict(call for own in made for call in own.calls)
+    names = (f'    "{robot.name}": {calls[robot.name]},' for robot in it.robots)
     yield "", "", "ROBOTS = {", *names, "}", "", "", *_CHOSEN.splitlines()
+    yield from (("", "", *_SWITCHES[one]) for one in it.simulators)
     yield "", "", *_description(it)
 
 
@@ -135,31 +162,48 @@ def _head(it: FleetStarts) -> Iterator[str]:
     yield f"    ros2 launch fleet.launch.py robots:={it.robots[0].name}"
     if it.driving:
         yield ""
+        shown = it.driving if len(it.driving) <= _DRIVING else it.driving[:1]
         yield "In other terminals, to drive:"
         yield ""
-        yield from (f"    {line}" for line in it.driving)
+        yield from (line for one in shown for line in _shell(one))
+        if len(shown) < len(it.driving):
+            yield ""
+            yield f"The other robots likewise: with their names in the place of {it.robots[0].name}."
     yield '"""'
     yield ""
 
 
 def _imports(body: str) -> Iterator[str]:
+    if "partial(" in body:
+        yield "from functools import partial"
     yield from ("from pathlib import Path", "")
-    used = _ALWAYS.union(re.findall(r"\w+", body))
+    used = frozenset(re.findall(r"\w+", body))
     for module, every in _IMPORTS.items():
         names = [name for name in every if name in used]
-        if module == "launch.actions":
+        if module == "launch.actions" and names:
             yield from (f"from {module} import (", *(f"    {name}," for name in names), ")")
         elif names:
             yield f"from {module} import {', '.join(names)}"
     yield ""
 
 
-def _robot(it: RobotStarts, simulated: bool) -> Iterator[str]:
-    yield f"def start_{it.name}():"
-    yield f'    """{it.about}."""'
+def _shell(line: str) -> Iterator[str]:
+    """A command for a shell, at most as wide as the file."""
+    words = wrap(line, WIDTH - 6, break_long_words=False, break_on_hyphens=False)
+    for number, it in enumerate(words):
+        indent, more = "    " * bool(number), " \\" * (number + 1 < len(words))
+        yield f"    {indent}{it}{more}"
+
+
+def _written(it: RobotStarts) -> Written:
+    return Written(it.name, it.about, it.about.partition(".")[0], list(_robot(it)))
+
+
+def _robot(it: RobotStarts) -> Iterator[str]:
     for name, why in it.left:
         if why:
-            yield f"    # Not started: {name} ({why})"
+            text = f"Not started: {name} ({why})"
+            yield from (f"    # {line}" for line in wrap(text, WIDTH - 6))
     if it.files:
         yield f"    params = [{', '.join(_value(File(path)) for path in it.files)}]"
     own = tuple(File(path) for path in it.files)
@@ -216,7 +260,7 @@ def _keywords(it: Start, own: _Files) -> Iterator[str]:
     yield f'executable="{it.executable}",'
     yield from _names(it.namespace, it.name)
     if it.arguments:
-        yield f"arguments=[{', '.join(_value(word) for word in it.arguments)}],"
+        yield from _list("arguments", [*_pairs(it.arguments)])
     yield from _given(it.parameters, it.remappings, own)
     yield 'output="screen",'
 
@@ -237,12 +281,61 @@ def _given(
     common = bool(own) and tuple(parameters[: len(own)]) == own
     words = ["*params"] if common else []
     words += [_value(it) for it in parameters[len(own) * common :]]
-    yield f"parameters=[{', '.join([*words, 'CLOCK'])}],"
+    yield from _list("parameters", [*words, "CLOCK"])
     pairs = list(remappings)
     if pairs:
         yield "remappings=["
         yield from (f"    ({_value(old)}, {_value(new)})," for old, new in pairs)
         yield "],"
+
+
+def _list(key: str, items: Sequence[str]) -> Iterator[str]:
+    """A keyword with a list: in one line where that is short, whatever the names of robots are."""
+    line = f"{key}=[{', '.join(items)}],"
+    if len(line) <= _SHORT:
+        yield line
+        return
+    yield f"{key}=["
+    yield from (f"    {line}" for it in items for line in _item(it))
+    yield "],"
+
+
+def _item(it: str) -> Iterator[str]:
+    """An item of a list; a long dictionary or list of words in several lines."""
+    if len(it) <= _SHORT or not it.startswith("{"):
+        yield f"{it},"
+        return
+    yield "{"
+    for text in _ENTRY.findall(it[1:-1]):
+        yield from (f"    {line}" for line in _entry(text))
+    yield "},"
+
+
+def _entry(text: str) -> Iterator[str]:
+    key, _, value = text.partition(": ")
+    if len(text) <= _SHORT or not value.startswith("["):
+        yield f"{text},"
+        return
+    yield f"{key}: ["
+    yield from (f"    {it}," for it in _TEXTS.findall(value))
+    yield "],"
+
+
+def _pairs(words: Iterable[str | File]) -> Iterator[str]:
+    """The arguments of a program: a flag and its value stand together."""
+    flag = ""
+    for it in words:
+        is_flag = isinstance(it, str) and _FLAG.fullmatch(it) is not None
+        if flag and is_flag:
+            yield flag
+            flag = ""
+        if is_flag:
+            flag = _value(it)
+        else:
+            yield f"{flag}, {_value(it)}" if flag else _value(it)
+            flag = ""
+    if flag:
+        yield flag
 
 
 def _component(it: Component, indent: int, own: _Files) -> Iterator[str]:
@@ -277,15 +370,20 @@ def _quoted(text: str) -> str:
 
 def _description(it: FleetStarts) -> Iterator[str]:
     yield "def generate_launch_description():"
-    yield '    """The simulator, then robot by robot, then the windows for all."""'
+    yield '    """Start the simulator, then robot by robot, then the windows for all."""'
     yield "    return LaunchDescription("
     yield "        ["
     for name, default, about in launch_arguments(it):
-        yield f'            DeclareLaunchArgument("{name}", default_value={_value(default)},'
-        yield f'                                  description="{about}"),'
+        yield "            DeclareLaunchArgument("
+        yield f'                "{name}",'
+        yield f"                default_value={_value(default)},"
+        yield f'                description="{about}",'
+        yield "            ),"
     for simulator in it.simulators:
         yield from (f"            {line}" for line in _SIMULATORS[simulator])
-    for start in it.shared:
+    inside = [start for start in it.shared if it.simulators and start.package == BRIDGES]
+    yield from _group(inside, "simulator", 12)
+    for start in (start for start in it.shared if start not in inside):
         yield from _process(start, 12)
     yield "            OpaqueFunction(function=chosen),"
     yield from _group(it.windows, "rviz", 12)
@@ -296,25 +394,37 @@ def _description(it: FleetStarts) -> Iterator[str]:
 _SIMULATORS: Mapping[str, tuple[str, ...]] = {
     GZ: (
         "IncludeLaunchDescription(",
-        '    PathJoinSubstitution([FindPackageShare("ros_gz_sim"), "launch", "gz_sim.launch.py"]),',
+        "    PathJoinSubstitution(",
+        '        [FindPackageShare("ros_gz_sim"), "launch", "gz_sim.launch.py"]',
+        "    ),",
         "    launch_arguments=[",
-        '        ("gz_args", ["-r ", PythonExpression(["\'-s \' if \'", '
-        'LaunchConfiguration("headless"),',
-        "                     \"'.lower() == 'true' else ''\"]), "
-        "'\"', LaunchConfiguration(\"world\"), '\"']),",
+        '        ("gz_args", ["-r ", HEADLESS, \'"\', LaunchConfiguration("world"), \'"\']),',
         "    ],",
         '    condition=IfCondition(LaunchConfiguration("simulator")),',
         "),",
     ),
     CLASSIC: (
         "IncludeLaunchDescription(",
-        '    PathJoinSubstitution([FindPackageShare("gazebo_ros"), "launch", "gazebo.launch.py"]),',
+        "    PathJoinSubstitution(",
+        '        [FindPackageShare("gazebo_ros"), "launch", "gazebo.launch.py"]',
+        "    ),",
         "    launch_arguments=[",
-        '        ("gui", PythonExpression(["\'false\' if \'", LaunchConfiguration("headless"),',
-        "                                  \"'.lower() == 'true' else 'true'\"])),",
+        '        ("gui", GUI),',
         '        ("world", LaunchConfiguration("world")),',
         "    ],",
         '    condition=IfCondition(LaunchConfiguration("simulator")),',
         "),",
+    ),
+}
+_SWITCHES: Mapping[str, tuple[str, ...]] = {
+    GZ: (
+        "HEADLESS = PythonExpression(",
+        """    ["'-s ' if '", LaunchConfiguration("headless"), "'.lower() == 'true' else ''"]""",
+        ")",
+    ),
+    CLASSIC: (
+        "GUI = PythonExpression(",
+        """    ["'false' if '", LaunchConfiguration("headless"), "'.lower() == 'true' else 'true'"]""",
+        ")",
     ),
 }

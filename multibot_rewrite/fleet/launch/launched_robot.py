@@ -13,7 +13,7 @@ from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.producers.evidence.remapped import under_plugin
 from multibot_rewrite.producers.launch.child import launch_graph
 from multibot_rewrite.producers.launch.of_robot import Launched, as_launched, with_launched
-from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder
+from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder, joined
 
 NOT_SPAWNED = "no spawner of the launch files loads it"
 
@@ -41,13 +41,7 @@ def launched_robot(
 def launch_of(orders: Sequence[LaunchOrder], robot: str) -> LaunchGraph:
     """All that these launch files start, with the robot in the place of ``{robot}``; raises as
     ``launched_robot``."""
-    graphs = [launch_graph(it) for it in _own(orders, robot)]
-    return LaunchGraph(
-        tuple(node for it in graphs for node in it.nodes),
-        tuple(note for it in graphs for note in it.notes),
-        tuple(file for it in graphs for file in it.files),
-        any(it.stood_in for it in graphs),
-    )
+    return joined([launch_graph(it) for it in _own(orders, robot)])
 
 
 def _own(orders: Sequence[LaunchOrder], robot: str) -> list[LaunchOrder]:

@@ -7,12 +7,13 @@ in src/systems (ign-gazebo6 of Humble calls the libraries ignition-gazebo-...).
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
 from multibot_rewrite.fleet.outputs.spawn import is_classic, is_simulated
+from multibot_rewrite.knowledge.worlds import SYSTEMS
 
 FILE = "world.sdf"
 # The release whose Gazebo has libraries of the old name.
@@ -22,23 +23,6 @@ _ALWAYS = {
     "user-commands": "UserCommands",
     "scene-broadcaster": "SceneBroadcaster",
     "contact": "Contact",
-}
-_CAMERAS = "sensors", "Sensors"
-# By the type of a sensor.
-_SYSTEMS: Mapping[str, tuple[str, str]] = {
-    **dict.fromkeys(("camera", "depth_camera", "depth", "rgbd_camera", "rgbd"), _CAMERAS),
-    **dict.fromkeys(("gpu_lidar", "gpu_ray", "lidar", "ray"), _CAMERAS),
-    **dict.fromkeys(("thermal_camera", "thermal", "wide_angle_camera"), _CAMERAS),
-    **dict.fromkeys(("segmentation_camera", "segmentation"), _CAMERAS),
-    **dict.fromkeys(("boundingbox_camera", "boundingbox"), _CAMERAS),
-    "imu": ("imu", "Imu"),
-    "magnetometer": ("magnetometer", "Magnetometer"),
-    "altimeter": ("altimeter", "Altimeter"),
-    "air_pressure": ("air-pressure", "AirPressure"),
-    "air_speed": ("air-speed", "AirSpeed"),
-    "force_torque": ("forcetorque", "ForceTorque"),
-    "logical_camera": ("logical-camera", "LogicalCamera"),
-    **dict.fromkeys(("navsat", "gps"), ("navsat", "NavSat")),
 }
 _PLACE = """\
     <!-- Where the world is on the earth, for GPS: change it. -->
@@ -85,7 +69,7 @@ def world_file(plan: FleetPlan) -> Iterator[OutputFile]:
     robots = [it for it in plan.robots if is_simulated(it) and not is_classic(it)]
     roots = [it.member.inventory.document.root for it in robots]
     types = {sensor.get("type", "") for root in roots for sensor in root.iter("sensor")}
-    needed = dict(sorted(_SYSTEMS[it] for it in types & _SYSTEMS.keys()))
+    needed = dict(sorted(SYSTEMS[it] for it in types & SYSTEMS.keys()))
     # A robot that brings a system itself would run it twice.
     brought = [it.get("filename") or "" for root in roots for it in root.iter("plugin")]
     ours = {
@@ -102,6 +86,6 @@ def world_file(plan: FleetPlan) -> Iterator[OutputFile]:
 
 def _system(kind: str, library: str, name: str) -> str:
     head = f'    <plugin filename="{kind}-{library}-system" name="gz::sim::systems::{name}"'
-    if name != _CAMERAS[1]:
+    if name != "Sensors":
         return f"{head}/>\n"
     return f"{head}>\n      <render_engine>ogre2</render_engine>\n    </plugin>\n"

@@ -92,7 +92,7 @@ def with_own_arguments(it: Looked, tree: Tree, reach: Reach) -> Looked:
     given = dict(it.arguments)
     filled_in = filled(given, _ANY)
     found = find_arguments(it.path, filled_in, tree, reach=reach, wanted=names_robots)
-    own = {it.name: it.value for it in found.arguments if it.value and it.name not in given}
+    own = {name: value for name, value in found.for_robots.items() if name not in given}
     known = {one.name for one in found.arguments} | set(found.untried)
     kept = {name: value for name, value in given.items() if name in known}
     return it._replace(arguments=tuple({**kept, **own}.items()))

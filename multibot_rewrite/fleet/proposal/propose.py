@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from math import ceil
 from typing import Any
 
@@ -151,11 +151,15 @@ _SIMULATORS = ("ros_gz_sim", "ros_ign_gazebo", "gazebo_ros")
 OF_CLASSIC = "humble"
 
 
+def _silent(_: str) -> None:
+    """Nobody is told."""
+
+
 class Wanted(NamedTuple):
     """What is asked for: files and folders, robots of each description or their names, values of xacro
     arguments, the release and whether somebody named it, a layout if not the one that the files are
     made for, metres from robot to robot if not as they are wide, whether xacros may do anything, a
-    simulator or "none" if not what the files are for."""
+    simulator or "none" if not what the files are for. ``tell`` is told what is looked at."""
 
     paths: tuple[str, ...]
     each: int
@@ -167,6 +171,7 @@ class Wanted(NamedTuple):
     names: tuple[str, ...] = ()
     apart: float = 0.0
     simulator: str = ""
+    tell: Callable[[str], None] = _silent
 
 
 class Seen(NamedTuple):
@@ -187,13 +192,17 @@ def see(wanted: Wanted) -> Seen:
     Raises UsageError where there is none, for one that was named and cannot be read, and for the one
     that launch files load where it cannot be read.
     """
+    wanted.tell(f"looking for robots in {', '.join(wanted.paths)}")
     found = search(wanted.paths)
     reach = Reach(trust=wanted.trust)
     values = NeededValues(found.launch)
     every = found.descriptions
     if len(every) > MOST:
         every = tuple(sorted(every, key=lambda it: -launches_of(it, found)))[:MOST]
-    looked = [look(it, wanted.arguments, reach, values) for it in every]
+    looked = []
+    for at, it in enumerate(every, 1):
+        wanted.tell(f"{at} of {len(every)} descriptions: {it}")
+        looked.append(look(it, wanted.arguments, reach, values))
     named = [it for it in looked if it.path in map(os.path.normpath, wanted.paths)]
     if named:
         _refuse([it for it in named if not it.links], "")
@@ -257,7 +266,7 @@ def _is_simulated(it: Looked, wanted: Wanted) -> bool:
 def release_of(robots: Sequence[Looked], wanted: Wanted) -> Choice:
     """The release that was asked for, else the one that has the robots' simulator."""
     if wanted.named:
-        return Choice(wanted.release, "the ROS release whose facts count")
+        return Choice(wanted.release, "the ROS 2 release that was asked for")
     if any(it.simulator == CLASSIC for it in robots):
         return Choice(OF_CLASSIC, "the last ROS release that has Gazebo Classic")
     return Choice(wanted.release, "the newest long-term ROS release; name yours")

@@ -64,6 +64,7 @@ def that_builds(
     """The fleet of these robots without the files that do not go with them (``refused`` are left out,
     too), in its own layout or the first one that builds; the arguments that name robots stay empty
     where it builds so alone."""
+    wanted.tell(f"does a fleet of {', '.join(it.path for it in robots)} build?")
     own = with_arguments(robots, wanted, found)
     made, errors = _without_blamed(own, found, wanted, refused or {})
     bare = [without_names(it, wanted.arguments) for it in own] if errors else own

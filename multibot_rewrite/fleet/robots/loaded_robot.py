@@ -273,7 +273,7 @@ class LoadedRobot:
         """``arguments`` of the ``static_transform_publisher`` of its pose, empty if it needs none;
         raises nothing."""
         made = self._fleet.placed.transforms
-        return next((start_poses.arguments(it) for it in made if it.robot == self._graph), [])
+        return next((it.words for it in made if it.robot == self._graph), [])
 
     @checked
     def start_parameters(self, node: str) -> dict[str, Any]:

@@ -35,8 +35,8 @@ NAMED_TWICE = declare(
     ERROR,
     what="A topic or service has the robot's name twice: an argument of the xacro puts it before the "
     "name, and the robot's namespace before that.",
-    why="Nobody else calls it so: commands on /robot1/cmd_vel do not reach a drive that listens to "
-    "/robot1/robot1_cmd_vel.",
+    why="No other node uses that name: commands on /robot1/cmd_vel do not reach a drive that listens "
+    "to /robot1/robot1_cmd_vel.",
     fix="Write '' for the argument: links, joints and frames get the robot's name all the same.",
     bad=_FLEET.format("arguments: {tf_prefix: '{robot}_'}\n"),
     good=_FLEET.format("arguments: {tf_prefix: ''}\n"),

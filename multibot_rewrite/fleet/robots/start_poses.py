@@ -33,6 +33,7 @@ from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.spelling.bridged_topics import TF_TYPE, bridge_data
 from multibot_rewrite.spelling.table import joined, names_of, node_table
 from multibot_rewrite.spelling.targets import placed, target_of
+from multibot_rewrite.spelling.ways import ros_arguments
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, Edge, edge_of
 
 NODE = "start_pose"
@@ -58,7 +59,14 @@ class StaticTransform(NamedTuple):
     @property
     def start(self) -> Start:
         """Its process; raises nothing."""
-        return Start("tf2_ros", "static_transform_publisher", arguments=tuple(arguments(self)))
+        words = tuple(arguments(self))
+        names = (self.namespace, self.node)
+        return Start("tf2_ros", "static_transform_publisher", *names, (), self.remaps, words)
+
+    @property
+    def words(self) -> list[str]:
+        """What follows the program on a command line."""
+        return [*arguments(self), *ros_arguments(self.namespace, self.node, self.remaps)]
 
 
 class InitialPose(NamedTuple):
@@ -109,8 +117,9 @@ def _place(plan: FleetPlan, robot: RewrittenRobot, pose: Pose) -> Iterator[objec
         yield InitialPose(name, AMCL, initial_pose(pose))
         return
     if locators:
-        nodes = " and ".join(locators)
-        what = f"its pose is not published, because {nodes} already publishes where it is"
+        nodes = " and ".join(it or "its description" for it in locators)
+        says = "already says" if len(locators) == 1 else "already say"
+        what = f"its pose is not published, because {nodes} {says} where it is"
         hint = "a second parent would make the frame jump"
         yield _finding(LOCALISED_ALREADY, robot, what, hint)
         return
@@ -147,10 +156,7 @@ def static_transform(
 def arguments(it: StaticTransform) -> list[str]:
     """What follows ``static_transform_publisher``; values may be negative, names come last."""
     words = [word for key, value in it.pose._asdict().items() for word in (f"--{key}", str(value))]
-    words += ["--frame-id", it.parent, "--child-frame-id", it.child]
-    rules = [f"__ns:={it.namespace}"] if it.namespace != "/" else []
-    rules += [f"__node:={it.node}", *(f"{source}:={target}" for source, target in it.remaps)]
-    return [*words, "--ros-args", *(text for rule in rules for text in ("-r", rule))]
+    return [*words, "--frame-id", it.parent, "--child-frame-id", it.child]
 
 
 def initial_pose(pose: Pose) -> dict[str, object]:

@@ -1,4 +1,5 @@
-"""A robot whose simulator gets another file than robot_state_publisher: do the two fit?"""
+"""A robot whose simulator gets another file than robot_state_publisher: do the two fit? And an SDF that
+robot_state_publisher gets: is it read?"""
 
 from __future__ import annotations
 
@@ -11,6 +12,7 @@ from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
+from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 
 SHOWN = 3
 _URDF = """\
@@ -55,6 +57,38 @@ robots: [{name: robot1}]
         "other.sdf": _SDF.format("axle"),
     },
 )
+
+SDF_ALONE = declare(
+    "MF712",
+    "sdf-for-state-publisher",
+    WARNING,
+    what="robot_state_publisher gets an SDF.",
+    why="It reads one only where the package sdformat_urdf is installed, which it does not depend on: "
+    "without it the node ends at its start, and no node sends the transforms of the robot's links.",
+    fix="Name the robot's URDF as `description` and the SDF as `simulated`, or install "
+    "ros-$ROS_DISTRO-sdformat-urdf on the robots.",
+    bad="description: rover.sdf\nrobots: [{name: robot1}]\n",
+    good="description: rover.urdf\nsimulated: rover.sdf\nrobots: [{name: robot1}]\n",
+    line=2,
+    formats=("fleet",),
+    beside={"rover.urdf": _URDF, "rover.sdf": _SDF.format("wheel_joint")},
+)
+
+
+def of_sdf_alone(plan: FleetPlan) -> Iterator[Finding]:
+    """The robots whose robot_state_publisher gets an SDF: robot_state_publisher.cpp reads it by
+    urdf::Model, which asks the parsers that are installed."""
+    published = {it.name for it in plan.fleet.facts if it.package == STATE_PUBLISHER}
+    runs = {it.robot for it in plan.fleet.table.nodes if it.node in published}
+    for robot in plan.robots:
+        if robot.member.described.document.root.tag == "sdf" and robot.spec.namespace in runs:
+            links = _shown([*robot.member.described.declared.get("link", ())])
+            message = (
+                f"robot_state_publisher of {robot.spec.name} gets an SDF, which it reads with the "
+                f"package sdformat_urdf alone; else no node sends {links}"
+            )
+            hint = "name its URDF as description and this file as simulated, or install the package"
+            yield at_robot(SDF_ALONE, robot, message, hint)
 
 
 def differences(plan: FleetPlan) -> Iterator[Finding]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from math import acos, degrees, dist
+from math import acos, degrees, dist, isfinite
 
 from multibot_rewrite.base.conventions import WORLD_FRAMES
 from multibot_rewrite.base.record import NamedTuple
@@ -62,6 +62,11 @@ def heard_trees(
     )
 
 
+def placed(edge: Edge) -> tuple[float, ...]:
+    """Its transform, if all of it is numbers."""
+    return edge.transform if all(map(isfinite, edge.transform)) else ()
+
+
 def _below(root: str, above: Mapping[str, Edge]) -> Iterator[HeardFrame]:
     children: dict[str, list[Edge]] = defaultdict(list)
     for it in above.values():
@@ -69,8 +74,8 @@ def _below(root: str, above: Mapping[str, Edge]) -> Iterator[HeardFrame]:
     todo = [root]
     for name in todo:  # grows
         for it in children[name]:
-            if it.transform:
-                yield HeardFrame(it.child, name, it.transform)
+            if transform := placed(it):
+                yield HeardFrame(it.child, name, transform)
                 todo.append(it.child)
 
 

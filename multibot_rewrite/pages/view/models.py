@@ -19,14 +19,16 @@ from multibot_rewrite.description.sources.packages import package_folder
 INSTALL = "the view needs yourdfpy: pip install 'multibot_rewrite[view]'"
 # Of larger meshes the bounding box is shown, or the page would not load.
 MOST_FACES = 200_000
-GREY: tuple[float, ...] = (0.72, 0.75, 0.8, 1.0)
+# A shape for which the file gives no colour: the page gives it the colour of its robot.
+UNCOLOURED: tuple[float, ...] = ()
 _LIBRARY_END = "THREE.GLTFLoader=GLTFLoader;})();"
 Matrix = Sequence[Sequence[float]]
 
 
 class Shape(NamedTuple):
     """A shape in its link's frame: ``kind`` is box, cylinder, sphere or mesh, ``size`` its sizes in
-    metres (a mesh's scale). ``mesh`` is its file, ``missing`` why it is shown as a box."""
+    metres (a mesh's scale). ``mesh`` is its file, ``missing`` why it is shown as a box. ``colour``
+    is red, green, blue, alpha, or empty where the description has none."""
 
     kind: str
     size: tuple[float, ...]
@@ -58,10 +60,12 @@ class Model(NamedTuple):
 
 
 class Mesh(NamedTuple):
-    """Vertices (x, y, z as 32-bit floats) and triangles (three 32-bit numbers of vertices)."""
+    """Vertices (x, y, z as 32-bit floats) and triangles (three 32-bit numbers of vertices); the colours
+    (red, green, blue, a byte each) of the vertices where the file has materials."""
 
     vertices: bytes
     faces: bytes
+    colours: bytes = b""
 
 
 def load_model(data: bytes, source: str) -> Model:
@@ -96,9 +100,9 @@ def _rgba(material: Any) -> tuple[float, ...]:
 def _shapes(link: Any, colours: dict[str, tuple[float, ...]], source: str) -> Iterator[Shape]:
     for visual in link.visuals:
         material = visual.material
-        colour = GREY
+        colour = UNCOLOURED
         if material is not None:
-            colour = _rgba(material) if material.color else colours.get(material.name, GREY)
+            colour = _rgba(material) if material.color else colours.get(material.name, UNCOLOURED)
         pose = _matrix(visual.origin)
         it = visual.geometry
         if it.box is not None:
@@ -161,7 +165,19 @@ def load_mesh(path: str) -> Mesh | str:
     if len(made.faces) > MOST_FACES:
         made = made.bounding_box
     vertices = np.asarray(made.vertices, dtype="<f4").tobytes()
-    return Mesh(vertices, np.asarray(made.faces, dtype="<u4").tobytes())
+    return Mesh(vertices, np.asarray(made.faces, dtype="<u4").tobytes(), _colours(made))
+
+
+def _colours(mesh: Any) -> bytes:
+    """The colours that the file gives its vertices, by a material, a picture or one each."""
+    visual = mesh.visual
+    with suppress(Exception):  # a picture that is not there, or of a format that nothing here reads
+        if visual.kind == "texture" and visual.uv is None:
+            return bytes(visual.material.main_color[:3]) * len(mesh.vertices)
+        if visual.kind:
+            coloured = visual.to_color() if visual.kind == "texture" else visual
+            return bytes(coloured.vertex_colors[:, :3].astype("u1").tobytes())
+    return b""
 
 
 def _matrix(origin: Any) -> Matrix:

@@ -9,12 +9,12 @@ from html import escape
 from importlib.resources import files
 from typing import Any
 
-from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.printable import one_line
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.lint.workers import limit_time, worker_pool
 from multibot_rewrite.pages.page import Framed, source_hash
 from multibot_rewrite.pages.view.heard import DEGREES, METRES
-from multibot_rewrite.pages.view.models import Mesh, Shape, load_mesh, prepare_meshes, three
+from multibot_rewrite.pages.view.models import Mesh, Model, Shape, load_mesh, prepare_meshes, three
 from multibot_rewrite.pages.view.scene import Scene, ViewedRobot
 
 MESH_SECONDS = 10.0
@@ -80,6 +80,11 @@ _BAR = (
 )
 
 
+def bare(model: Model) -> str:
+    """What is said of a robot that has nothing to show; empty for others."""
+    return "" if any(model.links.values()) else "its links have no <visual>: only frames are shown"
+
+
 def title_of(robots: Sequence[ViewedRobot], layout: str) -> str:
     """The heading of a page."""
     return f"{plural(len(robots), 'robot')}, layout {layout}"
@@ -102,7 +107,7 @@ def _data(scene: Scene, meshes: Meshes) -> dict[str, Any]:
 def _mesh(it: Mesh | str) -> dict[str, str]:
     if isinstance(it, str):
         return {"missing": it}
-    return {"v": _base64(it.vertices), "f": _base64(it.faces)}
+    return {"v": _base64(it.vertices), "f": _base64(it.faces), "c": _base64(it.colours)}
 
 
 def _base64(data: bytes) -> str:
@@ -123,6 +128,7 @@ def _robot(it: ViewedRobot, numbers: Mapping[str, int], meshes: Meshes) -> Any:
         "joints": [list(one) for one in it.model.joints],
         "changes": list(_changes(it.changes)),
         "plugins": it.plugins,
+        "bare": bare(it.model),
         "topic": it.topic,
         "prefix": it.prefix,
         "heard": it.heard,

@@ -14,7 +14,7 @@ from multibot_rewrite.description.steps.document import Document
 from multibot_rewrite.fleet.file.fleet_file import Sources
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.robots.rewritten_robots import GRAPH_KINDS, RewrittenRobot
-from multibot_rewrite.pages.view.heard import HeardTree, LinkFrames, heard_trees
+from multibot_rewrite.pages.view.heard import HeardTree, LinkFrames, heard_trees, placed
 from multibot_rewrite.pages.view.models import Model, load_model
 from multibot_rewrite.pages.view.sdf_model import declared, line_of, load_sdf
 from multibot_rewrite.spelling.plan import tf_topic
@@ -98,7 +98,7 @@ def _robot(it: RewrittenRobot, changes: _Changes, graph: System | None) -> Viewe
     edges = {one.child: one for one in sent if tree_topic(one.topic) == topic}
     heard = _heard(model, edges, prefix) if graph else {}
     links = [one.child for one in model.joints if heard.get(one.child) == HEARD]
-    transforms = {link: edges[f"{prefix}{link}"].transform for link in links}
+    transforms = {link: placed(edges[f"{prefix}{link}"]) for link in links}
     file = (
         f"{spec.description} (expanded)"
         if spec.description.endswith(".xacro")

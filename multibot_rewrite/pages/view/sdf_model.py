@@ -17,7 +17,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.numbers import Vector, numbers, vector
 from multibot_rewrite.description.checks.poses import HERE, Pose, minus, placed, sdf_pose
 from multibot_rewrite.description.checks.rotation import inverse, matrix_of_quaternion, turned
-from multibot_rewrite.pages.view.models import GREY, Joint, Matrix, Model, Shape, mesh_shape
+from multibot_rewrite.pages.view.models import UNCOLOURED, Joint, Matrix, Model, Shape, mesh_shape
 
 MODEL = "__model__"
 _FRAMES = ("link", "joint", "frame", "model")
@@ -203,7 +203,7 @@ def _shapes(link: _Named, frames: _Frames, at: Pose) -> Iterator[Shape]:
         base = frames.pose(link.within(relative) if relative else link.name)
         pose = _matrix(_relative(at, placed(base, _pose(written))))
         colour = numbers(visual.findtext("material/diffuse") or "") or ()
-        colour = colour if len(colour) == 4 else (*colour, 1.0) if len(colour) == 3 else GREY
+        colour = colour if len(colour) == 4 else (*colour, 1.0) if len(colour) == 3 else UNCOLOURED
         for it in visual.iterfind("geometry/*"):
             yield from _shape(it, pose, colour, frames.source)
 

@@ -13,13 +13,19 @@ const geometries = data.meshes.map((it) => {
   if (it.missing) return null;
   const made = new THREE.BufferGeometry();
   made.setAttribute("position", new THREE.BufferAttribute(new Float32Array(bytes(it.v)), 3));
+  // As RViz: the materials of a mesh file count more than the description's.
+  if (it.c) made.setAttribute("color", new THREE.BufferAttribute(new Uint8Array(bytes(it.c)), 3, true));
   made.setIndex(new THREE.BufferAttribute(new Uint32Array(bytes(it.f)), 1));
   made.computeVertexNormals();
   return made;
 });
+// Of a robot where the description has no colour: alone grey, among others its own.
+const OWN = [[0.30, 0.47, 0.70], [0.90, 0.52, 0.20], [0.35, 0.62, 0.32], [0.62, 0.42, 0.66],
+  [0.78, 0.36, 0.38], [0.25, 0.62, 0.64], [0.80, 0.66, 0.20], [0.54, 0.41, 0.33]];
+data.robots.forEach((it, at) => { it.colour = data.robots.length > 1 ? OWN[at % OWN.length] : [0.72, 0.75, 0.8]; });
 const matrix = (rows) => new THREE.Matrix4().set(...rows.flat());
 
-function shapeOf([kind, size, pose, colour, mesh, missing]) {
+function shapeOf([kind, size, pose, colour, mesh, missing], own) {
   const geometry = kind === "mesh" ? geometries[mesh] : null;
   const box = missing || (kind === "mesh" && !geometry);
   let made;
@@ -28,9 +34,10 @@ function shapeOf([kind, size, pose, colour, mesh, missing]) {
   else if (kind === "box") made = new THREE.BoxGeometry(...size);
   else if (kind === "sphere") made = new THREE.SphereGeometry(size[0], 32, 16);
   else made = new THREE.CylinderGeometry(size[0], size[0], size[1], 32).rotateX(Math.PI / 2);
-  const [r, g, b, a] = colour;
+  const painted = Boolean(geometry && geometry.getAttribute("color"));
+  const [r, g, b, a = 1] = painted ? [1, 1, 1] : colour.length ? colour : own;
   const look = new THREE.MeshLambertMaterial({
-    color: new THREE.Color(r, g, b), transparent: a < 1, opacity: a, side: THREE.DoubleSide,
+    color: new THREE.Color(r, g, b), vertexColors: painted, transparent: a < 1, opacity: a, side: THREE.DoubleSide,
     wireframe: Boolean(box),
   });
   const it = new THREE.Mesh(made, look);
@@ -66,13 +73,14 @@ function build(robot, before) {
   for (const [name, shapes] of Object.entries(robot.links)) {
     const group = (links[name] = new THREE.Group());
     for (const shape of shapes) {
-      const it = shapeOf(shape);
+      const it = shapeOf(shape, robot.colour);
       it.userData = { robot, link: name };
       group.add(it);
     }
     const frame = new THREE.AxesHelper(0.12);
     const label = labelOf(shown(name), colourOf(before ? "kept" : stateOf(robot, name)));
     axes.push(frame);
+    label.userData = { robot, link: name };
     labels.push(label);
     group.add(frame, label);
   }
@@ -142,13 +150,17 @@ for (const name of views.keys()) {
 const toggles = { frames: document.getElementById("frames"), labels: document.getElementById("labels"),
   tf: document.getElementById("tf") };
 
+// The name of the link that was clicked is shown, the others where they are asked for.
+let picked = "";
+const isPicked = (label) => `${label.userData.robot.name} link ${label.userData.link}` === picked;
+
 function show(name) {
   const chosen = views.get(name) || [];
   for (const robot of data.robots)
     for (const it of robot.built) {
       it.root.visible = chosen.includes(it);
       for (const one of it.axes) one.visible = toggles.frames.checked;
-      for (const one of it.labels) one.visible = toggles.labels.checked;
+      for (const one of it.labels) one.visible = toggles.labels.checked || isPicked(one);
     }
   showHeard(chosen);
 }
@@ -187,7 +199,7 @@ function fit() {
   const middle = box.getCenter(new THREE.Vector3());
   const reach = Math.max(0.3, box.getSize(new THREE.Vector3()).length() / 2) / Math.min(1, camera.aspect);
   controls.target.copy(middle);
-  camera.position.copy(middle).add(new THREE.Vector3(1, -1.2, 0.8).normalize().multiplyScalar(reach * 2.6));
+  camera.position.copy(middle).add(new THREE.Vector3(1, -1.2, 0.8).normalize().multiplyScalar(reach * 3));
   camera.lookAt(middle);
   controls.update();
   draw();
@@ -240,10 +252,12 @@ function describePlugin(robot, at) {
 }
 
 function showPicked(id, title) {
+  picked = id;
   about.replaceChildren(make("h2", { textContent: title }));
   for (const it of document.querySelectorAll(".picked")) it.classList.remove("picked");
   const button = document.getElementById(id);
   if (button) button.classList.add("picked");
+  draw();
 }
 
 function plugins(robot) {
@@ -300,9 +314,12 @@ for (const robot of data.robots) {
   const children = new Set(robot.joints.map((it) => it[3]));
   const list = make("ul");
   for (const link of Object.keys(robot.links)) if (!children.has(link)) list.append(branch(robot, link));
-  const head = make("summary", { textContent: robot.name });
+  const dot = make("span", { className: "dot" });
+  dot.style.background = `rgb(${robot.colour.map((it) => Math.round(255 * it)).join()})`;
+  const head = make("summary", {}, robot.name, dot);
   head.addEventListener("click", () => describe(robot, "", "robot"));
-  document.getElementById("tree").append(make("details", { open: data.robots.length < 4 }, head, list, plugins(robot)));
+  document.getElementById("tree").append(make("details", { open: data.robots.length < 4 }, head,
+    robot.bare ? make("p", { className: "missing", textContent: robot.bare }) : "", list, plugins(robot)));
 }
 
 // A click, not the end of a drag.

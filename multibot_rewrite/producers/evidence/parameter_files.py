@@ -40,21 +40,24 @@ TYPE = f".{OWN_TYPE}"
 
 
 class _Section(NamedTuple):
+    """A section; ``name`` is the node's without wildcards in front, "" for a section of every node."""
+
     file: str
     raw: RawSection
     values: dict[str, Given]
+    name: str
+    pattern: str
 
     @property
     def place(self) -> Place:
         return Place(self.file, line_of(self.raw.keys[0]))
 
-    @property
-    def name(self) -> str:
-        """The node's name without wildcards in front; "" for a section of every node."""
-        tokens = self.raw.path.strip("/").split("/")
-        while tokens and tokens[0] in ANY:
-            tokens.pop(0)
-        return "/".join(tokens) if not set(tokens) & set(ANY) else ""
+
+def _name(path: str) -> str:
+    tokens = path.strip("/").split("/")
+    while tokens and tokens[0] in ANY:
+        tokens.pop(0)
+    return "/".join(tokens) if not set(tokens) & set(ANY) else ""
 
 
 def given_nodes(
@@ -93,9 +96,9 @@ def named_values(
 
     Raises InputError for a file that is not a parameter file.
     """
-    sections = [(it, pattern_of(it.raw.path)) for it in _sections(document)]
+    sections = _sections(document)
     for node in nodes:
-        own = [it for it, pattern in sections if re.fullmatch(pattern, node)]
+        own = [it for it in sections if re.fullmatch(it.pattern, node)]
         if any(it.name for it in own):
             yield node, {name: value for it in own for name, value in it.values.items()}
 
@@ -104,7 +107,13 @@ def named_values(
 def _sections(document: YamlText) -> tuple[_Section, ...]:
     """The sections of a file: each node of a launch file that gets it asks for them."""
     return tuple(
-        _Section(document.file, it, dict(_flat(document, it.body, "")))
+        _Section(
+            document.file,
+            it,
+            dict(_flat(document, it.body, "")),
+            _name(it.path),
+            pattern_of(it.path),
+        )
         for it in raw_sections(document)
     )
 
@@ -159,11 +168,7 @@ def _node(
     name: str, sections: Sequence[_Section], controller: _Controller | None, known: KnownNodes
 ) -> GivenNode:
     # A section such as /*/NODE is for the node in whatever namespace it is.
-    own = [
-        it
-        for it in sections
-        if it.name == name or re.fullmatch(pattern_of(it.raw.path), f"/{name}")
-    ]
+    own = [it for it in sections if it.name == name or re.fullmatch(it.pattern, f"/{name}")]
     values = {key: given for it in own for key, given in it.values.items()}
     named = [it for it in own if it.name]
     last = name.rpartition("/")[2]

@@ -9,8 +9,10 @@ from __future__ import annotations
 import os
 import pathlib
 import re
+import shlex
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from typing import Any
 
 import yaml
@@ -35,6 +37,11 @@ _GAZEBO = {
     "gazebo": "gazebo_ros",
     "gzserver": "gazebo_ros",
 }
+# What a launch file raises by its own words; what is missing on a machine is raised otherwise, too.
+_OF_CODE = (RuntimeError, NameError, TypeError, ValueError, ZeroDivisionError)
+_OF_MACHINE = re.compile(r"(?:^|[\s\"'=:])/\w")
+# Arguments of gz_sim.launch.py and of Classic's gazebo.launch.py with the world.
+_WORLDS = ("gz_args", "ign_args", "world")
 # ament_index_python and Python say it so.
 _OF_PLUGIN = re.compile(r"<parameters>\s*([^<\s]+)\s*</parameters>")
 _NOT_FOUND = re.compile(r"package '(\w+)' not found|No module named '(\w+)")
@@ -54,9 +61,11 @@ class Visit(NamedTuple):
     later: str = ""
     events: int = 0
 
-    def note(self, message: str, parameters: bool = False, file: str = "") -> None:
+    def note(
+        self, message: str, parameters: bool = False, file: str = "", fails: bool = False
+    ) -> None:
         """Keep what is not known here: nodes, or only ``parameters`` of one, as those of a ``file``."""
-        self.notes.append(LaunchNote(self.place, message, parameters, file))
+        self.notes.append(LaunchNote(self.place, message, parameters, file, fails))
 
 
 def failure(error: BaseException) -> str:
@@ -69,12 +78,35 @@ def failure(error: BaseException) -> str:
     return " ".join(f"{type(error).__name__}: {error}".split())
 
 
-def simulator(error: BaseException, here: Visit) -> LaunchedNode | None:
-    """The simulator of a package that is missing here: that it starts one is known without it."""
+def is_certain(error: BaseException, here: Visit) -> bool:
+    """Does the launch fail so on every machine? A file that belongs beside the launch file is missing,
+    or the launch file itself raises what names no file or device of a machine."""
+    if isinstance(error, FileNotFoundError):
+        folder = os.path.dirname(os.path.realpath(here.place.file))
+        return str(error.filename or "").startswith(f"{folder}/")
+    last = error.__traceback__
+    while last is not None and last.tb_next is not None:
+        last = last.tb_next
+    own = last is not None and last.tb_frame.f_code.co_filename.endswith(".launch.py")
+    return own and isinstance(error, _OF_CODE) and not _OF_MACHINE.search(str(error))
+
+
+def simulator(error: BaseException, include: Any, here: Visit) -> LaunchedNode | None:
+    """The simulator of a package that is missing here: that it starts one is known without it, and with
+    which words."""
     found = _NOT_FOUND.search(str(error))
     if found is None or found[1] not in _GAZEBO.values():
         return None
-    return LaunchedNode(found[1], SIMULATOR, "", "/", (), (), "", (), here.later, here.place)
+    words = tuple(_simulator_words(include, here.context))
+    return LaunchedNode(found[1], SIMULATOR, "", "/", (), (), "", words, here.later, here.place)
+
+
+def _simulator_words(include: Any, context: Any) -> Iterator[str]:
+    """The words of ``gz_args`` and ``world``, where they are known."""
+    for name, value in include.launch_arguments:
+        with suppress(Exception):
+            if text(name, context) in _WORLDS:
+                yield from shlex.split(text(value, context))
 
 
 def is_wanted(action: Any, context: Any) -> bool:
@@ -150,7 +182,7 @@ def process(action: Any, here: Visit) -> Iterator[LaunchedNode]:
 
 def _simulator(words: list[str]) -> tuple[str, str, list[str]] | None:
     package = _GAZEBO.get(os.path.basename(words[0]) if words else "")
-    return (package, SIMULATOR, []) if package else None
+    return (package, SIMULATOR, words[1:]) if package else None
 
 
 def _kept(action: Any, name: str) -> Any:

@@ -48,13 +48,14 @@ class Published(NamedTuple):
 
 class Model(NamedTuple):
     """A description that is read. ``name`` is that of the model; ``spawned`` is false where nothing of
-    the launch puts it into a simulator."""
+    the launch puts it into a simulator; ``words`` are those of what does."""
 
     name: str
     text: str
     reading: Reading
     spawned: bool
     place: Place
+    words: tuple[str, ...] = ()
 
 
 class Models(NamedTuple):
@@ -77,7 +78,7 @@ def models_of(
         text = texts[topic].text if topic in texts else _given(words)
         name = words.get("-name", words.get("-entity", ""))
         model = _read(name, text, it.place, release, spawned=True)
-        found += [model] if model else []
+        found += [model._replace(words=it.arguments)] if model else []
         lost += [] if model else [it]
         taken.add(topic)
     rest = (it for it in texts.values() if it.topic not in taken)

@@ -12,6 +12,7 @@ from multibot_rewrite.producers.launch.describe import Visit, failure
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 from multibot_rewrite.producers.launch.made_files import keep_sources
 from multibot_rewrite.producers.launch.places import keep_places
+from multibot_rewrite.producers.launch.read_files import descriptions_in, keep_reads
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder
 from multibot_rewrite.producers.launch.source_packages import add_sources
 from multibot_rewrite.producers.launch.stand_in import standing_in
@@ -34,13 +35,15 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
     keep_places()
     keep_sources()
     read_commands()
+    reads = keep_reads()
     # A launch file may look at the command line itself.
     sys.argv = order.command_line
     try:
         description = _included(order)
     except (Exception, SystemExit) as error:
         raise UnreadableError(failure(error)) from error
-    return _visited(description, order)
+    graph = _visited(description, order)
+    return graph._replace(files=(*graph.files, *descriptions_in(reads)))
 
 
 def read_own(file: str, folder: str) -> LaunchGraph:

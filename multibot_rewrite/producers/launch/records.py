@@ -73,18 +73,20 @@ class LaunchedNode(NamedTuple):
 
 class LaunchNote(NamedTuple):
     """Something of a launch file whose nodes are not known, and why; with ``parameters`` the node is
-    known, and what a parameter file sets for it is not: the ``file``, where that is not there."""
+    known, and what a parameter file sets for it is not: the ``file``, where that is not there.
+    ``fails`` where the launch ends there on every machine."""
 
     place: Place
     message: str
     parameters: bool = False
     file: str = ""
+    fails: bool = False
 
 
 class LaunchGraph(NamedTuple):
     """What launch files start. ``files`` are the parameter files that plugins in descriptions name, by
-    the path that they have there. ``stood_in`` is true where launch is not installed and its stand-in
-    read them."""
+    the path that they have there, and descriptions that launch files read. ``stood_in`` is true where
+    launch is not installed and its stand-in read them."""
 
     nodes: tuple[LaunchedNode, ...] = ()
     notes: tuple[LaunchNote, ...] = ()
@@ -153,6 +155,27 @@ def order_in_words(words: Sequence[str], text: str, roots: Sequence[str] = ()) -
         file = file_of_package(package, named[1], tuple(roots))
     values = tuple((name, value) for name, _, value in arguments)
     return LaunchOrder(file, values, tuple(roots), package=package)
+
+
+def orders_in_words(
+    words: Sequence[str], text: str, roots: Sequence[str] = ()
+) -> list[LaunchOrder]:
+    """The same of several launch files, which all get the arguments."""
+    named = list(takewhile(lambda it: "=" not in it, words))
+    if len(named) < 2 or not all(map(os.path.isfile, named)):
+        return [order_in_words(words, text, roots)]
+    rest = list(words[len(named) :])
+    return [order_in_words([it, *rest], text, roots) for it in named]
+
+
+def joined(graphs: Sequence[LaunchGraph]) -> LaunchGraph:
+    """What several launch files start, as one."""
+    return LaunchGraph(
+        tuple(node for it in graphs for node in it.nodes),
+        tuple(note for it in graphs for note in it.notes),
+        tuple(file for it in graphs for file in it.files),
+        any(it.stood_in for it in graphs),
+    )
 
 
 def to_json(record: LaunchOrder | LaunchGraph) -> str:

@@ -6,7 +6,6 @@ file that is wrong is to be seen as it is.
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 
@@ -68,11 +67,13 @@ class Knowledge(NamedTuple):
 
 class Running(NamedTuple):
     """The nodes that a launch starts, hosted ones, controllers and plugins with them; what is not
-    known; the descriptions."""
+    known; the descriptions, those on each topic, and what spawners load."""
 
     nodes: tuple[RunningNode, ...]
     notes: tuple[LaunchNote, ...]
     models: Models
+    published: Mapping[str, str]
+    spawned: tuple[Spawned, ...]
 
 
 def running_nodes(graph: LaunchGraph, known: Knowledge) -> Running:
@@ -83,7 +84,8 @@ def running_nodes(graph: LaunchGraph, known: Knowledge) -> Running:
     found: list[RunningNode] = []
     for at, it in enumerate(started):
         found += _started(it, containers.get(it.container), f"{at}", known)
-    models = models_of(graph.nodes, _descriptions(found), known.release)
+    descriptions = [*_descriptions(found)]
+    models = models_of(graph.nodes, descriptions, known.release)
     asked = {it.manager for it in spawned} - {it.full_name for it in found}
     for model in models.found:
         made = managers(model, dict(graph.files))
@@ -95,8 +97,8 @@ def running_nodes(graph: LaunchGraph, known: Knowledge) -> Running:
     by_name = {it.full_name: it for it in found if it.facts and it.facts.known == MANAGER}
     controllers = _controllers(spawned, by_name, started, known)
     lost = [it for it in spawned if it.manager not in by_name]
-    more = (*_spawned_twice(spawned), *_without_manager(lost))
-    return Running((*found, *controllers), (*notes, *more), models)
+    nodes, more = (*found, *controllers), (*notes, *_without_manager(lost))
+    return Running(nodes, more, models, {it.topic: it.text for it in descriptions}, spawned)
 
 
 def _descriptions(nodes: Iterable[RunningNode]) -> Iterator[Published]:
@@ -211,6 +213,8 @@ def _controllers(
     known: Knowledge,
 ) -> Iterator[RunningNode]:
     """The controllers that spawners load into launched managers, where they are activated."""
+    if not spawned:
+        return
     own = {full_name(it, known_node(it, (), known.nodes)): it.parameters for it in started}
     forwarded = controller_way(known.release)
     for name, texts in texts_of(spawned, own):
@@ -245,15 +249,6 @@ def _given_to(controller: Spawned, given: Sequence[GivenNode]) -> GivenNode:
     typed = (it for it in given if it.type and it.name.rpartition("/")[2] == controller.name)
     declared = mine if mine.type else next(typed, mine)
     return declared._replace(name=mine.name, values={**declared.values, **mine.values})
-
-
-def _spawned_twice(spawned: Sequence[Spawned]) -> Iterator[LaunchNote]:
-    """The second one finds it loaded: it was to be another robot's."""
-    for (name, manager), count in Counter((it.name, it.manager) for it in spawned).items():
-        if count > 1:
-            last = next(it for it in reversed(spawned) if (it.name, it.manager) == (name, manager))
-            text = f"{manager} gets {name} from {count} spawners; is one of them another robot's?"
-            yield LaunchNote(last.place, text)
 
 
 def _without_manager(lost: Sequence[Spawned]) -> Iterator[LaunchNote]:

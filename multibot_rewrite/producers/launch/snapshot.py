@@ -14,19 +14,24 @@ from lxml import etree
 
 from multibot_rewrite.base.conventions import CLOCK
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import (
     BoundNode,
     expand,
     resolve_bound,
 )
-from multibot_rewrite.base.wording import SEVERAL, shorten
+from multibot_rewrite.base.wording import SEVERAL, plural, shorten
 from multibot_rewrite.knowledge.conditions import chosen_type
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.producers.addresses import of_hardware, of_parameters
 from multibot_rewrite.producers.launch.bridges import bridged_by, is_bridge
+from multibot_rewrite.producers.launch.controls import interfaces_of
 from multibot_rewrite.producers.launch.findings import STOOD_IN
+from multibot_rewrite.producers.launch.launched import (
+    Launched,
+    frames_of_sensors,
+    models_in_simulator,
+)
 from multibot_rewrite.producers.launch.models import Models, sent_in_simulator
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchNote, RunningNode
 from multibot_rewrite.producers.launch.running import (
@@ -52,6 +57,7 @@ from multibot_rewrite.system.records import (
     Edge,
     End,
     Environment,
+    Heard,
     Lookup,
     Node,
     Parameter,
@@ -81,7 +87,12 @@ class _Part(NamedTuple):
 
 def would_run(graph: LaunchGraph, known: Knowledge) -> System:
     """The graph of all that the launch starts; what is not known makes the view incomplete."""
-    nodes, notes, models = running_nodes(graph, known)
+    return launched(graph, known).system
+
+
+def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
+    """All that the launch starts, and the system that this makes."""
+    nodes, notes, models, published, spawned = running_nodes(graph, known)
     inside = sent_in_simulator(models.found)
     refused: list[str] = []
     parts = []
@@ -93,7 +104,7 @@ def would_run(graph: LaunchGraph, known: Knowledge) -> System:
             parts.append(_Part(it.full_name, (), ()))
     more = (*_caveats((*graph.notes, *notes), nodes), *_of_bridges(nodes, inside))
     caveats = (*_stood_in(graph), *_refused(refused), *more, *_of_models(models))
-    return System(
+    system = System(
         tuple(_nodes(nodes, parts)),
         tuple(end for part in parts for end in part.endpoints),
         tuple(_frames(parts)),
@@ -101,7 +112,21 @@ def would_run(graph: LaunchGraph, known: Knowledge) -> System:
         parameters=tuple(_clocks(nodes)),
         lookups=tuple(it for node in nodes for it in _lookups(node)),
         addresses=tuple(it for node in nodes for it in _addresses(node, known, models)),
+        interfaces=tuple(interfaces_of(nodes, published, graph)),
     )
+    found = Launched(graph, nodes, spawned, models, system, known.release)
+    heard = _heard(nodes, dict(frames_of_sensors(models_in_simulator(found))))
+    return found._replace(system=system._replace(heard=tuple(heard)))
+
+
+def _heard(nodes: Iterable[RunningNode], frames: Mapping[str, str]) -> Iterator[Heard]:
+    """The frames of what bridges bring from sensors in the simulator."""
+    for it in nodes:
+        for end, inside in bridged_by(it):
+            frame = frames.get(f"/{inside.lstrip('/')}", "")
+            if end.role == PUBLISHES and frame:
+                bound = bound_of(it.name, it.namespace, it.rules)
+                yield Heard(resolve_bound(end.name, end.kind, bound), frame)
 
 
 def _lookups(it: RunningNode) -> Iterator[Lookup]:
@@ -142,7 +167,7 @@ def _refused(nodes: Sequence[str]) -> Iterator[Caveat]:
 
 
 def _caveats(notes: Iterable[LaunchNote], nodes: Sequence[RunningNode]) -> Iterator[Caveat]:
-    for note in notes:
+    for note in (it for it in notes if not it.fails):
         yield Caveat(NOT_WHOLE, True, f"{note.place}: {note.message}")
     unknown = [
         f"{it.full_name} ({it.program})" for it in nodes if it.facts is None and not is_bridge(it)

@@ -14,6 +14,7 @@ from multibot_rewrite.producers.launch.describe import (
     Visit,
     component,
     failure,
+    is_certain,
     is_wanted,
     node,
     process,
@@ -74,12 +75,12 @@ def visit(entity: Any, seen: Visit) -> None:
             visit(below, here)
     except (Exception, SystemExit) as error:
         # A launch file is a program: it may raise anything.
-        missing = simulator(error, here) if own else None
+        missing = simulator(error, entity, here) if own else None
         if missing:
             here.nodes.append(missing)
             return
         ended = "; groups and their launch configurations have ended by then" if here.later else ""
-        here.note(f"{here.later} {failure(error)}{ended}".strip())
+        here.note(f"{here.later} {failure(error)}{ended}".strip(), fails=is_certain(error, here))
     finally:
         if own:
             seen.context._pop_locals()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any
@@ -176,12 +177,10 @@ def _order(end: End) -> tuple[str, ...]:
 
 
 def numbers_of(transform: Any) -> tuple[float, ...]:
-    """A geometry_msgs/Transform as a snapshot keeps it; empty where it is no finite transform."""
+    """A geometry_msgs/Transform as a snapshot keeps it: inf where a number is none (NaN)."""
     at, turn = transform.translation, transform.rotation
     numbers = at.x, at.y, at.z, turn.x, turn.y, turn.z, turn.w
-    if not all(abs(it) < FARTHEST for it in numbers):
-        return ()
-    return tuple(round(it, _DIGITS) for it in numbers)
+    return tuple(round(it, _DIGITS) if abs(it) < FARTHEST else math.inf for it in numbers)
 
 
 def frames(

@@ -6,13 +6,14 @@ Images are large: of a message only the frame is kept, and its topic is left at 
 
 from __future__ import annotations
 
+import math
 import time
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator
 
 from multibot_rewrite.base.conventions import LISTENER
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.producers.zenoh.cdr import read_header_frame
+from multibot_rewrite.producers.zenoh.cdr import read_header_frame, read_stamp
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, Caveat, End, Heard
 
 # Their headers name frames of tf; where there are too many topics the first ones matter most.
@@ -71,7 +72,7 @@ class HeaderSamples:
         self._subscribe = subscribe
         self._asked: set[str] = set()
         self._open: dict[str, Callable[[], None]] = {}
-        self._heard: dict[str, set[str]] = defaultdict(set)
+        self._heard: dict[str, dict[str, float]] = defaultdict(dict)
         self._left_out = 0
         self._began = time.monotonic()
 
@@ -95,7 +96,7 @@ class HeaderSamples:
     def _receive(self, topic: SensorTopic, data: bytes) -> None:
         frame = read_header_frame(data)
         if frame is not None:
-            self._heard[topic.name].add(frame)
+            self._heard[topic.name][frame] = 0.0 if topic.latched else _age(read_stamp(data))
         if topic.publishers == 1 or len(self._heard[topic.name]) >= MOST_FRAMES:
             self._close(topic.name)
 
@@ -111,11 +112,19 @@ class HeaderSamples:
 
     def heard(self) -> tuple[Heard, ...]:
         """The frames by topic; several of a topic that several nodes publish."""
-        pairs = ((topic, it) for topic, frames in self._heard.items() for it in frames)
-        return tuple(sorted(Heard(*pair) for pair in pairs))
+        heard = (Heard(topic, *it) for topic, own in self._heard.items() for it in own.items())
+        return tuple(sorted(heard))
 
     def caveats(self) -> Iterator[Caveat]:
         """Where there were more topics than are listened to."""
         if self._left_out:
             text = f"frame_id was read of {MOST_TOPICS} topics, and not of {self._left_out} more"
             yield Caveat("headers-not-read", False, text)
+
+
+def _age(stamp: float | None) -> float:
+    """How old a message is by this machine's clock; what is less than a second is the network's."""
+    if stamp is None:
+        return 0.0
+    age = round(time.time() - stamp, 1)
+    return math.inf if not stamp else age if abs(age) >= 1.0 else 0.0

@@ -22,7 +22,7 @@ Subscribe = Callable[[str, str, bool, Callback], "Callable[[], None] | str"]
 
 class TfSubscriptions:
     """Subscriptions to all tf topics, and the transforms received on them; ``last`` is the last message
-    of each."""
+    of each, empty where several latched ones differ."""
 
     def __init__(self, subscribe: Subscribe) -> None:
         self._subscribe = subscribe
@@ -69,8 +69,11 @@ class TfSubscriptions:
             parent, child = transform.header.frame_id, transform.child_frame_id
             edge = ReceivedTransform(topic, latched, parent, child)
             self._received[edge] = now
-            self.last[edge] = numbers_of(transform.transform)
             self._voices[edge] = self._voices.get(edge, Voices()).after(mark)
+            now_at, before = numbers_of(transform.transform), self.last.get(edge)
+            # What several latched publishers have each in another way is nowhere.
+            differ = latched and before not in (None, now_at) and self._voices[edge].several(True)
+            self.last[edge] = () if differ else now_at
 
     def transforms(self) -> tuple[ReceivedTransform, ...]:
         """The transforms that are still valid; latched ones always are."""

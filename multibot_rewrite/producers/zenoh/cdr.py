@@ -75,6 +75,15 @@ def read_header_frame(data: bytes) -> str | None:
         return None
 
 
+def read_stamp(data: bytes) -> float | None:
+    """The ``header.stamp`` of such a message in seconds, or None as above."""
+    mark = _ENDS.get(data[:2])
+    if mark is None or len(data) < _HEADER + _STAMP:
+        return None
+    seconds, parts = struct.unpack(f"{mark}iI", data[_HEADER : _HEADER + _STAMP])
+    return float(seconds + parts / 1e9)
+
+
 def _read(reader: _Reader) -> TfMessage:
     found = []
     for _ in range(reader.number()):

@@ -90,7 +90,7 @@ def bridge_key(file: NamedFile) -> Iterator[Remark]:
     what="ros_gz_bridge knows the ROS type and the gz type of a row, and does not convert the one "
     "into the other.",
     why="ros_gz_bridge fails to make this bridge, so the topic is not bridged.",
-    fix="Write the type that belongs to the other one.",
+    fix="Write the type that goes with the other one.",
     bad=a_row().replace("gz.msgs.LaserScan", "gz.msgs.IMU"),
     good=a_row(),
     formats=(BRIDGE,),

@@ -69,7 +69,7 @@ def undeclared_frame(file: NamedFile) -> Iterator[Remark]:
     "undeclared-joint-beside",
     NOTE,
     what="A file names a joint, sensor, interface or planning group that the description has not. "
-    "Of a file alone a joint is told beside others that its package describes. In a build it is a "
+    "Of a file alone a joint is reported beside others that its package describes. In a build it is a "
     "warning.",
     why="The controller is not activated: no hardware exports an interface of that joint. MoveIt "
     "does not use its limits, and refuses to execute on a controller with it.",

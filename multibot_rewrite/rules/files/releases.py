@@ -64,8 +64,8 @@ def deprecated(file: NamedFile) -> Iterator[Remark]:
     what="joint_state_broadcaster has interfaces that only dynamic_joint_states had, which it no "
     "longer publishes.",
     why="joint_states has positions, velocities and efforts alone. dynamic_joint_states was off by "
-    "default from ros2_controllers 6.5 on and is gone since 6.8, which is in Lyrical: nobody sees the "
-    "others.",
+    "default from ros2_controllers 6.5 on and is gone since 6.8, which is in Lyrical: the others "
+    "are lost.",
     fix="Use a state_interfaces_broadcaster or gpio_controllers for them.",
     bad="""\
 joint_state_broadcaster:
@@ -186,7 +186,7 @@ def _not_sent(body: yaml.MappingNode) -> Iterator[Remark]:
     for item in items(given.get("interfaces")):
         name = getattr(item, "value", "")
         if name not in _IN_JOINT_STATES | mapped:
-            message = f"nobody publishes {name}: joint_states has no field for it"
+            message = f"no node publishes {name}: joint_states has no field for it"
             hint = "use a state_interfaces_broadcaster for it"
             yield remark_at(item, message, hint)
 

@@ -101,8 +101,8 @@ def _layer(scan: str) -> str:
     "costmap-source-without-topic",
     WARNING,
     what="A source of a costmap layer has no topic, so its id is the topic.",
-    why="The id is a relative name: up to Jazzy, scan becomes /robot1/local_costmap/scan, where nobody "
-    "publishes, and without namespaces all robots use one topic.",
+    why="The id is a relative name: up to Jazzy, scan becomes /robot1/local_costmap/scan, where no "
+    "node publishes, and without namespaces all robots use one topic.",
     fix="Add its topic.",
     bad=_layer("clearing: true"),
     good=_layer("topic: /scan, clearing: true"),

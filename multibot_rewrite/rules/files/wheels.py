@@ -67,8 +67,8 @@ def _sizes_of(separation: str) -> str:
     "MB856",
     "controller-wheels",
     WARNING,
-    what="The wheels of a diff_drive_controller are not as it is told: their separation or radius "
-    "is another in the package's description, left and right are swapped, their axes point in "
+    what="The wheels of a diff_drive_controller are not as its parameters say: their separation or "
+    "radius is another in the package's description, left and right are swapped, their axes point in "
     "opposite directions, or they do not roll.",
     why="The robot turns or drives too far or the wrong way, and its odometry says otherwise.",
     fix="Write the sizes of the description, or correct its joints.",

@@ -26,8 +26,8 @@ _BRIDGES = ("bridge", "parameter_bridge")
     drawn="cross-talk",
     what="A node publishes a topic that others alone may publish, by `senders` of the plan; several do"
     " that has `one_sender`; or more than planned were recorded.",
-    why="All are obeyed in turn: a robot that gets velocities from two nodes shakes, or drives where"
-    " nobody wants it. A tool may not do it either.",
+    why="All are obeyed in turn: a robot that gets velocities from two nodes shakes, or drives where it"
+    " should not. A tool may not do it either.",
     fix="Stop the node, or remap what it publishes; put a twist_mux before the topic. If it is right,"
     " add it to `senders` of the topic in the plan.",
     bad="""\
@@ -129,7 +129,7 @@ def _different(topic: Topic, end: End) -> Iterator[str]:
     absence=True,
     drawn="missing",
     what="Of a group of nodes in `one_of` of the plan, none runs.",
-    why="What each of them would do for the robot is done by nobody.",
+    why="No node does what each of them would do for the robot.",
     fix="Start one of them.",
     bad="""\
 planned: one of /robot1/amcl, /robot1/slam_toolbox
@@ -195,10 +195,10 @@ def several_alternatives_run(plan: Index, seen: Index) -> Iterator[Finding]:
     ERROR,
     absence=True,
     drawn="missing",
-    what="A topic that a ros_gz_bridge has to carry has no publisher (GZ_TO_ROS) or no subscription"
+    what="A topic that a ros_gz_bridge has to bridge has no publisher (GZ_TO_ROS) or no subscription"
     " (ROS_TO_GZ) of its type. It is a warning where nothing at all is bridged: robots may be real.",
     why="The simulated robot does not move, or its sensor is never seen: `/robot2/cmd_vel` is"
-    " published, and nobody passes it on to the simulator.",
+    " published, and no bridge passes it on to the simulator.",
     fix="Start a bridge with the file that `multibot build` wrote for the robot, or add the row to"
     " yours. For real robots write `simulator: none` in the fleet file.",
     bad="""\
@@ -250,7 +250,7 @@ def _not_carried(
     more = f"; so it is with {len(rows) - 1} more of the bridge" if len(rows) > 1 else ""
     type_ = f" with the type {topic.type}" if topic.type else ""
     verb = DOES[role]
-    message = f"nothing {verb} {topic.name}{type_}, which a ros_gz_bridge has to carry{more}"
+    message = f"nothing {verb} {topic.name}{type_}, which a ros_gz_bridge has to bridge{more}"
     names = tuple(dict.fromkeys(it.name for it, _ in rows))
     there = _bridges_there(plan, seen, robot)
     hint = f"{there}; for real robots write simulator: none in the fleet file"

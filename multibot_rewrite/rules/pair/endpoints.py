@@ -77,12 +77,23 @@ def _why_missing(plan: Index, seen: Index, planned: End) -> Cause:
     if not used:
         managed = (planned.node, SERVICE, SERVES, f"{planned.node}/get_state") in plan.by_key
         state = f"; is it configured? ros2 lifecycle get {planned.node}" if managed else ""
+        same = [it for it in _unplanned_names(plan, seen, planned) if _has_type(seen, planned, it)]
+        if same:
+            return Cause(
+                f"it {DOES[planned.role]} {shorten(same)} of that type: is that meant?{state}"
+            )
         return Cause(f"it has no similar name; is it switched off by a parameter?{state}")
     instead = f"it {DOES[planned.role]} {used} instead"
     if used in names_without_rules(plan, planned):
         why = why_not_remapped(plan, planned)
         return why._replace(hint=f"{instead}: {why.hint}{how_to_remap(plan, planned)}")
     return Cause(f"{instead}{_why_remapped(plan, seen, planned, used)}")
+
+
+def _has_type(seen: Index, planned: End, name: str) -> bool:
+    """Is the name of the planned type? Of text and numbers are many things."""
+    end = seen.by_key.get((planned.node, planned.kind, planned.role, name))
+    return bool(end and planned.type and end.type == planned.type and "std_" not in end.type)
 
 
 def _why_remapped(plan: Index, seen: Index, planned: End, used: str) -> str:

@@ -55,9 +55,19 @@ def frame_not_received(plan: Index, seen: Index) -> Iterator[Finding]:
             continue
         heard = trees.get(robot.name, ())
         prefixes = set(added_prefixes(robot, strays.get(robot.name, ())).values())
-        missing = [it for it in robot.frames if not _is_heard(plan, robot, it, heard, prefixes)]
+        left = _left_to_others(plan, seen, robot)
+        expected = (it for it in robot.frames if it not in left)
+        missing = [it for it in expected if not _is_heard(plan, robot, it, heard, prefixes)]
         if missing:
             yield _not_received(plan, seen, robot, missing)
+
+
+def _left_to_others(plan: Index, seen: Index, robot: Robot) -> Set[str]:
+    """The frames that only nodes send which may be missing by the plan, and are."""
+    sent = sent_by_robot(plan, robot)
+    absent = plan.may_miss - seen.nodes.keys()
+    of_absent = {name for it in sent if it.node in absent for name in it[1:]}
+    return of_absent.difference(*(it[1:] for it in sent if it.node not in absent))
 
 
 def _senders(plan: Index) -> Mapping[str, set[str]]:

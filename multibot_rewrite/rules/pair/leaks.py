@@ -69,7 +69,7 @@ def _how_many(seen: Index, name: str) -> str:
     robots = {seen.robot(it.node) for it in ends_of(seen, name)} - {""}
     if len(robots) > 1:
         return f": {len(robots)} robots use it"
-    return ", and is not in shared_topics: robots that do the same meet there"
+    return ", and is not in shared_topics: robots that do the same use one topic"
 
 
 def _missing_by_name_without_rules(plan: Index, seen: Index) -> dict[tuple[str, str], End]:
@@ -160,6 +160,6 @@ def name_of_another_robot(plan: Index, seen: Index) -> Iterator[Finding]:
             if other and other != robot and end.type != TF:
                 reads = end.role == SUBSCRIBES
                 rule = data_of_another_robot if reads else command_from_another_robot
-                message = f"{DOES[end.role]} {end.name}, which belongs to {other}"
+                message = f"{DOES[end.role]} {end.name}, a name of {other}"
                 cause = f"a remap rule or parameter of {robot} names {other}"
                 yield rule.finding(message, cause, robot=robot, node=node, names=(end.name,))

@@ -106,10 +106,10 @@ def unplanned_node(plan: Index, seen: Index) -> Iterator[Finding]:
             continue
         if robot:
             foreign = _foreign_names(plan, seen, node, robot)
-            message = f"belongs to {robot}, but is not in the plan{foreign}"
+            message = f"is a node of {robot}, but not in the plan{foreign}"
             cause = "add it to the plan: with --stack or --nodes, or by hand"
         else:
-            message = "belongs to no robot, and is not in shared_nodes of the plan"
+            message = "is of no robot, and not in shared_nodes of the plan"
             cause = "add it there if it serves all robots; otherwise give it its robot's namespace"
         if node in originals:
             cause = f"{originals[node]} runs as well: is this a second one without a robot's name?"

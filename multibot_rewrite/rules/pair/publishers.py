@@ -33,7 +33,7 @@ def topic_below_node_namespace(plan: Index, seen: Index) -> Iterator[Finding]:
         allowed = (it for it in own if it in seen.published or (it in known and not planned))
         meant = next(allowed, "")
         if meant:
-            message = f"subscribes to {end.name}, which nobody publishes; did you mean {meant}?"
+            message = f"subscribes to {end.name}, which no node publishes; did you mean {meant}?"
             yield topic_names_miss.finding(
                 message, use_absolute(meant), robot=robot, node=node, names=(end.name, meant)
             )

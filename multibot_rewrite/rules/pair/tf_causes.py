@@ -118,7 +118,7 @@ def _silent(plan: Index, seen: Index, robot: Robot, type_: str) -> Cause | None:
     bridged = any(it.name == topic and it.bridge for it in plan.system.topics)
     if bridged:
         return Cause(
-            f"nothing publishes {topic}, which a ros_gz_bridge has to carry: is it started?"
+            f"nothing publishes {topic}, which a ros_gz_bridge has to bridge: is it started?"
         )
     source = "joint_state_publisher, joint_state_broadcaster or the bridge"
     return Cause(f"nothing publishes {topic}: is {source} started for {robot.name}?")

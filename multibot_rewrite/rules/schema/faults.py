@@ -224,7 +224,7 @@ def _unknown_child(
     elif child.tag in schema.tags:
         homes = [it.name for it in schema.sections.values() if child.tag in it.children]
         tags = sorted({home.rpartition("_")[2] for home in homes})
-        hint = f"it belongs in {' or '.join(f'<{tag}>' for tag in tags)}"
+        hint = f"move it into {' or '.join(f'<{tag}>' for tag in tags)}"
         yield Fault("misplaced", child, None, message, hint)
     elif section.name != ROBOT:
         yield Fault("not-read", child, None, message)

@@ -268,7 +268,7 @@ def _unknown(
         yield Fault("misspelt", child, None, message, f"did you mean <{near}>?")
     else:
         homes = _homes(tag)
-        hint = f"it belongs in <{'> or <'.join(homes)}>" if homes else ""
+        hint = f"move it into <{'> or <'.join(homes)}>" if homes else ""
         yield Fault("misplaced" if homes else "not-read", child, None, message, hint)
 
 

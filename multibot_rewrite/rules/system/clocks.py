@@ -30,7 +30,7 @@ _IS_TIMED = re.compile("|".join(map(translate, _TIMED)))
     "no-clock",
     ERROR,
     absence=True,
-    what="Nodes subscribe to `/clock` (use_sim_time), but nobody publishes it.",
+    what="Nodes subscribe to `/clock` (use_sim_time), but no node publishes it.",
     why="Their time stands at 0: no timer fires, tf has no transform, nothing moves.",
     fix="Set `use_sim_time: false` on a real robot; in simulation bridge `/clock`, or play the bag with"
     " `--clock`.",
@@ -47,7 +47,7 @@ def no_clock(seen: Index) -> Iterator[Finding]:
         return
     for robot, nodes in by_robot.items():
         message = (
-            f"on simulated time (use_sim_time), but nobody publishes {CLOCK}: {shorten(nodes)}"
+            f"on simulated time (use_sim_time), but no node publishes {CLOCK}: {shorten(nodes)}"
         )
         cause = "use_sim_time: false on a real robot, or start the simulator's bridge for /clock"
         yield no_clock.finding(message, cause, robot=robot, node=nodes[0], names=(CLOCK,))

@@ -78,7 +78,8 @@ running: /robot1/controller_server publishes /robot1/cmd_vel geometry_msgs/msg/T
 """,
 )
 def command_to_nobody(seen: Index) -> Iterator[Finding]:
-    """Where the other name has no sender, its reader is the finding; what RViz offers is a note."""
+    """Where the other name has no sender, its reader is the finding, but for the drive beside a
+    twist_mux: what it chooses is meant for the drive. What RViz offers is a note."""
     obeyed = defaultdict(list)
     unread = {name: it for name, it in seen.orders.items() if it.publishers and not _obeyed(it)}
     for (kind, name), ends in seen.by_name.items() if unread else ():
@@ -87,19 +88,36 @@ def command_to_nobody(seen: Index) -> Iterator[Finding]:
     for name, ends in unread.items():
         same = obeyed[ends.type]
         robots = [it for it in same if seen.plain(it) == name]
-        meant = next(iter(robots), "") or alike(name, same, ends.type)
+        meant = next(iter(robots), "") or alike(name, same, ends.type) or _of_a_mux(seen, ends)
         if meant:
             yield _unread(seen, ends, meant, len(robots))
             continue
         absent = nobody_in(seen, name, same)
         for node in nodes_of(at_work(ends.publishers)) if absent else ():
             yield command_to_nobody.finding(
-                f"publishes {name}, which nobody reads; {absent}",
+                f"publishes {name}, which no node reads; {absent}",
                 ABSENT,
                 level=WARNING,
                 node=node,
                 names=(name,),
             )
+
+
+def _of_a_mux(seen: Index, ends: Ends) -> str:
+    """The velocities that a robot's drive reads and no node sends, where its twist_mux is unread."""
+    robot, kinds = seen.robot(ends.name), set(ends.type.split(" | "))
+    if not any(map(chooses, nodes_of(ends.publishers))):
+        return ""
+    moving = [it for it in seen.orders.values() if words.moves(seen.plain(it.name), it.type)]
+    # Who sends velocities of its own is no drive.
+    senders = {node for it in moving for node in nodes_of(it.publishers)}
+    drives = (
+        it.name
+        for it in moving
+        if seen.robot(it.name) == robot and not it.publishers and kinds & set(it.type.split(" | "))
+        if not senders.issuperset(nodes_of(at_work(it.subscribers)))
+    )
+    return next(drives, "")
 
 
 def _obeyed(ends: Ends) -> bool:
@@ -109,7 +127,7 @@ def _obeyed(ends: Ends) -> bool:
 def _unread(seen: Index, ends: Ends, meant: str, robots: int) -> Finding:
     node = nodes_of(ends.publishers)[0]
     reader = nodes_of(at_work(seen.by_name[TOPIC, meant].subscribers))[0]
-    message = f"publishes {ends.name}, which nobody reads; {reader} reads {meant}"
+    message = f"publishes {ends.name}, which no node reads; {reader} reads {meant}"
     several = f" (or that of another of the {robots} robots)" if robots > 1 else ""
     cause = f"start it in the robot's namespace, or pass the rule {ends.name}:={meant}{several}"
     level = NOTE if is_viewer(node) and not is_hidden(node) else ERROR
@@ -153,7 +171,7 @@ def command_from_another_robot(seen: Index) -> Iterator[Finding]:
             if not _mistaken(seen, node, robot, ends):
                 continue
             does = "publishes" if kind == TOPIC else "sends goals to" if kind == ACTION else "calls"
-            message = f"{does} {name}, which belongs to {owner}"
+            message = f"{does} {name}, a name of {owner}"
             cause = f"a namespace, remap rule or parameter of {robot} names {owner}"
             yield command_from_another_robot.finding(
                 message, cause, robot=robot, node=node, names=(name,)
@@ -214,7 +232,8 @@ def several_command_senders(seen: Index) -> Iterator[Finding]:
             continue
         readers = nodes_of(at_work(ends.subscribers))
         # A program to look with that sends velocities is a joystick.
-        senders = nodes_of(ends.publishers)
+        # What sends it and reads it is a bridge in both directions, and orders nothing itself.
+        senders = [it for it in nodes_of(ends.publishers) if it not in nodes_of(ends.subscribers)]
         teams = {team(node): node for node in reversed(senders)}
         played = any(last_word(node).startswith(words.PLAYER) for node in senders)
         if not readers or len(teams) < 2 or played or all(map(chooses, readers)):

@@ -7,10 +7,14 @@ from collections.abc import Iterator, Mapping
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.system.index import Index
+from multibot_rewrite.system import words
+from multibot_rewrite.system.index import Index, at_work, nodes_of
+from multibot_rewrite.system.records import TOPIC
 
 # Topics of one robot and of another are as often, unless something is wrong: so many times.
 RATIO = 3.0
+# Where there were too many topics to listen to all.
+_NOT_ALL = "headers-not-read"
 # Fewer messages say nothing of a rate.
 ENOUGH = 10
 
@@ -20,7 +24,7 @@ ENOUGH = 10
     "less-than-another-robot",
     WARNING,
     what="On a robot's topic came no message, or three times fewer than on the same topic of another"
-    " robot, while a bag was recorded.",
+    " robot, while a bag was recorded or the system watched.",
     why="Its node runs and sends nothing, has no time, or its messages were lost in the network.",
     fix="Look at the node's log: a sensor without a connection, a plugin without its link. Compare CPU"
     " and network of the robots, and the QoS of the recorder: best effort loses messages.",
@@ -36,6 +40,7 @@ running: /robot2/scan came 588 times
 )
 def less_than_another_robot(seen: Index) -> Iterator[Finding]:
     """Of the robots that have the topic, the one with the most messages is the measure."""
+    yield from _silent(seen)
     for there in _of_each(seen).values():
         best = max(there.values(), key=lambda it: seen.known.messages[it])
         most = seen.known.messages[best]
@@ -57,3 +62,26 @@ def _of_each(seen: Index) -> Mapping[str, Mapping[str, str]]:
         if robot := seen.robot(name):
             found[seen.plain(name)][robot] = name
     return found
+
+
+def _silent(seen: Index) -> Iterator[Finding]:
+    """Of a running system one message a topic is known: of one robot it came, of the other not, which
+    has sent others."""
+    heard = {it.topic for it in seen.system.heard}
+    if any(it.code == _NOT_ALL for it in seen.system.environment.caveats):
+        return
+    there_at_all = {seen.robot(it) for it in heard}
+    there: dict[tuple[str, str], dict[str, str]] = defaultdict(dict)
+    for it in seen.topics if heard and seen.nodes and not seen.known.messages else ():
+        robot = seen.robot(it.name)
+        if robot and words.kind_of_data(it.name, it.type) and at_work(it.publishers):
+            there[seen.plain(it.name), it.type][robot] = it.name
+    for own in there.values():
+        loud = next((name for name in own.values() if name in heard), "")
+        for robot, name in own.items() if loud else ():
+            if name not in heard and robot in there_at_all:
+                node = nodes_of(at_work(seen.by_name[TOPIC, name].publishers))[0]
+                message = f"publishes {name}, on which no message came; {loud} has some"
+                yield less_than_another_robot.finding(
+                    message, "see its log", robot=robot, node=node, names=(name,)
+                )

@@ -17,6 +17,12 @@ from multibot_rewrite.system.records import TOPIC, Edge
 # What a robot measures is in its own frames. A pose, a path or a marker may be in another robot's.
 _MEASURED = ("sensor_msgs/", "nav_msgs/msg/Odometry", "stereo_msgs/", "radar_msgs/")
 
+# Of no use without a frame.
+_PLACED = (
+    "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2", "nav_msgs/msg/Odometry",
+    "nav_msgs/msg/OccupancyGrid",
+)  # fmt: skip
+
 
 class _Message(NamedTuple):
     """A frame that messages on ``topic`` name; ``robot`` is whose topic it is, else whose senders."""
@@ -101,6 +107,7 @@ def frame_id_unknown(seen: Index) -> Iterator[Finding]:
     heard_by = cache(
         lambda robot: {it for tree in trees_of(seen, robot) for it in frames[tree.topic]}
     )
+    yield from _nameless(seen)
     for (frame, robot, senders), messages in _by_sender(seen).items():
         heard = heard_by(robot)
         if not heard or frame in heard or _is_of_another(seen, frame, robot, messages):
@@ -118,6 +125,21 @@ def frame_id_unknown(seen: Index) -> Iterator[Finding]:
             node=senders[0],
             names=(frame,),
         )
+
+
+def _nameless(seen: Index) -> Iterator[Finding]:
+    """What a sensor or odometry sends without any frame: tf2 refuses it (an empty frame_id)."""
+    for topic, written, _ in seen.system.heard:
+        ends = seen.by_name.get((TOPIC, topic))
+        senders = nodes_of(at_work(ends.publishers)) if ends else ()
+        if ends and senders and not written and ends.type in _PLACED:
+            yield frame_id_unknown.finding(
+                f"frame_id of {topic} is empty: tf cannot say where it was measured; sent by"
+                f" {_who(senders)}",
+                f"set the frame of {_who(senders)}",
+                robot=seen.robot(topic) or only(robots_of(seen, senders)),
+                node=senders[0], names=(topic,),
+            )  # fmt: skip
 
 
 def _remedy(senders: Sequence[str], meant: Sequence[str], elsewhere: Sequence[str]) -> str:
@@ -150,7 +172,7 @@ def _by_sender(seen: Index) -> dict[tuple[str, str, tuple[str, ...]], list[_Mess
 
 def _messages(seen: Index) -> Iterator[_Message]:
     """What nodes other than viewers send; tf2 takes a frame with a slash in front as one without."""
-    for topic, written in seen.system.heard:
+    for topic, written, _ in seen.system.heard:
         ends = seen.by_name.get((TOPIC, topic))
         senders = nodes_of(at_work(ends.publishers)) if ends else ()
         frame = written.removeprefix("/")

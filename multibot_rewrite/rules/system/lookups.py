@@ -56,7 +56,10 @@ def frame_not_sent(seen: Index) -> Iterator[Finding]:
 
 def _read(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
     plain = seen.plain_frame(it.frame)
-    sender = _sender(seen, edges) if plain in USUAL_FRAMES else None
+    bare = it.frame.rpartition("/")[2]
+    # Without a robot's name before it, it is sent.
+    usual = plain in USUAL_FRAMES or (bare in USUAL_FRAMES and bare in frames_in(edges))
+    sender = _sender(seen, edges) if usual else None
     if sender is None:
         return None
     place = f" ({sender.place})" if sender.place != NOWHERE else ""

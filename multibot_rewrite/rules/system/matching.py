@@ -9,13 +9,15 @@ from math import inf
 
 from multibot_rewrite.base.conventions import EVERYBODYS
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import see, where
-from multibot_rewrite.system.index import TF, Ends, Index, nodes_of
-from multibot_rewrite.system.records import TOPIC, ZENOH, End, Qos
-from multibot_rewrite.system.tool_nodes import is_viewer
-from multibot_rewrite.system.words import DESCRIPTION, MAP
+from multibot_rewrite.system import words
+from multibot_rewrite.system.index import TF, Ends, Index, at_work, nodes_of
+from multibot_rewrite.system.records import SUBSCRIBES, TOPIC, ZENOH, End, Qos
+from multibot_rewrite.system.tool_nodes import is_viewer, last_word
+from multibot_rewrite.system.words import DESCRIPTION, JOINTS, MAP
 
 # The words of each policy, the weakest first; any other word does not say what is in force.
 RELIABILITY = ("BEST_EFFORT", "RELIABLE")
@@ -139,10 +141,12 @@ running: /robot1/amcl subscribes /robot1/scan sensor_msgs/msg/LaserScan best_eff
     line=2,
 )
 def qos_never_meets(seen: Index) -> Iterator[Finding]:
-    """One for each subscription and what it lacks. Zenoh connects any two (rmw_zenoh design.md)."""
+    """One for each subscription and what it lacks; where several lack the same of one publisher, it is
+    the publisher's. Zenoh connects any two (rmw_zenoh design.md)."""
     for (kind, name), ends in seen.by_name.items() if seen.system.environment.rmw != ZENOH else ():
         if kind != TOPIC or name in EVERYBODYS or not ends.publishers:
             continue
+        found: dict[tuple[object, ...], list[_Refused]] = defaultdict(list)
         for end in {(it.node, it.qos): it for it in ends.subscribers}.values():
             refused: dict[tuple[tuple[str, str], ...], list[End]] = defaultdict(list)
             for it in ends.publishers:
@@ -151,26 +155,37 @@ def qos_never_meets(seen: Index) -> Iterator[Finding]:
             hears = sum(map(len, refused.values())) < len(ends.publishers)
             if not (hears and is_viewer(end.node)):
                 for conflicts, publishers in refused.items():
-                    yield _never_meets(seen, end, publishers, conflicts, hears)
+                    one = _Refused(end, nodes_of(publishers), conflicts, hears)
+                    found[one[1:]].append(one)
+        yield from (_never_meets(seen, *them) for them in found.values())
 
 
-def _never_meets(
-    seen: Index,
-    end: End,
-    publishers: Iterable[End],
-    conflicts: tuple[tuple[str, str], ...],
-    hears: bool,
-) -> Finding:
+class _Refused(NamedTuple):
+    """A subscription, the nodes whose messages it never gets, and why; ``hears``: it gets others."""
+
+    end: End
+    senders: tuple[str, ...]
+    conflicts: tuple[tuple[str, str], ...]
+    hears: bool
+
+
+def _never_meets(seen: Index, first: _Refused, *more: _Refused) -> Finding:
+    end, nodes, conflicts, hears = first
     offered = " and ".join(offer for offer, _ in conflicts)
     asked = " and ".join(request for _, request in conflicts)
-    senders = shorten(nodes_of(publishers))
+    senders, readers = shorten(nodes), nodes_of(it.end for it in (first, *more))
     message = f"subscribes to {end.name} with {asked}, but {senders} offers {offered}"
+    if len(readers) > 1:
+        message = f"offers {end.name} with {offered}, but {shorten(readers)} ask for {asked}"
     never = f"no message of {senders} ever arrives" if hears else "no message ever arrives"
     cause = f"{never}: let it ask for {offered}, or the publisher offer {asked}"
-    level = WARNING if is_viewer(end.node) or (hears and end.type != TF) else ERROR
+    if len(readers) > 1 or last_word(end.name) == "tf_static":
+        cause = f"{never}: let {senders} offer {asked}"
+    level = WARNING if all(map(is_viewer, readers)) or (hears and end.type != TF) else ERROR
     robot = seen.robot(end.node) or seen.robot(end.name)
+    node = nodes[0] if len(readers) > 1 else end.node
     return qos_never_meets.finding(
-        message, cause, level=level, robot=robot, node=end.node, names=(end.name,)
+        message, cause, level=level, robot=robot, node=node, names=(end.name,)
     )
 
 
@@ -178,11 +193,11 @@ def _never_meets(
     "MG309",
     "not-latched",
     ERROR,
-    what="A map, a description or `tf_static` is offered without `transient_local`; or a publisher"
-    " offers another QoS than `qos` of its topic in the plan.",
+    what="A map, a description or `tf_static` is offered without `transient_local`, or read without it"
+    " (a warning); or a publisher offers another QoS than `qos` of its topic in the plan.",
     why="Who starts later, or asks for more, never gets it.",
-    fix="Publish it with durability transient local: by the node's parameter, or a qos_overrides"
-    " parameter; or correct the plan.",
+    fix="Publish and read it with durability transient local: by the node's parameter, or a"
+    " qos_overrides parameter; or correct the plan.",
     bad="""\
 running: /robot1/map_server publishes /robot1/map nav_msgs/msg/OccupancyGrid reliable volatile
 """,
@@ -193,11 +208,12 @@ running: /robot1/map_server publishes /robot1/map nav_msgs/msg/OccupancyGrid rel
 def not_latched(seen: Index) -> Iterator[Finding]:
     """Where a subscriber asks for it, that is the finding."""
     for ends in seen.by_name.values() if seen.system.environment.rmw != ZENOH else ():
-        asked = any(it.qos and it.qos.durability == DURABILITY[1] for it in ends.subscribers)
-        if ends.kind != TOPIC or asked or not _is_latched(ends):
+        if ends.kind != TOPIC or not _is_latched(ends):
             continue
-        weak = (it for it in ends.publishers if it.qos and it.qos.durability == DURABILITY[0])
-        for node in nodes_of(weak):
+        yield from _misses_what_was_sent(seen, ends)
+        if _with_durability(ends.subscribers, DURABILITY[1]):
+            continue
+        for node in nodes_of(_with_durability(ends.publishers, DURABILITY[0])):
             yield not_latched.finding(
                 f"publishes {ends.name} with durability VOLATILE: who starts later never gets it",
                 f"set it with qos_overrides.{ends.name}.publisher in its parameters",
@@ -205,6 +221,29 @@ def not_latched(seen: Index) -> Iterator[Finding]:
                 node=node,
                 names=(ends.name,),
             )
+
+
+def _with_durability(ends: Iterable[End], word: str) -> list[End]:
+    return [it for it in ends if it.qos and it.qos.durability == word]
+
+
+def _misses_what_was_sent(seen: Index, ends: Ends) -> Iterator[Finding]:
+    """Who reads without it what is sent once. Who makes a map of scans sends it again and again."""
+    latched = nodes_of(_with_durability(ends.publishers, DURABILITY[1]))
+    once = [it for it in latched if not any(words.is_of_a_body(e.type) for e in _read_by(seen, it))]
+    readers = nodes_of(at_work(_with_durability(ends.subscribers, DURABILITY[0])))
+    if once and readers and len(once) == len(ends.publishers):
+        yield not_latched.finding(
+            f"{shorten(readers)} reads {ends.name} with durability VOLATILE, and {once[0]} sends it"
+            " once: started later, it never gets it",
+            f"let it ask for {DURABILITY[1]} (map_subscribe_transient_local of a costmap)",
+            level=WARNING, robot=seen.robot(ends.name) or seen.robot(readers[0]),
+            node=readers[0], names=(ends.name,),
+        )  # fmt: skip
+
+
+def _read_by(seen: Index, node: str) -> Iterator[End]:
+    return (it for it in seen.by_node.get(node, ()) if it.role == SUBSCRIBES and it.type != JOINTS)
 
 
 def _is_latched(ends: Ends) -> bool:

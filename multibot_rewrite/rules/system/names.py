@@ -11,24 +11,21 @@ from itertools import islice, zip_longest
 from multibot_rewrite.base.conventions import EVERYBODYS, chooses
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.nearest import CHOICE, COMPARED, MISTYPED, nearest
-from multibot_rewrite.base.wording import and_then
+from multibot_rewrite.base.wording import and_then, shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import see, where
-from multibot_rewrite.rules.system.unsent import meant
+from multibot_rewrite.rules.system.instead import (
+    COMMON,
+    in_other_namespace,
+    listed_in_vain,
+    sent_instead,
+)
 from multibot_rewrite.system.index import TF, Ends, Index, at_work, nodes_of, once, robots_of
 from multibot_rewrite.system.records import ACTION, SERVES, SERVICE, TOPIC, End
 from multibot_rewrite.system.tool_nodes import in_namespaces_above, is_spawner, is_viewer, last_word
 
 ABSENT = "is that robot started, and is its name right?"
 _DIGITS = re.compile(r"_?\d+")
-# Every node serves them, or many do: another one of such a type says nothing.
-_COMMON = (
-    "rcl_interfaces/",
-    "lifecycle_msgs/",
-    "std_srvs/",
-    "type_description_interfaces/",
-    "std_msgs/",
-)
 
 
 @system_rule(
@@ -36,10 +33,10 @@ _COMMON = (
     "topic-names-miss",
     ERROR,
     absence=True,
-    what="A node subscribes to a topic that nobody publishes, while nearly the same name is published:"
+    what="A node subscribes to a topic that no node publishes, while nearly the same name is published:"
     " with or without the robot's namespace, below another namespace or the node's own name, or"
-    " misspelled.",
-    why="The two sides never meet, and there is no error message.",
+    " misspelled; or the robot sends data of that kind under another name, which is a warning.",
+    why="The two sides never connect, and there is no error message.",
     fix="Pass the remap rule of the hint, or write the other side's name in the parameters.",
     bad="""\
 running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
@@ -60,14 +57,18 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
     for (kind, name), ends in seen.by_name.items():
         if kind != TOPIC or ends.publishers or name in EVERYBODYS or ends.type == TF:
             continue
+        by_kind: dict[str, list[End]] = {}
         for end in _each_node(ends.subscribers):
             if is_viewer(end.node):
                 continue
             # What chooses between several inputs seldom has all of them.
             offered = unheard if chooses(end.node) else published
-            near = published.get(_published_instead(seen, end, offered, unheard))
-            if other := near or meant(seen, end):
-                yield _missed_topic(seen, end, other, ERROR if near else WARNING)
+            if near := published.get(_published_instead(seen, end, offered, unheard)):
+                yield _missed_topic(seen, end, near, ERROR)
+            elif other := sent_instead(seen, end):
+                by_kind.setdefault(other.name, []).append(end)
+        for other_name, (first, *more) in by_kind.items():
+            yield _missed_topic(seen, first, published[other_name], WARNING, more)
 
 
 def _each_node(ends: Iterable[End]) -> Iterator[End]:
@@ -149,7 +150,7 @@ def alike(name: str, known: Iterable[str], type_: str) -> str:
     letters = _letters(name)
     names = [it for it in islice(known, COMPARED) if it != name]
     folded = next((it for it in names if _letters(it) == letters), "")
-    if folded or type_.startswith(_COMMON):
+    if folded or type_.startswith(COMMON):
         return folded
     parts = name.split("/")
     for at in (1, len(parts) - 1):
@@ -189,14 +190,22 @@ def _same_but_number(one: str, other: str) -> bool:
     return _DIGITS.sub("", one) == _DIGITS.sub("", other)
 
 
-def _missed_topic(seen: Index, end: End, other: Ends, level: str) -> Finding:
+def _missed_topic(
+    seen: Index, end: End, other: Ends, level: str, more: Sequence[End] = ()
+) -> Finding:
     sender = nodes_of(other.publishers)[0]
-    message = f"subscribes to {end.name}, which nobody publishes; {sender} publishes {other.name}"
+    also = f" (and so does {shorten(nodes_of(more))})" if more else ""
+    message = (
+        f"subscribes to {end.name}{also}, which no node publishes; {sender} publishes {other.name}"
+    )
     # The side in the wrong place is the one whose name has no robot, or is below the node.
     if _is_doubled(other.name, end.name):
         cause = f"its namespace is there twice: name it {last_word(other.name)} in {sender}"
     elif seen.robot(end.name) and not seen.robot(other.name):
         cause = f"pass the rule {other.name}:={end.name} to {sender}, or start it in the namespace"
+    elif other.type != end.type:
+        message += f" as {last_word(other.type)}"
+        cause = f"make both one type: set it in a parameter of one side, or convert {other.name}"
     else:
         cause = f"pass the rule {end.name}:={other.name}, or write {other.name} in its parameters"
     level = NOTE if is_viewer(sender) else level
@@ -212,8 +221,9 @@ def _missed_topic(seen: Index, end: End, other: Ends, level: str) -> Finding:
     "server-names-miss",
     ERROR,
     absence=True,
-    what="A node calls a service or action that nobody serves, while nearly the same name is served:"
-    " with or without the robot's namespace, or misspelled. In a namespace without any node it is a"
+    what="A node calls a service or action that no node serves, while nearly the same name is served:"
+    " with or without the robot's namespace, or misspelled; or a lifecycle manager lists a node that"
+    " does not run. In a namespace without any node, and where the type alone is the same, it is a"
     " warning.",
     why="The client waits for ever: no goal arrives, no node is activated.",
     fix="Write the name as the server has it, or start the client in the robot's namespace.",
@@ -232,36 +242,41 @@ def server_names_miss(seen: Index) -> Iterator[Finding]:
     for (kind, name), ends in seen.by_name.items():
         if ends.servers:
             served[kind, ends.type].append(name)
-    for (kind, name), ends in seen.by_name.items():
-        if kind == TOPIC or ends.servers:
-            continue
-        for end in _each_node(ends.clients):
-            by_type = meant(seen, end)
-            near = _served_instead(seen, end, served[kind, end.type])
-            other = near or (by_type.name if by_type else "")
-            does = "sends goals to" if kind == ACTION else "calls"
-            absent = (
-                not other
-                and not is_viewer(end.node)
-                and nobody_in(seen, name, served[kind, end.type])
-            )
-            if absent:
-                yield server_names_miss.finding(
-                    f"{does} {name}, which nobody serves; {absent}",
-                    ABSENT, level=WARNING, node=end.node, names=(name,),
-                )  # fmt: skip
-            if not other:
-                continue
-            server = nodes_of(seen.by_name[kind, other].servers)[0]
-            message = f"{does} {name}, which nobody serves; {server} serves {other}"
-            cause = f"pass the rule {name}:={other}, or start it in the namespace of the robot"
-            robot = seen.robot(end.node) or seen.robot(other)
-            clicked = is_viewer(end.node) and not is_spawner(end.node)
-            level = NOTE if clicked else ERROR if near else WARNING
-            yield server_names_miss.finding(
-                message, cause + see((seen.by_name[kind, other].servers[0], end)),
-                level=level, robot=robot, node=end.node, names=(name, other), **where([end]),
-            )  # fmt: skip
+    for ends in seen.by_name.values():
+        if ends.kind != TOPIC and not ends.servers:
+            for end in _each_node(ends.clients):
+                yield from _unserved(seen, end, served[end.kind, end.type])
+
+
+def _unserved(seen: Index, end: End, served: Sequence[str]) -> Iterator[Finding]:
+    near = _served_instead(seen, end, served) or in_other_namespace(seen, end)
+    lost = f"{'sends goals to' if end.kind == ACTION else 'calls'} {end.name}, which no node serves"
+    listed = "" if near else listed_in_vain(seen, end)
+    by_type = None if near or listed else sent_instead(seen, end)
+    if other := near or (by_type.name if by_type else ""):
+        yield _missed_server(seen, end, lost, other, ERROR if near else WARNING)
+    elif listed and end.name.endswith("/change_state"):
+        yield server_names_miss.finding(
+            f"{lost}: {listed} is in its list, and does not run",
+            f"it waits for {listed} and activates nothing after it: start it, or leave it out of"
+            " node_names",
+            robot=seen.robot(end.node), node=end.node, names=(end.name,), **where([end]),
+        )  # fmt: skip
+    elif not (listed or is_viewer(end.node)) and (absent := nobody_in(seen, end.name, served)):
+        yield server_names_miss.finding(
+            f"{lost}; {absent}", ABSENT, level=WARNING, node=end.node, names=(end.name,)
+        )
+
+
+def _missed_server(seen: Index, end: End, lost: str, other: str, level: str) -> Finding:
+    servers = seen.by_name[end.kind, other].servers
+    cause = f"pass the rule {end.name}:={other}, or start it in the namespace of the robot"
+    clicked = is_viewer(end.node) and not is_spawner(end.node)
+    return server_names_miss.finding(
+        f"{lost}; {nodes_of(servers)[0]} serves {other}", cause + see((servers[0], end)),
+        level=NOTE if clicked else level, robot=seen.robot(end.node) or seen.robot(other),
+        node=end.node, names=(end.name, other), **where([end]),
+    )  # fmt: skip
 
 
 def _served_instead(seen: Index, end: End, served: Sequence[str]) -> str:

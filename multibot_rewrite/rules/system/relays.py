@@ -22,7 +22,7 @@ _CONTROLLER = "controller_server"
     "relayed-to-another-robot",
     ERROR,
     meant=(PUBLISHES,),
-    what="A node that belongs to no robot reads commands, or what a body measures, of one robot and"
+    what="A node of no robot reads commands, or what a body measures, of one robot and"
     " publishes them as those of another: a relay or bridge.",
     why="Who drives the one robot moves the other, or one is localized with the scan of the other.",
     fix="Correct the robot's name in the topics of the relay. Where one robot is meant to do what the"
@@ -78,7 +78,7 @@ def _of_bodies(seen: Index) -> Iterator[Ends]:
     meant=(PUBLISHES, SUBSCRIBES),
     what="Nav2's controller_server sends velocities on the topic on which velocity_smoother or"
     " collision_monitor sends them, after it has limited them; or a driver reads an input of twist_mux,"
-    " and nobody its output.",
+    " and no node reads its output.",
     why="The robot obeys what was not limited or chosen: nothing stops it before an obstacle.",
     fix="Pass the remap rule cmd_vel:=cmd_vel_nav to controller_server, as Nav2's launch files do; give"
     " the driver the output of twist_mux.",
@@ -111,7 +111,7 @@ def limits_left_out(seen: Index) -> Iterator[Finding]:
 
 
 def _mux_left_out(seen: Index) -> Iterator[Finding]:
-    """A driver that reads an input of a mux whose output nobody reads."""
+    """A driver that reads an input of a mux whose output no node reads."""
     chosen = [it for it in _velocities(seen) if not at_work(it.subscribers)]
     for ends in chosen:
         for mux in filter(chooses, nodes_of(ends.publishers)):
@@ -120,7 +120,7 @@ def _mux_left_out(seen: Index) -> Iterator[Finding]:
                 drivers = [it for it in readers if it != mux and _word(seen, it) not in _LIMITS]
                 if mux in readers and drivers and given.publishers:
                     yield limits_left_out.finding(
-                        f"obeys {given.name}, an input of {mux}, whose output {ends.name} nobody reads",
+                        f"obeys {given.name}, an input of {mux}; no node reads its output {ends.name}",
                         f"pass it the rule {_word(seen, given.name)}:={_word(seen, ends.name)}",
                         robot=seen.robot(drivers[0]),
                         node=drivers[0],

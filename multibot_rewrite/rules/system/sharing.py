@@ -203,13 +203,15 @@ def joint_states_twice(seen: Index) -> Iterator[Finding]:
 
 @system_rule(
     "MG325",
-    "odometry-twice",
+    "sensor-twice",
     ERROR,
-    what="Two nodes publish the odometry of one robot, or its description, on the same topic. For a"
-    " description it is a warning.",
+    meant=(PUBLISHES,),
+    what="Two nodes publish the odometry of one robot, its description, or the data of one sensor"
+    " (scan, image, IMU, points, GPS) on the same topic. For all but odometry it is a warning.",
     why="Who reads it gets both by turns: the odometry of two filters jumps from one to the other, a"
-    " controller takes the description that comes last.",
-    fix="Give each its own topic: `odometry/filtered:=odometry/local` for the first of two filters.",
+    " scan from the front to the rear, a controller takes the description that comes last.",
+    fix="Give each its own topic: `odometry/filtered:=odometry/local` for the first of two filters,"
+    " `scan:=scan_rear` for the second lidar.",
     bad="""\
 running: /robot1/ekf_local publishes /robot1/odometry/filtered nav_msgs/msg/Odometry
 running: /robot1/ekf_global publishes /robot1/odometry/filtered nav_msgs/msg/Odometry
@@ -219,22 +221,32 @@ running: /robot1/ekf_local publishes /robot1/odometry/local nav_msgs/msg/Odometr
 running: /robot1/ekf_global publishes /robot1/odometry/filtered nav_msgs/msg/Odometry
 """,
 )
-def odometry_twice(seen: Index) -> Iterator[Finding]:
-    """A bag that is played is one as well, and so are relays: they are findings of their own."""
+def sensor_twice(seen: Index) -> Iterator[Finding]:
+    """A bag that is played is one as well, and so are relays and bridges in both directions: who reads
+    what it sends passes it on."""
     for ends in seen.topics:
-        if len(ends.publishers) < 2:
+        if len(ends.publishers) < 2 or not _is_of_one_sensor(ends):
             continue
-        described = last_word(ends.name) == words.DESCRIPTION
-        nodes = nodes_of(at_work(ends.publishers))
-        twice = len(nodes) > 1 and (described or ends.type == words.ODOMETRY)
+        nodes = [it for it in nodes_of(at_work(ends.publishers)) if not _passes_on(seen, it, ends)]
         played = any(last_word(node).startswith(words.PLAYER) for node in nodes)
-        if not twice or played or len(robots_of(seen, nodes)) > 1:
+        if len(nodes) < 2 or played or len(robots_of(seen, nodes)) > 1:
             continue
-        yield odometry_twice.finding(
+        yield sensor_twice.finding(
             f"{and_then(nodes)} both publish {ends.name}",
             "give each its own topic, or stop one",
-            level=WARNING if described else ERROR,
+            level=ERROR if ends.type == words.ODOMETRY else WARNING,
             robot=seen.robot(ends.name),
             node=nodes[0],
             names=(ends.name,),
         )
+
+
+def _passes_on(seen: Index, node: str, ends: Ends) -> bool:
+    """Does it read what it sends, or data of that kind? A filter makes its own of others' odometry."""
+    read = (it for it in seen.by_node.get(node, ()) if it.role == SUBSCRIBES)
+    passed = ends.type != words.ODOMETRY
+    return any(it.name == ends.name or (passed and it.type == ends.type) for it in read)
+
+
+def _is_of_one_sensor(ends: Ends) -> bool:
+    return words.is_of_one_sensor(ends.type) or last_word(ends.name) == words.DESCRIPTION

@@ -55,7 +55,7 @@ def not_active(seen: Index) -> Iterator[Finding]:
     for (robot, state, manager), nodes in found.items():
         verb = "is" if len(nodes) == 1 else "are"
         message = f"{shorten(sorted(nodes), SEVERAL)} {verb} {state}, not active"
-        cause = f"see the log of {manager}" if manager else "nobody activates it: is that meant?"
+        cause = f"see the log of {manager}" if manager else "no node activates it: is that meant?"
         yield not_active.finding(
             message,
             f"{cause}; ros2 lifecycle get {nodes[0]}",

@@ -187,7 +187,9 @@ def tf_tree_in_pieces(seen: Index) -> Iterator[Finding]:
             found = next(iter(roots))
             robot = robot or only(robots_of(seen, tree.senders))
             message = in_pieces(robot, tree.topic, sorted({root_of(odom, above), found}))
-            cause = f"nobody sends {odom} -> {found}: is odometry started, are its frames the same?"
+            cause = (
+                f"no node sends {odom} -> {found}: is odometry started, are its frames the same?"
+            )
             yield tf_tree_in_pieces.finding(
                 message, cause, robot=robot, names=(odom, own[0], found),
             )  # fmt: skip
@@ -200,7 +202,7 @@ def in_pieces(robot: str, topic: str, roots: Sequence[str]) -> str:
 
 
 def told_not_to(seen: Index) -> Iterator[Finding]:
-    """Transforms that nobody sends, and that nodes could which are told not to."""
+    """Transforms that no node sends, and that nodes could which are told not to."""
     sent = {(tree.topic, edge.child) for tree in seen.trees for edge in tree.edges}
     off: dict[tuple[str, str], list[Edge]] = defaultdict(list)
     for it in (it for it in seen.system.edges if it.sure == OFF):
@@ -215,7 +217,7 @@ def told_not_to(seen: Index) -> Iterator[Finding]:
         if beside:
             cause += f"; {beside.publishers[0]} ({beside.place}) sends {beside.child}"
         yield tf_tree_in_pieces.finding(
-            f"is told not to send {first.parent} -> {child}, which nobody sends{also}",
+            f"is set not to send {first.parent} -> {child}, which no node sends{also}",
             cause + see((*more, first)), level=ERROR if more else WARNING,
             robot=seen.robot(first.publishers[0]), node=first.publishers[0], names=(child,),
             **where([first]),
@@ -225,7 +227,7 @@ def told_not_to(seen: Index) -> Iterator[Finding]:
 def _senders_apart(seen: Index, tree: Tree) -> Iterator[Finding]:
     """Nodes whose transforms are in another tree than those of the robot's first node.
 
-    If nobody sends the root of the description, a driver that is not known may: that joins the two.
+    If no node sends the root of the description, a driver that is not known may: that joins the two.
     """
     for robot in unique(seen.robot(node) for it in tree.edges for node in it.publishers[:1]):
         edges = [it for it in tree.edges if {*map(seen.robot, it.publishers)} == {robot}]

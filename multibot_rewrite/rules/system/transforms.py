@@ -7,10 +7,11 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 
 from multibot_rewrite.base.conventions import WORLD_FRAMES
-from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.base.wording import SEVERAL, and_then, only, shorten, unique
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import see, where
+from multibot_rewrite.rules.system.senders import who_can_send
 from multibot_rewrite.system.index import Index, Tree, robots_of
 from multibot_rewrite.system.records import Edge
 from multibot_rewrite.system.tool_nodes import last_word
@@ -250,7 +251,7 @@ def static_and_moving(seen: Index) -> Iterator[Finding]:
     "transform-of-two-senders",
     ERROR,
     what="Several publishers send the same transform: an EKF and the controller both odometry, AMCL and"
-    " SLAM both the place in the map.",
+    " SLAM both the place in the map. A note where the transform is static, and all send one value.",
     why="The robot jumps between what the two believe, many times a second.",
     fix="Let one of them send it: `publish_tf: false` of the EKF, `enable_odom_tf: false` of"
     " diff_drive_controller, `publish_odom_tf` of a simulator's plugin, `tf_broadcast: false` of AMCL.",
@@ -270,17 +271,24 @@ def transform_of_two_senders(seen: Index) -> Iterator[Finding]:
             senders = _senders(tree, own)
             who = robot or only(robots_of(seen, senders))
             nodes = [it for it in senders if seen.robot(it) in ("", who)] or senders
+            nodes = who_can_send(seen, nodes, own)
             right = {it for edge in own for it in seen.known.senders.get(edge[1::-1], ())}
             nodes = sorted(nodes, key=lambda it: it not in right)
             listed_nodes = shorten(nodes, SEVERAL)
             cause = f"stop one, or its tf (publish_tf, enable_odom_tf): two of {listed_nodes}"
-            others = [it for it in senders if it not in nodes]
+            others = [it for it in senders if seen.robot(it) not in ("", who)]
+            others = [it for it in others if it not in nodes]
             if others:
                 cause += f"; or {shorten(others)} with the description or parameters of {who}"
             yield transform_of_two_senders.finding(
-                message, cause + see(own),
+                message, cause + see(own), level=NOTE if all(map(_is_fixed, own)) else ERROR,
                 robot=who, names=unique(it.child for it in own), **where(own),
             )  # fmt: skip
+
+
+def _is_fixed(edge: Edge) -> bool:
+    """Is it static and of one value? Where senders differ none is known."""
+    return edge.static and bool(edge.transform)
 
 
 def _sent_twice(tree: Tree) -> list[Edge]:

@@ -51,7 +51,7 @@ def nothing_known_sends(seen: Index) -> Iterator[Finding]:
 def no_longer_sent(end: End) -> Finding:
     """The finding about one end that nothing sends any more."""
     does, gives = ("subscribes to", "publishes") if end.kind == TOPIC else ("calls", "serves")
-    message = f"{does} {end.name}, which nobody {gives} any more"
+    message = f"{does} {end.name}, which no node {gives} any more"
     return nothing_known_sends.finding(
         message, level=ERROR, node=end.node, names=(end.name,), **where([end])
     )

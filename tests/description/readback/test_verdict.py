@@ -71,7 +71,7 @@ def test_the_summary_and_strict(tmp_path: Path) -> None:
     file.write_text(LIDAR.format("{name}/scan"))
     done = run(tmp_path, "r.urdf", "robot1", "-o", str(out))
     assert done.code == 0
-    end = "; rewritten, not proved: 1 topic shared by all robots (facts of lyrical)\n"
+    end = "; rewritten, not proved: 1 topic shared by all robots (ROS 2 lyrical)\n"
     assert done.err.endswith(end)
     out.unlink()
     stopped = run(tmp_path, "r.urdf", "robot1", "-o", str(out), "--fail-on", "warning")
@@ -82,9 +82,7 @@ def test_the_summary_and_strict(tmp_path: Path) -> None:
         tmp_path, str(ROBOTS / "rover.urdf"), "robot1", "-o", str(out), "--fail-on", "warning"
     )
     assert healthy.code == 0
-    assert healthy.err.endswith(
-        "; proved (facts of humble: it loads libgazebo_ros_diff_drive.so)\n"
-    )
+    assert healthy.err.endswith("; proved (ROS 2 humble: it loads libgazebo_ros_diff_drive.so)\n")
 
 
 @pytest.mark.slow

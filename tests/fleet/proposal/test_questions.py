@@ -102,3 +102,32 @@ def test_an_argument_that_names_the_robot(tmp_path: Path) -> None:
     shown, fleet = talked(tmp_path, ["", "", "{robot}/", "", "", ""])
     assert "Argument prefix of the xacro ({robot}_)" in shown
     assert fleet["arguments"] == {"prefix": "{robot}/"}
+
+
+WARNED = """\
+<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:property name="pi" value="3"/>
+  <link name="base"/><link name="hand"/>
+  <joint name="turn" type="continuous"><parent link="base"/><child link="hand"/></joint>
+</robot>
+"""
+
+
+@pytest.mark.parametrize(("on_a_terminal", "term"), [(True, "xterm"), (True, "dumb"), (False, "")])
+def test_what_is_looked_at_is_shown_on_a_terminal(
+    on_a_terminal: bool, term: str, tmp_path: Path
+) -> None:
+    """What xacro warns about is shown nowhere: of the files that are taken the build says it."""
+    (tmp_path / "arm.urdf.xacro").write_text(WARNED)
+    command = [sys.executable, "-m", "multibot_rewrite", "init", ".", "--yes"]
+    ours, theirs = pty.openpty() if on_a_terminal else os.pipe()
+    with subprocess.Popen(
+        command, cwd=tmp_path, stderr=theirs, env={**os.environ, "TERM": term, "COLUMNS": "200"}
+    ) as child:
+        os.close(theirs)
+        shown = "".join(read_all(ours))
+        assert child.wait(60) == 0, shown
+    assert ("1 of 1 descriptions: arm.urdf.xacro" in shown) == (term == "xterm")
+    assert "redefining" not in shown
+    last = shown.rpartition("\r\033[K")[2]
+    assert last.splitlines()[-1].startswith("multibot: wrote fleet.yaml: 2 robots")

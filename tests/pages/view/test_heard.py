@@ -13,7 +13,7 @@ from paths import ROBOTS
 from view_pages import page, with_places
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.pages.view.heard import LinkFrames, apart, heard_trees
+from multibot_rewrite.pages.view.heard import LinkFrames, apart, heard_trees, moved
 from multibot_rewrite.pages.view.models import Joint
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.records import Edge
@@ -74,6 +74,26 @@ def test_how_far_a_frame_is_off(heard: tuple[float, ...], metres: float, angle: 
     pose = ((0, -1, 0, 1), (1, 0, 0, 2), (0, 0, 1, 3), (0, 0, 0, 1))
     joint = Joint("mast", "fixed", "base", "scan", pose, (1, 0, 0), 0, 0, None)
     assert apart(joint, heard) == pytest.approx((metres, angle), abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("kind", "heard", "said"),
+    [
+        ("fixed", (0, 0, 0.03, *HERE[3:]), ["scan by 0.030 m and 0.0 degrees"]),
+        ("fixed", (0, 0, 0, *TURNED[3:]), ["scan by 0.000 m and 90.0 degrees"]),
+        ("fixed", HERE, []),
+        # A millimetre and a tenth of a degree are rounding.
+        ("fixed", (0.0009, 0, 0, 0, 0, sin(radians(0.04)), cos(radians(0.04))), []),
+        ("fixed", (0.0011, 0, 0, *HERE[3:]), ["scan by 0.001 m and 0.0 degrees"]),
+        ("fixed", (), []),
+        ("revolute", TURNED, []),
+    ],
+)
+def test_what_is_said_of_a_joint(kind: str, heard: tuple[float, ...], said: list[str]) -> None:
+    pose = ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1))
+    joint = Joint("mast", kind, "base", "scan", pose, (1, 0, 0), 0, 0, None)
+    assert [*moved([joint], {"scan": heard, "other": TURNED})] == said
+    assert [*moved([joint], {})] == []
 
 
 @pytest.mark.slow

@@ -180,6 +180,34 @@ def test_a_large_mesh_is_shown_as_its_box(file: Path, monkeypatch: pytest.Monkey
     assert len(base64.b64decode(mesh["f"])) == 12 * 12
 
 
+OBJ = "mtllib part.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl paint\nf 1 2 3\n"
+
+
+def test_a_mesh_has_the_colours_of_its_file(file: Path) -> None:
+    """As in RViz: the material of the description is for a mesh that has none."""
+    assert not page(file.parent, file)["meshes"][0]["c"]
+    (file.parent / "part.obj").write_text(OBJ)
+    (file.parent / "part.mtl").write_text("newmtl paint\nKd 0.2 0.4 0.6\n")
+    file.write_text(ROBOT.replace("part.stl", "part.obj"))
+    (mesh,) = page(file.parent, file)["meshes"]
+    assert [*base64.b64decode(mesh["c"])] == [51, 102, 153] * 3
+
+
+def test_a_shape_without_a_colour_leaves_it_to_the_page(file: Path) -> None:
+    (robot,) = page(file.parent, file)["robots"]
+    (links,) = (its for its in robot["links"].values() if its)
+    assert [it[3] for it in links] == [[1, 0, 0, 0.5], [], []]
+
+
+def test_a_robot_without_a_shape_is_said(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    bare = tmp_path / "bare.urdf"
+    bare.write_text('<robot name="r"><link name="base"/></robot>')
+    assert main(["view", str(bare), "robot1", "-o", str(tmp_path / "v.html")]) == 0
+    assert "robot1: its links have no <visual>: only frames are shown" in capsys.readouterr().err
+
+
 def test_plugins_with_their_lines(tmp_path: Path) -> None:
     text = (ROBOTS / "rover.urdf").read_text().splitlines()
     (robot,) = page(tmp_path, ROBOTS / "rover.urdf", "a")["robots"]

@@ -89,7 +89,7 @@ def test_a_costmap_has_the_layers_of_its_list() -> None:
     node = run("local_costmap/local_costmap", COSTMAP)
     assert names(node, "subscribes") >= {"/front/scan", "scan_back", "keepout_info"}
     assert "/old" not in {it.name for it in node.endpoints}
-    # No static layer: nobody reads a map.
+    # No static layer: no node reads a map.
     assert "/map" not in names(node, "subscribes")
     assert {"obstacles", "obstacles_raw", "voxel_grid"} <= names(node, "publishes")
     assert "keepout/toggle_filter" in names(node, "serves")

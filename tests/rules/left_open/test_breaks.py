@@ -9,7 +9,7 @@ import re
 from pathlib import Path
 
 import pytest
-from closed_arm import ARM_FILES
+from closed_arm import ARM_FILES, MASS
 from closed_robot import FILES
 from open_findings import found
 
@@ -79,7 +79,7 @@ BREAKS = [
     # Nav2 reads a scan as points: the sender of the topic is the bridge of the lidar.
     ("nav2.yaml", "data_type: LaserScan", "data_type: PointCloud2", "MG306", 12, ""),
     ("nav2.yaml", "type: scan, topic: scan", "type: pointcloud, topic: scan", "MG306", 22, ""),
-    # Nav2 reads what nobody sends.
+    # Nav2 reads what no node sends.
     ("nav2.yaml", "scan_topic: scan", "scan_topic: scan_front", "MG303", 2, "/scan"),
     ("nav2.yaml", "topic: /scan", "topic: /front", "MG303", 12, "/scan"),
     ("nav2.yaml", "type: scan, topic: scan", "type: scan, topic: lidar", "MG303", 22, "/scan"),
@@ -156,8 +156,8 @@ BREAKS = [
     # A link with two joints above it: two static transforms.
     (
         "rover.urdf",
-        '<link name="finger_link"><inertial><mass value="1"/></inertial></link>\n',
-        '<link name="finger_link"><inertial><mass value="1"/></inertial></link>\n'
+        f'<link name="finger_link">{MASS}</link>\n',
+        f'<link name="finger_link">{MASS}</link>\n'
         '  <joint name="second" type="fixed"><parent link="lidar_link"/>'
         '<child link="imu_link"/></joint>\n',
         "MG401",
@@ -189,7 +189,7 @@ BREAKS = [
     ("bridge.yaml", "GZ_TO_ROS", "ROS_TO_GZ", "MB879", 2, "rover.urdf:43"),
     ("bridge.yaml", "gz.msgs.IMU", "gz.msgs.Magnetometer", "MB879", 2, "rover.urdf:43"),
     ("bridge.yaml", "msg/Imu", "msg/MagneticField", "MG306", 4, "bridge.yaml:1"),
-    # twist_mux has a topic that nobody sends.
+    # twist_mux has a topic that no node sends.
     (
         "nav2.yaml",
         "{topic: cmd_vel_smoothed, timeout",
@@ -245,7 +245,7 @@ ARM_BREAKS = [
         "controllers.yaml:7",
     ),
     ("controllers.yaml", "imu_broadcaster", "imu_sensor", "MG303", 3, "controllers.yaml:7"),
-    # Sources that nobody sends: behind a laser filter, of joint_state_publisher.
+    # Sources that no node sends: behind a laser filter, of joint_state_publisher.
     ("sensors.yaml", "topic: scan_filtered", "topic: scan_filtred", "MG303", 15, "sensors.yaml:7"),
     ("sensors.yaml", "[joint_states]", "[arm_joint_states]", "MG303", 17, "controllers.yaml:4"),
     # The laser filter reads scan.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from closed_arm import ARM_FILES
+from closed_arm import ARM_FILES, MASS
 from closed_robot import FILES
 from open_findings import found
 
@@ -14,7 +14,7 @@ DOOR = (
     "- {ros_topic_name: door, gz_topic_name: /door/open, ros_type_name: std_msgs/msg/Bool, "
     "gz_type_name: gz.msgs.Boolean, direction: ROS_TO_GZ}\n- ros_topic_name: imu/data"
 )
-FINGER = '<link name="finger_link"><inertial><mass value="1"/></inertial></link>\n'
+FINGER = f'<link name="finger_link">{MASS}</link>\n'
 CASTER = (
     f'{FINGER}<link name="caster"/><joint name="caster_joint" type="continuous">'
     '<parent link="base_link"/><child link="caster"/><axis xyz="0 1 0"/></joint>\n'

@@ -21,6 +21,7 @@ from multibot_rewrite.producers.launch.stand_in.values import (
     Kept,
     LaunchContext,
     Text,
+    normalize_to_list_of_substitutions,
     text_of,
 )
 
@@ -98,10 +99,15 @@ class ComposableNode:
         extra_arguments: Any = None,
         condition: Any = None,
     ) -> None:
-        self.package, self.node_plugin = package, plugin
+        self.__package, self.node_plugin = package, plugin
         self.node_name, self.node_namespace = name, namespace
         self.parameters, self.remappings = [flat(it) for it in parameters or ()], remappings
         self._condition = condition
+
+    @property
+    def package(self) -> list[Any]:
+        """Read only, as launch_ros's is: a component for a robot has its own."""
+        return normalize_to_list_of_substitutions(self.__package)
 
     def condition(self) -> Any:
         return self._condition

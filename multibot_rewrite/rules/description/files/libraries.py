@@ -40,7 +40,7 @@ def plugins_without_library(subject: Subject) -> Iterator[Problem]:
     ERROR,
     what="The name of a system of Gazebo is a class that its library does not have.",
     why="Gazebo reports 'library does not contain requested plugin' and does not load it.",
-    fix="Write the class that belongs to the library; the hint has it.",
+    fix="Write the class of the library; the hint has it.",
     bad='<gazebo><plugin name="gz::sim::systems::IMU" filename="gz-sim-imu-system"/></gazebo>',
     good='<gazebo><plugin name="gz::sim::systems::Imu" filename="gz-sim-imu-system"/></gazebo>',
 )

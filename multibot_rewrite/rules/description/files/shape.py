@@ -65,11 +65,11 @@ not_read = rule(
     "MB112",
     "misplaced",
     WARNING,
-    what="An element of URDF or SDF, or a parameter of a plugin, in a place where nobody looks for "
-    "it: an <origin> of a link, friction in a <gazebo> without reference, a <remapping> beside "
-    "<ros>.",
+    what="An element of URDF or SDF, or a parameter of a plugin, in a place where no parser "
+    "looks for it: an <origin> of a link, friction in a <gazebo> without reference, a <remapping> "
+    "beside <ros>.",
     why="Readers look for children by name in one place only. It has no effect.",
-    fix="Move it to where it belongs; the hint names the place.",
+    fix="Move it to the place that the hint names.",
     bad='<link name="a"><mass value="1"/></link>',
     good='<link name="a">\n'
     "  <inertial>\n"
@@ -90,7 +90,7 @@ def misplaced(subject: Subject) -> Iterator[Problem]:
     ERROR,
     what="A required attribute, child element or parameter is missing or empty: of a URDF or SRDF, "
     "below <gazebo>, of a plugin or of ros2_control hardware; in parameters the class of a listed "
-    "plugin or the type of a controller, and, as a warning, what belongs to a listed source.",
+    "plugin or the type of a controller, and, as a warning, what goes with a listed source.",
     why="urdfdom rejects the whole file for a part of a joint; in a link it drops every visual and "
     "collision from the fault on. libsdformat does not load the model, srdfdom skips the element, and "
     "a plugin or hardware is not loaded.",

@@ -82,7 +82,7 @@ def _without_slash(subject: Subject, claim: Claim) -> tuple[Edit, ...]:
     NOTE,
     what="The name of a joint, sensor or gpio in <ros2_control> contains a slash.",
     why="Its interfaces are called NAME/INTERFACE, and the controller manager splits that at the "
-    "first slash: arm/j1/position belongs to the controller 'arm' if there is one.",
+    "first slash: arm/j1/position is taken as one of the controller 'arm' if there is one.",
     fix="Use an underscore, in the URDF and in the controllers' parameters; or give no controller "
     "the name before the slash.",
     bad='<ros2_control name="c" type="system">\n'
@@ -102,7 +102,7 @@ def slash_in_joint(subject: Subject) -> Iterator[Problem]:
             name = part.get("name", "")
             if "/" in name and SUBSTITUTION not in name:
                 cut = name.partition("/")[0]
-                owner = f"its interfaces seem to belong to {cut!r}"
+                owner = f"its interfaces are taken as those of {cut!r}"
                 message = f"{part.tag} {name!r} contains a slash: {owner}"
                 yield Problem(part, message, "name", f"use {name.replace('/', '_')!r}")
 

@@ -17,7 +17,7 @@ from multibot_rewrite.description.checks.rotation import inverse, turned
 from multibot_rewrite.description.checks.shapes import shapes_of, way_out
 from multibot_rewrite.rules.description.examples import a_joint, a_link, block
 from multibot_rewrite.rules.description.physics.shared import a_rover
-from multibot_rewrite.rules.facts.poses import link_poses
+from multibot_rewrite.rules.facts.memo import link_poses
 from multibot_rewrite.rules.facts.sensors import CAMERAS, LIDARS, Sensor, number_at, sensors
 from multibot_rewrite.rules.facts.support import ground_of
 from multibot_rewrite.rules.subject import Subject
@@ -50,7 +50,7 @@ def _camera_at(link: str, *optical: str) -> str:
     WARNING,
     what="An optical frame is turned like the robot: its x points forward and its z up.",
     why="Optical frames have z forward, x to the right and y down (REP 103). Images and depth "
-    "clouds that carry this frame are shown looking at the ceiling, and costmaps get obstacles "
+    "clouds with this frame are shown looking at the ceiling, and costmaps get obstacles "
     "from above.",
     fix='Turn its joint: rpy="-1.5708 0 -1.5708" below a link with x forward.',
     bad=_camera_at("camera"),

@@ -97,7 +97,10 @@ def no_controllers_file(subject: Subject) -> Iterator[Problem]:
         given = [it for it in plugin.iterchildren("parameters") if text_of(it)]
         if not given and library in GAZEBO.plugins:
             yield Problem(
-                plugin, f"{library} has no <parameters>", None, "name the controllers' file"
+                plugin,
+                f"{library} has no <parameters>, so it makes no controller_manager",
+                None,
+                "name the controllers' file",
             )
         for it in given:
             path = text_of(it)

@@ -44,7 +44,7 @@ undeclared_joint = rule(
     "joint_state_publisher stops with a KeyError. From Jazzy on the controller manager rejects the "
     "description ('Joint ... not found in URDF'). A plugin leaves the joint out or does not run, and "
     "gazebo_ros_control of ROS 1 loads no hardware at all.",
-    fix="Correct the name; a value in <ros2_control> that is not of a joint belongs in a <gpio>.",
+    fix="Correct the name; write a value that is not of a joint into a <gpio>.",
     bad=LINKS + a_joint("j", "continuous", "a", "b", '<mimic joint="k"/>'),
     good=a_pair('<mimic joint="j"/>'),
     line=5,

@@ -1,0 +1,156 @@
+"""A built fleet with two robots of each sort: what is wrong with any of its files shows there.
+
+Robots are of one sort where the files, the part of the launch file and the part of the plan of one are
+those of the other with its own words put in; numbers may differ as their poses do. A fault in one file
+makes its robot a sort of its own. What two robots of a sort do to each other, any two of them do.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from typing import Any
+
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.fleet.build import Outputs
+from multibot_rewrite.fleet.file.fleet_file import Pose, RobotSpec
+from multibot_rewrite.fleet.launch.launch_file import LAUNCH
+from multibot_rewrite.fleet.outputs.output_file import PLAN, OutputFile
+from multibot_rewrite.producers.launch.records import LaunchGraph
+from multibot_rewrite.system.records import System
+
+# What two robots do to each other needs two of them.
+_OF_EACH = 2
+_FUNCTION = re.compile(r"(?m)^def start_(\w+)\(\):\n(?:(?:[ ].*)?\n)*")
+_PLANNED = re.compile(r"(?m)^  ([^\s:]+):\n(?:    .*\n)+")
+_FILE = re.compile(r'(?:file|text)\("([^"\n]+)"\)')
+_NUMBER = re.compile(r"(?<![\w.])(-?\d+(?:\.\d+)?(?:e[+-]?\d+)?)(?![\w.])")
+# The read-back looks for an RViz config, and not into it.
+_NOT_READ = (".rviz",)
+
+
+class _Sort(NamedTuple):
+    """All texts of a robot with marks in the place of its words, and where it starts."""
+
+    texts: tuple[str, ...]
+    pose: Pose
+
+
+def two_of_each(made: Outputs, robots: Sequence[RobotSpec]) -> tuple[Outputs, frozenset[str]]:
+    """The outputs with two robots of each sort, and the words of the robots that are left out: none
+    where the launch file and the plan have not one part for each robot."""
+    if len(robots) <= _OF_EACH or _within_each_other({word for it in robots for word in it.words}):
+        return made, frozenset()
+    files = {it.path: it for it in made.files}
+    launch, plan = (files[it].text if it in files else "" for it in (LAUNCH, PLAN))
+    parts, plans = _by_name(_FUNCTION, launch), _by_name(_PLANNED, plan)
+    sorts: list[_Sort] = []
+    of_sort: dict[int, list[RobotSpec]] = defaultdict(list)
+    for it in robots:
+        if launch.count(_row(it)) != 1 or it.name not in parts or it.namespace not in plans:
+            return made, frozenset()
+        own = _sort(it, (_row(it), parts[it.name], plans[it.namespace]), files)
+        at = next((at for at, one in enumerate(sorts) if _alike(one, own)), len(sorts))
+        sorts += [own] if at == len(sorts) else []
+        of_sort[at].append(it)
+    left = [it for alike in of_sort.values() for it in alike[_OF_EACH:]]
+    return _without(made, left), frozenset(word for it in left for word in it.words)
+
+
+def _within_each_other(words: Collection[str]) -> bool:
+    """Could names of two robots be one, such as those of ``arm`` and ``arm_left``?"""
+    cut = ((word, it.start()) for word in words for it in re.finditer("[_/]", word))
+    return any(word[:at] in words or word[at + 1 :] in words for word, at in cut)
+
+
+def names_one_of(graph: LaunchGraph, words: Collection[str]) -> bool:
+    """Is one of the words in what the launch gives to a node?"""
+    every = "|".join(map(re.escape, sorted(words, reverse=True)))
+    found = re.compile(rf"(?<![A-Za-z0-9])(?:{every})(?![A-Za-z0-9])")
+    return any(found.search(text) for text in {*_texts(graph)})
+
+
+def _texts(graph: LaunchGraph) -> Iterator[str]:
+    for it in graph.nodes:
+        yield from (it.name, it.namespace, it.container, *it.arguments)
+        yield from (text for pair in it.remappings for text in pair)
+        yield from (one.text for one in it.parameters)
+    yield from (it.text for _, it in graph.files)
+
+
+def _by_name(pattern: re.Pattern[str], text: str) -> dict[str, str]:
+    return {it[1]: it[0] for it in pattern.finditer(text)}
+
+
+def _row(it: RobotSpec) -> str:
+    """The line of the robot in the table of the launch file."""
+    return f'    "{it.name}": start_{it.name},\n'
+
+
+def _sort(it: RobotSpec, parts: Iterable[str], files: Mapping[str, OutputFile]) -> _Sort:
+    named = {path for part in parts for path in _FILE.findall(part) if path in files}
+    own = sorted({*named, *(path for path in files if path.startswith(f"{it.name}/"))})
+    texts = (files[path].text for path in own if not path.endswith(_NOT_READ))
+    marks: dict[str, str] = {}
+    for at, word in enumerate((*it.words, it.model)):
+        marks.setdefault(word, f"\0{at}\0")
+    longest = sorted(filter(None, marks), key=len, reverse=True)
+    words = re.compile("|".join(map(re.escape, longest)))
+    every = (*own, *parts, *texts)
+    return _Sort(tuple(words.sub(lambda one: marks[one[0]], text) for text in every),
+                 it.pose or Pose())  # fmt: skip
+
+
+def _alike(one: _Sort, other: _Sort) -> bool:
+    poses = set(zip(one.pose, other.pose, strict=True))
+    if len(one.texts) != len(other.texts):
+        return False
+    pairs = zip(one.texts, other.texts, strict=True)
+    return all(ours == theirs or _but_for(poses, ours, theirs) for ours, theirs in pairs)
+
+
+def _but_for(poses: Collection[tuple[float, float]], one: str, other: str) -> bool:
+    """Are two texts the same but for numbers of the poses?"""
+    ours, theirs = _NUMBER.split(one), _NUMBER.split(other)
+    if len(ours) != len(theirs) or ours[::2] != theirs[::2]:
+        return False
+    pairs = zip(ours[1::2], theirs[1::2], strict=True)
+    return all(a == b or (float(a), float(b)) in poses for a, b in pairs)
+
+
+def _without(made: Outputs, left: Sequence[RobotSpec]) -> Outputs:
+    """The outputs without some robots."""
+    names, rows = {it.name for it in left}, {_row(it) for it in left}
+    files = [it for it in made.files if it.path.partition("/")[0] not in names]
+    for at, it in enumerate(files):
+        if it.path == LAUNCH:
+            text = _FUNCTION.sub(lambda one: "" if one[1] in names else one[0], it.text)
+            lines = (line for line in text.splitlines(True) if line not in rows)
+            files[at] = it._replace(data="".join(lines).encode())
+    planned = _planned(made.planned, {it.namespace for it in left})
+    return made._replace(files=tuple(files), planned=planned) if left else made
+
+
+def _planned(plan: System, robots: Collection[str]) -> System:
+    """The plan without some robots, and without what only they have."""
+    names = {it.name for it in plan.nodes if it.robot in robots}
+    gone: dict[str, bool] = defaultdict(lambda: True)
+    for it in plan.ends:
+        gone[it.name] &= it.node in names
+
+    def kept(records: Iterable[Any]) -> tuple[Any, ...]:
+        return tuple(it for it in records if it.node not in names)
+
+    return plan._replace(
+        nodes=tuple(it for it in plan.nodes if it.robot not in robots),
+        ends=kept(plan.ends),
+        edges=tuple(it for it in plan.edges if not it.publishers or not names >= {*it.publishers}),
+        robots=tuple(it for it in plan.robots if it.name not in robots),
+        topics=tuple(it for it in plan.topics if not gone.get(it.name)),
+        parameters=kept(plan.parameters),
+        controllers=tuple(it for it in plan.controllers if it.manager not in names),
+        interfaces=kept(plan.interfaces),
+        lookups=kept(plan.lookups),
+        addresses=kept(plan.addresses),
+    )

@@ -1,0 +1,139 @@
+"""The descriptions and files that a launch file names -> what ``urdf-lint`` and ``build`` say of them.
+
+A description that is put into a simulator is asked what a simulator leaves out of it as well. What is
+not read from a file of its own is told where the launch file has it.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable, Iterator, Mapping
+
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.companions.context import Context
+from multibot_rewrite.companions.formats import read_named
+from multibot_rewrite.companions.kinds import BRIDGE, PARAMS, kind_of
+from multibot_rewrite.companions.names.rename_map import KINDS, CompanionNames
+from multibot_rewrite.description.rewriters.forms import Declared
+from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.lint.check import lint_data
+from multibot_rewrite.producers.launch.bridges import is_bridge
+from multibot_rewrite.producers.launch.launched import (
+    InSimulator,
+    Launched,
+    file_of,
+    models_in_simulator,
+)
+from multibot_rewrite.rules.files.bridges import (
+    GzTopic,
+    GzTopics,
+    bridge_row,
+    no_gz_topic,
+    not_converted,
+)
+from multibot_rewrite.rules.files.judge import judged
+from multibot_rewrite.rules.settings import Settings
+from multibot_rewrite.system.records import Place
+
+# What a program refuses or leaves out: references, what is missing, names that ROS refuses.
+_REFUSED = ("MB10", "MB11", "MB12", "MB2", "MB312")
+# What Gazebo leaves out, or a plugin does not find there.
+_LEFT_OUT = ("MB211", "MB603", "MB610")
+# Names that are like one that the node has, and values of another type.
+_OF_VALUES = ("MB110", "MB120")
+_FOR_ALL = "/**:"
+# A description is no parameter to look into.
+_TEXT = re.compile(r"<\?xml|<robot|<sdf")
+_NAMING = make_naming("tf-per-robot")
+
+
+def named_findings(launched: Launched) -> list[Finding]:
+    """What is wrong with the files that a launch file names, each once."""
+    found = (
+        *(*_descriptions(launched), *_parameters(launched)),
+        *(*_values(launched), *_bridges(launched)),
+    )
+    return list(dict.fromkeys(found))
+
+
+def _descriptions(launched: Launched) -> Iterator[Finding]:
+    for it in launched.models.found:
+        file = file_of(launched.graph, it.text)
+        codes = (*_REFUSED, *_LEFT_OUT) if it.spawned else _REFUSED
+        settings = Settings(select=codes, distro=launched.release, simulated=it.spawned)
+        for one in lint_data(file or "robot.urdf", it.text.encode(), settings):
+            if one.level == ERROR or (
+                it.spawned and one.code in _LEFT_OUT and one.level == WARNING
+            ):
+                told = one if file else _at_launch(one, it.place)
+                yield told._replace(level=ERROR)
+
+
+def _at_launch(it: Finding, place: Place) -> Finding:
+    """A finding about a text that has no file of its own."""
+    message = f"in the description (line {it.line}): {it.message}"
+    return it._replace(message=message, file=place.file, line=place.line, column=1)
+
+
+def _parameters(launched: Launched) -> Iterator[Finding]:
+    """What is an error or a warning in parameter files that are there as files."""
+    texts = {
+        it.file: it.text
+        for node in launched.graph.nodes
+        for it in node.parameters
+        if it.file and it.file == it.source
+    }
+    settings = Settings(distro=launched.release)
+    for file, text in texts.items():
+        if kind_of(text.encode()) == PARAMS:
+            found = lint_data(file, text.encode(), settings)
+            yield from (it for it in found if it.level != NOTE)
+
+
+def _values(launched: Launched) -> Iterator[Finding]:
+    """What is wrong with the parameters that a launch file gives a node itself, at the node."""
+    settings = Settings(select=_OF_VALUES, distro=launched.release)
+    nodes = {(it.place, it.namespace, it.program): it for it in launched.nodes if it.facts}
+    for it in launched.graph.nodes:
+        running = nodes.get((it.place, it.namespace, f"{it.package}/{it.executable}"))
+        for text in (one.text for one in it.parameters if not one.file and running):
+            if running and text.startswith(_FOR_ALL) and not _TEXT.search(text):
+                own = text.replace(_FOR_ALL, f"{running.full_name}:", 1)
+                for one in lint_data("launch.yaml", own.encode(), settings):
+                    yield one._replace(file=it.place.file, line=it.place.line, column=1)
+
+
+def _bridges(launched: Launched) -> Iterator[Finding]:
+    """What is wrong with the rows of bridge files, beside all models that the launch file spawns."""
+    models = models_in_simulator(launched)
+    known = _topics(models) if models and not launched.models.lost else {}
+    for path in dict.fromkeys(_bridge_files(launched)):
+        for it in _of_bridge(path, launched.release, known):
+            # The description is the one that is spawned: the row does not work.
+            yield it._replace(level=ERROR) if known or it.code != no_gz_topic.code else it
+
+
+def _bridge_files(launched: Launched) -> Iterator[str]:
+    for it in launched.nodes:
+        given = it.values.get("config_file") if is_bridge(it) else None
+        if given and os.path.isfile(str(given.value)):
+            yield os.path.realpath(str(given.value))
+
+
+def _of_bridge(path: str, release: str, known: Mapping[str, GzTopic]) -> Iterable[Finding]:
+    every: Declared = {it: {} for kinds in KINDS.values() for it in kinds}
+    names = CompanionNames(every, _NAMING, "")
+    try:
+        file = read_named(BRIDGE, read_file(path), path, Context(names, names, {}, release))
+    except InputError:
+        return ()
+    file = file._replace(memo={GzTopics: GzTopics(known)} if known else {})
+    return judged(file, (no_gz_topic, not_converted, bridge_row))
+
+
+def _topics(models: Iterable[InSimulator]) -> dict[str, GzTopic]:
+    found = (it for model in models for it in model.topics)
+    return {f"/{it.gz.lstrip('/')}": GzTopic(it.gz_type, it.direction) for it in found}

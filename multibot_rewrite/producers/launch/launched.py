@@ -1,0 +1,119 @@
+"""What a launch starts, with all that is known of it: what the rules for launch files ask."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from itertools import pairwise
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.model import InputError, MultibotError
+from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.readback.xml import read_xml
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.text import text_at
+from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.description.steps.collect import collect
+from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.producers.launch.describe import SIMULATOR
+from multibot_rewrite.producers.launch.models import Model, Models
+from multibot_rewrite.producers.launch.records import LaunchGraph, RunningNode
+from multibot_rewrite.producers.launch.spawners import Spawned
+from multibot_rewrite.spelling.bridged_topics import BridgedTopic, bridged_topics
+from multibot_rewrite.system.records import Place, System
+
+_WORLDS = (".sdf", ".world")
+# The topics of a fleet with a tf each: those of a model are its own then.
+_NAMING = make_naming("tf-per-robot")
+
+
+class InSimulator(NamedTuple):
+    """A model that the launch spawns: its name, its description, its topics in the simulator, what
+    spawned it with which words (``-x 1``), and where."""
+
+    name: str
+    text: str
+    root: _Element
+    topics: tuple[BridgedTopic, ...]
+    words: Mapping[str, str]
+    place: Place
+
+
+class World(NamedTuple):
+    """The world that a launch starts the simulator with."""
+
+    file: str
+    root: _Element
+    place: Place
+
+
+class Launched(NamedTuple):
+    """All that a launch starts: as it is written (``graph``), its nodes as they run, the controllers
+    that spawners load, the descriptions, and the system that it makes in a release."""
+
+    graph: LaunchGraph
+    nodes: tuple[RunningNode, ...]
+    spawned: tuple[Spawned, ...]
+    models: Models
+    system: System
+    release: str
+
+    @property
+    def whole(self) -> bool:
+        """Is every node known, with all that it does?"""
+        return not any(it.incomplete for it in self.system.environment.caveats)
+
+
+def file_of(graph: LaunchGraph, text: str) -> str:
+    """The file that a launch read a description from; empty where that is not known."""
+    return next((it.source for _, it in graph.files if it.text == text and it.source), "")
+
+
+def models_in_simulator(launched: Launched) -> list[InSimulator]:
+    """The models that the launch spawns, as far as their descriptions are known."""
+    found = (_in_simulator(it, launched.release) for it in launched.models.found if it.spawned)
+    return [it for it in found if it is not None]
+
+
+def _in_simulator(it: Model, release: str) -> InSimulator | None:
+    with suppress(MultibotError):
+        document = read_document(it.text.encode(), it.place.file)
+        name = it.name or document.root.get("name", "")
+        inventory = collect(document, builtin_tree((), release))
+        topics, _ = bridged_topics({name: inventory}, _NAMING)
+        own = tuple(one for one in topics if one.robot)
+        words = {old.partition("=")[0]: old.partition("=")[2] for old in it.words if "=" in old}
+        words |= dict(pairwise(it.words))
+        return InSimulator(name, it.text, document.root, own, words, it.place)
+    return None
+
+
+def worlds(launched: Launched) -> Iterator[World]:
+    """The files of worlds that simulators are started with."""
+    for it in launched.graph.nodes:
+        words = (word for text in it.arguments for word in _split(text))
+        for word in words if it.executable == SIMULATOR else ():
+            if word.endswith(_WORLDS):
+                with suppress(InputError, OSError):
+                    yield World(word, read_xml(read_file(word), word), it.place)
+
+
+def _split(text: str) -> list[str]:
+    try:
+        return shlex.split(text)
+    except ValueError:
+        return []
+
+
+def frames_of_sensors(models: list[InSimulator]) -> Iterator[tuple[str, str]]:
+    """Topic in the simulator, frame: of the sensors whose description names one (``gz_frame_id``)."""
+    for model in models:
+        for sensor in model.root.iter("sensor"):
+            frame = text_at(sensor, "gz_frame_id") or text_at(sensor, "ignition_frame_id")
+            base = text_at(sensor, "topic")
+            if frame and base:
+                mine = (it.gz for it in model.topics if it.gz.startswith(base))
+                yield from ((f"/{it.lstrip('/')}", frame) for it in mine)

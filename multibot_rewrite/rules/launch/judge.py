@@ -1,0 +1,50 @@
+"""A launch -> what the rules for launch files find in it, in the order of the codes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.producers.launch.launched import Launched
+from multibot_rewrite.rules.launch import models, rows, started, words, world
+from multibot_rewrite.system.records import System
+
+MODULES = (models, rows, started, words, world)
+
+
+def _rules() -> Iterator[Rule]:
+    for module in MODULES:
+        yield from (it for it in vars(module).values() if isinstance(it, Rule))
+
+
+RULES = tuple(sorted(_rules(), key=lambda it: it.code))
+
+
+def placed(it: Finding, launched: Launched) -> Finding:
+    """A finding about a system where the launch file starts the node that it is about."""
+    if it.file:
+        return it
+    nodes = {node.full_name: node.place for node in launched.nodes}
+    about = [it.node, *_ends(it, launched.system), *_of_robot(it.robot, nodes)]
+    place = next((nodes[name] for name in about if name in nodes), None)
+    if place is None or not place.file:
+        return it
+    hint = f"{it.hint}; started at {place}" if it.hint else f"started at {place}"
+    return it._replace(file=place.file, line=place.line, column=place.column or 1, hint=hint)
+
+
+def _ends(it: Finding, system: System) -> Iterator[str]:
+    """The nodes that have a name of the finding."""
+    yield from (end.node for end in system.ends if end.name in it.names)
+    edges = (edge for edge in system.edges if edge.child in it.names)
+    yield from (node for edge in edges for node in edge.publishers)
+
+
+def _of_robot(robot: str, nodes: Iterable[str]) -> Iterator[str]:
+    yield from (name for name in nodes if robot and robot in name.split("/"))
+
+
+def judge_launch(launched: Launched) -> list[Finding]:
+    """What is wrong with what a launch file starts; empty for one that is as it should be."""
+    return [it for rule in RULES if rule.check for it in rule.check(launched)]

@@ -1,0 +1,163 @@
+"""What is wrong with the models that a launch spawns: two of one name, at one place, on one topic.
+
+Source: ros_gz_sim jazzy create.cpp (``-name``, ``-x`` ... and ``-allow_renaming``); gz-sim8
+src/systems/user_commands/UserCommands.cpp (an entity of a name that is there is not created).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.wording import shorten
+from multibot_rewrite.producers.launch.launched import (
+    InSimulator,
+    Launched,
+    models_in_simulator,
+)
+from multibot_rewrite.rules.launch.declaration import (
+    ROVERS,
+    at,
+    bridge_of,
+    create_of,
+    launch_of,
+    launch_rule,
+)
+from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, TF_TYPE, BridgedTopic
+
+_POSE = ("-x", "-y", "-z")
+# Two that stand nearer than this are in each other, whatever they are.
+_NEAR = 0.01
+_RENAMES = "-allow_renaming"
+_INTO_GAZEBO = DIRECTIONS["out"]
+
+
+@launch_rule(
+    "MG701",
+    "model-name-twice",
+    what="A launch file spawns two models of one name in Gazebo.",
+    why="Gazebo refuses the second one, or spawns it under another name than its bridge and its topics "
+    "have.",
+    fix="Give each `-name` of its own.",
+    bad=launch_of(create_of("robot1", "-x", "1"), create_of("robot2", "-x", "3", model="robot1")),
+    good=launch_of(create_of("robot1", "-x", "1"), create_of("robot2", "-x", "3")),
+    line=1,
+    beside=ROVERS,
+)
+def name_twice(launched: Launched) -> Iterator[Finding]:
+    """Where nothing renames the second one."""
+    first: dict[str, InSimulator] = {}
+    for it in models_in_simulator(launched):
+        other = first.setdefault(it.name, it)
+        if other is not it and it.words.get(_RENAMES) not in ("true", "1"):
+            message = f"spawns a second model {it.name}"
+            yield at(
+                name_twice, it.place, message, f"give it a -name of its own; see {other.place}"
+            )
+
+
+@launch_rule(
+    "MG702",
+    "models-at-one-place",
+    what="A launch file spawns two models at the same place.",
+    why="They stand in each other: the simulator pushes them apart, and they fly away or tip over.",
+    fix="Give each a place of its own with `-x` and `-y`.",
+    bad=launch_of(create_of("robot1", "-x", "1"), create_of("robot2", "-x", "1")),
+    good=launch_of(create_of("robot1", "-x", "1"), create_of("robot2", "-x", "3")),
+    line=1,
+    beside=ROVERS,
+)
+def one_place(launched: Launched) -> Iterator[Finding]:
+    """Of descriptions in URDF: a model in SDF may have a pose of its own."""
+    models = [it for it in models_in_simulator(launched) if it.root.tag == "robot"]
+    for one, other in combinations(models, 2):
+        if one.name != other.name and _is_near(one, other):
+            where = ", ".join(other.words.get(it, "0") for it in _POSE)
+            message = f"spawns {other.name} where {one.name} stands, at {where}"
+            yield at(one_place, other.place, message, f"move one with -x or -y; see {one.place}")
+
+
+def _is_near(one: InSimulator, other: InSimulator) -> bool:
+    try:
+        pairs = [[float(it.words.get(key, 0)) for key in _POSE] for it in (one, other)]
+    except ValueError:
+        return False
+    return all(abs(a - b) < _NEAR for a, b in zip(*pairs, strict=True))
+
+
+@launch_rule(
+    "MG703",
+    "gz-topic-of-two-models",
+    what="Two models that a launch file spawns have the same topic in Gazebo.",
+    why="One command moves both robots, or the data of both come on one topic.",
+    fix="Give each description topics of its own, with the name of its robot.",
+    bad=launch_of(create_of("robot1", "-x", "1"), create_of("robot1", "-x", "3", model="robot2")),
+    good=launch_of(create_of("robot1", "-x", "1"), create_of("robot2", "-x", "3")),
+    line=1,
+    beside=ROVERS,
+)
+def shared_topic(launched: Launched) -> Iterator[Finding]:
+    """Once for two models; transforms of all robots may have one topic."""
+    models = models_in_simulator(launched)
+    for one, other in combinations(models, 2):
+        if one.name == other.name:
+            continue
+        both = [it for it in _names(other) if it in set(_names(one))]
+        if both:
+            message = f"{other.name} and {one.name} both have gz topic {shorten(both)}"
+            hint = f"give each description topics of its own; see {one.place}"
+            yield at(shared_topic, other.place, message, hint, names=tuple(both))
+
+
+def _names(model: InSimulator) -> Iterator[str]:
+    for it in model.topics:
+        if it.ros_type != TF_TYPE:
+            yield f"/{it.gz.lstrip('/')}"
+
+
+@launch_rule(
+    "MG704",
+    "command-not-bridged",
+    what="A model in Gazebo gets no commands: no bridge of the launch file passes anything on to a "
+    "topic that its plugin reads, and one does for another model of the launch file.",
+    why="Nothing that is sent in ROS moves the robot.",
+    fix="Add the row, with the direction to Gazebo.",
+    bad=launch_of(
+        create_of("robot1", "-x", "1"),
+        create_of("robot2", "-x", "3"),
+        bridge_of("/robot1/cmd_vel@geometry_msgs/msg/Twist]gz.msgs.Twist"),
+    ),
+    good=launch_of(
+        create_of("robot1", "-x", "1"),
+        create_of("robot2", "-x", "3"),
+        bridge_of(
+            "/robot1/cmd_vel@geometry_msgs/msg/Twist]gz.msgs.Twist",
+            "/robot2/cmd_vel@geometry_msgs/msg/Twist]gz.msgs.Twist",
+        ),
+    ),
+    line=1,
+    beside=ROVERS,
+)
+def not_bridged(launched: Launched) -> Iterator[Finding]:
+    """What only one of the models gets may be meant; that its like gets nothing is not."""
+    from multibot_rewrite.rules.launch.rows import into_gazebo
+
+    told = into_gazebo(launched)
+    models = models_in_simulator(launched)
+    reached = {kind for it in models for kind, gz in _read(it) if gz in told}
+    for it in models:
+        for kind, gz in _read(it):
+            if gz not in told and kind in reached:
+                message = f"{it.name} reads gz topic {gz}, and no bridge passes anything on to it"
+                hint = "add a row to Gazebo for it, as another model has one"
+                yield at(not_bridged, it.place, message, hint, names=(gz,))
+
+
+def _read(model: InSimulator) -> Iterator[tuple[str, str]]:
+    for it in _inputs(model):
+        yield it.ros_type, f"/{it.gz.lstrip('/')}"
+
+
+def _inputs(model: InSimulator) -> Iterator[BridgedTopic]:
+    yield from (it for it in model.topics if it.direction == _INTO_GAZEBO)

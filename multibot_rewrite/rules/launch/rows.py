@@ -1,0 +1,91 @@
+"""What is wrong with the rows of the bridges that a launch starts, beside the models that it spawns."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.rosnames import resolve_bound
+from multibot_rewrite.producers.launch.bridges import bridged_by
+from multibot_rewrite.producers.launch.launched import Launched, models_in_simulator
+from multibot_rewrite.producers.launch.records import RunningNode
+from multibot_rewrite.producers.launch.running import bound_of
+from multibot_rewrite.rules.launch.declaration import (
+    ROVERS,
+    at,
+    bridge_of,
+    create_of,
+    launch_of,
+    launch_rule,
+)
+from multibot_rewrite.system.records import SUBSCRIBES, TOPIC
+
+_TWIST = "@geometry_msgs/msg/Twist]gz.msgs.Twist"
+_BOTH = create_of("robot1", "-x", "1"), create_of("robot2", "-x", "3")
+
+
+class _Row(NamedTuple):
+    """A row of a bridge: the name in ROS and in Gazebo, whether it goes to Gazebo, who has it."""
+
+    ros: str
+    gz: str
+    inwards: bool
+    node: RunningNode
+
+
+def _rows(launched: Launched) -> Iterator[_Row]:
+    for it in launched.nodes:
+        for end, inside in bridged_by(it):
+            if end.kind == TOPIC:
+                full = resolve_bound(end.name, end.kind, bound_of(it.name, it.namespace, it.rules))
+                yield _Row(full, f"/{inside.lstrip('/')}", end.role == SUBSCRIBES, it)
+
+
+def into_gazebo(launched: Launched) -> set[str]:
+    """The topics in Gazebo that bridges pass something on to."""
+    return {it.gz for it in _rows(launched) if it.inwards}
+
+
+@launch_rule(
+    "MG705",
+    "bridge-to-another-robot",
+    what="A bridge connects the topic of one robot in ROS with that of another one in Gazebo, or with "
+    "one that has no robot's name although the rows of the other robots have theirs.",
+    why="A robot obeys the commands of another one, or it is unknown whose data they are.",
+    fix="Name the same robot on both sides of the row.",
+    bad=launch_of(
+        *_BOTH,
+        'Node(package="ros_gz_bridge", executable="parameter_bridge", name="bridge", remappings='
+        '[("/robot1/cmd_vel", "/robot2/cmd_vel"), ("/robot2/cmd_vel", "/robot1/cmd_vel")], '
+        f'arguments=["/robot2/cmd_vel{_TWIST}"])',
+        bridge_of(f"/robot1/cmd_vel{_TWIST}"),
+    ),
+    good=launch_of(*_BOTH, bridge_of(f"/robot1/cmd_vel{_TWIST}", f"/robot2/cmd_vel{_TWIST}")),
+    line=2,
+    beside=ROVERS,
+)
+def to_another_robot(launched: Launched) -> Iterator[Finding]:
+    """By the names of the models, where they are in the names of their topics."""
+    models = models_in_simulator(launched)
+    owners = {f"/{one.gz.lstrip('/')}": it.name for it in models for one in it.topics}
+    names = set(owners.values())
+    rows = [it for it in _rows(launched) if owners.get(it.gz) and len(names) > 1]
+    usual = {_plain(it, owners[it.gz]) for it in rows if owners[it.gz] in it.ros.split("/")}
+    for it in rows:
+        own, words = owners[it.gz], set(it.ros.split("/"))
+        others = sorted(names & words - {own})
+        if others and own not in words:
+            message = f"{it.ros} of {others[0]} is bridged to gz topic {it.gz} of {own}"
+        elif own not in words and any(gz == _plain(it, own)[1] for _, gz in usual):
+            message = f"{it.ros} is bridged to gz topic {it.gz} of {own}, and has no robot's name"
+        else:
+            continue
+        hint = f"write the name of {own} on both sides"
+        yield at(to_another_robot, it.node.place, message, hint, names=(it.ros,))
+
+
+def _plain(row: _Row, own: str) -> tuple[str, str]:
+    """The row without the robot's name."""
+    ros, gz = ("/".join(w for w in it.split("/") if w != own) for it in (row.ros, row.gz))
+    return ros, gz

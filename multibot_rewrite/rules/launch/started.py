@@ -1,0 +1,275 @@
+"""What of a launch file does not start, or waits for ever: the launch itself, controllers, models.
+
+Source: launch jazzy launch_service.py (an exception ends it); ros2_control spawner.py (it waits for the
+services of its manager; what is loaded already is not loaded again) and controller_manager.cpp (a
+controller without a type is not loaded); nav2_lifecycle_manager jazzy (``autostart``, ``node_names``).
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+
+from multibot_rewrite.base.findings.finding import INCONCLUSIVE, WARNING, Finding
+from multibot_rewrite.base.nearest import nearest
+from multibot_rewrite.base.rosnames import expand
+from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER, NAV2
+from multibot_rewrite.producers.evidence.claims import COMMAND, claims_of
+from multibot_rewrite.producers.evidence.records import GivenNode
+from multibot_rewrite.producers.launch.launched import Launched
+from multibot_rewrite.producers.launch.records import RunningNode
+from multibot_rewrite.rules.launch.declaration import at, launch_of, launch_rule, node_of
+
+_SPAWNER = node_of("controller_manager", "spawner", ("arm",))
+_MANAGER = node_of("controller_manager", "ros2_control_node")
+_TYPED = '[{"arm.type": "joint_trajectory_controller/JointTrajectoryController"}]'
+_WITH_TYPE = node_of("controller_manager", "ros2_control_node", parameters=_TYPED)
+_WITH_JOINTS = node_of(
+    "controller_manager", "ros2_control_node", parameters='[str(HERE / "arm.yaml")]'
+)
+_CONTROLLER = """\
+/controller_manager:
+  ros__parameters:
+    arm: {{type: joint_trajectory_controller/JointTrajectoryController}}
+/{}:
+  ros__parameters: {{joints: [elbow], command_interfaces: [position]}}
+"""
+_JOINTS = {"arm.yaml": _CONTROLLER.format("arm"), "lost.yaml": _CONTROLLER.format("lost")}
+_CREATE = (
+    'Node(package="ros_gz_sim", executable="create", arguments=["-name", "r", "-topic", "{}"])'
+)
+_STATE = node_of(
+    "robot_state_publisher",
+    "robot_state_publisher",
+    parameters='[{"robot_description": (HERE / "robot1.urdf").read_text()}]',
+)
+_ROBOT = {"robot1.urdf": '<robot name="r"><link name="a"/></robot>\n'}
+_OPENED = 'OpaqueFunction(function=lambda context: [LogInfo(msg=(HERE / "{}").read_text())])'
+_LIST = '[{{"autostart": {}, "node_names": [{}]}}]'
+_AMCL = node_of("nav2_amcl", "amcl", name='"amcl"')
+_UNSURE = "a node that is not known may; see what is incomplete"
+
+
+def _managed(names: str, autostart: bool = True) -> str:
+    return node_of(
+        "nav2_lifecycle_manager",
+        "lifecycle_manager",
+        name='"lifecycle_manager"',
+        parameters=_LIST.format(autostart, names),
+    )
+
+
+@launch_rule(
+    "MG721",
+    "launch-fails",
+    what="A launch file ends with an error when it is run.",
+    why="Nothing that stands behind it is started, and what runs is stopped.",
+    fix="Correct what the message says, at its line.",
+    bad=launch_of(_OPENED.format("lost.txt")),
+    good=launch_of(_OPENED.format("robot1.urdf")),
+    beside=_ROBOT,
+)
+def fails(launched: Launched) -> Iterator[Finding]:
+    """What the file itself raises, and files of it that are not there."""
+    for it in launched.graph.notes:
+        if it.fails:
+            yield at(fails, it.place, f"the launch ends here: {it.message}", "correct it")
+
+
+@launch_rule(
+    "MG722",
+    "controller-spawned-twice",
+    what="Two spawners load one controller into one controller manager.",
+    why="The second one finds it loaded: it was to be another robot's, which has none then.",
+    fix="Give the second one the manager of its robot (`-c`, or its namespace).",
+    bad=launch_of(
+        _WITH_TYPE, _SPAWNER, node_of("controller_manager", "spawner", ("arm",), name='"b"')
+    ),
+    good=launch_of(_WITH_TYPE, _SPAWNER),
+    line=2,
+)
+def spawned_twice(launched: Launched) -> Iterator[Finding]:
+    """At the last of them."""
+    spawned = launched.spawned
+    for (name, manager), count in Counter((it.name, it.manager) for it in spawned).items():
+        if count > 1:
+            last = next(it for it in reversed(spawned) if (it.name, it.manager) == (name, manager))
+            message = f"{manager} gets {name} from {count} spawners"
+            yield at(spawned_twice, last.place, message, "is one of them another robot's?")
+
+
+@launch_rule(
+    "MG723",
+    "no-controller-manager",
+    what="A spawner waits for a controller manager that no node of the launch file and no plugin of a "
+    "published description makes.",
+    why="The spawner waits and ends; none of its controllers is started.",
+    fix="Correct the name of the manager (`-c`), or start it in that namespace.",
+    bad=launch_of(
+        node_of("controller_manager", "spawner", ("arm", "-c", "/robot1/controller_manager"))
+    ),
+    good=launch_of(_WITH_TYPE, _SPAWNER),
+)
+def no_manager(launched: Launched) -> Iterator[Finding]:
+    """An error where all nodes are known, or a manager of another namespace is there."""
+    there = [it.full_name for it in launched.nodes if _is(it, "controller_manager")]
+    for manager in dict.fromkeys(it.manager for it in launched.spawned):
+        if manager in there:
+            continue
+        mine = [it for it in launched.spawned if it.manager == manager]
+        names = ", ".join(dict.fromkeys(it.name for it in mine))
+        message = f"nothing starts {manager}, so {names} are not started"
+        near = nearest(manager, there) or next(iter(there), "")
+        hint = f"did you mean {near}?" if near else "start it, or name the one that is there"
+        certain = bool(near) or _is_known(launched)
+        level = {} if certain else {"level": INCONCLUSIVE}
+        yield at(no_manager, mine[0].place, message, hint if certain else _UNSURE, **level)
+
+
+def _is(it: RunningNode, known: str) -> bool:
+    return it.facts is not None and it.facts.known == known
+
+
+def _is_known(launched: Launched) -> bool:
+    """Are all nodes of the launch known?"""
+    nodes = all(it.facts is not None for it in launched.nodes)
+    return nodes and all(it.parameters or it.fails for it in launched.graph.notes)
+
+
+@launch_rule(
+    "MG724",
+    "model-without-description",
+    what="A launch file spawns a model from a topic on which no node of it sends a description.",
+    why="The spawner waits for ever: the robot is not in the simulator.",
+    fix="Name the topic of its robot_state_publisher, with the namespace.",
+    bad=launch_of(_STATE, _CREATE.format("/robot1/robot_description")),
+    good=launch_of(_STATE, _CREATE.format("/robot_description")),
+    line=1,
+    beside=_ROBOT,
+)
+def no_description(launched: Launched) -> Iterator[Finding]:
+    """Where all nodes are known, or a description has another topic."""
+    topics = [e.name for e in launched.system.ends if e.name.endswith("robot_description")]
+    sent = [
+        e.name for e in launched.system.ends
+        if e.role == "publishes" and e.name.rpartition("/")[2] == "robot_description"
+    ]  # fmt: skip
+    for it in launched.models.lost:
+        words = dict(zip(it.arguments, it.arguments[1:], strict=False))
+        topic = expand(words["-topic"], it.namespace, "") if "-topic" in words else ""
+        if not topic or topic in topics:
+            continue
+        if sent or _is_known(launched):
+            near = nearest(topic, sent)
+            hint = f"did you mean {near}?" if near else "name the topic that has it"
+            message = f"waits for a description on {topic}, where nothing sends one"
+            yield at(no_description, it.place, message, hint, names=(topic,))
+
+
+@launch_rule(
+    "MG725",
+    "controller-without-joints",
+    what="A spawner loads a controller that gets no parameter which names a joint.",
+    why="The controller is not configured: it has nothing to move.",
+    fix="Write its joints into a section with its name and namespace, in a file of the controller "
+    "manager or of the spawner (`--param-file`).",
+    bad=launch_of(_WITH_JOINTS.replace("arm", "lost"), _SPAWNER),
+    good=launch_of(_WITH_JOINTS, _SPAWNER),
+    line=1,
+    beside=_JOINTS,
+)
+def no_joints(launched: Launched) -> Iterator[Finding]:
+    """Where all parameter files are known, and what it claims follows from its parameters alone."""
+    if any(it.parameters for it in launched.graph.notes):
+        return
+    spawned = {(it.full_name, it.place) for it in launched.spawned}
+    for it in launched.nodes:
+        facts = it.facts
+        if (it.full_name, it.place) not in spawned or facts is None or not facts.claims:
+            continue
+        given = GivenNode(it.name, facts.known, it.program, it.values, it.place)
+        commands = [claim for claim in facts.claims if claim.kind == COMMAND]
+        by_joint = commands and all(claim.template.startswith("<") for claim in commands)
+        if by_joint and not any(True for _ in claims_of(commands, given)):
+            message = f"controller {it.full_name} gets no parameter that names a joint"
+            hint = f"write its parameters in a section {it.full_name}"
+            yield at(no_joints, it.place, message, hint)
+
+
+@launch_rule(
+    "MG726",
+    "not-activated",
+    what="A node of Nav2 with a life cycle is in no list of a lifecycle manager, while the launch "
+    "file starts one, or a manager lists a node that the launch file does not start.",
+    why="The node stays unconfigured and does nothing. A manager that waits for a node activates none.",
+    fix="Write the same names in `node_names` and at the nodes.",
+    bad=launch_of(
+        _AMCL, node_of("nav2_map_server", "map_server", name='"map_server"'), _managed('"amcl"')
+    ),
+    good=launch_of(_AMCL, _managed('"amcl"')),
+    line=1,
+)
+def not_listed(launched: Launched) -> Iterator[Finding]:
+    """By full names: a manager is for the nodes of its namespace."""
+    managers = [it for it in launched.nodes if _is(it, LIFECYCLE_MANAGER)]
+    listed = {name: it for it in managers for name in _listed(it)}
+    known = all(isinstance(_names(it), list) for it in managers)
+    started = {it.full_name: it for it in launched.nodes}
+    for it in launched.nodes if managers and known else ():
+        kind = it.facts.kind if it.facts else ""
+        managed = kind in NAV2 and kind not in _SELF and not _activates_itself(it)
+        if managed and it.full_name not in listed:
+            message = f"{it.full_name} is in the list of no lifecycle manager"
+            hint = f"add it to node_names of {managers[0].full_name}"
+            yield at(not_listed, it.place, message, hint)
+    for name, manager in listed.items() if _is_known(launched) else ():
+        if name not in started:
+            near = nearest(name, started)
+            hint = (
+                f"did you mean {near.rpartition('/')[2]}?" if near else "start it, or leave it out"
+            )
+            message = f"{manager.full_name} waits for {name}, which the launch file does not start"
+            yield at(not_listed, manager.place, message, hint)
+
+
+# Some releases of it have no life cycle, in others its own launch file brings it up.
+_SELF = (LIFECYCLE_MANAGER, "slam_toolbox", "map_saver", "costmap_filter_info_server")
+
+
+def _activates_itself(it: RunningNode) -> bool:
+    given = it.values.get("autostart_node")
+    return given is not None and given.value is True
+
+
+def _names(it: RunningNode) -> object:
+    given = it.values.get("node_names")
+    return given.value if given else None
+
+
+def _listed(it: RunningNode) -> Iterator[str]:
+    names = _names(it)
+    yield from (
+        (expand(str(one), it.namespace, "") for one in names or ())
+        if isinstance(names, list)
+        else ()
+    )
+
+
+@launch_rule(
+    "MG727",
+    "manager-waits",
+    level=WARNING,
+    what="A lifecycle manager of Nav2 has no `autostart: true`.",
+    why="Its nodes stay unconfigured until its service is called, or one presses the button in RViz.",
+    fix="Set `autostart` to true, unless it is started by hand.",
+    bad=launch_of(_AMCL, _managed('"amcl"', False)),
+    good=launch_of(_AMCL, _managed('"amcl"')),
+    line=1,
+)
+def waits(launched: Launched) -> Iterator[Finding]:
+    """Its default is false."""
+    for it in launched.nodes:
+        given = it.values.get("autostart")
+        if _is(it, LIFECYCLE_MANAGER) and (given is None or given.value is False):
+            message = f"{it.full_name} activates no node by itself: autostart is not true"
+            yield at(waits, it.place, message, "set autostart to true")

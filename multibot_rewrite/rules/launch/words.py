@@ -1,0 +1,232 @@
+"""What is wrong with the words that a launch file gives its nodes: transforms, rules, files, programs.
+
+Source: tf2_ros jazzy static_transform_broadcaster_program.cpp (angles in radians, eight or nine words
+without flags), tf2 buffer_core.cpp (a frame is not its own parent, a quaternion has length one).
+"""
+
+from __future__ import annotations
+
+import os
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
+from math import isclose, pi
+
+from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.nearest import SLIP, nearest
+from multibot_rewrite.knowledge.stacks import built_in
+from multibot_rewrite.producers.launch.launched import Launched
+from multibot_rewrite.producers.launch.records import RunningNode
+from multibot_rewrite.producers.launch.static_transforms import STATIC
+from multibot_rewrite.rules.launch.declaration import at, launch_of, launch_rule, node_of
+
+_ANGLES = ("--roll", "--pitch", "--yaw")
+_QUATERNION = ("--qx", "--qy", "--qz", "--qw")
+_TF = "tf2_ros", "static_transform_publisher"
+_FRAMES = ("--frame-id", "map", "--child-frame-id", "odom")
+# More than a turn: nobody writes so many radians.
+_TURN = 2 * pi
+
+
+@launch_rule(
+    "MG711",
+    "static-transform-implausible",
+    what="The words of a static_transform_publisher make no transform, or not the one that is meant: a "
+    "frame is its own parent, an angle in degrees, a quaternion that is no rotation, words "
+    "in the place of numbers.",
+    why="tf2 refuses the transform, or the robot and its sensors stand turned.",
+    fix="Write angles in radians, a quaternion of length one, and two different frames; use the flags "
+    "(`--x`, `--yaw`, `--frame-id`) so that no order matters.",
+    bad=launch_of(node_of(*_TF, ("--yaw", "90", *_FRAMES))),
+    good=launch_of(node_of(*_TF, ("--yaw", "1.5708", *_FRAMES))),
+)
+def implausible(launched: Launched) -> Iterator[Finding]:
+    """Each fault of each publisher."""
+    for it in launched.nodes:
+        if it.facts is None or it.facts.known != STATIC:
+            continue
+        for message, hint in _faults(it):
+            yield at(implausible, it.place, f"{it.full_name}: {message}", hint)
+
+
+def _faults(it: RunningNode) -> Iterator[tuple[str, str]]:
+    given = {one.parameter: one.default for one in it.facts.frames} if it.facts else {}
+    parent, child = (given.get(key, "") for key in ("frame_id", "child_frame_id"))
+    if parent and parent == child:
+        yield f"sends a transform from {parent} to itself", "name two different frames"
+    flags = {old: new for old, new in pairwise(it.arguments) if old.startswith("--")}
+    named = flags or _by_order(it.arguments)
+    for flag, word in named.items():
+        value = _number(word)
+        if flag in _ANGLES and value is not None and abs(value) > _TURN + 0.01:
+            radians = f"{value * pi / 180:.4g}"
+            yield f"{flag} {word} is more than a turn in radians", f"degrees? write {radians}"
+        elif not flags and value is None:
+            hint = "numbers come first, then the two frames; or use flags, as --frame-id"
+            yield f"{word} is in the place of {flag}", hint
+    yield from _no_rotation(named)
+
+
+def _no_rotation(named: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+    found = [_number(named[it]) for it in _QUATERNION if it in named]
+    if len(found) == len(_QUATERNION) and None not in found:
+        length = sum(it * it for it in found if it is not None) ** 0.5
+        if not isclose(length, 1, abs_tol=0.1):
+            words = " ".join(named[it] for it in _QUATERNION)
+            yield f"the quaternion {words} is no rotation", "without a rotation write 0 0 0 1"
+
+
+def _by_order(words: Sequence[str]) -> dict[str, str]:
+    """The words of the form without flags: yaw, pitch and roll, or a quaternion."""
+    places = ("--x", "--y", "--z")
+    rest = {8: ("--yaw", "--pitch", "--roll"), 9: _QUATERNION}.get(len(words), ())
+    return dict(zip((*places, *rest), words, strict=False)) if rest else {}
+
+
+def _number(word: str) -> float | None:
+    try:
+        return float(word)
+    except ValueError:
+        return None
+
+
+@launch_rule(
+    "MG712",
+    "remap-matches-nothing",
+    level=WARNING,
+    what="A remap rule of a launch file is for a name that the node has not, but nearly has.",
+    why="The rule does nothing: the node keeps its own name.",
+    fix="Write the name as the node has it.",
+    bad=launch_of(
+        node_of(
+            "robot_state_publisher", "robot_state_publisher",
+            remappings='[("joint_stats", "joints")]', parameters='[{"robot_description": "x"}]',
+        )
+    ),
+    good=launch_of(
+        node_of(
+            "robot_state_publisher", "robot_state_publisher",
+            remappings='[("joint_states", "joints")]', parameters='[{"robot_description": "x"}]',
+        )
+    ),
+)  # fmt: skip
+def matches_nothing(launched: Launched) -> Iterator[Finding]:
+    """Only for a name that is mistyped: the code of a node may have more than is known."""
+    for it in launched.nodes:
+        names = [end.name.lstrip("/~") for end in it.facts.endpoints] if it.facts else []
+        for old, _ in it.rules:
+            bare = old.lstrip("/~")
+            near = nearest(bare, names, SLIP) if bare not in names and ":" not in old else ""
+            if near and not bare.startswith("__"):
+                message = f"{it.full_name}: the remap rule for {old} matches nothing"
+                yield at(matches_nothing, it.place, message, f"did you mean {near}?")
+
+
+@launch_rule(
+    "MG713",
+    "file-not-there",
+    what="A launch file gives a node the path of a file that is not there.",
+    why="The node ends when it starts, or runs without what the file says.",
+    fix="Correct the path, or install the file (`data_files`, `install(DIRECTORY ...)`).",
+    bad=launch_of(
+        node_of(
+            "ros_gz_bridge", "parameter_bridge",
+            parameters='[{"config_file": str(HERE / "bridge.yaml")}]',
+        )
+    ),
+    good=launch_of(
+        node_of(
+            "ros_gz_bridge", "parameter_bridge",
+            parameters='[{"config_file": str(HERE / "robot1.urdf")}]',
+        )
+    ),
+    beside={"robot1.urdf": "<robot name='r'/>\n"},
+)  # fmt: skip
+def not_there(launched: Launched) -> Iterator[Finding]:
+    """Parameter files, files that a parameter names, and those after ``-file`` and ``-d``."""
+    told: set[tuple[str, int, str]] = set()
+    for note in launched.graph.notes:
+        if note.parameters and note.file and not _is_ours(note.file):
+            continue
+        if note.parameters and note.file:
+            told.add((note.place.file, note.place.line, note.file))
+            yield at(not_there, note.place, note.message, _PATH)
+    for it in launched.nodes:
+        for path in _files(it):
+            key = (it.place.file, it.place.line, path)
+            if not os.path.exists(path) and key not in told:
+                told.add(key)
+                yield at(
+                    not_there,
+                    it.place,
+                    f"{it.full_name} is given {path}, which is not there",
+                    _PATH,
+                )
+
+
+_PATH = "correct the path, or install the file"
+_NAMED = ("config_file", "yaml_filename")
+
+
+def _is_ours(path: str) -> bool:
+    """May it be judged here? What another machine has, or a program makes, may not."""
+    return os.path.isdir(os.path.dirname(path))
+
+
+def _files(it: RunningNode) -> Iterator[str]:
+    values = (str(it.values[name].value) for name in _NAMED if name in it.values)
+    words = (word for flag, word in pairwise(it.arguments) if flag in ("-d", "-file"))
+    for path in (*values, *words):
+        if os.path.isabs(path) and _is_ours(path):
+            yield path
+
+
+@launch_rule(
+    "MG714",
+    "program-misspelt",
+    what="A launch file starts a program that its package has not, and that is like one that it has.",
+    why="launch ends there: the executable is not found.",
+    fix="Write the name of the program.",
+    bad=launch_of(
+        node_of(
+            "robot_state_publisher",
+            "robot_state_publish",
+            parameters='[{"robot_description": "x"}]',
+        )
+    ),
+    good=launch_of(
+        node_of(
+            "robot_state_publisher",
+            "robot_state_publisher",
+            parameters='[{"robot_description": "x"}]',
+        )
+    ),
+)
+def misspelt(launched: Launched) -> Iterator[Finding]:
+    """By what is known of a package's programs."""
+    known = _programs(launched.release)
+    for it in launched.graph.nodes:
+        every = known.get(it.package, ())
+        if not it.executable or "::" in it.executable or it.executable in every:
+            continue
+        near = nearest(it.executable, sorted(every), SLIP)
+        if near and _differ(it.executable, near):
+            message = f"package {it.package} has no program {it.executable}"
+            yield at(misspelt, it.place, message, f"did you mean {near}?")
+
+
+def _programs(release: str) -> dict[str, set[str]]:
+    """The programs of each package that are known."""
+    found: dict[str, set[str]] = defaultdict(set)
+    for node in built_in(release).nodes.values():
+        for it in node.programs or (node.kind,):
+            package, slash, program = it.rpartition("/")
+            found[package if slash else node.package].add(program)
+    return found
+
+
+def _differ(program: str, near: str) -> bool:
+    """Programs are called with and without ``_node``, with and without a file ending."""
+    return program.removesuffix(".py").removesuffix("_node") != near.removesuffix(
+        ".py"
+    ).removesuffix("_node")

@@ -1,0 +1,99 @@
+"""Whether the world that a launch starts runs what its robots need.
+
+Source: gz-sim8 src/ServerConfig.cc and src/SimulationRunner.cc (a world without any plugin gets those
+of server.config: physics, user commands, scene broadcaster); src/systems/user_commands (it spawns
+entities); src/systems/sensors and the systems of other sensors.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.description.rewriters.tree import library_key
+from multibot_rewrite.knowledge.worlds import DEFAULTS, SYSTEMS
+from multibot_rewrite.producers.launch.launched import (
+    InSimulator,
+    Launched,
+    World,
+    models_in_simulator,
+    worlds,
+)
+from multibot_rewrite.rules.facts.simulators import DRIVES
+from multibot_rewrite.rules.launch.declaration import (
+    ROVERS,
+    at,
+    create_of,
+    launch_of,
+    launch_rule,
+)
+
+_PHYSICS, _SPAWNS = "physics", "user-commands"
+_PLUGIN = '<plugin filename="gz-sim-{}-system" name="gz::sim::systems::{}"/>'
+_WORLD = '<sdf version="1.9"><world name="w">{}</world></sdf>\n'
+_SIM = 'Node(package="ros_gz_sim", executable="gzserver", arguments=["-r", str(HERE / "{}.sdf")])'
+
+
+@launch_rule(
+    "MG706",
+    "world-without-system",
+    what="The world that a launch file starts Gazebo with names its systems, and one that the robots "
+    "need is not among them: UserCommands for spawning, Physics for what drives, Sensors or Imu for a "
+    "sensor.",
+    why="Gazebo loads what the world names and nothing else: nothing is spawned, nothing moves, or a "
+    "sensor sends nothing.",
+    fix="Add the `<plugin>` to the world, or name no plugin there: then Gazebo loads physics, user "
+    "commands and the scene by itself.",
+    bad=launch_of(_SIM.format("bad"), create_of("robot1")),
+    good=launch_of(_SIM.format("good"), create_of("robot1")),
+    line=0,
+    beside={
+        **ROVERS,
+        "bad.sdf": _WORLD.format(_PLUGIN.format("physics", "Physics")),
+        "good.sdf": _WORLD.format(
+            _PLUGIN.format("physics", "Physics") + _PLUGIN.format("user-commands", "UserCommands")
+        ),
+    },
+)
+def without_system(launched: Launched) -> Iterator[Finding]:
+    """A robot may bring a system itself."""
+    models = models_in_simulator(launched)
+    roots = [it.root for it in models]
+    brought = {_system(it.get("filename", "")) for root in roots for it in root.iter("plugin")}
+    for world in worlds(launched):
+        there = _systems(world)
+        for system, why in _needed(models):
+            if system not in {*there, *brought}:
+                message = f"world {world.file} does not load the system {system}: {why}"
+                hint = f'add <plugin filename="gz-sim-{system}-system" .../> to the world'
+                yield at(without_system, world.place, message, hint)
+
+
+def _systems(world: World) -> set[str]:
+    found = list(world.root.iterfind("world/plugin"))
+    return {_system(it.get("filename", "")) for it in found} if found else set(DEFAULTS)
+
+
+def _system(library: str) -> str:
+    return library_key(library).removeprefix("gz-sim-").removesuffix("-system")
+
+
+def _needed(models: Sequence[InSimulator]) -> Iterator[tuple[str, str]]:
+    """Each system once, with the reason."""
+    if models:
+        yield _SPAWNS, f"{models[0].name} is not spawned"
+    libraries = [
+        (it.name, library_key(one.get("filename", "")))
+        for it in models
+        for one in it.root.iter("plugin")
+    ]
+    moved = next((name for name, it in libraries if it in DRIVES), "")
+    if moved:
+        yield _PHYSICS, f"{moved} does not move"
+    first: dict[str, str] = {}
+    for model in models:
+        for sensor in model.root.iter("sensor"):
+            system, _ = SYSTEMS.get(sensor.get("type", ""), ("", ""))
+            if system:
+                first.setdefault(system, f"{sensor.get('name')} of {model.name} sends nothing")
+    yield from first.items()

@@ -1,0 +1,129 @@
+"""What nodes wait for in vain while their robot has it under another name: by what it is, not by how
+it is spelled."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Mapping, Sequence
+
+from multibot_rewrite.base.conventions import chooses, is_from_outside, team
+from multibot_rewrite.base.nearest import nearest
+from multibot_rewrite.rules.system.unsent import meant
+from multibot_rewrite.system import words
+from multibot_rewrite.system.index import Ends, Index, at_work, once
+from multibot_rewrite.system.records import CALLS, SERVICE, SUBSCRIBES, UNKNOWN_NODES, End
+from multibot_rewrite.system.tool_nodes import is_viewer, last_word
+
+_MANAGER, _CHANGE = "lifecycle_manager", ("/change_state", "/get_state")
+# Every node serves them, or many do: another one of such a type says nothing.
+COMMON = (
+    "rcl_interfaces/",
+    "lifecycle_msgs/",
+    "std_srvs/",
+    "type_description_interfaces/",
+    "std_msgs/",
+)
+# Of which the name says what they are for.
+_TRIGGERS = "std_srvs/"
+
+
+def sent_instead(seen: Index, end: End) -> Ends | None:
+    """The topic or service of the end's robot that its node may have meant; None for none."""
+    if known := meant(seen, end):
+        return known
+    # Where nodes may run that are not known, one of them may send it, or read the other.
+    doubt = any(it.code == UNKNOWN_NODES for it in seen.system.environment.caveats)
+    if doubt or is_viewer(end.node) or not end.type:
+        return None
+    if end.role == CALLS:
+        return _nearest(end, list(_served(seen, end)))
+    return _data(seen, end) if end.role == SUBSCRIBES and not chooses(end.node) else None
+
+
+def _data(seen: Index, end: End) -> Ends | None:
+    """What no node reads; of what a body measures also what others read."""
+    # Such as a footprint, which a person may send.
+    by_hand = "teleop" in last_word(end.name) or not words.moves(end.name, end.type)
+    outside = is_from_outside(end.name) and by_hand
+    kind = words.kind_of_data(end.name, end.type)
+    if outside and kind != words.DESCRIPTION:
+        return None
+    given = [it for it in _sent(seen).get(kind, ()) if _is_offered(seen, it, end)] if kind else []
+    unread = [it for it in given if not at_work(it.subscribers)]
+    same = [it for it in given if it.type == end.type and words.is_of_a_body(end.type)]
+    return _nearest(end, unread or same)
+
+
+def _is_offered(seen: Index, ends: Ends, end: End) -> bool:
+    """Does another node of its robot send it, and does its own not read it already? What the nodes of
+    Nav2 and MoveIt show is no sensor; a twist_mux that no node reads is a finding of its own."""
+    if any(it.node == end.node for it in ends.subscribers):
+        return False
+    robot = seen.robot(end.node) or seen.robot(end.name)
+    commands = words.moves(ends.name, ends.type)
+    return any(
+        it.node != end.node
+        and seen.robot(it.node) == robot
+        and (not chooses(it.node) if commands else team(it.node) == it.node)
+        for it in at_work(ends.publishers)
+    )
+
+
+@once
+def _sent(seen: Index) -> Mapping[str, Sequence[Ends]]:
+    """The topics with a publisher, by the kind of their data."""
+    found: dict[str, list[Ends]] = defaultdict(list)
+    for it in seen.topics:
+        if it.publishers and (kind := words.kind_of_data(it.name, it.type)):
+            found[kind].append(it)
+    return found
+
+
+def _served(seen: Index, end: End) -> Iterator[Ends]:
+    """Services and actions of its type that nobody calls, in its robot; of a type that many have, with
+    its last word."""
+    robot, last = seen.robot(end.node), last_word(end.name)
+    for it in _servers(seen).get((end.kind, end.type), ()):
+        own = any(one.node != end.node and seen.robot(one.node) == robot for one in it.servers)
+        common = end.type.startswith(COMMON)
+        alike = end.type.startswith(_TRIGGERS) and last == last_word(it.name)
+        if own and not at_work(it.clients) and (alike or not common):
+            yield it
+
+
+@once
+def _servers(seen: Index) -> Mapping[tuple[str, str], Sequence[Ends]]:
+    found: dict[tuple[str, str], list[Ends]] = defaultdict(list)
+    for it in seen.by_name.values():
+        if it.servers:
+            found[it.kind, it.type].append(it)
+    return found
+
+
+def _nearest(end: End, given: Sequence[Ends]) -> Ends | None:
+    """The one with the likest name."""
+    by_name = {it.name: it for it in given}
+    likest: Callable[[str], Ends | None] = by_name.get
+    return likest(nearest(end.name, by_name, alike=0.0)) or next(iter(given), None)
+
+
+def in_other_namespace(seen: Index, end: End) -> str:
+    """What a robot without a name serves, where the client has a namespace too many or lacks one that
+    has no node; empty for none."""
+    for it in _servers(seen).get((end.kind, end.type), ()) if not seen.robot(end.name) else ():
+        short, long = sorted((it.name, end.name), key=len)
+        space = long.removesuffix(short)
+        if space != long and not seen.robot(it.name) and not _is_lived_in(seen, space):
+            return it.name
+    return ""
+
+
+def _is_lived_in(seen: Index, space: str) -> bool:
+    return space in seen.nodes or any(it.startswith(f"{space}/") for it in seen.nodes)
+
+
+def listed_in_vain(seen: Index, end: End) -> str:
+    """The node that a lifecycle manager has in its list and nothing starts; empty for none."""
+    node = end.name.rpartition("/")[0]
+    manager = end.kind == SERVICE and last_word(end.node).startswith(_MANAGER)
+    return node if manager and end.name.endswith(_CHANGE) and node not in seen.nodes else ""

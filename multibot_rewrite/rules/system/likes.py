@@ -1,0 +1,174 @@
+"""Equal robots compared: the nodes and ends that one lacks and its likes have."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+
+from multibot_rewrite.base.conventions import EVERYBODYS
+from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.wording import SEVERAL, shorten
+from multibot_rewrite.rules.declaration import system_rule
+from multibot_rewrite.system.index import TF, Index, at_work, ends_of
+from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES, End
+from multibot_rewrite.system.tool_nodes import is_viewer, last_word
+
+# Fewer nodes in common say nothing.
+_ENOUGH = 3
+# Services of every node.
+_EVERY_NODE = ("rcl_interfaces/", "type_description_interfaces/")
+_OTHER_SIDE = {PUBLISHES: SUBSCRIBES, SUBSCRIBES: PUBLISHES, SERVES: CALLS, CALLS: SERVES}
+# A number of a process or an address in a node's name.
+_RANDOM = re.compile(r"[0-9a-f]*\d{4,}[0-9a-f]*")
+# Node, kind, role and name, without the robot's.
+_Key = tuple[str, str, str, str]
+
+
+class _Made(NamedTuple):
+    """What a robot is made of, by names without its own: its nodes, and their ends by key."""
+
+    nodes: Mapping[str, str]
+    ends: Mapping[_Key, End]
+
+
+@system_rule(
+    "MG327",
+    "lacks-what-its-likes-have",
+    WARNING,
+    absence=True,
+    what="A robot lacks a node, or a node of it a topic or service, that other robots of the same nodes"
+    " have. Of two robots it is said where the nodes of the one wait for it in vain.",
+    why="A process that died, a launch argument that is set for one robot and not for the other.",
+    fix="Start what is missing, or nothing where the robots are meant to differ.",
+    bad="""\
+running: /robot1/driver publishes /robot1/odom nav_msgs/msg/Odometry
+running: /robot1/planner subscribes /robot1/odom nav_msgs/msg/Odometry
+running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan
+running: /robot1/odometer subscribes /robot1/scan sensor_msgs/msg/LaserScan
+running: /robot2/driver publishes /robot2/odom nav_msgs/msg/Odometry
+running: /robot2/planner subscribes /robot2/odom nav_msgs/msg/Odometry
+running: /robot2/lidar publishes /robot2/scan sensor_msgs/msg/LaserScan
+""",
+    good="""\
+running: /robot1/driver publishes /robot1/odom nav_msgs/msg/Odometry
+running: /robot1/planner subscribes /robot1/odom nav_msgs/msg/Odometry
+running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan
+running: /robot2/driver publishes /robot2/odom nav_msgs/msg/Odometry
+running: /robot2/planner subscribes /robot2/odom nav_msgs/msg/Odometry
+running: /robot2/lidar publishes /robot2/scan sensor_msgs/msg/LaserScan
+""",
+    line=4,
+)
+def lacks_what_its_likes_have(seen: Index) -> Iterator[Finding]:
+    """What another finding is about as well is left to that one (``unexplained``)."""
+    made = {it: _made(seen, it) for it in seen.robots}
+    for likes in _alike(made):
+        others = len(likes) - 1
+        nodes = Counter(node for it in likes for node in made[it].nodes)
+        ends = Counter(key for it in likes for key in made[it].ends)
+        for robot in likes:
+            more = any(nodes[it] == 1 for it in made[robot].nodes)
+            lost = [it for it in nodes if nodes[it] == others and it not in made[robot].nodes]
+            # Two robots of which each has a node of its own are made for two things.
+            if lost and (others > 1 or not more):
+                yield from _lost_nodes(seen, made, robot, likes, lost)
+            gone = [it for it in ends if ends[it] == others and it not in made[robot].ends]
+            yield from _lost_ends(
+                seen, made, robot, likes, [k for k in gone if k[0] in made[robot].nodes]
+            )
+
+
+def unexplained(found: Sequence[Finding]) -> list[Finding]:
+    """The findings without those of this rule about what another one is about."""
+    code = lacks_what_its_likes_have.code
+    about = {it for one in found if one.code != code for it in (one.node, *one.names)} - {""}
+    robots = {one.robot for one in found if one.code != code and not one.node and not one.names}
+    return [
+        it
+        for it in found
+        if it.code != code or (about.isdisjoint((it.node, *it.names)) and it.robot not in robots)
+    ]
+
+
+def _made(seen: Index, robot: str) -> _Made:
+    nodes, ends = {}, {}
+    for name in seen.nodes:
+        plain = seen.plain(name)
+        if seen.robot(name) != robot or seen.is_tool(name) or _RANDOM.search(last_word(name)):
+            continue
+        nodes[plain] = name
+        for it in seen.by_node.get(name, ()):
+            plumbing = it.type.startswith(_EVERY_NODE) or it.name in EVERYBODYS
+            if it.type != TF and not plumbing and "/_" not in it.name:
+                ends[plain, it.kind, it.role, seen.plain(it.name)] = it
+    return _Made(nodes, ends)
+
+
+def _alike(made: Mapping[str, _Made]) -> Iterator[Sequence[str]]:
+    """Groups of robots of which more than half of all nodes are the same, and enough of them."""
+    left = [it for it in made if len(made[it].nodes) >= _ENOUGH]
+    while left:
+        first = made[left[0]].nodes.keys()
+        group = [it for it in left if _are_alike(first, made[it].nodes.keys())]
+        left = [it for it in left if it not in group]
+        if len(group) > 1:
+            yield group
+
+
+def _are_alike(one: Set[str], other: Set[str]) -> bool:
+    return len(one & other) >= _ENOUGH and 2 * len(one & other) > len(one | other)
+
+
+def _lost_nodes(
+    seen: Index, made: Mapping[str, _Made], robot: str, likes: Sequence[str], lost: Sequence[str]
+) -> Iterator[Finding]:
+    """All of one robot in one finding."""
+    like = next(it for it in likes if it != robot)
+    keys = [key for key in made[like].ends if key[0] in lost]
+    own = _waiting(seen, made, robot, keys)
+    if not own and len(likes) < 3:
+        return
+    theirs = sorted(made[like].nodes[it] for it in lost)
+    yield lacks_what_its_likes_have.finding(
+        f"{robot} has no {shorten(sorted(it.strip('/') for it in lost), SEVERAL)}, as {like} has"
+        f" ({shorten(theirs, SEVERAL)})",
+        "start it for this robot too, if the two are to be equal",
+        robot=robot, names=own,
+    )  # fmt: skip
+
+
+def _lost_ends(
+    seen: Index, made: Mapping[str, _Made], robot: str, likes: Sequence[str], gone: Iterable[_Key]
+) -> Iterator[Finding]:
+    """Those of a node in one finding."""
+    like = next(it for it in likes if it != robot)
+    by_node: dict[str, list[_Key]] = defaultdict(list)
+    for key in gone:
+        by_node[key[0]].append(key)
+    for plain, keys in by_node.items():
+        own, node = _waiting(seen, made, robot, keys), made[robot].nodes[plain]
+        if not own:
+            continue
+        theirs = [made[like].ends[key] for key in keys]
+        does = shorten([f"{it.role} {it.name}" for it in theirs], SEVERAL)
+        yield lacks_what_its_likes_have.finding(
+            f"lacks {shorten(own, SEVERAL)} beside {theirs[0].node}, which {does}",
+            "a remap rule, a parameter or a version of its own?",
+            robot=robot, node=node, names=own,
+        )  # fmt: skip
+
+
+def _waiting(
+    seen: Index, made: Mapping[str, _Made], robot: str, keys: Sequence[_Key]
+) -> tuple[str, ...]:
+    """The names of the robot whose other side is in it, and has nobody but what it lacks."""
+    sides = {(kind, _OTHER_SIDE[role], name): role for _, kind, role, name in keys}
+    found: dict[str, None] = {}
+    for (_, kind, role, name), it in made[robot].ends.items():
+        lost = sides.get((kind, role, name))
+        there = at_work(ends_of(seen, it.name)) if lost and not is_viewer(it.node) else ()
+        if lost and not any(one.role == lost for one in there):
+            found[it.name] = None
+    return tuple(found)

@@ -1,0 +1,62 @@
+"""Dangers of what tf2 does not take: transforms that it drops as they come."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator
+from math import isfinite
+
+from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.wording import only, shorten, unique
+from multibot_rewrite.rules.declaration import system_rule
+from multibot_rewrite.system.index import Index, robots_of
+from multibot_rewrite.system.records import Edge
+
+# QUATERNION_NORMALIZATION_TOLERANCE of tf2/src/buffer_core.cpp.
+_TOLERANCE = 10e-3
+
+
+@system_rule(
+    "MG416",
+    "transform-refused",
+    ERROR,
+    what="A transform is sent that tf2 drops: a quaternion of zeros or not of length 1, a number that"
+    " is none (NaN), a frame that is its own parent, a frame without a name.",
+    why="No listener has it: everything below that frame is lost (`Ignoring transform` in each log).",
+    fix="Send `w: 1` where there is no rotation; see the sensor or the covariance that brings NaN; set"
+    " both frames of the sender.",
+    bad="running: transform base_link -> base_link on /robot1/tf by /robot1/driver\n",
+    good="running: transform odom -> base_link on /robot1/tf by /robot1/driver\n",
+)
+def transform_refused(seen: Index) -> Iterator[Finding]:
+    """By the checks of BufferCore::setTransformImpl; the transforms of one topic and reason are one."""
+    found: dict[tuple[str, str], list[Edge]] = defaultdict(list)
+    for tree in seen.trees:
+        for it in tree.edges:
+            if why := _why(it):
+                found[it.topic, why].append(it)
+    for (topic, why), edges in found.items():
+        senders = unique(node for it in edges for node in it.publishers)
+        listed = shorten(
+            unique(f"{it.parent or '(none)'} -> {it.child or '(none)'}" for it in edges)
+        )
+        robots = unique(seen.frame_robot(it.child) for it in edges)
+        yield transform_refused.finding(
+            f"tf2 drops {listed} on {topic}: {why}",
+            f"one of {shorten(senders)} sends it" if senders else "",
+            robot=only(robots) or only(robots_of(seen, senders)),
+            names=(topic, *unique(it.child for it in edges if it.child)),
+        )
+
+
+def _why(it: Edge) -> str:
+    if not (it.child and it.parent):
+        return "a frame has no name"
+    if it.child == it.parent:
+        return "a frame is its own parent"
+    if not all(map(isfinite, it.transform)):
+        return "a number in it is not finite (NaN)"
+    length = sum(number * number for number in it.transform[3:])
+    if it.transform and abs(length - 1) > _TOLERANCE:
+        return "its quaternion is all zeros" if not length else "its quaternion is not of length 1"
+    return ""

@@ -1,0 +1,85 @@
+"""Which of the files beside a description are taken, and what is said of those that are not."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite.fleet.proposal.companions import companions_of
+from multibot_rewrite.fleet.proposal.looking import CLASSIC, GZ, NO_SIMULATOR, Looked
+from multibot_rewrite.fleet.proposal.searching import Found
+
+
+def params(folder: Path, name: str, *nodes: str) -> str:
+    sections = (f"{it}:\n  ros__parameters: {{rate: 1.0}}\n" for it in nodes)
+    (folder / name).write_text("".join(sections))
+    return str(folder / name)
+
+
+def looked(folder: Path, simulator: str = NO_SIMULATOR, control: bool = False) -> Looked:
+    return Looked(str(folder / "r.urdf"), "r", "robot", 2, simulator, control)
+
+
+def test_of_two_files_for_one_node_the_first_is_taken(tmp_path: Path) -> None:
+    """The node that is named is the first by its name, whichever stands first in the files."""
+    taken = params(tmp_path, "a.yaml", "zeta", "omega", "alpha", "mid")
+    left = params(tmp_path, "b.yaml", "mid", "other", "omega", "alpha", "zeta")
+    alone = params(tmp_path, "c.yaml", "other")
+    made = companions_of(looked(tmp_path), Found(params=(alone, left, taken)), "jazzy")
+    assert made.files["params"] == (taken, alone)
+    assert made.left == {left: "a.yaml has parameters of alpha, too"}
+
+
+@pytest.mark.parametrize(
+    ("simulator", "control", "why"),
+    [
+        (NO_SIMULATOR, False, "the description has no <ros2_control>"),
+        (GZ, False, "no plugin of the simulated robot makes a controller manager"),
+        (CLASSIC, False, "no plugin of the simulated robot makes a controller manager"),
+        (NO_SIMULATOR, True, ""),
+        (GZ, True, ""),
+    ],
+)
+def test_controllers_are_for_a_robot_that_has_a_manager(
+    simulator: str, control: bool, why: str, tmp_path: Path
+) -> None:
+    own = params(tmp_path, "driver.yaml", "driver")
+    file = params(tmp_path, "controllers.yaml", "controller_manager", "arm_controller")
+    made = companions_of(looked(tmp_path, simulator, control), Found(params=(file, own)), "jazzy")
+    assert made.left == ({file: why} if why else {})
+    assert sorted(made.files["params"]) == sorted([own] if why else [file, own])
+
+
+@pytest.mark.parametrize("simulator", [NO_SIMULATOR, GZ, CLASSIC])
+def test_a_bridge_is_for_a_simulated_robot(simulator: str, tmp_path: Path) -> None:
+    bridge = tmp_path / "bridge.yaml"
+    bridge.write_text("- {ros_topic_name: scan, gz_topic_name: scan}\n")
+    made = companions_of(looked(tmp_path, simulator), Found(bridge=(str(bridge),)), "jazzy")
+    if simulator == NO_SIMULATOR:
+        assert made.left == {str(bridge): "the description has nothing for a simulator"}
+        assert not made.files.get("bridge")
+    else:
+        assert made.left == {} and made.files == {"bridge": (str(bridge),)}
+
+
+@pytest.mark.parametrize(
+    ("nodes", "stacks"),
+    [
+        (["amcl", "controller_server"], ["nav2"]),
+        (["slam_toolbox", "controller_server"], ["nav2_slam"]),
+        (["controller_server"], ["navigation"]),
+        (["amcl"], ["localization"]),
+        (["slam_toolbox"], ["slam_toolbox"]),
+        (["ekf_node"], ["robot_localization"]),
+        (["ekf_filter_node"], ["robot_localization"]),
+        (["teleop_twist_joy_node"], ["teleop"]),
+        (["driver"], []),
+    ],
+)
+def test_sections_say_the_stacks(nodes: list[str], stacks: list[str], tmp_path: Path) -> None:
+    file = params(tmp_path, "p.yaml", *nodes)
+    made = companions_of(looked(tmp_path), Found(params=(file,)), "jazzy")
+    # Besides those that the description itself says.
+    bare = companions_of(looked(tmp_path), Found(), "jazzy").stacks
+    assert [it for it in made.stacks if it not in bare] == stacks

@@ -1,0 +1,85 @@
+"""Every error that the lint finds in a description is said by a fleet that has it, once."""
+
+from __future__ import annotations
+
+import os
+from collections import Counter
+from pathlib import Path
+
+import pytest
+from support.rule_examples import whole
+
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
+from multibot_rewrite.base.findings.rule import URDF, Rule
+from multibot_rewrite.base.model import MultibotError
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
+from multibot_rewrite.lint.check import lint_file
+from multibot_rewrite.lint.registry import RULES
+from multibot_rewrite.rules.settings import Settings
+
+ASKED = [it for it in RULES.values() if it.level == ERROR and URDF in it.formats and it.bad]
+
+
+def described(rule: Rule, folder: Path) -> Path:
+    """The bad example of a rule; where it has a package beside it, in this package."""
+    for name, text in rule.beside.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text)
+    home = next(folder.glob("*/package.xml"), folder / "package.xml").parent
+    ending = "urdf.xacro" if "xmlns:xacro" in rule.bad else "urdf"
+    file = home / f"example.{ending}"
+    file.write_text(whole(rule.bad))
+    return file
+
+
+def said(file: Path, simulator: str = "gazebo") -> list[Finding]:
+    """What the plan of two such robots says; nothing of one that is refused."""
+    robots = [
+        {"name": name, "description": str(file), "pose": {"y": 3 * at}}
+        for at, name in enumerate(("robot1", "robot2"))
+    ]
+    data = {"layout": "frames-per-robot", "distro": "jazzy", "robots": robots}
+    found = plan_fleet(read_fleet({**data, "simulator": simulator}, "", os.environ))
+    return list(found.fleet.table.problems)
+
+
+@pytest.mark.parametrize("code", [it.code for it in ASKED])
+def test_an_error_of_the_lint_is_one_of_the_fleet(code: str, tmp_path: Path) -> None:
+    file = described(RULES[code], tmp_path)
+    wrong = {it.code for it in lint_file(str(file), Settings()) if it.level == ERROR}
+    try:
+        told = Counter(it.code for it in said(file) if it.level != NOTE)
+    except MultibotError:
+        return
+    assert wrong <= told.keys()
+    assert told[code] <= 1
+
+
+GAZEBO = """\
+<gazebo>
+  <plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" filename="gz_ros2_control-system">
+    {}<hold_joints>true</hold_joints>
+  </plugin>
+</gazebo>
+"""
+LINK = '<link name="base"><inertial><mass value="1"/>{}</inertial></link>'
+SOLID = '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
+
+
+@pytest.mark.parametrize(
+    ("simulator", "comment", "expected"),
+    [
+        ("gazebo", "", ["MB234"]),
+        ("none", "", []),
+        ("gazebo", "<!-- urdf-lint: ignore MB234 -->", []),
+    ],
+)
+def test_a_plugin_without_its_file_of_controllers(
+    simulator: str, comment: str, expected: list[str], tmp_path: Path
+) -> None:
+    """It counts where the plugin is loaded, and where no comment says that it is meant."""
+    file = tmp_path / "robot.urdf"
+    block = GAZEBO.format("").replace("  <plugin", f"  {comment}\n  <plugin")
+    file.write_text(f'<robot name="r">\n{LINK.format(SOLID)}\n{block}</robot>')
+    assert [it.code for it in said(file, simulator) if it.code == "MB234"] == expected

@@ -1,0 +1,65 @@
+"""Frames of a node that a fleet leaves to others are not missed in what it writes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.fleet.checks.read_back import read_back
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
+
+DOG = """\
+<robot name="dog">
+  <link name="base_link"/><link name="leg"/>
+  <joint name="hip" type="fixed"><parent link="base_link"/><child link="leg"/></joint>
+</robot>
+"""
+# CHAMP: nothing starts this filter by the name of a stack.
+FILTER = """\
+footprint_to_odom_ekf:
+  ros__parameters:
+    {odom_frame: odom, base_link_frame: base_footprint, world_frame: odom, odom0: odom/raw}
+"""
+SUB = """\
+<sdf version="1.9"><model name="sub">
+  <link name="base_link"/>
+  <plugin filename="gz-sim-odometry-publisher-system" name="gz::sim::systems::OdometryPublisher">
+    <odom_frame>map</odom_frame><robot_base_frame>base_link</robot_base_frame>
+    <odom_topic>odom</odom_topic><tf_topic>tf</tf_topic>
+  </plugin>
+</model></sdf>
+"""
+FLEET = """\
+layout: LAYOUT
+distro: humble
+robots:
+  - {name: robot1, description: dog.urdf}
+  - {name: robot2, description: dog.urdf, pose: {y: 2}}
+companions: {params: ekf.yaml}
+"""
+
+
+@pytest.mark.parametrize("layout", ["tf-per-robot", "frames-per-robot"])
+def test_frames_of_a_filter_that_is_started_elsewhere(layout: str, tmp_path: Path) -> None:
+    (tmp_path / "dog.urdf").write_text(DOG)
+    (tmp_path / "ekf.yaml").write_text(FILTER)
+    (tmp_path / "fleet.yaml").write_text(FLEET.replace("LAYOUT", layout))
+    plan = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {}))
+    made = make_outputs(plan, str(tmp_path / "out"))
+    (first, *_) = made.planned.robots
+    assert any("base_footprint" in it for it in first.frames)
+    assert read_back(plan, made, str(tmp_path / "out")) == []
+
+
+def test_a_plugin_that_says_where_the_robot_is_has_a_name(tmp_path: Path) -> None:
+    """Odometry in the map: the pose of the fleet file would be a second parent."""
+    (tmp_path / "sub.sdf").write_text(SUB)
+    (tmp_path / "fleet.yaml").write_text(
+        "layout: tf-per-robot\nrobots: [{name: robot1, description: sub.sdf, pose: {x: 1}}]\n"
+    )
+    found = make_outputs(plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "jazzy", {}))).findings
+    (said,) = [it.message for it in found if it.code == "MF701"]
+    assert "because its description already says where it is" in said

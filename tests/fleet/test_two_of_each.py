@@ -1,0 +1,107 @@
+"""Two robots of each sort are read back; a fault of a robot that would be left out is found as well.
+
+Expectations: the same faults in a fleet of two robots, where all is read.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from functools import cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import pytest
+from built_faults import BUILT, FLEET, LAUNCH, OUT, Edit, edited, fleet, in_file
+
+from multibot_rewrite.fleet.build import Outputs, make_outputs
+from multibot_rewrite.fleet.checks.read_back import read_back
+from multibot_rewrite.fleet.checks.two_of_each import two_of_each
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
+
+# The robots with the faults are last: the others of their sort are read in their place.
+NAMES = ("robot3", "robot4", "robot5", "robot1", "robot2")
+
+
+@cache
+def five(*names: str) -> tuple[FleetPlan, Outputs]:
+    rows = ", ".join(f"{{name: {name}, pose: {{x: {at}}}}}" for at, name in enumerate(names))
+    with TemporaryDirectory() as folder:
+        file = Path(folder) / "fleet.yaml"
+        file.write_text(re.sub("(?m)^robots:.*$", f"robots: [{rows}]", FLEET))
+        plan = plan_fleet(read_fleet(str(file), "", os.environ), trust=True)
+        return plan, make_outputs(plan, OUT)
+
+
+def left(edit: Edit | None = None, names: tuple[str, ...] = NAMES) -> frozenset[str]:
+    """The robots that are not read."""
+    plan, made = five(*names)
+    made = edited(made, edit) if edit else made
+    return two_of_each(made, [it.spec for it in plan.robots])[1]
+
+
+def test_two_are_read_of_robots_that_differ_in_names_and_poses() -> None:
+    assert left() == {"robot5", "robot1", "robot2"}
+    assert read_back(*five(*NAMES), OUT) == []
+
+
+def test_what_is_read_has_no_word_of_the_others() -> None:
+    plan, made = five(*NAMES)
+    few, _ = two_of_each(made, [it.spec for it in plan.robots])
+    assert {it.name for it in few.planned.robots} == {"robot3", "robot4"}
+    launch = next(it.text for it in few.files if it.path == LAUNCH)
+    assert {*re.findall(r"start_(robot\d)", launch)} == {"robot3", "robot4"}
+    assert {it.path.partition("/")[0] for it in few.files} & {*NAMES} == {"robot3", "robot4"}
+
+
+@pytest.mark.parametrize(
+    "edit",
+    [
+        in_file("robot1/nav2_params.yaml", "scan_topic: scan", "scan_topic: scan2"),
+        in_file("robot1/bridge.yaml", "/robot1/scan", "/robot2/scan"),
+        in_file("robot1/hexbase.urdf", "<link", "<!-- --><link"),
+        in_file(LAUNCH, '"robot1": start_robot1', '"robot1":  start_robot1'),
+        in_file("plan.yaml", "  robot1:\n", "  robot1:\n    tag: other\n"),
+        lambda path, text: text.replace('file("robot1/bridge.yaml")', 'file("robot2/bridge.yaml")'),
+    ],
+)  # fmt: skip
+def test_a_robot_with_another_text_is_read(edit: Edit) -> None:
+    assert "robot1" not in left(edit)
+
+
+def test_all_are_read_where_names_are_within_each_other() -> None:
+    assert left(names=("arm", "arm_left", "arm_right")) == frozenset()
+
+
+def test_all_are_read_where_the_launch_file_has_another_form() -> None:
+    edit = in_file(LAUNCH, "def start_robot1():", "def start_robot1(more=()):")
+    assert left(edit) == frozenset()
+
+
+def test_a_robot_that_all_others_obey_is_read() -> None:
+    def edit(path: str, text: str) -> str:
+        return text.replace("scan_topic: scan", "scan_topic: /robot5/scan")
+
+    assert "robot5" not in left(edit)
+    plan, made = five(*NAMES)
+    found = read_back(plan, edited(made, edit), OUT)
+    assert {it.node for it in found} >= {f"/{name}/amcl" for name in NAMES if name != "robot5"}
+
+
+def test_a_file_of_all_robots_may_name_one_that_is_left_out() -> None:
+    """Two bridges send one robot's scan."""
+    plan, made = five(*NAMES)
+    row = next(it.text for it in made.files if it.path == "robot5/bridge.yaml")
+    spoiled = edited(made, lambda path, text: text + row if path == "bridge.yaml" else text)
+    assert "robot5" in two_of_each(spoiled, [it.spec for it in plan.robots])[1]
+    assert "/robot5/scan" in {name for it in read_back(plan, spoiled, OUT) for name in it.names}
+
+
+@pytest.mark.sample(3)
+@pytest.mark.parametrize("name", BUILT)
+def test_a_fault_of_a_robot_that_would_be_left_out_is_found(name: str) -> None:
+    def codes(plan: FleetPlan, made: Outputs) -> set[str]:
+        return {it.code for it in read_back(plan, edited(made, BUILT[name]), OUT)}
+
+    assert codes(*five(*NAMES)) >= codes(*fleet()) != set()

@@ -1,0 +1,100 @@
+"""Help and messages are in the words of ROS: terms that only this package uses so stay out of them."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+from paths import ROOT
+
+from multibot_rewrite.base import other_words
+from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
+from multibot_rewrite.cli.multibot import overview
+from multibot_rewrite.cli.parser import make_parser
+
+TERMS = Path(__file__).parents[1] / "support" / "private_terms.tsv"
+
+
+class Term(NamedTuple):
+    word: re.Pattern[str]
+    instead: str
+    plain: tuple[str, ...]
+
+
+def terms() -> list[Term]:
+    rows = [it.split("\t") for it in TERMS.read_text().splitlines() if not it.startswith("#")]
+    return [
+        Term(
+            re.compile(rf"\b({word})\b", re.IGNORECASE),
+            instead,
+            tuple(filter(None, plain.split("|"))),
+        )
+        for word, instead, plain in rows
+    ]
+
+
+def found_in(text: str) -> Iterator[str]:
+    """The terms in a text, each with what to write instead."""
+    for it in terms():
+        left = text
+        for phrase in it.plain:
+            left = left.replace(phrase, "")
+        if word := it.word.search(left):
+            yield f"{word[0]!r}, write {it.instead}: {' '.join(text.split())[:90]}"
+
+
+def messages() -> Iterator[tuple[str, str]]:
+    """Every text of more than one word in the code that is no docstring: with file and line."""
+    for path in sorted((ROOT / "multibot_rewrite").rglob("*.py")):
+        tree = ast.parse(path.read_text())
+        firsts = (getattr(it, "body", None) for it in ast.walk(tree))
+        docs = {
+            id(it[0].value)
+            for it in firsts
+            if isinstance(it, list) and it and isinstance(it[0], ast.Expr)
+        }
+        for it in ast.walk(tree):
+            text = getattr(it, "value", None)
+            if (
+                isinstance(it, ast.Constant)
+                and isinstance(text, str)
+                and " " in text
+                and id(it) not in docs
+            ):
+                yield f"{path.relative_to(ROOT)}:{it.lineno}", text
+
+
+def test_a_term_is_found_unless_it_is_plain_english() -> None:
+    assert list(found_in("whom nobody hears"))
+    assert list(found_in("the loop closes"))
+    assert not list(found_in("Joints close a loop"))
+    assert not list(found_in("the artefacts of rviz"))
+
+
+def test_messages_have_no_private_term() -> None:
+    assert [f"{place}: {it}" for place, text in messages() for it in found_in(text)] == []
+
+
+@pytest.mark.parametrize("name", [*COMMANDS, *(it.name for it in PROGRAMS)])
+def test_a_help_has_no_private_term(name: str) -> None:
+    command = COMMANDS.get(name) or next(it for it in PROGRAMS if it.name == name)
+    parser = make_parser(command)
+    assert list(found_in(parser.format_help())) == []
+    assert list(found_in(parser.short)) == []
+
+
+def test_the_overview_has_no_private_term() -> None:
+    assert list(found_in(overview("never"))) == []
+
+
+def test_other_words_lead_to_what_there_is() -> None:
+    """No word of the table is a command, and each answer names a command or program that exists."""
+    assert not {*other_words.COMMANDS} & {*COMMANDS}
+    programs = {it.name for it in PROGRAMS}
+    for answer in other_words.COMMANDS.values():
+        first, second = answer.replace(",", "").split()[:2]
+        assert first in programs or second in COMMANDS or (first, second) == ("ros2", "launch")

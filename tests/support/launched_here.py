@@ -1,0 +1,63 @@
+"""Launch files read by the stand-in in the process of the tests, as the child reads them in its own.
+
+What the child changes for good (its environment, command line, what classes of launch keep) is as it
+was when the test is over.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import tempfile
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite import InputError
+from multibot_rewrite.producers.launch import child
+from multibot_rewrite.producers.launch.read import UnreadableError, read_graph
+from multibot_rewrite.producers.launch.records import (
+    LaunchGraph,
+    LaunchOrder,
+    graph_of,
+    order_of,
+    to_json,
+)
+from multibot_rewrite.producers.launch.stand_in import actions, parameters, ros, standing_in, values
+
+# Each with its method that is replaced.
+_CHANGED = (
+    (actions.Action, "__init__"),
+    (ros.ComposableNode, "__init__"),
+    (values.Substitution, "__init__"),
+    (parameters.ParameterFile, "evaluate"),
+    (values.Command, "perform"),
+    (values.FindExecutable, "perform"),
+)
+
+
+def read_here(monkeypatch: pytest.MonkeyPatch, folder: Path) -> None:
+    """From now on ``launch_graph`` asks no other process; ``folder`` gets its temporary files."""
+    monkeypatch.setattr(child, "_asked", lambda order: _read(order, folder))
+    child.launch_graph.cache_clear()
+
+
+def _read(order: LaunchOrder, folder: Path) -> LaunchGraph:
+    with pytest.MonkeyPatch.context() as kept:
+        for kind, method in _CHANGED:
+            kept.setattr(kind, method, getattr(kind, method))
+        kept.setattr(tempfile, "tempdir", tempfile.mkdtemp(dir=folder))
+        kept.setattr(sys, "argv", sys.argv)
+        kept.setattr(sys, "path", [*sys.path])
+        before = {**os.environ}
+        os.environ[child._INSIDE] = "1"
+        try:
+            with standing_in():
+                graph = read_graph(order_of(to_json(order)), tempfile.gettempdir())
+        except UnreadableError as error:
+            problem = f"{order.file}: the launch file cannot be read: {error}"
+            raise InputError(problem) from error
+        finally:
+            os.environ.clear()
+            os.environ.update(before)
+        return graph_of(to_json(graph._replace(stood_in=True)))
