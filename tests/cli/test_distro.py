@@ -139,17 +139,17 @@ def test_a_rewrite_says_which_release_it_is_for_and_why(
 ) -> None:
     (folder / "c.urdf").write_text(CLASSIC)
     urdf_postfix.main(["c.urdf", "robot1", "-o", "o.urdf"])
-    assert "(facts of humble: it loads libgazebo_ros_p3d.so)" in capsys.readouterr().err
+    assert "(ROS 2 humble: it loads libgazebo_ros_p3d.so)" in capsys.readouterr().err
     monkeypatch.setenv("ROS_DISTRO", "noetic")
     assert urdf_postfix.main(["c.urdf", "robot1", "-o", "o.urdf"]) == 0
     said = capsys.readouterr().err
     assert "warning: ROS_DISTRO is 'noetic', which is not known" in said
-    assert "(facts of humble: it loads" in said
+    assert "(ROS 2 humble: it loads" in said
     assert urdf_postfix.main(["o.urdf", "robot1", "--strip", "-o", "back.urdf"]) == 0
     assert (folder / "back.urdf").read_text() == CLASSIC
     monkeypatch.setenv("ROS_DISTRO", "iron")
     urdf_postfix.main(["c.urdf", "robot1", "-o", "o.urdf"])
-    assert "(facts of jazzy)" in capsys.readouterr().err
+    assert "(ROS 2 jazzy)" in capsys.readouterr().err
 
 
 def test_the_lint_goes_on_with_a_release_that_is_not_known(
