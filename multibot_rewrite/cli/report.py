@@ -13,8 +13,8 @@ from multibot_rewrite.base.findings.formats import Report, rendered
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.findings.selection import Selection, fails, grouped, selected
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.output import deliver, is_coloured, print_bytes, prints_colour
 
 TEXT = "text"

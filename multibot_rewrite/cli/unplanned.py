@@ -9,7 +9,6 @@ from collections.abc import Iterator, Sequence
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import release_here
-from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli import live, pictures
 from multibot_rewrite.cli.output import note, say, write_files
 from multibot_rewrite.cli.process import PROGRAM
